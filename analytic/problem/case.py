@@ -1,0 +1,167 @@
+"""The problem: a vibrissa, a contour, and the positions of its foot."""
+
+import hashlib
+import math
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.problem.beam import Beam
+from analytic.problem.errors import InputError
+from analytic.problem.families import catenary, parabola, two_circles
+from analytic.problem.profile import Profile
+from analytic.problem.reach import contact_range, out_of_reach
+
+_MARGIN = 0.01  # L; the default sweep starts and ends this far beyond reach
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Stations of the foot, equally spaced from `start` down to `stop`.
+
+    Parameters
+    ----------
+    stations : int
+        Number of stations, at least 2.
+    start, stop : float, optional
+        First and last foot position [length]. By default from just before the first contact to
+        just past the position from which the contour is out of reach: geometry only, so that no
+        engine is told the answer.
+    """
+
+    stations: int = 200
+    start: float | None = None
+    stop: float | None = None
+
+    def __post_init__(self) -> None:
+        if not (isinstance(self.stations, int) and self.stations >= 2):
+            raise InputError(
+                "sweep.stations", self.stations, "a whole number, 2 or more", "200 is usual"
+            )
+        for name in ("start", "stop"):
+            value = getattr(self, name)
+            if value is not None and not math.isfinite(value):
+                raise InputError(f"sweep.{name}", value, "finite", "leave it out for the default")
+
+
+@dataclass(frozen=True)
+class Case:
+    """What every engine is given: physics only, no numerics.
+
+    Parameters
+    ----------
+    beam : Beam
+        The vibrissa.
+    profile : Profile
+        The body's contour, in the unit of length of `beam`.
+    sweep : Sweep
+        The foot positions.
+    name : str
+        What files and reports call the case.
+
+    Raises
+    ------
+    InputError
+        If the vibrissa cannot reach the contour or the sweep does not start clear of it.
+    """
+
+    beam: Beam = field(default_factory=Beam)
+    profile: Profile = field(default_factory=lambda: catenary(0.5, -0.8))
+    sweep: Sweep = field(default_factory=Sweep)
+    name: str = "case"
+
+    def __post_init__(self) -> None:
+        length = self.beam.length
+        if self._start < self._first_contact * length:
+            raise InputError(
+                "sweep.start",
+                self.sweep.start,
+                f"at least {self._first_contact * length:.6g}, where the tip first touches",
+                "a sweep starts clear of the object",
+            )
+        if not self._stop < self._start:
+            raise InputError(
+                "sweep.stop",
+                self.sweep.stop,
+                f"less than the start, {self._start:.6g}",
+                "the vibrissa is swept in the direction of decreasing x",
+            )
+
+    @cached_property
+    def centreline(self) -> Profile:
+        """The contour that the centreline feels, in units of the vibrissa's length."""
+        return self.profile.scaled(1 / self.beam.length).offset(self.radius)
+
+    @property
+    def radius(self) -> float:
+        """The beam's radius in units of its length."""
+        return self.beam.radius / self.beam.length
+
+    @cached_property
+    def foot_x(self) -> Floats:
+        """Foot positions, shape (stations,), decreasing [length]."""
+        return np.linspace(self._start, self._stop, self.sweep.stations)
+
+    @cached_property
+    def digest(self) -> str:
+        """A hash of the physics: equal for equal problems, whatever the case is called."""
+        alpha = np.linspace(*self.profile.alpha_range, 67)[1:-1]
+        beam = self.beam
+        numbers = np.concatenate(
+            [
+                [beam.length, beam.flexural_rigidity, beam.radius, self._start, self._stop],
+                [self.sweep.stations, *self.profile.alpha_range],
+                self.profile.xi(alpha),
+                self.profile.eta(alpha),
+            ]
+        )
+        text = " ".join(f"{x:.12e}" for x in numbers)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    @cached_property
+    def _first_contact(self) -> float:
+        _, first = contact_range(self.centreline)
+        return float(self.centreline.at(np.array(first)).xi)
+
+    @cached_property
+    def _start(self) -> float:
+        if self.sweep.start is not None:
+            return self.sweep.start
+        return (self._first_contact + _MARGIN) * self.beam.length
+
+    @cached_property
+    def _stop(self) -> float:
+        if self.sweep.stop is not None:
+            return self.sweep.stop
+        return (out_of_reach(self.centreline) - _MARGIN) * self.beam.length
+
+
+_NAMED_PROFILES = {
+    "catenary": catenary(0.5, -0.8),  # the paper's g1
+    "parabola": parabola(0.5, 0.5),  # g2
+    "two-circles": two_circles(),  # g3
+    "shallow-catenary": catenary(0.25, -0.8),  # the profile of fig. 12
+    "tip-only": catenary(0.5, -0.2),  # g1 raised by 0.6: no Phase B
+}
+
+CASE_NAMES = tuple(_NAMED_PROFILES)
+
+
+def named_case(name: str) -> Case:
+    """One of the five named cases, with the default beam and sweep.
+
+    Raises
+    ------
+    InputError
+        If there is no case of that name.
+    """
+    if name not in _NAMED_PROFILES:
+        raise InputError(
+            "case",
+            repr(name),
+            f"one of {', '.join(CASE_NAMES)}, or a TOML file",
+            "see `vibrissa cases`",
+        )
+    return replace(Case(profile=_NAMED_PROFILES[name]), name=name)

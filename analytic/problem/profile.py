@@ -1,0 +1,169 @@
+"""A strictly convex contour, as triples (alpha, xi, eta) by slope angle."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.problem.errors import InputError
+
+Curve: TypeAlias = Callable[[Floats], Floats]
+
+_DIFFERENCE_STEP = 5e-3  # rad: round-off eps/h and truncation h^6 are both about 1e-13 here
+
+
+class ContourPoint(NamedTuple):
+    """Points of a contour and how fast they move along it; every field an array of one shape.
+
+    ``alpha`` [rad], ``xi`` and ``eta`` [length] at contour parameter t; ``turning`` is
+    d(alpha)/dt and ``stretch`` is d(arc length)/dt, so d(xi)/dt = stretch cos(alpha) and
+    d(eta)/dt = stretch sin(alpha).
+    """
+
+    alpha: Floats
+    xi: Floats
+    eta: Floats
+    turning: Floats
+    stretch: Floats
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A strictly convex C1 contour seen from below, parametrised by its slope angle alpha.
+
+    Parameters
+    ----------
+    xi, eta : callable
+        Coordinates of the contour point with slope angle ``alpha`` [length]; each maps an array of
+        angles [rad] to an array of the same shape.
+    alpha_range : tuple of float
+        Smallest and largest slope angle of the contour [rad], within [-pi/2, pi/2].
+    radius_of_curvature : callable, optional
+        d(arc length)/d(alpha) [length]; by sixth-order differences of `xi` and `eta` if not given.
+    label : str
+        What reports call the profile.
+
+    Raises
+    ------
+    InputError
+        If the range is empty or the triples do not describe a convex contour: the chord between
+        two contour points must have a slope angle between the tangents there.
+    """
+
+    xi: Curve
+    eta: Curve
+    alpha_range: tuple[float, float]
+    radius_of_curvature: Curve | None = field(default=None, repr=False)
+    label: str = "custom profile"
+
+    def __post_init__(self) -> None:
+        lowest, highest = self.alpha_range
+        if not -np.pi / 2 <= lowest < highest <= np.pi / 2:
+            raise InputError(
+                "profile.alpha_range",
+                self.alpha_range,
+                "two angles, the smaller first, within [-pi/2, pi/2] rad",
+                "angles are in rad and grow with x along the lower side of a convex body",
+            )
+        self._check_convex()
+
+    def at(self, t: Floats) -> ContourPoint:
+        """Points at contour parameter `t`, which is the slope angle itself on a C1 contour."""
+        alpha = np.asarray(t, dtype=float)
+        return ContourPoint(
+            alpha, self.xi(alpha), self.eta(alpha), np.ones_like(alpha), self._stretch(alpha)
+        )
+
+    def offset(self, radius: float) -> "Profile":
+        """The parallel curve at distance `radius` below: what a centreline at that distance feels.
+
+        Exact for a round tip and for tangential contact, since both touch at the same alpha.
+        """
+        if radius == 0:
+            return self
+        return replace(
+            self,
+            xi=partial(_offset_xi, self.xi, radius),
+            eta=partial(_offset_eta, self.eta, radius),
+            radius_of_curvature=partial(_offset_stretch, self._stretch, radius),
+        )
+
+    def scaled(self, factor: float) -> "Profile":
+        """The contour enlarged by `factor` about the origin, to change its unit of length."""
+        if factor == 1:
+            return self
+        return replace(
+            self,
+            xi=partial(_scaled, self.xi, factor),
+            eta=partial(_scaled, self.eta, factor),
+            radius_of_curvature=partial(_scaled, self._stretch, factor),
+            label=f"{self.label} x {factor:g}",
+        )
+
+    def _stretch(self, alpha: Floats) -> Floats:
+        if self.radius_of_curvature is not None:
+            return self.radius_of_curvature(alpha)
+        lowest, highest = self.alpha_range
+        h = min(_DIFFERENCE_STEP, (highest - lowest) / 12)
+        centre = np.clip(alpha, lowest + 3 * h, highest - 3 * h)
+        return np.cos(centre) * _slope(self.xi, centre, h) + np.sin(centre) * _slope(
+            self.eta, centre, h
+        )
+
+    def _check_convex(self) -> None:
+        lowest, highest = self.alpha_range
+        inset = 1e-6 * (highest - lowest)  # open families have their poles at +-pi/2
+        alpha = np.linspace(lowest + inset, highest - inset, 129)
+        xi, eta = self.xi(alpha), self.eta(alpha)
+        if np.shape(xi) != alpha.shape or np.shape(eta) != alpha.shape:
+            raise InputError(
+                "profile",
+                self.label,
+                "two callables that map an array of angles to an array of the same shape",
+                "write xi and eta with NumPy functions",
+            )
+        finite = np.isfinite(xi) & np.isfinite(eta)
+        if not finite.all():
+            raise InputError(
+                "profile",
+                f"{self.label}, not finite at alpha = {alpha[~finite][0]:.6g} rad",
+                "finite over its whole alpha_range",
+                "narrow alpha_range or mend xi and eta",
+            )
+        chord = np.arctan2(np.diff(eta), np.diff(xi))
+        slack = 1e-9
+        wrong = (chord < alpha[:-1] - slack) | (chord > alpha[1:] + slack)
+        if wrong.any():
+            i = int(np.argmax(wrong))
+            raise InputError(
+                "profile",
+                f"{self.label}, whose chord between alpha = {alpha[i]:.6g} and {alpha[i + 1]:.6g} "
+                f"rad has slope angle {chord[i]:.6g} rad",
+                "strictly convex, each chord's slope between those of the tangents at its ends",
+                "check that (xi, eta) is the point where the slope angle is alpha",
+            )
+
+
+def _slope(curve: Curve, centre: Floats, h: float) -> Floats:
+    """Sixth-order central difference of `curve`."""
+    near, middle, far = (curve(centre + i * h) - curve(centre - i * h) for i in (1, 2, 3))
+    return (45 * near - 9 * middle + far) / (60 * h)
+
+
+def _scaled(curve: Curve, factor: float, alpha: Floats) -> Floats:
+    return factor * curve(alpha)
+
+
+def _offset_xi(xi: Curve, radius: float, alpha: Floats) -> Floats:
+    return xi(alpha) + radius * np.sin(alpha)
+
+
+def _offset_eta(eta: Curve, radius: float, alpha: Floats) -> Floats:
+    return eta(alpha) - radius * np.cos(alpha)
+
+
+def _offset_stretch(stretch: Curve, radius: float, alpha: Floats) -> Floats:
+    return stretch(alpha) + radius

@@ -1,0 +1,1 @@
+"""What solves the problem: elliptic integrals, two contact phases, events, reconstruction."""

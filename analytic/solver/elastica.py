@@ -1,0 +1,117 @@
+"""The elastica under one contact force, in closed form.
+
+Everything is dimensionless: lengths in L, forces in EI/L^2, moments in EI/L. The loaded span runs
+from the clamp (slope pi/2) to the contact, where the frictionless contour of slope angle alpha
+presses with force f. With theta = phi - alpha its first integral is kappa^2 = 2 f (sin theta -
+sin theta_1), theta_1 the value at the contact (paper, eqs. 6 and 17), so that the span depends on
+alpha and on the rotation u = pi/2 - phi_1 of its end alone:
+
+    q = sqrt(f) * span length
+    C = sqrt(f) * integral of cos theta = |kappa(0)| / sqrt(f)
+    S = sqrt(f) * integral of sin theta
+
+are elliptic integrals of modulus k = sin((u + alpha)/2). The substitution k sin(psi) =
+sin(pi/4 - theta/2) of eq. 9 gives them from psi_0 to pi/2; the addition theorem (Byrd and Friedman,
+116.01) turns that into *one* incomplete integral to psi', tan(psi') = cos(psi_0)/(k' sin(psi_0)),
+so nothing cancels when the span is hardly bent.
+
+The rotation is counted from the smallest possible one, u = w + max(0, -2 alpha), so that nothing
+cancels where the clamp moment vanishes either: w = 0 is the straight span for alpha >= 0 and the
+span with zero moment at the clamp for alpha < 0.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import ellipeinc, ellipkinc
+
+from analytic.problem.arrays import Floats
+
+
+class Span(NamedTuple):
+    """The three integrals of a loaded span; arrays of one shape."""
+
+    q: Floats
+    C: Floats
+    S: Floats
+
+
+class Frame(NamedTuple):
+    """Where the span ends: up and across from the clamp, times sqrt(f)."""
+
+    up: Floats
+    across: Floats
+
+
+def span(excess: Floats, alpha: Floats) -> Span:
+    """Integrals of the span whose end has turned by `excess` over the least possible rotation.
+
+    Parameters
+    ----------
+    excess : array
+        w >= 0 [rad]; pi/2 - |alpha| is tangential contact (Phase B).
+    alpha : array
+        Slope angle of the contour at the contact [rad], same shape.
+    """
+    w, sharp = excess, np.abs(alpha)
+    k, k_ = np.sin((w + sharp) / 2), np.cos((w + sharp) / 2)
+    return _span(2 * np.sqrt(np.sin(w / 2) * np.sin(w / 2 + sharp)), k, k_, alpha)
+
+
+def span_of_moment(C: Floats, alpha: Floats) -> Span:
+    """Integrals of the span whose clamp moment is C sqrt(f): what reconstruction starts from.
+
+    NaN where the moment is too large for the force: k^2 = sin^2(alpha/2) + C^2/4 exceeds 1.
+    """
+    k = np.hypot(np.sin(alpha / 2), C / 2)
+    with np.errstate(invalid="ignore"):
+        return _span(C, k, np.sqrt(1 - k * k), alpha)
+
+
+def _span(C: Floats, k: Floats, k_: Floats, alpha: Floats) -> Span:
+    a = np.sin(alpha / 2)  # k sin(psi_0); k cos(psi_0) is C/2
+    psi = np.arctan2(C / 2, k_ * a)
+    q = ellipkinc(psi, k * k)
+    S = 2 * (ellipeinc(psi, k * k) - k * a * np.sin(psi)) - q
+    return Span(q, C, S)
+
+
+def least_rotation(alpha: Floats) -> Floats:
+    """Rotation from which the excess is counted: u = w + max(0, -2 alpha) [rad]."""
+    return np.maximum(0.0, -2 * alpha)
+
+
+def frame(span: Span, alpha: Floats) -> Frame:
+    """The span's end in the world frame: up = sqrt(f) y, across = sqrt(f) (x - x0)."""
+    sin, cos = np.sin(alpha), np.cos(alpha)
+    return Frame(span.C * sin + span.S * cos, span.C * cos - span.S * sin)
+
+
+def span_by_excess(span: Span, excess: Floats, alpha: Floats) -> Span:
+    """Derivatives of `span` with respect to the excess rotation, at fixed alpha.
+
+    From dF/dk, dE/dk and d(psi_0)/dk (Byrd and Friedman, 710.07 and 710.09).
+    """
+    q, C, S = span
+    angle = excess + np.abs(alpha)  # pi/2 - theta_1
+    sin_1, cos_1 = np.cos(angle), np.sin(angle)
+    pull = np.sin(alpha) / C
+    return Span(
+        ((S - q * sin_1) / 2 + pull) / cos_1,
+        cos_1 / C,
+        (sin_1 * (S / 2 + pull) - q / 2) / cos_1,
+    )
+
+
+def span_by_alpha(span: Span, by_excess: Span, alpha: Floats) -> Span:
+    """Derivatives of `span` with respect to alpha, at fixed excess rotation.
+
+    Both limits of the integrals move. The upper one, pi/2 - alpha, contributes the integrand at
+    the clamp; the lower one, theta_1 = pi/2 - w - |alpha|, what the excess does.
+    """
+    side = np.where(alpha < 0, -1.0, 1.0)
+    return Span(
+        side * by_excess.q - 1 / span.C,
+        side * by_excess.C - np.sin(alpha) / span.C,
+        side * by_excess.S - np.cos(alpha) / span.C,
+    )

@@ -1,0 +1,154 @@
+"""Both contact phases at given points of the contour: forces, foot position and its derivative.
+
+Dimensionless throughout, on the contour that the centreline feels.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.beam import Beam
+from analytic.problem.profile import ContourPoint, Profile
+from analytic.problem.readings import COLUMNS
+from analytic.solver.elastica import (
+    Frame,
+    Span,
+    frame,
+    least_rotation,
+    span,
+    span_by_alpha,
+    span_by_excess,
+)
+from analytic.solver.tip import tip_excess
+
+
+class Equilibria(NamedTuple):
+    """Vibrissae at rest against points of the contour; every array has shape (n,).
+
+    NaN in `excess` marks points that no vibrissa can reach.
+    """
+
+    point: ContourPoint
+    excess: Floats
+    span: Span
+    root_f: Floats
+    tangent: Booleans
+
+    @property
+    def frame(self) -> Frame:
+        """The contact as seen from the clamp, times sqrt(f)."""
+        return frame(self.span, self.point.alpha)
+
+    @property
+    def arc_length(self) -> Floats:
+        """Arc length s1 of the contact."""
+        return np.where(self.tangent, self.span.q / self.root_f, 1.0)
+
+    @property
+    def foot_x(self) -> Floats:
+        """Foot position x0 (paper, eqs. 13 and 22)."""
+        return self.point.xi - self.frame.across / self.root_f
+
+    @property
+    def foot_x_rate(self) -> Floats:
+        """d(x0)/dt along the contour, in closed form; zero where the vibrissa snaps off."""
+        return np.where(self.tangent, self._tangent_rate(), self._tip_rate())
+
+    def _tangent_rate(self) -> Floats:
+        alpha, _, eta, turning, stretch = self.point
+        up, across = self.frame
+        lean = across / up
+        rise = 1 + lean**2 - lean / (self.span.C * up)
+        return stretch * (np.cos(alpha) - np.sin(alpha) * lean) + turning * eta * rise
+
+    def _tip_rate(self) -> Floats:
+        alpha, _, _, turning, stretch = self.point
+        height, reach = tip_rates(self.excess, self.span, alpha)
+        excess_rate = (stretch * np.sin(alpha) - turning * height.by_alpha) / height.by_excess
+        return stretch * np.cos(alpha) - turning * reach.by_alpha - reach.by_excess * excess_rate
+
+
+class Rates(NamedTuple):
+    """Partial derivatives of a length of the tip-loaded vibrissa."""
+
+    by_alpha: Floats
+    by_excess: Floats
+
+
+def tip_rates(excess: Floats, loaded: Span, alpha: Floats) -> tuple[Rates, Rates]:
+    """Derivatives of the tip's height y(1) and reach x(1) - x0 by alpha and excess rotation."""
+    up, across = frame(loaded, alpha)
+    by_excess = span_by_excess(loaded, excess, alpha)
+    by_alpha = span_by_alpha(loaded, by_excess, alpha)
+    up_w, across_w = frame(by_excess, alpha)
+    up_a, across_a = frame(by_alpha, alpha)
+    q = loaded.q
+    height = Rates((up_a + across - up / q * by_alpha.q) / q, (up_w - up / q * by_excess.q) / q)
+    reach = Rates(
+        (across_a - up - across / q * by_alpha.q) / q, (across_w - across / q * by_excess.q) / q
+    )
+    return height, reach
+
+
+def tangent_contact(point: ContourPoint) -> Equilibria:
+    """Phase B (paper, eqs. 18-22), whether or not its arc length fits on the vibrissa."""
+    excess = np.pi / 2 - np.abs(point.alpha)
+    loaded = span(excess, point.alpha)
+    root_f = frame(loaded, point.alpha).up / point.eta
+    return Equilibria(point, excess, loaded, root_f, np.ones_like(point.alpha, dtype=bool))
+
+
+def tip_contact(point: ContourPoint, excess: Floats) -> Equilibria:
+    """Phase A (paper, eqs. 3-13) with a known excess rotation of the tip."""
+    loaded = span(excess, point.alpha)
+    return Equilibria(point, excess, loaded, loaded.q, np.zeros_like(point.alpha, dtype=bool))
+
+
+def equilibria(centreline: Profile, t: Floats) -> Equilibria:
+    """The vibrissa against each contour point: tangential if that fits on it, else at the tip.
+
+    Parameters
+    ----------
+    centreline : Profile
+        Contour that the centreline feels, in units of the vibrissa's length.
+    t : array, shape (n,)
+        Contour parameters.
+    """
+    point = centreline.at(t)
+    tangential = tangent_contact(point)
+    # Beyond alpha = -52.906 deg no tangential contact exists above the foot line.
+    tangent = (tangential.root_f > 0) & (tangential.span.q < tangential.root_f)
+    tip = ~tangent
+    excess = tangential.excess
+    excess[tip] = tip_excess(point.alpha[tip], point.eta[tip])
+    loaded = span(excess, point.alpha)
+    root_f = np.where(tangent, tangential.root_f, loaded.q)
+    return Equilibria(point, excess, loaded, root_f, tangent)
+
+
+def to_table(states: Equilibria, beam: Beam) -> pd.DataFrame:
+    """The readings table of `states`, in the units of `beam`."""
+    alpha, xi, eta = states.point[:3]
+    force = states.root_f**2
+    radius = beam.radius / beam.length
+    free_rotation = states.excess + least_rotation(alpha)
+    reached = np.isfinite(states.excess)
+    table = pd.DataFrame(
+        {
+            "foot_x": states.foot_x * beam.length,
+            "force_x": -force * np.sin(alpha) * beam.force_unit,
+            "force_y": force * np.cos(alpha) * beam.force_unit,
+            "moment_z": states.root_f * states.span.C * beam.moment_unit,
+            "phase": np.where(states.tangent, "tangent", "tip"),
+            "contact_angle": alpha,
+            "contact_arc_length": states.arc_length * beam.length,
+            "contact_x": (xi - radius * np.sin(alpha)) * beam.length,
+            "contact_y": (eta + radius * np.cos(alpha)) * beam.length,
+            "tip_angle": np.where(states.tangent, alpha, np.pi / 2 - free_rotation),
+            "status": np.where(reached, "ok", "unreachable"),
+        }
+    )
+    table.loc[~reached, "contact_arc_length"] = np.nan
+    return table[list(COLUMNS)]

@@ -1,0 +1,1 @@
+"""How far two sweeps disagree, and why."""
