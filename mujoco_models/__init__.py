@@ -1,1 +1,48 @@
-"""The same problem in MuJoCo."""
+"""The same problem in MuJoCo, swept quasi-statically and at rest at every station.
+
+MuJoCo itself is imported when a sweep starts, not before.
+"""
+
+from collections.abc import Callable
+
+from analytic.problem.case import Case
+from analytic.problem.readings import Readings
+from mujoco_models.settings import Settings
+
+__all__ = ["Settings", "available_beams", "simulate_sweep"]
+
+
+def available_beams() -> tuple[str, ...]:
+    """The beams that the installed MuJoCo has."""
+    return ("chain",)
+
+
+def simulate_sweep(
+    case: Case, settings: Settings | None = None, advance: Callable[[], None] = lambda: None
+) -> Readings:
+    """Sweep `case` in MuJoCo.
+
+    Parameters
+    ----------
+    case : Case
+        The problem; all that the simulation knows of it.
+    settings : Settings, optional
+        The numerics.
+    advance : callable, optional
+        Called after every station, for progress bars.
+
+    Returns
+    -------
+    Readings
+        In the units of the case's beam, source ``"mujoco <beam>"``, with a column ``residual``:
+        the largest moment out of balance at any joint. ``provenance["snap_off"]`` is where the
+        simulation let go.
+
+    Raises
+    ------
+    InputError
+        If the case's beam has no radius: MuJoCo cannot collide a line.
+    """
+    from mujoco_models.sweep import run_sweep
+
+    return run_sweep(case, settings or Settings(), advance)

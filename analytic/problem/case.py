@@ -4,14 +4,15 @@ import hashlib
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
+from analytic.problem.contour import Contour
 from analytic.problem.errors import InputError
 from analytic.problem.families import catenary, parabola, two_circles
-from analytic.problem.profile import Profile
 from analytic.problem.reach import contact_range, out_of_reach
 
 _MARGIN = 0.01  # L; the default sweep starts and ends this far beyond reach
@@ -54,7 +55,7 @@ class Case:
     ----------
     beam : Beam
         The vibrissa.
-    profile : Profile
+    profile : Contour
         The body's contour, in the unit of length of `beam`.
     sweep : Sweep
         The foot positions.
@@ -68,7 +69,7 @@ class Case:
     """
 
     beam: Beam = field(default_factory=Beam)
-    profile: Profile = field(default_factory=lambda: catenary(0.5, -0.8))
+    profile: Contour = field(default_factory=lambda: catenary(0.5, -0.8))
     sweep: Sweep = field(default_factory=Sweep)
     name: str = "case"
 
@@ -90,7 +91,7 @@ class Case:
             )
 
     @cached_property
-    def centreline(self) -> Profile:
+    def centreline(self) -> Contour:
         """The contour that the centreline feels, in units of the vibrissa's length."""
         return self.profile.scaled(1 / self.beam.length).offset(self.radius)
 
@@ -107,23 +108,40 @@ class Case:
     @cached_property
     def digest(self) -> str:
         """A hash of the physics: equal for equal problems, whatever the case is called."""
-        alpha = np.linspace(*self.profile.alpha_range, 67)[1:-1]
+        last, first = contact_range(self.centreline)
+        point = self.centreline.at(np.linspace(last, first, 67))
         beam = self.beam
         numbers = np.concatenate(
             [
                 [beam.length, beam.flexural_rigidity, beam.radius, self._start, self._stop],
-                [self.sweep.stations, *self.profile.alpha_range],
-                self.profile.xi(alpha),
-                self.profile.eta(alpha),
+                [self.sweep.stations],
+                point.xi,
+                point.eta,
             ]
         )
         text = " ".join(f"{x:.12e}" for x in numbers)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
+    def provenance(self) -> dict[str, Any]:
+        """What every engine records of the problem that it solved."""
+        xi, eta = self.outline()
+        return {
+            "case": self.name,
+            "profile": self.profile.label,
+            "digest": self.digest,
+            "contour": [xi.tolist(), eta.tolist()],
+        }
+
+    def outline(self, points: int = 181) -> tuple[Floats, Floats]:
+        """The body's contour within reach of the vibrissa, for pictures: xi, eta [length]."""
+        last, first = contact_range(self.centreline)
+        vertices = self.profile.scaled(1 / self.beam.length).outline(last, first, points)
+        return vertices[:, 0] * self.beam.length, vertices[:, 1] * self.beam.length
+
     @cached_property
     def _first_contact(self) -> float:
         _, first = contact_range(self.centreline)
-        return float(self.centreline.at(np.array(first)).xi)
+        return float(self.centreline.at(np.array([first])).xi[0])
 
     @cached_property
     def _start(self) -> float:

@@ -9,7 +9,7 @@ from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 from analytic.problem.profile import Profile
 
-_OPEN_RANGE = (-0.4999 * math.pi, 0.4999 * math.pi)  # graphs of functions of x never stand upright
+_STEEPEST = math.pi / 2 - 1e-3  # the graph of a function of x never stands upright
 
 
 def catenary(a: float, c: float) -> Profile:
@@ -27,7 +27,7 @@ def catenary(a: float, c: float) -> Profile:
     return Profile(
         xi=partial(_catenary_xi, a),
         eta=partial(_catenary_eta, a, c),
-        alpha_range=_OPEN_RANGE,
+        alpha_range=(-_STEEPEST, _STEEPEST),
         radius_of_curvature=partial(_catenary_radius, a),
         label=f"catenary cosh({a:g} x) {c:+g}",
     )
@@ -48,7 +48,7 @@ def parabola(a: float, c: float) -> Profile:
     return Profile(
         xi=partial(_parabola_xi, a),
         eta=partial(_parabola_eta, a, c),
-        alpha_range=_OPEN_RANGE,
+        alpha_range=(-_STEEPEST, _STEEPEST),
         radius_of_curvature=partial(_parabola_radius, a),
         label=f"parabola {a:g} x^2 {c:+g}",
     )
@@ -74,7 +74,7 @@ def ellipse(semi_axes: tuple[float, float], lowest: tuple[float, float]) -> Prof
 def two_circles(
     right_radius: float = 2.0, left_radius: float = 0.5, lowest: tuple[float, float] = (0.0, 0.5)
 ) -> Profile:
-    """Two circles that share their lowest point and the tangent there; the defaults are the paper's g3.
+    """Two circles that share their lowest point and the tangent there; by default the paper's g3.
 
     C1 but not C2: every reading has a kink where the contact passes the lowest point.
     """
@@ -146,8 +146,8 @@ def _ellipse_radius(across: float, upward: float, alpha: Floats) -> Floats:
 
 
 def _two_circles_radius(right: float, left: float, alpha: Floats) -> Floats:
-    radius: Floats = np.where(alpha > 0, right, left)
-    return radius
+    on_right = (alpha > 0).astype(float)
+    return left + (right - left) * on_right
 
 
 def _two_circles_xi(right: float, left: float, x: float, alpha: Floats) -> Floats:
@@ -155,7 +155,7 @@ def _two_circles_xi(right: float, left: float, x: float, alpha: Floats) -> Float
 
 
 def _two_circles_eta(right: float, left: float, y: float, alpha: Floats) -> Floats:
-    return y + _two_circles_radius(right, left, alpha) * 2 * np.sin(alpha / 2) ** 2
+    return y + _two_circles_radius(right, left, alpha) * 2 * np.square(np.sin(alpha / 2))
 
 
 def _positive(name: str, value: float) -> None:

@@ -3,11 +3,12 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from analytic.problem.contour import Contour, ContourPoint
 from analytic.problem.errors import InputError
 
 Curve: TypeAlias = Callable[[Floats], Floats]
@@ -15,24 +16,12 @@ Curve: TypeAlias = Callable[[Floats], Floats]
 _DIFFERENCE_STEP = 5e-3  # rad: round-off eps/h and truncation h^6 are both about 1e-13 here
 
 
-class ContourPoint(NamedTuple):
-    """Points of a contour and how fast they move along it; every field an array of one shape.
-
-    ``alpha`` [rad], ``xi`` and ``eta`` [length] at contour parameter t; ``turning`` is
-    d(alpha)/dt and ``stretch`` is d(arc length)/dt, so d(xi)/dt = stretch cos(alpha) and
-    d(eta)/dt = stretch sin(alpha).
-    """
-
-    alpha: Floats
-    xi: Floats
-    eta: Floats
-    turning: Floats
-    stretch: Floats
-
-
 @dataclass(frozen=True)
-class Profile:
+class Profile(Contour):
     """A strictly convex C1 contour seen from below, parametrised by its slope angle alpha.
+
+    Beyond its range of slope angles the contour is a corner: the body ends there, and the vibrissa
+    turns about the end point before it slides off.
 
     Parameters
     ----------
@@ -70,25 +59,42 @@ class Profile:
             )
         self._check_convex()
 
+    @property
+    def t_range(self) -> tuple[float, float]:
+        """The full turn of the lower side of a convex body; the parameter is the slope angle."""
+        return (-np.pi / 2, np.pi / 2)
+
     def at(self, t: Floats) -> ContourPoint:
-        """Points at contour parameter `t`, which is the slope angle itself on a C1 contour."""
-        alpha = np.asarray(t, dtype=float)
-        return ContourPoint(
-            alpha, self.xi(alpha), self.eta(alpha), np.ones_like(alpha), self._stretch(alpha)
-        )
+        """Points at slope angles `t`, shape (n,)."""
+        t = np.asarray(t, dtype=float)
+        on = np.clip(t, *self.alpha_range)
+        stretch = np.where(t == on, self._stretch(on), 0.0)
+        return ContourPoint(t, self.xi(on), self.eta(on), np.ones_like(t), stretch)
+
+    def parameter(self, alpha: Floats) -> Floats:
+        """The slope angle itself."""
+        return alpha
+
+    def breaks(self) -> Floats:
+        """The ends of the range of slope angles, where they are corners."""
+        return np.array([end for end in self.alpha_range if abs(end) < np.pi / 2])
+
+    def outline(self, begin: float, end: float, points: int) -> Floats:
+        """Vertices at equal steps of slope angle: equal steps of the facets' normals."""
+        low, high = self.alpha_range
+        on = np.linspace(max(begin, low), min(end, high), points)
+        return np.column_stack([self.xi(on), self.eta(on)])
 
     def offset(self, radius: float) -> "Profile":
-        """The parallel curve at distance `radius` below: what a centreline at that distance feels.
-
-        Exact for a round tip and for tangential contact, since both touch at the same alpha.
-        """
+        """The parallel curve at distance `radius` below, round the corners at the ends too."""
         if radius == 0:
             return self
         return replace(
             self,
-            xi=partial(_offset_xi, self.xi, radius),
-            eta=partial(_offset_eta, self.eta, radius),
-            radius_of_curvature=partial(_offset_stretch, self._stretch, radius),
+            xi=partial(_offset_xi, self, radius),
+            eta=partial(_offset_eta, self, radius),
+            alpha_range=self.t_range,
+            radius_of_curvature=partial(_offset_stretch, self, radius),
         )
 
     def scaled(self, factor: float) -> "Profile":
@@ -100,7 +106,6 @@ class Profile:
             xi=partial(_scaled, self.xi, factor),
             eta=partial(_scaled, self.eta, factor),
             radius_of_curvature=partial(_scaled, self._stretch, factor),
-            label=f"{self.label} x {factor:g}",
         )
 
     def _stretch(self, alpha: Floats) -> Floats:
@@ -157,13 +162,13 @@ def _scaled(curve: Curve, factor: float, alpha: Floats) -> Floats:
     return factor * curve(alpha)
 
 
-def _offset_xi(xi: Curve, radius: float, alpha: Floats) -> Floats:
-    return xi(alpha) + radius * np.sin(alpha)
+def _offset_xi(profile: Profile, radius: float, alpha: Floats) -> Floats:
+    return profile.at(alpha).xi + radius * np.sin(alpha)
 
 
-def _offset_eta(eta: Curve, radius: float, alpha: Floats) -> Floats:
-    return eta(alpha) - radius * np.cos(alpha)
+def _offset_eta(profile: Profile, radius: float, alpha: Floats) -> Floats:
+    return profile.at(alpha).eta - radius * np.cos(alpha)
 
 
-def _offset_stretch(stretch: Curve, radius: float, alpha: Floats) -> Floats:
-    return stretch(alpha) + radius
+def _offset_stretch(profile: Profile, radius: float, alpha: Floats) -> Floats:
+    return profile.at(alpha).stretch + radius

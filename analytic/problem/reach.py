@@ -1,64 +1,54 @@
 """What geometry alone says of a sweep: where it can touch, and where it no longer can.
 
 Lengths here are in units of the vibrissa's length; ``centreline`` is the contour that the
-vibrissa's centreline feels (`Profile.offset`).
+vibrissa's centreline feels (`Contour.offset`).
 """
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
+from analytic.problem.contour import Contour
 from analytic.problem.errors import InputError
-from analytic.problem.profile import Profile
 
 
-def contact_range(centreline: Profile) -> tuple[float, float]:
+def contact_range(centreline: Contour) -> tuple[float, float]:
     """The contour parameters between which the contour lies within reach, eta <= 1.
 
     Returns
     -------
     last, first : float
-        Parameter on the far (left) side, and of the first contact: the larger root of eta = 1,
-        where the tip of the straight vibrissa meets the contour.
+        Parameter on the far (left) side, and of the first contact. That is where the tip of the
+        straight vibrissa meets the contour, the larger root of eta = 1; or, if the object ends
+        below the tip, its right end, which the side of the straight vibrissa meets.
 
     Raises
     ------
     InputError
-        If the contour starts below the foot line, lies out of reach, or ends before its right
-        side has risen to the height of the tip.
+        If the contour starts below the foot line or lies out of reach.
     """
-    low, high = centreline.alpha_range
-    bottom = min(max(0.0, low), high)
+    low, high = centreline.t_range
+    bottom = float(centreline.parameter(np.array([0.0]))[0])
     lowest = _height(centreline, bottom)
-    name = f"height of the contour ({centreline.label}) at its lowest point"
+    name = f"height of the lowest point of the object ({centreline.label}), less the beam's radius,"
     if lowest <= 0:
-        raise InputError(
-            name, f"{lowest:.6g} L above the beam's radius", "above the foot line", "raise it"
-        )
+        raise InputError(name, f"{lowest:.6g} L", "above the foot line, y = 0", "raise the object")
     if lowest >= 1:
         raise InputError(
-            name, f"{lowest:.6g} L", "below the tip, 1 L", "lower it or lengthen the vibrissa"
+            name,
+            f"{lowest:.6g} L",
+            "below 1 L, the tip of the vibrissa",
+            "lower the object or lengthen the vibrissa",
         )
-    if _height(centreline, high) < 1:
-        raise InputError(
-            f"right end of the contour ({centreline.label})",
-            f"{_height(centreline, high):.6g} L high",
-            "at least 1 L high, so that the tip touches first",
-            "extend alpha_range, or place or scale the object so that it rises above the tip",
-        )
-    first = brentq(lambda t: _height(centreline, t) - 1, bottom, high, xtol=1e-300, rtol=1e-15)
-    if _height(centreline, low) <= 1:
-        return low, float(first)
-    last = brentq(lambda t: _height(centreline, t) - 1, low, bottom, xtol=1e-300, rtol=1e-15)
-    return float(last), float(first)
+    return _height_one(centreline, low, bottom), _height_one(centreline, high, bottom)
 
 
-def out_of_reach(centreline: Profile) -> float:
+def out_of_reach(centreline: Contour) -> float:
     """The foot position, left of the contour, from which all of it is farther away than 1."""
     last, first = contact_range(centreline)
 
     def leftmost_foot(t: float) -> float:
-        point = centreline.at(np.array(t))
-        return float(point.xi - np.sqrt(max(0.0, 1 - float(point.eta) ** 2)))
+        point = centreline.at(np.array([t]))
+        return float(point.xi[0] - np.sqrt(max(0.0, 1 - float(point.eta[0]) ** 2)))
 
     grid = np.linspace(last, first, 257)
     best = int(np.argmin([leftmost_foot(t) for t in grid]))
@@ -66,5 +56,13 @@ def out_of_reach(centreline: Profile) -> float:
     return float(minimize_scalar(leftmost_foot, bounds=bounds, method="bounded").fun)
 
 
-def _height(centreline: Profile, t: float) -> float:
-    return float(centreline.at(np.array(t)).eta)
+def _height_one(centreline: Contour, end: float, bottom: float) -> float:
+    """Where the contour passes the height 1 between its lowest point and an end, or that end."""
+    if _height(centreline, end) <= 1:
+        return end
+    bracket = min(end, bottom), max(end, bottom)
+    return float(brentq(lambda t: _height(centreline, t) - 1, *bracket, xtol=1e-300, rtol=9e-16))
+
+
+def _height(centreline: Contour, t: float) -> float:
+    return float(centreline.at(np.array([t])).eta[0])

@@ -90,6 +90,12 @@ class Readings:
                     "mend the column",
                 )
 
+    @property
+    def snap_off(self) -> float | None:
+        """Foot position of the snap-off [length], if the source located it; see `provenance`."""
+        value = self.provenance.get("snap_off")
+        return None if value is None else float(value)
+
     def values(self, column: str) -> Floats:
         """A numeric column, shape (stations,); NaN throughout if it was not measured."""
         if column not in self.table:

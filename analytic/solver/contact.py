@@ -5,17 +5,17 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from analytic.problem.beam import Beam
+from analytic.problem.contour import Contour
 from analytic.problem.errors import InputError
-from analytic.problem.profile import Profile
 from analytic.solver.equilibria import equilibria, to_table
 
 
-def solve_contact(profile: Profile, alpha: ArrayLike, beam: Beam | None = None) -> pd.DataFrame:
+def solve_contact(profile: Contour, alpha: ArrayLike, beam: Beam | None = None) -> pd.DataFrame:
     """Clamp readings and contact of a vibrissa that touches `profile` where its slope is `alpha`.
 
     Parameters
     ----------
-    profile : Profile
+    profile : Contour
         The body's contour [length].
     alpha : array_like, shape (n,)
         Slope angles of the contact points [rad].
@@ -31,18 +31,17 @@ def solve_contact(profile: Profile, alpha: ArrayLike, beam: Beam | None = None) 
     Raises
     ------
     InputError
-        If an angle is not finite or lies outside the contour's range.
+        If an angle is not within [-pi/2, pi/2].
     """
     beam = Beam() if beam is None else beam
     angles = np.atleast_1d(np.asarray(alpha, dtype=float))
-    low, high = profile.alpha_range
-    outside = ~((angles >= low) & (angles <= high))
+    outside = ~(np.abs(angles) <= np.pi / 2)
     if outside.any():
         raise InputError(
             "alpha",
             f"{angles[outside][0]} rad",
-            f"between {low:.6g} and {high:.6g} rad, the contour's slope angles",
+            "between -pi/2 and pi/2 rad, the slope angles of the lower side of a body",
             "angles are in rad",
         )
     centreline = profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
-    return to_table(equilibria(centreline, angles), beam)
+    return to_table(equilibria(centreline, centreline.parameter(angles)), beam)

@@ -10,7 +10,7 @@ import pandas as pd
 
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.beam import Beam
-from analytic.problem.profile import ContourPoint, Profile
+from analytic.problem.contour import Contour, ContourPoint
 from analytic.problem.readings import COLUMNS
 from analytic.solver.elastica import (
     Frame,
@@ -106,12 +106,12 @@ def tip_contact(point: ContourPoint, excess: Floats) -> Equilibria:
     return Equilibria(point, excess, loaded, loaded.q, np.zeros_like(point.alpha, dtype=bool))
 
 
-def equilibria(centreline: Profile, t: Floats) -> Equilibria:
+def equilibria(centreline: Contour, t: Floats) -> Equilibria:
     """The vibrissa against each contour point: tangential if that fits on it, else at the tip.
 
     Parameters
     ----------
-    centreline : Profile
+    centreline : Contour
         Contour that the centreline feels, in units of the vibrissa's length.
     t : array, shape (n,)
         Contour parameters.

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
-from analytic.problem.profile import Profile
+from analytic.problem.contour import Contour
 from analytic.problem.reach import contact_range
 from analytic.solver.elastica import frame
 from analytic.solver.equilibria import equilibria, tangent_contact, to_table
@@ -61,12 +61,12 @@ class Limits(NamedTuple):
     last: float
 
 
-def find_events(profile: Profile, beam: Beam | None = None) -> Events:
+def find_events(profile: Contour, beam: Beam | None = None) -> Events:
     """The events of a sweep of `beam` along `profile`, each with the readings there.
 
     Parameters
     ----------
-    profile : Profile
+    profile : Contour
         The body's contour [length].
     beam : Beam, optional
         The vibrissa; ``Beam()`` if not given.
@@ -95,7 +95,7 @@ def find_events(profile: Profile, beam: Beam | None = None) -> Events:
     )
 
 
-def find_limits(centreline: Profile) -> Limits:
+def find_limits(centreline: Contour) -> Limits:
     """The events of a dimensionless sweep, as contour parameters.
 
     The order is that of section 4: first contact, then the minimum of the contact's arc length s1
@@ -103,7 +103,7 @@ def find_limits(centreline: Profile) -> Limits:
     the foot position, where the vibrissa snaps off.
     """
     _, first = contact_range(centreline)
-    low = centreline.alpha_range[0]
+    low = centreline.t_range[0]
     grid = np.linspace(first, low, _GRID)
 
     snap_off = _first_fold(centreline, grid)
@@ -130,14 +130,14 @@ def _before(end: float, t: float) -> float | None:
     return t if t > end else None
 
 
-def _tangent_arc_length(centreline: Profile, t: Floats) -> Floats:
+def _tangent_arc_length(centreline: Contour, t: Floats) -> Floats:
     """s1 of eq. 21; infinite where tangential contact above the foot line is impossible."""
     states = tangent_contact(centreline.at(t))
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(states.root_f > 0, states.span.q / states.root_f, np.inf)
 
 
-def _tangent_arc_length_rate(centreline: Profile, t: Floats) -> Floats:
+def _tangent_arc_length_rate(centreline: Contour, t: Floats) -> Floats:
     """d(log s1)/dt of eq. 21, with q' = -1/C and (C sin + S cos)' = across - 1/C."""
     point = centreline.at(t)
     states = tangent_contact(point)
@@ -147,7 +147,7 @@ def _tangent_arc_length_rate(centreline: Profile, t: Floats) -> Floats:
     return point.stretch * np.sin(point.alpha) / point.eta + point.turning * by_alpha
 
 
-def _first_fold(centreline: Profile, grid: Floats) -> float | None:
+def _first_fold(centreline: Contour, grid: Floats) -> float | None:
     """The first minimum of the foot position, or None if the contour ends before."""
     foot_x = equilibria(centreline, grid[1:]).foot_x
     turned = np.flatnonzero(~(np.diff(foot_x) < 0))  # rising again, or no longer reachable
@@ -171,9 +171,9 @@ def _event(table: pd.DataFrame) -> Event:
     return Event(**{name: table[name].iloc[0] for name in (f.name for f in fields(Event))})
 
 
-def _first_touch(centreline: Profile, t: float, beam: Beam) -> Event:
+def _first_touch(centreline: Contour, t: float, beam: Beam) -> Event:
     """The straight, unloaded vibrissa whose tip meets the contour."""
-    alpha, xi, eta = (float(x) for x in centreline.at(np.array(t))[:3])
+    alpha, xi, eta = (float(x) for (x,) in centreline.at(np.array([t]))[:3])
     return Event(
         foot_x=xi * beam.length,
         force_x=0.0,

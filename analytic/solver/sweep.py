@@ -8,7 +8,7 @@ import pandas as pd
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
-from analytic.problem.profile import Profile
+from analytic.problem.contour import Contour
 from analytic.problem.readings import COLUMNS, Readings
 from analytic.solver.equilibria import (
     Equilibria,
@@ -60,9 +60,9 @@ def solve_sweep(case: Case) -> Readings:
                 np.flatnonzero(phase)
             )
     provenance = {
+        **case.provenance(),
         "engine": f"vibrissa-testbed {version('vibrissa-testbed')}",
-        "case": case.name,
-        "digest": case.digest,
+        "snap_off": None if limits.snap_off is None else branch.foot_x[-1] * beam.length,
     }
     return Readings(table, beam, "analytic", provenance)
 
@@ -70,7 +70,7 @@ def solve_sweep(case: Case) -> Readings:
 class _Branch:
     """The equilibria from first contact to snap-off, as a function of the foot position."""
 
-    def __init__(self, centreline: Profile, limits: Limits) -> None:
+    def __init__(self, centreline: Contour, limits: Limits) -> None:
         self._centreline = centreline
         self._limits = (limits.last, limits.first_contact)
         # Dense at both ends: x0 starts like a square root at first contact and folds at snap-off.

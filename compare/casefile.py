@@ -1,0 +1,259 @@
+"""Cases from names and TOML files, with units and with errors that a person can act on."""
+
+import difflib
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Any, Literal, cast
+
+import pint
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic_core import ErrorDetails, PydanticCustomError
+from pydantic_core.core_schema import ValidationInfo
+
+from analytic import (
+    CASE_NAMES,
+    Beam,
+    Case,
+    InputError,
+    Profile,
+    Sweep,
+    catenary,
+    circle,
+    ellipse,
+    named_case,
+    parabola,
+    two_circles,
+)
+from mujoco_models.settings import Settings
+
+
+@cache
+def _units() -> pint.UnitRegistry[float]:
+    return pint.UnitRegistry()
+
+
+def _quantity(dimension: str) -> Callable[[Any, ValidationInfo], float]:
+    """A validator for a number, or a text with a unit of `dimension`, which becomes SI."""
+
+    def convert(value: object, info: ValidationInfo) -> float:
+        seen = cast("dict[str, list[str]]", info.context)
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            if value != 0:
+                seen["bare"].append(str(info.field_name))
+            return float(value)
+        try:
+            quantity = _units().Quantity(cast("str", value))
+            number = float(quantity.to(dimension).magnitude)
+        except (pint.PintError, TypeError, ValueError, AttributeError) as error:
+            raise PydanticCustomError(
+                "quantity",
+                "a number, or a text with a unit, as '50 {dimension}'",
+                {"dimension": dimension},
+            ) from error
+        seen["united"].append(str(info.field_name))
+        return number
+
+    return convert
+
+
+Length = Annotated[float, BeforeValidator(_quantity("m"))]
+PerLength = Annotated[float, BeforeValidator(_quantity("1/m"))]
+Rigidity = Annotated[float, BeforeValidator(_quantity("N m^2"))]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class _BeamTable(_Table):
+    length: Length = 1.0
+    flexural_rigidity: Rigidity = 1.0
+    radius: Length | None = None
+
+    def build(self) -> Beam:
+        radius = Beam().radius * self.length if self.radius is None else self.radius
+        return Beam(self.length, self.flexural_rigidity, radius)
+
+
+class _ProfileTable(_Table):
+    scale: Length = Field(default=1.0, gt=0)
+
+    def build(self) -> Profile:
+        numbers = self.model_dump(exclude={"kind", "scale"})
+        return _FACTORIES[self.model_dump()["kind"]](**numbers).scaled(self.scale)
+
+
+class _Catenary(_ProfileTable):
+    kind: Literal["catenary"]
+    a: PerLength
+    c: Length
+
+
+class _Parabola(_ProfileTable):
+    kind: Literal["parabola"]
+    a: PerLength
+    c: Length
+
+
+class _Circle(_ProfileTable):
+    kind: Literal["circle"]
+    radius: Length
+    lowest: tuple[Length, Length]
+
+
+class _Ellipse(_ProfileTable):
+    kind: Literal["ellipse"]
+    semi_axes: tuple[Length, Length]
+    lowest: tuple[Length, Length]
+
+
+class _TwoCircles(_ProfileTable):
+    kind: Literal["two-circles"]
+    right_radius: Length = 2.0
+    left_radius: Length = 0.5
+    lowest: tuple[Length, Length] = (0.0, 0.5)
+
+
+_FACTORIES: dict[str, Callable[..., Profile]] = {
+    "catenary": catenary,
+    "parabola": parabola,
+    "circle": circle,
+    "ellipse": ellipse,
+    "two-circles": two_circles,
+}
+_TABLES: dict[str, type[_ProfileTable]] = {
+    "catenary": _Catenary,
+    "parabola": _Parabola,
+    "circle": _Circle,
+    "ellipse": _Ellipse,
+    "two-circles": _TwoCircles,
+}
+
+
+class _SweepTable(_Table):
+    stations: int = Sweep().stations
+    start: Length | None = None
+    stop: Length | None = None
+
+    def build(self) -> Sweep:
+        return Sweep(self.stations, self.start, self.stop)
+
+
+class _CaseFile(_Table):
+    name: str | None = None
+    beam: _BeamTable = _BeamTable()
+    profile: Annotated[
+        _Catenary | _Parabola | _Circle | _Ellipse | _TwoCircles, Field(discriminator="kind")
+    ]
+    sweep: _SweepTable = _SweepTable()
+    mujoco: Annotated[Settings, Field(default_factory=Settings)]
+
+
+@dataclass(frozen=True)
+class Job:
+    """A case and how MuJoCo is to simulate it."""
+
+    case: Case
+    settings: Settings
+
+
+def load_job(name_or_path: str) -> Job:
+    """The case of that name, or from that TOML file.
+
+    Raises
+    ------
+    InputError
+        If there is neither, or the file has unknown keys, wrong types, unknown units, numbers with
+        and without units mixed, or states no solvable problem.
+    """
+    if name_or_path in CASE_NAMES:
+        return Job(named_case(name_or_path), Settings())
+    path = Path(name_or_path)
+    if path.suffix != ".toml":
+        near = difflib.get_close_matches(name_or_path, CASE_NAMES, n=1)
+        raise InputError(
+            "case",
+            repr(name_or_path),
+            f"one of {', '.join(CASE_NAMES)}, or the path of a .toml file",
+            f"did you mean {near[0]}?" if near else "`vibrissa cases` lists them",
+        )
+    try:
+        raw = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(
+            "case file", path, "readable", f"check the path ({type(error).__name__})"
+        ) from error
+    except tomllib.TOMLDecodeError as error:
+        raise InputError("case file", path, "valid TOML", f"mend it: {error}") from error
+    return _build(raw, path)
+
+
+def _build(raw: dict[str, Any], path: Path) -> Job:
+    seen: dict[str, list[str]] = {"bare": [], "united": []}
+    try:
+        file = TypeAdapter(_CaseFile).validate_python(raw, context=seen)
+    except ValidationError as error:
+        raise _told(error.errors()[0], path) from error
+    scale = raw["profile"].get("scale")
+    if isinstance(scale, str):  # the shape's own numbers are then in units of the scale
+        seen["bare"] = [name for name in seen["bare"] if name not in raw["profile"]]
+    if seen["bare"] and seen["united"]:
+        raise InputError(
+            f"{path}: {seen['bare'][0]}",
+            "without a unit",
+            f"given with a unit, as {seen['united'][0]} is",
+            "write all dimensions with units, or none",
+        )
+    case = Case(file.beam.build(), file.profile.build(), file.sweep.build())
+    return Job(replace(case, name=file.name or path.stem), file.mujoco)
+
+
+def _told(error: ErrorDetails, path: Path) -> InputError:
+    """A validation error in one line."""
+    where = [str(part) for part in error["loc"]]
+    if len(where) > 1 and where[0] == "profile":  # drop the union's tag
+        where = [where[0], *where[2:]]
+    name = f"{path}: {'.'.join(where)}"
+    value = error["input"]
+    match error["type"]:
+        case "extra_forbidden" | "unexpected_keyword_argument":
+            allowed = _keys(where[:-1], error)
+            near = difflib.get_close_matches(where[-1], allowed, n=1)
+            return InputError(
+                name,
+                repr(value),
+                f"one of the keys {', '.join(allowed)}",
+                f"did you mean {near[0]}?" if near else "remove it",
+            )
+        case "missing":
+            return InputError(name, "missing", "given", "add it")
+        case "union_tag_invalid":
+            context = error["ctx"]
+            return InputError(
+                f"{name}.kind",
+                repr(context["tag"]),
+                f"one of {context['expected_tags']}",
+                "mend it",
+            )
+        case "union_tag_not_found":
+            return InputError(f"{name}.kind", "missing", "given", "say what the profile is")
+        case "value_error":
+            return InputError(name, repr(value), "usable", str(error["ctx"]["error"]))
+    return InputError(name, repr(value), error["msg"], "mend it")
+
+
+def _keys(where: list[str], error: ErrorDetails) -> list[str]:
+    """The keys that the table at `where` may have."""
+    match where:
+        case []:
+            return list(_CaseFile.model_fields)
+        case ["beam"]:
+            return list(_BeamTable.model_fields)
+        case ["sweep"]:
+            return list(_SweepTable.model_fields)
+        case ["mujoco"]:
+            return list(Settings.__dataclass_fields__)
+    return list(_TABLES[str(error["loc"][1])].model_fields)

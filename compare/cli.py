@@ -1,0 +1,202 @@
+"""The command ``vibrissa``."""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import click
+import typer
+from rich.console import Console
+from rich.progress import Progress
+from rich.table import Table
+
+from analytic import CASE_NAMES, InputError, Readings, named_case, solve_sweep
+from analytic.problem.readings import CLAMP_READINGS
+from compare.casefile import Job, load_job
+from compare.comparison import Comparison
+from compare.comparison import compare as compare_readings
+from compare.report import write_report
+
+AGREES, DISAGREES, BAD_INPUT = 0, 1, 2
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    help="A vibrissa swept past a convex object: the exact elastica against MuJoCo.",
+    pretty_exceptions_enable=False,
+)
+_told = Console(highlight=False)
+_noted = Console(stderr=True, highlight=False)
+
+CaseName = Annotated[
+    str, typer.Argument(metavar="CASE", help="A named case (see `vibrissa cases`) or a TOML file.")
+]
+Out = Annotated[
+    Path | None, typer.Option("--out", metavar="DIR", help="Folder for what is written.")
+]
+Stations = Annotated[int | None, typer.Option(help="Stations of the sweep, instead of the case's.")]
+Segments = Annotated[int | None, typer.Option(help="Segments of MuJoCo's beam.")]
+Beam = Annotated[str | None, typer.Option(help="MuJoCo's beam.")]
+
+
+@app.command()
+def run(
+    case: CaseName,
+    out: Out = None,
+    stations: Stations = None,
+    segments: Segments = None,
+    beam: Beam = None,
+) -> int:
+    """Sweep in both models, compare, and write the report."""
+    job = _job(case, stations, segments, beam)
+    folder = _folder(out, job)
+    exact = solve_sweep(job.case)
+    simulated = _simulate(job)
+    comparison = compare_readings(exact, simulated)
+    exact.write(folder / "analytic.parquet")
+    simulated.write(folder / f"mujoco-{job.settings.beam}.parquet")
+    return _finish(comparison, folder)
+
+
+@app.command()
+def analytic(case: CaseName, out: Out = None, stations: Stations = None) -> int:
+    """Sweep in closed form."""
+    job = _job(case, stations, None, None)
+    folder = _folder(out, job)
+    _wrote(solve_sweep(job.case).write(folder / "analytic.parquet"))
+    return AGREES
+
+
+@app.command()
+def simulate(
+    case: CaseName,
+    out: Out = None,
+    stations: Stations = None,
+    segments: Segments = None,
+    beam: Beam = None,
+) -> int:
+    """Sweep in MuJoCo."""
+    job = _job(case, stations, segments, beam)
+    folder = _folder(out, job)
+    _wrote(_simulate(job).write(folder / f"mujoco-{job.settings.beam}.parquet"))
+    return AGREES
+
+
+@app.command()
+def compare(
+    reference: Annotated[Path, typer.Argument(help="Readings, Parquet or CSV.")],
+    candidate: Annotated[Path, typer.Argument(help="Readings to hold against them.")],
+    out: Out = None,
+) -> int:
+    """Compare two files of readings."""
+    comparison = compare_readings(Readings.read(reference), Readings.read(candidate))
+    folder = out or Path("results") / f"{reference.stem}-{candidate.stem}"
+    _make(folder)
+    return _finish(comparison, folder)
+
+
+@app.command()
+def cases() -> int:
+    """List the named cases."""
+    table = Table("case", "object", "foot from", "to")
+    for name in CASE_NAMES:
+        case = named_case(name)
+        first, last = case.foot_x[[0, -1]]
+        table.add_row(name, case.profile.label, f"{first:.3f} L", f"{last:.3f} L")
+    _told.print(table)
+    return AGREES
+
+
+def main() -> None:
+    """Run the command line; bad input is told in one line, without a traceback."""
+    try:
+        code = app(standalone_mode=False)
+    except InputError as error:
+        code = _refuse(str(error))
+    except click.ClickException as error:
+        code = _refuse(error.format_message())
+    except (click.Abort, KeyboardInterrupt):
+        code = _refuse("interrupted")
+    except OSError as error:
+        code = _refuse(f"{error.filename}: {error.strerror}; choose another folder with --out")
+    sys.exit(code)
+
+
+def _refuse(message: str) -> int:
+    _noted.print(f"vibrissa: {message}", soft_wrap=True, markup=False)
+    return BAD_INPUT
+
+
+def _job(name: str, stations: int | None, segments: int | None, beam: str | None) -> Job:
+    job = load_job(name)
+    case, settings = job.case, job.settings
+    if stations is not None:
+        case = replace(case, sweep=replace(case.sweep, stations=stations))
+    if segments is not None:
+        settings = replace(settings, segments=segments)
+    if beam is not None:
+        settings = replace(settings, beam=beam)  # type: ignore[arg-type]  # validated by Settings
+    return Job(case, settings)
+
+
+def _folder(out: Path | None, job: Job) -> Path:
+    folder = out or Path("results") / job.case.name
+    _make(folder)
+    return folder
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError("--out", folder, "a folder that can be made", str(error)) from error
+
+
+def _simulate(job: Job) -> Readings:
+    from mujoco_models import simulate_sweep  # MuJoCo is imported only where it is used
+
+    with _progress(f"MuJoCo {job.settings.beam}", job.case.sweep.stations) as advance:
+        return simulate_sweep(job.case, job.settings, advance)
+
+
+@contextmanager
+def _progress(what: str, total: int) -> Iterator[Callable[[], None]]:
+    """A bar on a terminal, nothing elsewhere."""
+    with Progress(console=_noted, disable=not _noted.is_terminal, transient=True) as bar:
+        task = bar.add_task(what, total=total)
+        yield lambda: bar.advance(task)
+
+
+def _finish(comparison: Comparison, folder: Path) -> int:
+    report = write_report(comparison, folder)
+    _told.print(_summary(comparison))
+    for failure in comparison.failures:
+        _told.print(f"  {failure}", soft_wrap=True, markup=False)
+    _wrote(report)
+    return AGREES if comparison.agrees else DISAGREES
+
+
+def _summary(comparison: Comparison) -> Table:
+    verdict = "[green]agrees[/]" if comparison.agrees else "[red]disagrees[/]"
+    table = Table(
+        "reading", "rms", "max", "at foot_x", "phase",
+        title=f"{comparison.candidate.source} {verdict} with {comparison.reference.source}",
+        caption="relative to each reading's largest magnitude",
+    )  # fmt: skip
+    for name in CLAMP_READINGS:
+        d = comparison.disagreement[name]
+        table.add_row(name, f"{d.rms:.1e}", f"{d.max:.1e}", f"{d.at:.4g}", d.phase)
+    table.add_section()
+    shift = comparison.snap_off.difference
+    agreement = comparison.phase_agreement()
+    table.add_row("snap-off", "", "none" if shift is None else f"{shift:+.1e}", "", "")
+    if agreement:
+        table.add_row("phases", "", f"{min(agreement.values()):.1%} right", "", "")
+    return table
+
+
+def _wrote(path: Path) -> None:
+    _told.print(f"wrote {path}", soft_wrap=True, markup=False)

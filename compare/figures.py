@@ -1,0 +1,190 @@
+"""The pictures of a comparison, drawn from readings alone."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from analytic import Readings, reconstruct
+from analytic.problem.arrays import Words
+from analytic.problem.readings import CLAMP_READINGS
+from analytic.solver.shape import deflected_shapes
+from compare.comparison import Comparison
+
+# Okabe and Ito's palette: told apart by every kind of colour vision, and in print.
+PHASE_COLOURS = {"free": "#999999", "tip": "#0072B2", "tangent": "#D55E00"}
+PHASE_NAMES = {"free": "free", "tip": "A: tip contact", "tangent": "B: tangential contact"}
+_REFERENCE, _CANDIDATE = "#000000", "#CC79A7"
+
+_SYMBOLS = {
+    "force_x": ("$F_{Ax}$", "$EI/L^2$"),
+    "force_y": ("$F_{Ay}$", "$EI/L^2$"),
+    "moment_z": ("$M_{Az}$", "$EI/L$"),
+    "contact_arc_length": ("$s_1$", "$L$"),
+}
+_SHAPES = 24  # drawn of each sweep
+
+
+def geometry(comparison: Comparison) -> Figure:
+    """The object and the deflected vibrissa, coloured by phase, in both models."""
+    figure = Figure(figsize=(9, 6.2), layout="constrained")
+    axes = figure.subplots(2, 1, sharex=True, sharey=True)
+    for ax, readings, which in zip(axes, *_sides(comparison), strict=True):
+        phase = comparison.judged[which].phase
+        _draw_shapes(ax, readings, phase)
+        _draw_object(ax, readings)
+        ax.set_title(f"{which}: {readings.source}", loc="left", fontsize=10)
+        ax.set_ylabel("$y$ / $L$")
+        ax.set_aspect("equal")
+        ax.axhline(0, color="#999999", linewidth=0.8, zorder=0)
+    axes[-1].set_xlabel("$x$ / $L$   (the foot moves to the left along $y = 0$)")
+    handles = [Line2D([], [], color=PHASE_COLOURS[p], label=PHASE_NAMES[p]) for p in PHASE_COLOURS]
+    handles += [
+        Line2D([], [], color="#555555", linewidth=2.5, label="object"),
+        Line2D([], [], color="k", marker="o", markersize=3, linestyle="", label="reconstructed"),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=9, frameon=False)
+    return figure
+
+
+def readings(comparison: Comparison) -> Figure:
+    """Clamp force, moment and reconstructed contact over the foot position, and differences."""
+    figure = Figure(figsize=(12, 5.4), layout="constrained")
+    upper, lower = figure.subplots(
+        2, 4, sharex=True, height_ratios=[2.2, 1], gridspec_kw={"hspace": 0.05}
+    )
+    both = (comparison.reference, comparison.candidate)
+    for i, name in enumerate(_SYMBOLS):
+        symbol, unit = _SYMBOLS[name]
+        _shade_phases(upper[i], comparison)
+        _shade_phases(lower[i], comparison)
+        for one, style in zip(
+            both,
+            ({"color": _REFERENCE, "linewidth": 1.6}, _dots(comparison)),
+            strict=True,
+        ):
+            upper[i].plot(_foot(one), _reading(one, name), label=one.source, **style)
+        upper[i].set_title(f"{symbol} / ({unit})", fontsize=11)
+        lower[i].axhline(0, color=_REFERENCE, linewidth=0.8)
+        lower[i].plot(*_difference(comparison, name), **_dots(comparison))
+        lower[i].set_xlabel("foot $x_0$ / $L$")
+        lower[i].ticklabel_format(axis="y", scilimits=(-2, 2))
+    lower[0].set_ylabel("difference\n(same unit)")
+    handles, labels = upper[0].get_legend_handles_labels()
+    handles += [
+        Line2D([], [], color=PHASE_COLOURS[p], alpha=0.35, linewidth=7) for p in ("tip", "tangent")
+    ]
+    labels += [PHASE_NAMES["tip"], PHASE_NAMES["tangent"]]
+    figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=9, frameon=False)
+    return figure
+
+
+def phase_criterion(comparison: Comparison) -> Figure:
+    """What decides the phase: criterion (26), zero in Phase B, and the contact, 1 in Phase A."""
+    figure = Figure(figsize=(9, 5.4), layout="constrained")
+    axes = figure.subplots(2, 1, sharex=True)
+    for readings, which in zip(*_sides(comparison), strict=True):
+        judged, x = comparison.judged[which], _foot(readings)
+        style = (
+            {"color": _REFERENCE, "linewidth": 1.6} if which == "reference" else _dots(comparison)
+        )
+        axes[0].plot(x, judged.criterion, label=readings.source, **style)
+        axes[1].plot(x, 1 - judged.shortfall, **style)
+    for ax in axes:
+        _shade_phases(ax, comparison)
+    axes[0].axhline(0, color="#555555", linewidth=0.8, linestyle="--")
+    axes[1].axhline(1, color="#555555", linewidth=0.8, linestyle="--")
+    axes[0].set_ylabel(r"$(2F_{Ay} - M_{Az}^2)\,/\,2f$  (26)" + "\nzero in Phase B")
+    axes[1].set_ylabel("contact $s_1$ / $L$\none in Phase A")
+    axes[1].set_xlabel("foot position $x_0$ / $L$   (dotted: transitions found from the clamp)")
+    length = comparison.reference.beam.length
+    for place in comparison.transitions.values():
+        for where, colour in ((place.reference, _REFERENCE), (place.candidate, _CANDIDATE)):
+            if where is not None:
+                for ax in axes:
+                    ax.axvline(where / length, color=colour, linestyle=":", linewidth=1)
+    figure.legend(loc="outside lower center", ncols=2, fontsize=9, frameon=False)
+    return figure
+
+
+def _sides(comparison: Comparison) -> tuple[tuple[Readings, Readings], tuple[str, str]]:
+    return (comparison.reference, comparison.candidate), ("reference", "candidate")
+
+
+def _dots(comparison: Comparison) -> dict[str, object]:
+    size = 2.2 if len(comparison.candidate.table) > 100 else 4.0
+    return {"color": _CANDIDATE, "marker": "o", "markersize": size, "linestyle": ""}
+
+
+def _foot(readings: Readings) -> np.ndarray:
+    return readings.values("foot_x") / readings.beam.length
+
+
+def _reading(readings: Readings, name: str) -> np.ndarray:
+    beam = readings.beam
+    if name == "contact_arc_length":
+        return reconstruct(readings)[name].to_numpy(dtype=float) / beam.length
+    unit = beam.moment_unit if name == "moment_z" else beam.force_unit
+    return np.where(readings.trusted, readings.values(name) / unit, np.nan)
+
+
+def _difference(comparison: Comparison, name: str) -> tuple[np.ndarray, np.ndarray]:
+    table, beam = comparison.alignment.table, comparison.reference.beam
+    foot_x = table["foot_x"].to_numpy()
+    if name in CLAMP_READINGS:
+        unit = beam.moment_unit if name == "moment_z" else beam.force_unit
+        return foot_x / beam.length, (
+            (table[f"{name}_candidate"] - table[f"{name}_reference"]).to_numpy() / unit
+        )
+    sides = [
+        Readings(
+            table.rename(columns={f"{r}_{side}": r for r in CLAMP_READINGS})[
+                ["foot_x", *CLAMP_READINGS]
+            ],
+            beam,
+        )
+        for side in ("candidate", "reference")
+    ]
+    return foot_x / beam.length, _reading(sides[0], name) - _reading(sides[1], name)
+
+
+def _shade_phases(ax: Axes, comparison: Comparison) -> None:
+    """The reference's phases as a background."""
+    foot_x, phase = _foot(comparison.reference), comparison.judged["reference"].phase
+    edges = np.flatnonzero(phase[1:] != phase[:-1])
+    begins, ends = np.append(0, edges + 1), np.append(edges, len(phase) - 1)
+    for begin, end in zip(begins, ends, strict=True):
+        if phase[begin] in ("tip", "tangent"):
+            ax.axvspan(
+                foot_x[max(begin - 1, 0)],
+                foot_x[end],
+                color=PHASE_COLOURS[str(phase[begin])],
+                alpha=0.10,
+                linewidth=0,
+            )
+
+
+def _draw_shapes(ax: Axes, readings: Readings, phase: Words) -> None:
+    x, y = deflected_shapes(readings)
+    usable = np.flatnonzero(phase != "")
+    chosen = usable[np.linspace(0, len(usable) - 1, min(_SHAPES, len(usable))).astype(int)]
+    scale = readings.beam.length
+    lines = LineCollection(
+        [np.column_stack([x[i], y[i]]) / scale for i in chosen],
+        colors=[PHASE_COLOURS[str(phase[i])] for i in chosen],
+        linewidths=1.1,
+    )
+    ax.add_collection(lines)
+    ax.plot(x[chosen, 0] / scale, y[chosen, 0] / scale, "s", color="#555555", markersize=2.5)
+    ax.autoscale_view()
+
+
+def _draw_object(ax: Axes, readings: Readings) -> None:
+    scale = readings.beam.length
+    if "contour" in readings.provenance:
+        xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
+        ax.fill_between(xi, eta, eta.max(), color="#DDDDDD", linewidth=0, zorder=0)
+        ax.plot(xi, eta, color="#555555", linewidth=2.5, zorder=1)
+    found = reconstruct(readings)
+    ax.plot(found["contact_x"] / scale, found["contact_y"] / scale, "k.", markersize=2)

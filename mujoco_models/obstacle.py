@@ -1,0 +1,132 @@
+"""The object as MuJoCo knows it: a convex mesh, extruded along z from points of its contour.
+
+MuJoCo's search for the nearest point of a mesh climbs from vertex to vertex, so its cost grows with
+the mesh. The obstacle is therefore given as many meshes of one and the same polygon, each with all
+of its vertices near one place (its window) and ever fewer farther away; only the mesh whose window
+holds the contact takes part in collisions. A subset of the vertices of a convex polygon spans a
+polygon inside it, so a mesh can only be too small, and only where nothing touches.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats, Integers
+from analytic.problem.case import Case
+from analytic.problem.reach import contact_range
+
+_FINE = 32  # vertices at full resolution on either side of a window's centre
+_GRADED = 8  # vertices a level farther out; the spacing doubles from level to level
+_HALF_DEPTH = 0.25  # L, of the extrusion: much more than a penetration, or depths come out wrong
+MESH_PREFIX = "obstacle"
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """A convex polygon's lower side, and the meshes that stand for it.
+
+    Parameters
+    ----------
+    vertices : array, shape (n, 2)
+        From left to right, in units of the vibrissa's length.
+    """
+
+    vertices: Floats
+
+    @classmethod
+    def of(cls, case: Case, points: int) -> "Obstacle":
+        """The part of the case's object that the vibrissa can reach, with `points` vertices."""
+        last, first = contact_range(case.centreline)
+        body = case.profile.scaled(1 / case.beam.length)
+        return cls(body.outline(last, first, points))
+
+    @cached_property
+    def facet_angles(self) -> Floats:
+        """Slope angle of each facet, shape (n - 1,), ascending [rad]."""
+        run, rise = np.diff(self.vertices, axis=0).T
+        angles: Floats = np.arctan2(rise, run)
+        return angles
+
+    @cached_property
+    def curvature(self) -> Floats:
+        """Mean curvature at the vertices, shape (n,) [1/L]."""
+        length = np.hypot(*np.diff(self.vertices, axis=0).T)
+        inner = 2 * np.diff(self.facet_angles) / (length[1:] + length[:-1])
+        return np.concatenate([inner[:1], inner, inner[-1:]])
+
+    @property
+    def normal_error(self) -> float:
+        """Largest angle between a facet's normal and the smooth contour's [rad]."""
+        return float(np.diff(self.facet_angles).max()) / 2
+
+    @property
+    def chord_error(self) -> float:
+        """Largest distance of a facet from the smooth contour that its ends lie on [L]."""
+        length = np.hypot(*np.diff(self.vertices, axis=0).T)
+        turn = np.diff(self.facet_angles)
+        return float((np.minimum(length[1:], length[:-1]) * turn).max()) / 8
+
+    @cached_property
+    def centres(self) -> Integers:
+        """Vertices at which the windows are centred; neighbouring windows overlap by half."""
+        n = len(self.vertices)
+        return np.append(np.arange(0, n - 1, _FINE), n - 1)
+
+    def nearest_vertex(self, slope: Floats) -> Integers:
+        """Vertices at which the contour has these slope angles."""
+        return np.searchsorted(self.facet_angles, slope)
+
+    def window_of(self, vertex: float) -> int:
+        """The window whose centre is nearest to a vertex."""
+        return int(np.argmin(np.abs(self.centres - vertex)))
+
+    def is_inside(self, window: int, vertices: Integers) -> bool:
+        """Whether `window` has all of the contour around these vertices."""
+        return bool((np.abs(vertices - self.centres[window]) <= _FINE - 2).all())
+
+    def add_to(self, spec: mujoco.MjSpec) -> None:
+        """Add one mesh geom a window to the world body, named `MESH_PREFIX` and its number."""
+        for i, centre in enumerate(self.centres):
+            mesh = spec.add_mesh(name=f"{MESH_PREFIX}{i}")
+            mesh.uservert, mesh.userface = self._prism(int(centre))
+            spec.worldbody.add_geom(
+                name=mesh.name,
+                type=mujoco.mjtGeom.mjGEOM_MESH,
+                meshname=mesh.name,
+                contype=1,
+                conaffinity=0,
+                condim=1,
+            )
+
+    def _kept(self, centre: int) -> Integers:
+        n = len(self.vertices)
+        kept = {0, n - 1, *range(max(0, centre - _FINE), min(n, centre + _FINE + 1))}
+        for side in (-1, 1):
+            at, stride = centre + side * _FINE, 2
+            while 0 <= at < n:
+                level = at + side * stride * np.arange(1, _GRADED + 1)
+                kept.update(int(j) for j in level if 0 <= j < n)
+                at, stride = int(level[-1]), 2 * stride
+        return np.array(sorted(kept))
+
+    def _prism(self, centre: int) -> tuple[Floats, Integers]:
+        """Vertices and faces of one window's mesh.
+
+        Vertices are stored in single precision relative to the centroid of the *faces*, while
+        collisions use the hull of all vertices. So the only faces are those of a speck inside the
+        obstacle, beside the window: rounding there is 1e-9 instead of 1e-7.
+        """
+        polygon = self.vertices[self._kept(centre)]
+        prism = np.concatenate(
+            [
+                np.column_stack([polygon, np.full(len(polygon), z)])
+                for z in (-_HALF_DEPTH, _HALF_DEPTH)
+            ]
+        )
+        here = self.vertices[centre]
+        inward = 1e-2 * (self.vertices.mean(axis=0) - here)
+        speck = np.append(here + inward, 0) + 1e-3 * np.vstack([np.zeros(3), np.eye(3)])
+        faces = len(prism) + np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], dtype=np.int32)
+        return np.concatenate([prism, speck]).ravel(), faces.ravel()

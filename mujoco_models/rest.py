@@ -1,0 +1,178 @@
+"""Coming to rest: Newton's method on MuJoCo's own balance of moments.
+
+A station is settled when MuJoCo's springs and contacts, and nothing else, hold the chain to a
+tolerance; how it got there is of no account, and time stepping to the same balance takes hundreds
+of steps. Each step minimises the quadratic model of the energy, with the contacts' unilateral
+constraints linearised; its stiffness includes what turning levers and turning normals contribute.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg.lapack import dpotrf, dpotrs
+from scipy.optimize import nnls
+
+from analytic.problem.arrays import Floats, Integers
+from mujoco_models.model import ChainModel, Contacts
+
+_ITERATIONS = 25
+_STIFFENING = 1e3  # EI/L^3; loaded contacts convexify the quadratic model, without effect at rest
+_LARGEST_TURN = 0.3  # rad, of any link in one step
+_AHEAD = 4  # beads beyond the loaded ones that take part in collisions
+_MARGIN = 2  # beads beyond the loaded ones that must do so
+
+
+@dataclass(frozen=True)
+class State:
+    """A configuration of the chain.
+
+    Attributes
+    ----------
+    angles : array, shape (n_joints,)
+        Joint angles [rad].
+    forces : dict
+        Contact force by bead [EI/L^2].
+    imbalance : float
+        Largest moment out of balance at any joint [EI/L].
+    settled : bool
+        Whether that is below the tolerance, with the whole beam looking at the obstacle.
+    """
+
+    angles: Floats
+    forces: dict[int, float]
+    imbalance: float = np.inf
+    settled: bool = False
+
+
+def relax(model: ChainModel, foot_x: float, start: State, tolerance: float) -> State:
+    """Bring the chain to rest with its foot at `foot_x`, from `start`.
+
+    Parameters
+    ----------
+    model : ChainModel
+        The chain and the obstacle; left in the returned state.
+    foot_x : float
+        Foot position [L].
+    start : State
+        Where to start from.
+    tolerance : float
+        Largest moment out of balance at rest [EI/L].
+
+    Returns
+    -------
+    State
+        Not settled if Newton's method did not get there; the caller takes smaller steps then.
+    """
+    state = start
+    # One bead a link sees a contact coming long before it is loaded; where a load is, all must.
+    lookout = frozenset(np.searchsorted(model.layout.links, np.unique(model.layout.links)).tolist())
+    lookout |= {len(model.layout.beads) - 1}
+    model.watch(_around(model, state.forces, _AHEAD) or lookout)
+    whole = False
+    last_normal: dict[int, float] = {}
+    for _ in range(_ITERATIONS):
+        residual = float(np.abs(model.imbalance(foot_x, state.angles)).max())
+        contacts = model.contacts()
+        state = replace(state, imbalance=residual)
+        if residual < tolerance:
+            if _move_window(model, contacts):
+                continue
+            if whole:
+                return replace(state, settled=True)
+            whole = True
+            model.watch(model.watched | lookout)
+            continue
+        state = _newton_step(model, state, contacts, last_normal)
+        last_normal = dict(zip(contacts.bead.tolist(), contacts.normal[:, 0].tolist(), strict=True))
+        if not _around(model, state.forces, _MARGIN) <= model.watched:
+            model.watch(model.watched | _around(model, state.forces, _AHEAD))
+            whole = False
+    return state
+
+
+def _around(model: ChainModel, loaded: dict[int, float], reach: int) -> frozenset[int]:
+    count = len(model.layout.beads)
+    return frozenset(
+        i for bead in loaded for i in range(max(0, bead - reach), min(count, bead + reach + 1))
+    )
+
+
+def _move_window(model: ChainModel, contacts: Contacts) -> bool:
+    """See to it that all load rests on full resolution; True if the mesh had to be changed."""
+    loaded = contacts.distance < 0
+    if not loaded.any():
+        return False
+    at = _vertices(model, contacts.normal[loaded])
+    if model.obstacle.is_inside(model.window, at):
+        return False
+    best = model.obstacle.window_of(float(at.mean()))
+    if best == model.window:
+        return False
+    model.use_window(best)
+    return True
+
+
+def _vertices(model: ChainModel, normal: Floats) -> Integers:
+    return model.obstacle.nearest_vertex(np.arctan2(normal[:, 0], -normal[:, 1]))
+
+
+def _newton_step(
+    model: ChainModel, state: State, contacts: Contacts, last_normal: dict[int, float]
+) -> State:
+    layout = model.layout
+    count = len(layout.joints)
+    bead, normal, distance = contacts
+    lever = model.bead_positions(bead)[:, None] - model.joint_positions()
+    carried = np.arange(count) <= layout.links[bead][:, None]
+    along = (lever[:, :, 0] * normal[:, 1:] - lever[:, :, 1] * normal[:, :1]) * carried
+    across = (lever[:, :, 0] * normal[:, :1] + lever[:, :, 1] * normal[:, 1:]) * carried
+    force = np.array([state.forces.get(i, 0.0) for i in bead.tolist()])
+    loaded = force > 0
+
+    stiffness = np.diag(np.full(count, layout.stiffness))
+    outer = np.maximum.outer(np.arange(count), np.arange(count))
+    vertex = _vertices(model, normal)
+    for i in np.flatnonzero(loaded):
+        n = layout.links[bead[i]] + 1
+        # The lever of a force turns with every joint below the outer one of the two ...
+        stiffness[:n, :n] += (force[i] * across[i, :n])[outer[:n, :n]]
+        # ... and the normal turns as the bead slides along the contour, unless it stays on a facet.
+        if abs(last_normal.get(int(bead[i]), np.inf) - normal[i, 0]) > 1e-9:
+            curvature = model.obstacle.curvature[vertex[i]]
+            stiffness -= force[i] * curvature * np.outer(across[i], across[i])
+
+    # The loaded contacts convexify the model; at rest their slack is zero, and so is the effect.
+    held, slack = along[loaded], (distance + force / model.contact_stiffness)[loaded]
+    stiffness += _STIFFENING * held.T @ held
+    gradient = layout.stiffness * state.angles + _STIFFENING * held.T @ slack
+    factor = _cholesky(stiffness, layout.stiffness)
+    solved, _ = dpotrs(factor, np.column_stack([-gradient, along.T]), lower=1)
+    free, compliance = solved[:, 0], solved[:, 1:]
+    forces = _unilateral(
+        along @ compliance + np.eye(len(bead)) / model.contact_stiffness, distance + along @ free
+    )
+    step = free + compliance @ forces
+    turn = float(np.abs(np.cumsum(step)).max())
+    return State(
+        state.angles + step * min(1.0, _LARGEST_TURN / max(turn, 1e-300)),
+        {int(i): float(f) for i, f in zip(bead, forces, strict=True) if f > 0},
+        state.imbalance,
+    )
+
+
+def _cholesky(stiffness: Floats, scale: float) -> Floats:
+    """Factor of the stiffness, or of the least shifted one that is positive definite."""
+    shift = 0.0
+    while True:
+        factor, info = dpotrf(stiffness + shift * np.eye(len(stiffness)), lower=1)
+        if info == 0:
+            return np.asarray(factor)
+        shift = max(2 * shift, 0.02 * scale)
+
+
+def _unilateral(compliance: Floats, gap: Floats) -> Floats:
+    """Contact forces f >= 0 that minimise f.compliance.f/2 + gap.f, shape (n,)."""
+    if len(gap) == 0:
+        return np.zeros(0)
+    root = np.linalg.cholesky(compliance)
+    return np.asarray(nnls(root.T, -np.linalg.solve(root, gap))[0])

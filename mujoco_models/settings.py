@@ -1,0 +1,57 @@
+"""The numerics of a MuJoCo sweep: everything that is not physics."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from pydantic import ConfigDict
+
+from analytic.problem.errors import InputError
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How MuJoCo simulates a case.
+
+    Lengths and stiffnesses are in units of the case: L, EI/L^3 and EI/L.
+
+    Parameters
+    ----------
+    beam : {"chain"}
+        Which of MuJoCo's models of a slender beam.
+    segments : int
+        Number of segments N, at least 2: rigid links whose hinges sit at the centres of N cells.
+    contour_points : int
+        Points of the obstacle's mesh along the contour, at equal steps of slope angle.
+    contact_stiffness : float
+        Force over penetration of a contact [EI/L^3].
+    clamp : {"cell-centre", "rigid-first-link"}
+        Where the first hinge sits: half a cell from the clamp (second order in 1/N), or a whole one
+        (the naive chain, first order; here to be compared with).
+    tolerance : float
+        A station has settled when no joint is out of balance by more than this [EI/L].
+
+    Raises
+    ------
+    InputError
+        If a number is out of its range.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid")  # a misspelt key in a case file is an error
+
+    beam: Literal["chain"] = "chain"
+    segments: int = 40
+    contour_points: int = 3200
+    contact_stiffness: float = 1e7
+    clamp: Literal["cell-centre", "rigid-first-link"] = "cell-centre"
+    tolerance: float = 1e-8
+
+    def __post_init__(self) -> None:
+        for name, low, high, remedy in (
+            ("segments", 2, 1000, "40 is usual"),
+            ("contour_points", 8, 50_000, "3200 is usual"),
+            ("contact_stiffness", 1e3, 1e9, "1e7 is usual"),
+            ("tolerance", 1e-11, 1e-2, "1e-8 is usual"),
+        ):
+            value = getattr(self, name)
+            if not low <= value <= high:
+                raise InputError(f"mujoco.{name}", value, f"between {low:g} and {high:g}", remedy)

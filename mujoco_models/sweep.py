@@ -1,0 +1,145 @@
+"""The sweep: station after station at rest, and the snap-off found by smaller and smaller steps."""
+
+import platform
+from collections.abc import Callable
+from dataclasses import asdict
+from importlib.metadata import version
+from typing import Any
+
+import mujoco
+import numpy as np
+import pandas as pd
+
+from analytic.problem.case import Case
+from analytic.problem.readings import COLUMNS, Readings
+from mujoco_models.chain import Layout
+from mujoco_models.model import ChainModel
+from mujoco_models.obstacle import Obstacle
+from mujoco_models.rest import State, relax
+from mujoco_models.settings import Settings
+
+_SMALLEST_STEP = 1e-5  # L; a jump that a step this small does not prevent is a snap-off
+_LARGEST_TURN = 0.35  # rad; a link that turns farther in one step has left the branch
+_HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below it just faded
+
+
+def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Readings:
+    """Sweep the chain; see `mujoco_models.simulate_sweep`."""
+    obstacle = Obstacle.of(case, settings.contour_points)
+    layout = Layout.of(settings)
+    model = ChainModel(layout, case.radius, obstacle, settings.contact_stiffness)
+    foot_x = case.foot_x / case.beam.length
+    walk = _Walk(model, float(foot_x[0]), settings.tolerance)
+    rows = []
+    for target in foot_x:
+        walk.go_to(float(target))
+        rows.append(walk.row())
+        advance()
+    table = pd.DataFrame(rows)
+    beam = case.beam
+    for name in ("force_x", "force_y"):
+        table[name] *= beam.force_unit
+    for name in ("moment_z", "residual"):
+        table[name] *= beam.moment_unit
+    for name in ("contact_arc_length", "contact_x", "contact_y"):
+        table[name] *= beam.length
+    table.insert(0, "foot_x", case.foot_x)
+    provenance = {
+        **case.provenance(),
+        "engine": f"MuJoCo {mujoco.__version__}, vibrissa-testbed {version('vibrissa-testbed')}",
+        "python": platform.python_version(),
+        "settings": asdict(settings),
+        "obstacle": f"{len(obstacle.vertices)} contour points, chord error "
+        f"{obstacle.chord_error:.1e} L, normal error {obstacle.normal_error:.1e} rad",
+        "snap_off": None if walk.snap_off is None else walk.snap_off * beam.length,
+    }
+    extra = [name for name in table if name not in COLUMNS]
+    return Readings(table[[*COLUMNS, *extra]], beam, f"mujoco {settings.beam}", provenance)
+
+
+class _Walk:
+    """The chain on its way: the last state at rest, and the one before it to extrapolate from."""
+
+    def __init__(self, model: ChainModel, foot_x: float, tolerance: float) -> None:
+        self._model = model
+        self._tolerance = tolerance
+        self._foot_x = foot_x
+        self._state = State(np.zeros(len(model.layout.joints)), {})
+        self._before: tuple[float, State] | None = None
+        self.snap_off: float | None = None
+        """Where the last contact was let go [L]."""
+
+    def go_to(self, target: float) -> None:
+        """Follow the branch of equilibria to `target`, in smaller steps where it takes them.
+
+        Where even the smallest step leaves the branch, there is no neighbouring equilibrium: the
+        vibrissa has snapped, and goes on from where it comes to rest.
+        """
+        step = target - self._foot_x
+        while True:
+            trial = target if abs(step) >= abs(target - self._foot_x) else self._foot_x + step
+            state = relax(self._model, trial, self._guess(trial), self._tolerance)
+            if self._follows(state):
+                if trial != self._foot_x:
+                    self._before = (self._foot_x, self._state)
+                self._foot_x, self._state = trial, state
+                if trial == target:
+                    return
+                step *= 2
+            elif abs(trial - self._foot_x) > _SMALLEST_STEP:
+                step = (trial - self._foot_x) / 2
+            else:
+                self._snap(trial)
+                if trial == target or not self._state.settled:
+                    return
+                step = target - trial
+
+    def _snap(self, trial: float) -> None:
+        straight = State(np.zeros_like(self._state.angles), {})
+        self.snap_off = (self._foot_x + trial) / 2
+        self._state = relax(self._model, trial, straight, self._tolerance)
+        self._foot_x, self._before = trial, None
+
+    def _guess(self, foot_x: float) -> State:
+        """The last state, carried on along the branch."""
+        state = self._state
+        if self._before is None:
+            return State(state.angles, state.forces)
+        x, before = self._before
+        ahead = (foot_x - self._foot_x) / (self._foot_x - x)
+        return State(state.angles + ahead * (state.angles - before.angles), state.forces)
+
+    def _follows(self, state: State) -> bool:
+        """Whether `state` is the neighbour of the last one on the branch."""
+        turn = np.abs(np.cumsum(state.angles - self._state.angles)).max()
+        let_go = sum(self._state.forces.values()) > _HELD and not state.forces
+        return bool(state.settled and turn < _LARGEST_TURN and not let_go)
+
+    def row(self) -> dict[str, Any]:
+        """The dimensionless readings of the state that the chain is in."""
+        model, state = self._model, self._state
+        clamp = model.clamp()
+        contacts = model.contacts()
+        loaded = contacts.distance < 0
+        row: dict[str, Any] = {
+            **clamp._asdict(),
+            "phase": "free",
+            **dict.fromkeys(
+                ("contact_angle", "contact_arc_length", "contact_x", "contact_y"), np.nan
+            ),
+            "tip_angle": np.pi / 2 + float(state.angles.sum()),
+            "status": "ok" if state.settled else "unsettled",
+            "residual": state.imbalance,
+        }
+        if loaded.any():
+            weight = -contacts.distance[loaded] / -contacts.distance[loaded].sum()
+            beads, normal = contacts.bead[loaded], weight @ contacts.normal[loaded]
+            x, y = weight @ model.data.contact.pos[loaded, :2]
+            row |= {
+                "phase": "tip" if beads.min() == len(model.layout.beads) - 1 else "tangent",
+                "contact_angle": float(np.arctan2(normal[0], -normal[1])),
+                "contact_arc_length": float(weight @ model.layout.beads[beads]),
+                "contact_x": float(x),
+                "contact_y": float(y),
+            }
+        return row
