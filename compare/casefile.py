@@ -45,7 +45,7 @@ def _quantity(dimension: str) -> Callable[[Any, ValidationInfo], float]:
                 seen["bare"].append(str(info.field_name))
             return float(value)
         try:
-            quantity: pint.Quantity = _units().Quantity(cast("str", value))
+            quantity: pint.Quantity[Any] = _units().Quantity(cast("str", value))
             number = float(quantity.to(dimension).magnitude)
         except (pint.PintError, TypeError, ValueError, AttributeError) as error:
             raise PydanticCustomError(

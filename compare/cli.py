@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
-import click
 import typer
 from rich.console import Console
 from rich.progress import Progress
@@ -20,6 +19,8 @@ from compare.comparison import Comparison
 from compare.comparison import compare as compare_readings
 from compare.report import write_report
 
+# Any wrong word on the command line; typer may bring its own copy of click, whose base this is.
+_UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 AGREES, DISAGREES, BAD_INPUT = 0, 1, 2
 
 app = typer.Typer(
@@ -116,9 +117,9 @@ def main() -> None:
         code = app(standalone_mode=False)
     except InputError as error:
         code = _refuse(str(error))
-    except click.ClickException as error:
-        code = _refuse(error.format_message())
-    except (click.Abort, KeyboardInterrupt):
+    except _UsageError as error:
+        code = _refuse(f"{error}; see `vibrissa --help`")
+    except (typer.Abort, KeyboardInterrupt):
         code = _refuse("interrupted")
     except OSError as error:
         code = _refuse(f"{error.filename}: {error.strerror}; choose another folder with --out")

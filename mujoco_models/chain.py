@@ -20,7 +20,9 @@ from analytic.problem.arrays import Floats, Integers
 from mujoco_models.obstacle import Obstacle
 from mujoco_models.settings import Settings
 
-BEADS_A_LINK = 4  # spacing h/4: the object dips between two of them by curvature (h/4)^2 / 8
+_BEAD_SPACING = 0.65  # radii, at most: the readings err by the contour's curvature times that
+_CURVED_SPACING = 0.01  # of the contour's smallest radius of curvature: the same for sharp objects
+_MOST_BEADS = 4000
 CLAMP_SITE = "clamp"
 CONTACT_GAP = 0.01  # L; how far ahead the solver sees contacts that carry no force yet
 _DENSITY = 1e-3  # any small number: at rest masses do not matter
@@ -49,12 +51,14 @@ class Layout:
     links: Integers
 
     @classmethod
-    def of(cls, settings: Settings) -> "Layout":
-        """The layout for a number of segments and a kind of clamp."""
+    def of(cls, settings: Settings, radius: float, obstacle: Obstacle) -> "Layout":
+        """The layout for a number of segments and a kind of clamp, with beads dense enough."""
         n = settings.segments
+        spacing = min(_BEAD_SPACING * radius, _CURVED_SPACING / obstacle.curvature.max(), 0.5 / n)
+        a_link = int(np.ceil(min(1 / (n * spacing), _MOST_BEADS / n)))
         cells = np.arange(n)
         joints = (cells + 0.5) / n if settings.clamp == "cell-centre" else cells[1:] / n
-        beads = np.arange(1, BEADS_A_LINK * n + 1) / (BEADS_A_LINK * n)
+        beads = np.arange(1, a_link * n + 1) / (a_link * n)
         beads = beads[beads > joints[0]]
         links = np.searchsorted(joints, beads - 1e-12) - 1
         return cls(joints, float(n), beads, links)
@@ -79,6 +83,8 @@ def chain_spec(layout: Layout, radius: float, obstacle: Obstacle) -> mujoco.MjSp
     option.tolerance = 1e-14
     option.ccd_tolerance = 1e-12
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
+    # The midphase's tree tests every bead against every window: seven times the cost of a step.
+    option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MIDPHASE
     obstacle.add_to(spec)
 
     ends = np.append(layout.joints, 1.0)

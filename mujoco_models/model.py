@@ -62,8 +62,12 @@ class ChainModel:
         self._bead_of = np.full(model.ngeom, -1)
         self._bead_of[self._beads] = np.arange(len(self._beads))
         self._set_contact_stiffness()
+        curvature = obstacle.curvature
+        self.contact_curvature = curvature / (1 + radius * curvature)
+        """Of the contour that the beads' centres feel, by vertex of the obstacle [1/L]."""
         self.window = -1
         self.use_window(0)
+        self._trail: tuple[float, ...] = ()
         self.watched: frozenset[int] = frozenset()
         self.watch(frozenset(range(len(self._beads))))
 
@@ -85,6 +89,16 @@ class ChainModel:
             self.model.geom_contype[self._windows[window]] = 1
             self.window = window
 
+    def anticipate_window(self) -> None:
+        """Use the window towards which the contact has been moving."""
+        if len(self._trail) == 2:
+            before, last = self._trail
+            self.use_window(self.obstacle.window_of(2 * last - before))
+
+    def leave_trail(self, vertex: float) -> None:
+        """Remember where the contact rests, for `anticipate_window`."""
+        self._trail = (*self._trail[-1:], vertex)
+
     def watch(self, beads: frozenset[int]) -> None:
         """Let these beads, and no others, take part in collisions."""
         if beads != self.watched:
@@ -105,6 +119,26 @@ class ChainModel:
         mujoco.mj_forward(self.model, data)
         self.evaluations += 1
         return np.asarray(data.qfrc_passive + data.qfrc_constraint)
+
+    def slide(self, foot_x: float, angles: Floats, far: float, steps: int) -> Floats:
+        """Angles after MuJoCo's own motion without momentum, until it rests or `steps` are over.
+
+        `far` is how far a link must have turned for the steps to become ten times longer [rad].
+        """
+        model, data = self.model, self.data
+        model.opt.integrator, model.opt.timestep = mujoco.mjtIntegrator.mjINT_DISCRETE, 1e-3
+        data.mocap_pos[0, 0] = foot_x
+        data.qpos[:] = angles
+        for _ in range(steps):
+            before = data.qpos.copy()
+            data.qvel[:] = 0
+            mujoco.mj_step(model, data)
+            if np.abs(data.qpos - before).max() < 1e-10:
+                break
+            if np.abs(np.cumsum(data.qpos - angles)).max() > far:
+                model.opt.timestep = 1e-2
+        model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
+        return np.array(data.qpos)
 
     def contacts(self) -> Contacts:
         """All reported contacts of the last evaluated configuration."""

@@ -22,6 +22,11 @@ _GRADED = 8  # vertices a level farther out; the spacing doubles from level to l
 _HALF_DEPTH = 0.25  # L, of the extrusion: much more than a penetration, or depths come out wrong
 MESH_PREFIX = "obstacle"
 
+# Corners +x, -x, +y, -y, +z, -z; every face with its corners counterclockwise from outside.
+_OCTAHEDRON = [
+    [x, y, z] if (x + y + z) % 2 else [x, z, y] for x in (0, 1) for y in (2, 3) for z in (4, 5)
+]
+
 
 @dataclass(frozen=True)
 class Obstacle:
@@ -51,7 +56,7 @@ class Obstacle:
 
     @cached_property
     def curvature(self) -> Floats:
-        """Mean curvature at the vertices, shape (n,) [1/L]."""
+        """Mean curvature near each vertex, shape (n,) [1/L]."""
         length = np.hypot(*np.diff(self.vertices, axis=0).T)
         inner = 2 * np.diff(self.facet_angles) / (length[1:] + length[:-1])
         return np.concatenate([inner[:1], inner, inner[-1:]])
@@ -115,8 +120,10 @@ class Obstacle:
         """Vertices and faces of one window's mesh.
 
         Vertices are stored in single precision relative to the centroid of the *faces*, while
-        collisions use the hull of all vertices. So the only faces are those of a speck inside the
-        obstacle, beside the window: rounding there is 1e-9 instead of 1e-7.
+        collisions use the hull of all vertices. So the only faces are those of a speck just inside
+        the obstacle at the window's centre: rounding there is 1e-9 instead of 1e-7. The speck is an
+        octahedron whose axes of inertia are those of the world, so that both ends of the prism
+        round alike and its sides stay flat.
         """
         polygon = self.vertices[self._kept(centre)]
         prism = np.concatenate(
@@ -127,6 +134,7 @@ class Obstacle:
         )
         here = self.vertices[centre]
         inward = 1e-2 * (self.vertices.mean(axis=0) - here)
-        speck = np.append(here + inward, 0) + 1e-3 * np.vstack([np.zeros(3), np.eye(3)])
-        faces = len(prism) + np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], dtype=np.int32)
+        corners = 1e-4 * np.kron(np.diag([1, 2, 3]), [[1], [-1]])
+        speck = np.append(here + inward, 0) + corners
+        faces = len(prism) + np.array(_OCTAHEDRON, dtype=np.int32)
         return np.concatenate([prism, speck]).ravel(), faces.ravel()

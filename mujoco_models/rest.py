@@ -20,6 +20,9 @@ _STIFFENING = 1e3  # EI/L^3; loaded contacts convexify the quadratic model, with
 _LARGEST_TURN = 0.3  # rad, of any link in one step
 _AHEAD = 4  # beads beyond the loaded ones that take part in collisions
 _MARGIN = 2  # beads beyond the loaded ones that must do so
+_LEFT = 0.35  # rad; a link that has turned farther has left the branch
+_FALL_REACH = 16
+_FALL_STEPS = 5000
 
 
 @dataclass(frozen=True)
@@ -63,21 +66,27 @@ def relax(model: ChainModel, foot_x: float, start: State, tolerance: float) -> S
     State
         Not settled if Newton's method did not get there; the caller takes smaller steps then.
     """
-    state = start
+    state = best = start
     # One bead a link sees a contact coming long before it is loaded; where a load is, all must.
-    lookout = frozenset(np.searchsorted(model.layout.links, np.unique(model.layout.links)).tolist())
-    lookout |= {len(model.layout.beads) - 1}
+    links = model.layout.links
+    lookout = frozenset(np.flatnonzero(np.diff(links, append=links[-1] + 1)).tolist())
     model.watch(_around(model, state.forces, _AHEAD) or lookout)
+    if state.forces:
+        model.anticipate_window()
     whole = False
     last_normal: dict[int, float] = {}
     for _ in range(_ITERATIONS):
         residual = float(np.abs(model.imbalance(foot_x, state.angles)).max())
         contacts = model.contacts()
         state = replace(state, imbalance=residual)
+        best = min(best, state, key=lambda s: s.imbalance)
         if residual < tolerance:
-            if _move_window(model, contacts):
+            loaded = _vertices(model, contacts.normal[contacts.distance < 0])
+            if _move_window(model, loaded):
                 continue
             if whole:
+                if loaded.size:
+                    model.leave_trail(float(loaded.mean()))
                 return replace(state, settled=True)
             whole = True
             model.watch(model.watched | lookout)
@@ -87,7 +96,27 @@ def relax(model: ChainModel, foot_x: float, start: State, tolerance: float) -> S
         if not _around(model, state.forces, _MARGIN) <= model.watched:
             model.watch(model.watched | _around(model, state.forces, _AHEAD))
             whole = False
-    return state
+    model.imbalance(foot_x, best.angles)  # leaves the readings with the state that is returned
+    return best
+
+
+def fall(model: ChainModel, foot_x: float, start: State) -> State:
+    """Where MuJoCo's own overdamped motion ends with the foot at `foot_x`; not yet at rest.
+
+    Decides what Newton's method cannot: whether a vibrissa without a neighbouring equilibrium has
+    let go. The motion is gentle, the inertia of a step a hundred times the stiffness, until it has
+    clearly left; ten times coarser, it lets go too early.
+    """
+    links = model.layout.links
+    lookout = frozenset(np.flatnonzero(np.diff(links, append=links[-1] + 1)).tolist())
+    model.watch(_around(model, start.forces, _FALL_REACH) | lookout)
+    angles = model.slide(foot_x, start.angles, _LEFT, _FALL_STEPS)
+    return State(angles, {} if turned(angles, start.angles) > _LEFT else start.forces)
+
+
+def turned(angles: Floats, before: Floats) -> float:
+    """The farthest that any link has turned [rad]."""
+    return float(np.abs(np.cumsum(angles - before)).max())
 
 
 def _around(model: ChainModel, loaded: dict[int, float], reach: int) -> frozenset[int]:
@@ -97,15 +126,11 @@ def _around(model: ChainModel, loaded: dict[int, float], reach: int) -> frozense
     )
 
 
-def _move_window(model: ChainModel, contacts: Contacts) -> bool:
+def _move_window(model: ChainModel, loaded: Integers) -> bool:
     """See to it that all load rests on full resolution; True if the mesh had to be changed."""
-    loaded = contacts.distance < 0
-    if not loaded.any():
+    if loaded.size == 0 or model.obstacle.is_inside(model.window, loaded):
         return False
-    at = _vertices(model, contacts.normal[loaded])
-    if model.obstacle.is_inside(model.window, at):
-        return False
-    best = model.obstacle.window_of(float(at.mean()))
+    best = model.obstacle.window_of(float(loaded.mean()))
     if best == model.window:
         return False
     model.use_window(best)
@@ -138,7 +163,7 @@ def _newton_step(
         stiffness[:n, :n] += (force[i] * across[i, :n])[outer[:n, :n]]
         # ... and the normal turns as the bead slides along the contour, unless it stays on a facet.
         if abs(last_normal.get(int(bead[i]), np.inf) - normal[i, 0]) > 1e-9:
-            curvature = model.obstacle.curvature[vertex[i]]
+            curvature = model.contact_curvature[vertex[i]]
             stiffness -= force[i] * curvature * np.outer(across[i], across[i])
 
     # The loaded contacts convexify the model; at rest their slack is zero, and so is the effect.
@@ -152,7 +177,7 @@ def _newton_step(
         along @ compliance + np.eye(len(bead)) / model.contact_stiffness, distance + along @ free
     )
     step = free + compliance @ forces
-    turn = float(np.abs(np.cumsum(step)).max())
+    turn = turned(step, np.zeros(count))
     return State(
         state.angles + step * min(1.0, _LARGEST_TURN / max(turn, 1e-300)),
         {int(i): float(f) for i, f in zip(bead, forces, strict=True) if f > 0},

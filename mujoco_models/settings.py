@@ -1,11 +1,15 @@
 """The numerics of a MuJoCo sweep: everything that is not physics."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeAlias, get_args
 
 from pydantic import ConfigDict
 
 from analytic.problem.errors import InputError
+
+BeamKind: TypeAlias = Literal["chain"]
+ClampKind: TypeAlias = Literal["cell-centre", "rigid-first-link"]
+BEAMS, CLAMPS = get_args(BeamKind), get_args(ClampKind)
 
 
 @dataclass(frozen=True)
@@ -16,17 +20,17 @@ class Settings:
 
     Parameters
     ----------
-    beam : {"chain"}
-        Which of MuJoCo's models of a slender beam.
+    beam : str
+        Which of MuJoCo's models of a slender beam; see `available_beams`.
     segments : int
         Number of segments N, at least 2: rigid links whose hinges sit at the centres of N cells.
     contour_points : int
         Points of the obstacle's mesh along the contour, at equal steps of slope angle.
     contact_stiffness : float
         Force over penetration of a contact [EI/L^3].
-    clamp : {"cell-centre", "rigid-first-link"}
-        Where the first hinge sits: half a cell from the clamp (second order in 1/N), or a whole one
-        (the naive chain, first order; here to be compared with).
+    clamp : str
+        Where the first hinge sits: half a cell from the clamp, ``"cell-centre"`` (second order in
+        1/N), or a whole one, ``"rigid-first-link"`` (the naive chain, first order; for comparison).
     tolerance : float
         A station has settled when no joint is out of balance by more than this [EI/L].
 
@@ -38,14 +42,20 @@ class Settings:
 
     __pydantic_config__ = ConfigDict(extra="forbid")  # a misspelt key in a case file is an error
 
-    beam: Literal["chain"] = "chain"
+    beam: BeamKind = "chain"
     segments: int = 40
     contour_points: int = 3200
     contact_stiffness: float = 1e7
-    clamp: Literal["cell-centre", "rigid-first-link"] = "cell-centre"
+    clamp: ClampKind = "cell-centre"
     tolerance: float = 1e-8
 
     def __post_init__(self) -> None:
+        for name, allowed in (("beam", BEAMS), ("clamp", CLAMPS)):
+            value = getattr(self, name)
+            if value not in allowed:
+                raise InputError(
+                    f"mujoco.{name}", repr(value), f"one of {', '.join(allowed)}", "choose one"
+                )
         for name, low, high, remedy in (
             ("segments", 2, 1000, "40 is usual"),
             ("contour_points", 8, 50_000, "3200 is usual"),

@@ -11,11 +11,12 @@ import numpy as np
 import pandas as pd
 
 from analytic.problem.case import Case
+from analytic.problem.errors import InputError
 from analytic.problem.readings import COLUMNS, Readings
 from mujoco_models.chain import Layout
 from mujoco_models.model import ChainModel
 from mujoco_models.obstacle import Obstacle
-from mujoco_models.rest import State, relax
+from mujoco_models.rest import State, fall, relax, turned
 from mujoco_models.settings import Settings
 
 _SMALLEST_STEP = 1e-5  # L; a jump that a step this small does not prevent is a snap-off
@@ -25,8 +26,10 @@ _HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below it ju
 
 def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Readings:
     """Sweep the chain; see `mujoco_models.simulate_sweep`."""
+    if case.radius == 0:
+        raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
     obstacle = Obstacle.of(case, settings.contour_points)
-    layout = Layout.of(settings)
+    layout = Layout.of(settings, case.radius, obstacle)
     model = ChainModel(layout, case.radius, obstacle, settings.contact_stiffness)
     foot_x = case.foot_x / case.beam.length
     walk = _Walk(model, float(foot_x[0]), settings.tolerance)
@@ -72,8 +75,8 @@ class _Walk:
     def go_to(self, target: float) -> None:
         """Follow the branch of equilibria to `target`, in smaller steps where it takes them.
 
-        Where even the smallest step leaves the branch, there is no neighbouring equilibrium: the
-        vibrissa has snapped, and goes on from where it comes to rest.
+        Where even the smallest step leaves the branch, MuJoCo's own gentle motion decides: if it
+        goes far, the vibrissa has snapped off; if it stays, the station did not settle.
         """
         step = target - self._foot_x
         while True:
@@ -89,16 +92,15 @@ class _Walk:
             elif abs(trial - self._foot_x) > _SMALLEST_STEP:
                 step = (trial - self._foot_x) / 2
             else:
-                self._snap(trial)
-                if trial == target or not self._state.settled:
-                    return
-                step = target - trial
+                self._let_go((self._foot_x + trial) / 2, target)
+                return
 
-    def _snap(self, trial: float) -> None:
-        straight = State(np.zeros_like(self._state.angles), {})
-        self.snap_off = (self._foot_x + trial) / 2
-        self._state = relax(self._model, trial, straight, self._tolerance)
-        self._foot_x, self._before = trial, None
+    def _let_go(self, where: float, target: float) -> None:
+        fallen = fall(self._model, target, self._state)
+        if not fallen.forces:
+            self.snap_off = where
+        self._state = relax(self._model, target, fallen, self._tolerance)
+        self._foot_x, self._before = target, None
 
     def _guess(self, foot_x: float) -> State:
         """The last state, carried on along the branch."""
@@ -111,9 +113,9 @@ class _Walk:
 
     def _follows(self, state: State) -> bool:
         """Whether `state` is the neighbour of the last one on the branch."""
-        turn = np.abs(np.cumsum(state.angles - self._state.angles)).max()
+        near = turned(state.angles, self._state.angles) < _LARGEST_TURN
         let_go = sum(self._state.forces.values()) > _HELD and not state.forces
-        return bool(state.settled and turn < _LARGEST_TURN and not let_go)
+        return state.settled and near and not let_go
 
     def row(self) -> dict[str, Any]:
         """The dimensionless readings of the state that the chain is in."""

@@ -122,7 +122,8 @@ class Profile(Contour):
         lowest, highest = self.alpha_range
         inset = 1e-6 * (highest - lowest)  # open families have their poles at +-pi/2
         alpha = np.linspace(lowest + inset, highest - inset, 129)
-        xi, eta = self.xi(alpha), self.eta(alpha)
+        with np.errstate(all="ignore"):  # what is not finite is told below
+            xi, eta = self.xi(alpha), self.eta(alpha)
         if np.shape(xi) != alpha.shape or np.shape(eta) != alpha.shape:
             raise InputError(
                 "profile",

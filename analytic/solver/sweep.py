@@ -62,7 +62,7 @@ def solve_sweep(case: Case) -> Readings:
     provenance = {
         **case.provenance(),
         "engine": f"vibrissa-testbed {version('vibrissa-testbed')}",
-        "snap_off": None if limits.snap_off is None else branch.foot_x[-1] * beam.length,
+        "snap_off": None if limits.snap_off is None else float(branch.foot_x[-1]) * beam.length,
     }
     return Readings(table, beam, "analytic", provenance)
 
@@ -80,15 +80,14 @@ class _Branch:
         start = centreline.at(self._t[:1])
         self.foot_x = np.append(start.xi, sampled.foot_x)
         self._excess = np.append(0.0, sampled.excess)
-        between = [limits.phase_b_start, limits.phase_b_end]
-        self._tangent_from, self._tangent_to = (
-            -np.inf if t is None else float(equilibria(centreline, np.array([t])).foot_x[0])
-            for t in between
-        )
+        changes = equilibria(centreline, np.array(limits.changes)).foot_x
+        self._changes = np.sort(changes)
+        self._starts_tangent = limits.starts_tangent
 
     def is_tangent(self, foot_x: Floats) -> Booleans:
         """Whether the contact at these foot positions is in Phase B."""
-        return (foot_x <= self._tangent_from) & (foot_x > self._tangent_to)
+        passed = len(self._changes) - np.searchsorted(self._changes, foot_x)
+        return np.asarray((passed % 2 == 1) != self._starts_tangent)
 
     def tangent(self, foot_x: Floats) -> Equilibria:
         """Phase B at the given foot positions: Newton's method on x0(t)."""

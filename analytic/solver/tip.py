@@ -40,7 +40,8 @@ def tip_excess(alpha: Floats, eta: Floats) -> Floats:
     """
     sag = np.sqrt(np.maximum(1 - eta, 0.0))
     low = np.zeros_like(alpha)
-    high = np.sqrt(np.sin((np.pi / 2 - np.abs(alpha)) / 2))
+    # A little beyond tangential contact, where nothing is singular: a root there stays inside.
+    high = np.sqrt(np.sin((np.pi / 2 - np.abs(alpha)) / 2)) * (1 + 1e-6)
     guess = np.maximum(sag / 0.49 - least_rotation(alpha), 1e-3 * sag)
     p = np.minimum(np.sqrt(np.sin(np.minimum(guess, 1.0) / 2)), high)
 
@@ -64,7 +65,8 @@ def tip_excess(alpha: Floats, eta: Floats) -> Floats:
         inside = (new >= low[active]) & (new <= high[active])
         new = np.where(inside, new, (low[active] + high[active]) / 2)
         p[active] = new
-        done = np.abs(new - old) <= 1e-9 * new  # one more step would change round-off only
+        # After such a step of Newton's the next would change round-off only; halving goes on.
+        done = np.abs(new - old) <= np.where(inside, 1e-9, 1e-15) * new
         excess[active[done]] = 2 * np.arcsin(new[done] ** 2)
         active = active[~done]
     raise ArithmeticError(

@@ -1,0 +1,50 @@
+# Everything a user or a CI machine needs, from Python 3.11 or newer and make alone.
+PYTHON ?= python3
+CASE ?= catenary
+ARGS ?=
+
+BIN := .venv/bin
+BIN_MUJOCO3 := .venv-mujoco3/bin
+
+.PHONY: help install run test test-all lint bench install-mujoco3 test-mujoco3 clean
+
+help:            ## list the targets
+	@grep -E '^[a-z0-9-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
+
+install: .venv/installed      ## build .venv with the newest MuJoCo
+
+run: install     ## sweep CASE in both models and write results/CASE/report.html
+	$(BIN)/vibrissa run $(CASE) $(ARGS)
+
+test: install    ## the fast tests, under two minutes
+	$(BIN)/python -m pytest -n auto $(ARGS)
+
+test-all: install    ## all tests, the slow ones too
+	$(BIN)/python -m pytest -n auto -m "slow or not slow" $(ARGS)
+
+lint: install    ## format, style, types, import rules
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: install   ## speed, side by side in one run
+	$(BIN)/python -m tests.bench $(ARGS)
+
+install-mujoco3: .venv-mujoco3/installed   ## build .venv-mujoco3 with MuJoCo 3.17
+
+test-mujoco3: install-mujoco3    ## the fast tests under MuJoCo 3.17
+	$(BIN_MUJOCO3)/python -m pytest -n auto $(ARGS)
+
+clean:           ## remove what the targets above made
+	rm -rf .venv .venv-mujoco3 .mypy_cache .ruff_cache .pytest_cache .hypothesis
+
+.venv/installed: pyproject.toml
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	touch $@
+
+.venv-mujoco3/installed: pyproject.toml
+	$(PYTHON) -m venv .venv-mujoco3
+	$(BIN_MUJOCO3)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]' 'mujoco==3.17.*'
+	touch $@

@@ -1,0 +1,89 @@
+"""The span's integrals against quadrature, and their derivatives against differences."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from mpmath import mp, mpf
+
+from analytic.solver.elastica import least_rotation, span, span_by_alpha, span_by_excess
+from analytic.solver.tip import greatest_height, tip_excess, tip_height
+
+ANGLES = st.floats(-1.5, 1.5)
+FRACTIONS = st.floats(1e-6, 1.0)
+
+
+def excess_at(alpha, fraction):
+    return np.array([fraction * (np.pi / 2 - abs(alpha))])
+
+
+def quadrature(excess, alpha):
+    """q, C, S by 30-digit quadrature in theta = theta_1 + (theta_0 - theta_1) v^2."""
+    with mp.workdps(30):
+        top = mp.pi / 2 - mpf(alpha)
+        bottom = top - mpf(excess) - max(mpf(0), -2 * mpf(alpha))
+        width = top - bottom
+
+        def weight(v):
+            rise = 2 * mp.cos((2 * bottom + width * v * v) / 2) * mp.sin(width * v * v / 2)
+            return 2 * width * v / mp.sqrt(2 * rise)
+
+        def integral(kind):
+            return mp.quad(lambda v: weight(v) * kind(bottom + width * v * v), [0, 0.5, 1])
+
+        return tuple(float(integral(kind)) for kind in (lambda _: 1, mp.cos, mp.sin))
+
+
+@pytest.mark.parametrize("alpha", [-1.2, -0.5, -1e-3, 1e-9, 0.1, 0.6, 1.5])
+@pytest.mark.parametrize("fraction", [1e-5, 0.01, 0.5, 1.0])
+def test_span_is_the_integral(alpha, fraction):
+    excess = excess_at(alpha, fraction)
+    found = [float(x[0]) for x in span(excess, np.array([alpha]))]
+    # Absolute: S may vanish. q is at most 4.
+    np.testing.assert_allclose(found, quadrature(float(excess[0]), alpha), atol=4e-15, rtol=4e-15)
+
+
+@given(ANGLES, st.floats(0.05, 0.95))
+def test_derivatives(alpha, fraction):
+    assume(abs(alpha) > 1e-3)  # the excess is counted from another rotation on either side of 0
+    w, a = excess_at(alpha, fraction), np.array([alpha])
+    loaded = span(w, a)
+    by_excess = span_by_excess(loaded, w, a)
+    by_alpha = span_by_alpha(loaded, by_excess, a)
+    h = 1e-4 * min(float(w[0]), abs(alpha), 0.1)
+    for i in range(3):
+        for found, ahead, behind in (
+            (by_excess[i], span(w + h, a)[i], span(w - h, a)[i]),
+            (by_alpha[i], span(w, a + h)[i], span(w, a - h)[i]),
+        ):
+            # Central difference: h^2 truncation, eps/h round-off.
+            scale = 1 + abs(found[0])
+            assert abs(found[0] - (ahead - behind)[0] / (2 * h)) < scale * (1e-6 + 1e-14 / h)
+
+
+@given(ANGLES, st.floats(0.0, 1.0))
+def test_tip_excess_inverts_the_height(alpha, fraction):
+    a = np.array([alpha])
+    lowest = tip_height(excess_at(alpha, 1.0), a)
+    eta = lowest + fraction * (greatest_height(a) - lowest)
+    excess = tip_excess(a, eta)
+    if np.isnan(excess[0]):
+        assert fraction > 1 - 1e-14
+    else:
+        assert abs(tip_height(excess, a) - eta)[0] < 4e-15
+
+
+def test_out_of_reach_is_not_a_number():
+    alpha = np.array([0.3, 0.0, -0.5])
+    assert np.isnan(tip_excess(alpha, greatest_height(alpha) + 1e-9)).all()
+
+
+@given(st.floats(1e-9, 1e-3), st.floats(0.05, 1.5))
+def test_small_rotations_are_those_of_a_linear_beam(rotation, alpha):
+    """A tip force P across a linear beam turns its tip by P/2 and moves it by P/3."""
+    u, a = np.array([rotation]), np.array([alpha])
+    loaded = span(u - least_rotation(a), a)
+    across_force = loaded.q**2 * np.sin(a)
+    # Next order: the force along the beam, (2/5) f cos(alpha) relative.
+    along = loaded.q**2 * np.cos(a)
+    assert abs(across_force / 2 / u - 1)[0] < along[0] + 1e-12

@@ -1,0 +1,166 @@
+"""The command line as a user meets it."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+CASE = """
+name = "small object"
+[beam]
+length = 1.0
+[profile]
+kind = "circle"
+radius = 1.0
+lowest = [0.0, 0.4]
+[sweep]
+stations = 30
+[mujoco]
+segments = 10
+"""
+
+UNITS = """
+[beam]
+length = "50 mm"
+flexural_rigidity = "2e-6 N m^2"
+radius = "0.25 mm"
+[profile]
+kind = "catenary"
+a = 0.5
+c = -0.8
+scale = "5 cm"
+[sweep]
+stations = 30
+"""
+
+
+def vibrissa(*arguments, cwd) -> subprocess.CompletedProcess:
+    command = [sys.executable, "-c", "from compare.cli import main; main()", *map(str, arguments)]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False)
+
+
+def test_run_writes_what_it_promises(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE)
+    done = vibrissa("run", "case.toml", "--out", "out", "--segments", 40, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        "analytic.parquet",
+        "mujoco-chain.parquet",
+        "comparison.json",
+        "report.html",
+        "geometry.png",
+        "readings.png",
+        "phases.png",
+    }
+    found = json.loads((tmp_path / "out" / "comparison.json").read_text())
+    assert found["verdict"] == "agrees"
+    report = (tmp_path / "out" / "report.html").read_text()
+    assert "<b>The two agree.</b>" in report
+    assert "http" not in report.replace("http://www.w3.org", "").replace(
+        "http://purl.org", ""
+    ).replace("http://creativecommons.org", "").replace("https://matplotlib.org", "")
+    again = vibrissa("compare", "out/analytic.parquet", "out/mujoco-chain.parquet", cwd=tmp_path)
+    assert again.returncode == 0
+
+
+def test_a_coarse_beam_disagrees(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE)
+    done = vibrissa("run", "case.toml", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "allowed" in done.stdout
+    assert (tmp_path / "results" / "small object" / "report.html").exists()
+
+
+def test_units(tmp_path):
+    (tmp_path / "case.toml").write_text(UNITS)
+    done = vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    from analytic import Readings, named_case, solve_sweep
+
+    sweep = Readings.read(tmp_path / "analytic.parquet")
+    assert sweep.beam.length == pytest.approx(0.05)
+    from dataclasses import replace
+
+    from analytic import Sweep
+
+    dimensionless = solve_sweep(replace(named_case("catenary"), sweep=Sweep(stations=30)))
+    ratio = sweep.values("force_y").max() / dimensionless.values("force_y").max()
+    assert ratio == pytest.approx(2e-6 / 0.05**2, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("length = 1.0", "length = -1.0"), "beam.length = -1.0"),
+        (("length = 1.0", 'length = "1 parsnip"'), "'1 parsnip'"),
+        (("length = 1.0", 'length = "1 kg"'), "'1 kg'"),
+        (("length = 1.0", 'length = "1 m"'), "without a unit"),
+        (("length = 1.0", "lenght = 1.0"), "did you mean length?"),
+        (("radius = 1.0", "radius = 1.0\na = 3"), "profile.a"),
+        (("radius = 1.0", ""), "profile.radius = missing"),
+        (('kind = "circle"', 'kind = "square"'), "profile.kind = 'square'"),
+        (('kind = "circle"', ""), "profile.kind = missing"),
+        (("segments = 10", "segments = 1"), "mujoco.segments"),
+        (("segments = 10", "segmens = 10"), "did you mean segments?"),
+        (("segments = 10", 'beam = "rope"'), "mujoco.beam = 'rope'"),
+        (("stations = 30", "stations = 1"), "sweep.stations = 1"),
+        (("[sweep]", "[sweeep]"), "did you mean sweep?"),
+        (("0.4]", "1.4]"), "below 1 L"),
+        (("0.4]", "0.001]"), "above the foot line"),
+        (("[beam]", "[beam"), "TOML"),
+    ],
+)
+def test_bad_case_files(tmp_path, change, said):
+    (tmp_path / "case.toml").write_text(CASE.replace(*change))
+    done = vibrissa("run", "case.toml", "--out", "out", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1, done.stderr
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["run", "catenry"], "did you mean catenary?"),
+        (["run", "nowhere.toml"], "nowhere.toml"),
+        (["run", "catenary", "--beam", "rope"], "rope"),
+        (["run", "catenary", "--segments", "0"], "segments = 0"),
+        (["run", "catenary", "--stations", "x"], "stations"),
+        (["compare", "a.parquet", "b.parquet"], "a.parquet"),
+        (["fly"], "fly"),
+        (["run"], "CASE"),
+    ],
+)
+def test_bad_commands(tmp_path, arguments, said):
+    done = vibrissa(*arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1, done.stderr
+    assert said in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_output_folder_that_cannot_be(tmp_path):
+    (tmp_path / "file").write_text("")
+    done = vibrissa("analytic", "parabola", "--out", "file", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+
+
+def test_cases_are_listed(tmp_path):
+    done = vibrissa("cases", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "two-circles" in done.stdout
+
+
+def test_readme_example_runs(tmp_path):
+    """The README's Python block is executed as it stands."""
+    readme = (Path(__file__).parents[2] / "README.md").read_text()
+    code = readme.split("```python\n")[1].split("```")[0]
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr

@@ -1,0 +1,171 @@
+"""The comparison finds what was planted, and nothing else."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import Beam, Case, Readings, Sweep, find_events, named_case, solve_sweep
+from analytic.problem.readings import CLAMP_READINGS
+from compare import Tolerances, assert_agreement, classify, compare
+from compare.noise import reading_noise
+from compare.phases import confusion
+from compare.transitions import locate_transitions
+
+
+def changed(sweep: Readings, **columns) -> Readings:
+    return Readings(sweep.table.assign(**columns), sweep.beam, "changed", sweep.provenance)
+
+
+def noisy(sweep: Readings, level: float, seed: int = 1) -> Readings:
+    rng = np.random.default_rng(seed)
+    columns = {
+        name: sweep.values(name)
+        + level * np.abs(sweep.values(name)).max() * rng.standard_normal(len(sweep.table))
+        for name in CLAMP_READINGS
+    }
+    return changed(sweep, **columns)
+
+
+def test_a_sweep_agrees_with_itself(exact):
+    found = compare(exact, exact)
+    assert found.agrees
+    assert all(d.rms == d.max == 0 for d in found.disagreement.values())
+    assert found.snap_off.difference == 0
+    assert sum(found.alignment.counts.values()) == len(exact.table)
+
+
+def test_other_stations_of_the_same_sweep_agree(case, exact):
+    """Interpolation within a phase: only the spline's own error, 1e-4 beside the snap-off."""
+    other = solve_sweep(replace(case, sweep=Sweep(stations=333)))
+    found = compare(exact, other)
+    assert found.agrees, found.failures
+    assert found.disagreement["moment_z"].rms_by_phase.get("tangent", 0) < 1e-6
+    assert found.alignment.counts["between_phases"] <= 8
+
+
+def test_nothing_is_interpolated_across_the_snap_off(case, exact):
+    """A reference with a gap around its snap-off has nothing to say there."""
+    near = np.abs(exact.values("foot_x") - exact.snap_off) < 0.1
+    gap = Readings(exact.table[~near].reset_index(drop=True), exact.beam, "gap", exact.provenance)
+    found = compare(gap, exact)
+    compared = found.alignment.table["foot_x"].to_numpy()
+    assert (np.abs(compared - exact.snap_off) >= 0.1 - 1e-12).all()
+    left_out = found.alignment.counts["between_phases"] + found.alignment.counts["outside"]
+    assert left_out >= near.sum()
+    assert found.disagreement["force_x"].max < 1e-9
+
+
+@pytest.mark.parametrize("reading", CLAMP_READINGS)
+def test_a_wrong_gain_is_found_under_its_reading(exact, reading):
+    found = compare(exact, changed(exact, **{reading: exact.values(reading) * 1.01}))
+    assert not found.agrees
+    assert any(line.startswith(reading) for line in found.failures)
+    others = set(CLAMP_READINGS) - {reading}
+    assert all(found.disagreement[name].rms == 0 for name in others)
+    assert 0.005 < found.disagreement[reading].max < 0.0101
+
+
+@pytest.mark.parametrize(
+    ("fault", "made"),
+    [
+        ("stiffer by 1 %", lambda case: replace(case, beam=Beam(flexural_rigidity=1.01))),
+        ("radius forgotten", lambda case: replace(case, beam=Beam(radius=0.0))),
+        ("shorter by 1 %", lambda case: replace(case, beam=Beam(length=0.99))),
+        (
+            "object 0.01 lower",
+            lambda case: replace(case, beam=Beam(radius=0.015)),  # about the same shift
+        ),
+    ],
+)
+def test_planted_faults_are_found(fault, made):
+    """The candidate claims to be the same vibrissa, but was made with another one."""
+    case = named_case("catenary")
+    grid = Sweep(200, float(case.foot_x[0]), float(case.foot_x[-1]))
+    exact = solve_sweep(replace(case, sweep=grid))
+    wrong = solve_sweep(made(replace(case, sweep=Sweep(200, 2.42, float(case.foot_x[-1])))))
+    claimed = Readings(wrong.table, exact.beam, fault, wrong.provenance)
+    found = compare(exact, claimed)
+    assert not found.agrees
+    assert max(d.rms for d in found.disagreement.values()) > 4e-3
+    with pytest.raises(AssertionError, match="allowed"):
+        assert_agreement(exact, claimed)
+
+
+def test_stations_that_did_not_settle_are_left_out(exact):
+    status = exact.table["status"].copy()
+    status.iloc[50:53] = "unsettled"
+    force = exact.table["force_y"].copy()
+    force.iloc[50:53] = 1e3
+    found = compare(exact, changed(exact, status=status, force_y=force))
+    assert found.alignment.counts["untrusted"] == 3
+    assert found.disagreement["force_y"].max == 0
+    assert any("stations" in line for line in found.failures)
+    loose = compare(exact, changed(exact, status=status), Tolerances(untrusted=0.02))
+    assert loose.agrees, loose.failures
+
+
+def test_an_early_release_is_found(exact):
+    early = exact.values("foot_x") < exact.snap_off + 0.05
+    columns = {name: np.where(early, 0.0, exact.values(name)) for name in CLAMP_READINGS}
+    released = Readings(exact.table.assign(**columns), exact.beam, "early")
+    found = compare(exact, released)
+    assert any(line.startswith("snap_off") for line in found.failures)
+    assert found.alignment.counts["one_free"] > 0
+
+
+def test_phases_of_exact_readings(exact):
+    judged = classify(exact)
+    assert (judged.phase == exact.table["phase"]).all()
+
+
+@pytest.mark.parametrize(("level", "share"), [(1e-4, 0.99), (1e-3, 0.98), (1e-2, 0.91)])
+def test_phases_of_noisy_readings(exact, level, share):
+    """Observed: 1, 0.99, 0.925. At 1 % the first stations' force drowns, and transitions blur."""
+    table = confusion(classify(noisy(exact, level)), exact).to_numpy()
+    assert np.trace(table) / table.sum() >= share
+
+
+def test_noise_is_estimated(exact):
+    for level in (1e-4, 1e-2):
+        found = reading_noise(noisy(exact, level))
+        for name in CLAMP_READINGS:
+            scale = np.abs(exact.values(name)).max()
+            assert found[name] / scale == pytest.approx(level, rel=0.25)
+
+
+def test_transitions_lie_where_the_events_are(case, exact):
+    """Between stations 0.012 to 0.05 L apart: observed 2e-5 L for Phase B."""
+    events = find_events(case.profile, case.beam)
+    found = locate_transitions(exact, classify(exact))
+    step = abs(np.diff(exact.values("foot_x"))[0])
+    for name in ("phase_b_start", "phase_b_end"):
+        event = getattr(events, name)
+        if event is None:
+            assert found[name] is None
+        else:
+            assert found[name] == pytest.approx(event.foot_x, abs=5e-5)
+    assert found["first_contact"] == pytest.approx(events.first_contact.foot_x, abs=step / 4)
+
+
+def test_comparison_as_json(exact, simulated):
+    import json
+
+    found = json.loads(json.dumps(compare(exact, simulated).to_dict(), allow_nan=False))
+    for reading in CLAMP_READINGS:
+        assert {"rms", "max"} <= set(found["disagreement"][reading])
+    assert {"agreement", "transitions"} <= set(found["phases"])
+    assert set(found["snap_off"]) >= {"reference", "candidate", "difference"}
+    assert found["verdict"] == "agrees"
+
+
+def test_sweeps_in_other_units_compare_alike(case):
+    small = replace(case, sweep=Sweep(stations=80))
+    beam = Beam(50.0, 7.0, 0.25)
+    large = Case(beam, case.profile.scaled(50.0), Sweep(stations=80))
+    a = noisy(solve_sweep(small), 1e-3)
+    b = noisy(solve_sweep(large), 1e-3)
+    one = compare(solve_sweep(small), a)
+    other = compare(solve_sweep(large), b)
+    for name in CLAMP_READINGS:
+        assert one.disagreement[name].rms == pytest.approx(other.disagreement[name].rms, rel=1e-6)

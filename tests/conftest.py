@@ -1,0 +1,38 @@
+"""Sweeps that many tests look at, made once a process."""
+
+from functools import cache
+
+import pytest
+
+from analytic import CASE_NAMES, Case, Readings, named_case, solve_sweep
+from mujoco_models import Settings, simulate_sweep
+
+
+@cache
+def exact_sweep(name: str) -> Readings:
+    return solve_sweep(named_case(name))
+
+
+@cache
+def simulated_sweep(name: str, settings: Settings = Settings()) -> Readings:  # noqa: B008
+    return simulate_sweep(named_case(name), settings)
+
+
+@pytest.fixture(params=CASE_NAMES)
+def case_name(request) -> str:
+    return request.param
+
+
+@pytest.fixture
+def case(case_name) -> Case:
+    return named_case(case_name)
+
+
+@pytest.fixture
+def exact(case_name) -> Readings:
+    return exact_sweep(case_name)
+
+
+@pytest.fixture
+def simulated(case_name) -> Readings:
+    return simulated_sweep(case_name)

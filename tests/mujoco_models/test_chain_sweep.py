@@ -1,0 +1,87 @@
+"""The chain against the closed form, on every named case: what the project promises."""
+
+import numpy as np
+import pytest
+
+from analytic import named_case, solve_sweep
+from analytic.problem.readings import CLAMP_READINGS
+from compare import compare
+from mujoco_models import Settings, simulate_sweep
+from tests.conftest import simulated_sweep
+
+
+def test_agrees(exact, simulated):
+    found = compare(exact, simulated)
+    assert found.agrees, found.failures
+    for name in CLAMP_READINGS:
+        # Observed at most 1.0e-3 (catenary, force_y), the discretisation's 2 / N^2.
+        assert found.disagreement[name].rms < 1.2e-3, name
+        assert found.disagreement[name].max < 5e-3, name
+    assert min(found.phase_agreement().values()) >= 0.99
+    # Observed at most 6e-5: the chain's own fold.
+    assert abs(found.snap_off.difference) < 3e-4
+    for place in found.transitions.values():
+        assert place.agrees(3e-3)
+
+
+def test_every_station_is_at_rest(simulated):
+    assert (simulated.table["status"] == "ok").all()
+    assert (simulated.table["residual"] < Settings().tolerance).all()
+
+
+def test_clamp_balances_the_contact(simulated):
+    """What the sensors at the foot say is what the contact, seen from there, asks for."""
+    table = simulated.table[simulated.table["phase"] != "free"]
+    moment = (
+        table["force_y"] * (table["contact_x"] - table["foot_x"])
+        - table["force_x"] * (table["contact_y"])
+    )
+    # Two beads in contact share the load; their mean position stands for both.
+    assert np.abs(moment - table["moment_z"]).max() < 1e-4 * table["moment_z"].max()
+    free = simulated.table[simulated.table["phase"] == "free"]
+    assert (free[list(CLAMP_READINGS)].abs() < 1e-9).all(axis=None)
+
+
+def test_second_order_in_the_number_of_segments():
+    errors = []
+    for n in (10, 20, 40):
+        found = compare(
+            solve_sweep(named_case("two-circles")),
+            simulated_sweep("two-circles", Settings(segments=n)),
+        )
+        errors.append(max(found.disagreement[name].rms for name in CLAMP_READINGS))
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert (orders > 1.8).all(), (errors, orders)
+
+
+def test_the_naive_clamp_is_found_out():
+    """A rigid first link makes the chain too stiff, by 1/N; the comparison must not let it pass."""
+    name = "catenary"
+    naive = simulated_sweep(name, Settings(clamp="rigid-first-link"))
+    found = compare(solve_sweep(named_case(name)), naive)
+    assert not found.agrees
+    assert all(found.disagreement[reading].rms > 1e-2 for reading in CLAMP_READINGS)
+
+
+def test_results_scale_with_the_beam():
+    """The simulation is dimensionless inside: other units, the same sweep."""
+    from dataclasses import replace
+
+    from analytic import Beam, Sweep
+
+    case = replace(named_case("parabola"), sweep=Sweep(stations=30))
+    beam = Beam(50.0, 7.0, 0.25)
+    other = replace(case, beam=beam, profile=case.profile.scaled(50.0))
+    settings = Settings(segments=10)
+    a, b = simulate_sweep(case, settings).table, simulate_sweep(other, settings).table
+    np.testing.assert_allclose(
+        b["force_y"], a["force_y"] * beam.force_unit, atol=1e-7 * beam.force_unit
+    )
+    np.testing.assert_allclose(b["moment_z"], a["moment_z"] * beam.moment_unit, atol=1e-7)
+
+
+@pytest.mark.parametrize("change", [{"contact_stiffness": 1e8}, {"tolerance": 1e-10}])
+def test_snap_off_stays_when_the_relaxation_is_refined(change):
+    rough = simulated_sweep("parabola")
+    fine = simulated_sweep("parabola", Settings(**change))
+    assert abs(fine.snap_off - rough.snap_off) < 1e-4

@@ -1,0 +1,110 @@
+"""Bad input: one line that names the value, what is allowed, and what to do."""
+
+import numpy as np
+import pytest
+
+from analytic import (
+    Beam,
+    Case,
+    InputError,
+    Profile,
+    Readings,
+    Sweep,
+    catenary,
+    circle,
+    named_case,
+    parabola,
+    solve_contact,
+    solve_sweep,
+)
+from compare import compare
+from mujoco_models import Settings, simulate_sweep
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: Beam(length=-1), "beam.length = -1"),
+        (lambda: Beam(length=np.inf), "beam.length = inf"),
+        (lambda: Beam(flexural_rigidity=0), "beam.flexural_rigidity = 0"),
+        (lambda: Beam(flexural_rigidity=np.nan), "beam.flexural_rigidity = nan"),
+        (lambda: Beam(radius=-0.01), "beam.radius = -0.01"),
+        (lambda: Beam(radius=0.5), "beam.radius = 0.5"),
+        (lambda: Beam(length=0.1, radius=0.05), "beam.radius = 0.05"),
+        (lambda: parabola(-1, 0.5), "parabola.a = -1"),
+        (lambda: catenary(0.5, np.nan), "catenary.c = nan"),
+        (lambda: circle(0, (0, 0.5)), "circle.radius = 0"),
+        (lambda: circle(1, (0, np.inf)), "lowest = (0, inf)"),
+        (lambda: Sweep(stations=1), "sweep.stations = 1"),
+        (lambda: Sweep(start=np.nan), "sweep.start = nan"),
+        (lambda: Case(profile=circle(1, (0, 1.2))), "1.195 L"),
+        (lambda: Case(profile=circle(1, (0, 0.004))), "-0.001 L"),
+        (lambda: Case(profile=circle(1, (0, 0.4)), sweep=Sweep(start=0)), "sweep.start = 0"),
+        (lambda: Case(profile=circle(1, (0, 0.4)), sweep=Sweep(stop=3)), "sweep.stop = 3"),
+        (lambda: named_case("catenry"), "'catenry'"),
+        (lambda: solve_contact(catenary(0.5, -0.8), [2.0]), "alpha = 2.0 rad"),
+        (lambda: Settings(segments=1), "mujoco.segments = 1"),
+        (lambda: Settings(contact_stiffness=-1), "mujoco.contact_stiffness = -1"),
+        (
+            lambda: simulate_sweep(Case(beam=Beam(radius=0.0), profile=circle(1, (0, 0.4)))),
+            "beam.radius = 0",
+        ),
+    ],
+)
+def test_values(make, said):
+    with pytest.raises(InputError) as refused:
+        make()
+    message = str(refused.value)
+    assert said in message
+    assert "\n" not in message
+    assert "must be" in message
+    assert ";" in message  # and then what to do
+
+
+def test_profiles_that_are_not_convex():
+    with pytest.raises(InputError, match=r"chord between alpha = .* strictly convex"):
+        Profile(xi=lambda a: np.sin(a), eta=lambda a: np.cos(a), alpha_range=(-1, 1))
+    with pytest.raises(InputError, match="not finite at alpha = "):
+        Profile(xi=lambda a: 1 / (a - a), eta=lambda a: a * np.nan, alpha_range=(-1, 1))
+    with pytest.raises(InputError, match="alpha_range"):
+        Profile(xi=np.sin, eta=np.cos, alpha_range=(1, -1))
+    with pytest.raises(InputError, match="same shape"):
+        Profile(xi=lambda a: 1.0, eta=lambda a: a, alpha_range=(-1, 1))
+
+
+def test_readings_that_are_none(tmp_path):
+    sweep = solve_sweep(named_case("parabola"))
+    with pytest.raises(InputError, match="add moment_z"):
+        Readings(sweep.table.drop(columns="moment_z"))
+    with pytest.raises(InputError, match="phase"):
+        Readings(sweep.table.assign(phase="sideways"))
+    with pytest.raises(InputError, match="numbers"):
+        Readings(sweep.table.assign(force_x="strong"))
+    with pytest.raises(InputError, match="two or more"):
+        Readings(sweep.table.head(1))
+    whole = sweep.write(tmp_path / "whole.parquet").read_bytes()
+    for name, content in {
+        "missing.parquet": None,
+        "truncated.parquet": whole[: len(whole) // 2],
+        "empty.parquet": b"",
+        "empty.csv": b"",
+        "binary.csv": whole,
+        "readings.txt": b"foot_x",
+    }.items():
+        if content is not None:
+            (tmp_path / name).write_bytes(content)
+        with pytest.raises(InputError, match=r"readings file") as refused:
+            Readings.read(tmp_path / name)
+        assert "\n" not in str(refused.value), name
+
+
+def test_readings_that_cannot_be_compared():
+    one = solve_sweep(named_case("parabola"))
+    table = one.table.assign(foot_x=one.table["foot_x"] + 10)
+    with pytest.raises(InputError, match="overlapping"):
+        compare(one, Readings(table, one.beam))
+    with pytest.raises(InputError, match="the same"):
+        compare(one, Readings(one.table, Beam(flexural_rigidity=2)))
+    free = one.table.assign(force_x=0.0, force_y=0.0, moment_z=0.0)
+    with pytest.raises(InputError, match="at least one"):
+        compare(one, Readings(free, one.beam))
