@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any, cast
 
 import typer
 from rich.console import Console
@@ -118,7 +118,8 @@ def main() -> None:
     except InputError as error:
         code = _refuse(str(error))
     except _UsageError as error:
-        code = _refuse(f"{error}; see `vibrissa --help`")
+        told = cast(Any, error).format_message().replace("\n", " ")
+        code = _refuse(f"{told.rstrip('.')}; see `vibrissa --help`")
     except (typer.Abort, KeyboardInterrupt):
         code = _refuse("interrupted")
     except OSError as error:

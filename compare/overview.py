@@ -76,8 +76,8 @@ def _signs(ax: Axes, x0: float) -> None:
     push = 0.32 * np.array([np.sin(alpha), -np.cos(alpha)])
     ax.annotate("", (cx + push[0], cy + push[1]), (cx, cy), arrowprops=_ARROW)
     ax.text(cx + push[0] + 0.04, cy + push[1] - 0.02, "$f$", color=_FORCE)
-    ax.annotate("", (x0 - 0.38, 0), (x0 - 0.02, 0), arrowprops=_ARROW)
-    ax.text(x0 - 0.42, 0.0, "$F_{Ax}$", color=_FORCE, ha="right", va="center")
+    ax.annotate("", (x0 - 0.06, 0), (x0 - 0.42, 0), arrowprops=_ARROW)
+    ax.text(x0 - 0.44, 0.0, "$F_{Ax}$", color=_FORCE, ha="right", va="center")
     ax.annotate("", (x0, 0.42), (x0, 0.02), arrowprops=_ARROW)
     ax.text(x0 - 0.05, 0.36, "$F_{Ay}$", color=_FORCE, ha="right")
     ax.annotate(
@@ -87,7 +87,7 @@ def _signs(ax: Axes, x0: float) -> None:
         arrowprops={**_ARROW, "connectionstyle": "arc3,rad=0.5"},
     )
     ax.text(x0 + 0.22, -0.06, "$M_{Az}$", color=_FORCE)
-    ax.text(x0 - 0.5, -0.22, "clamp, acting on the vibrissa", color=_FORCE, fontsize=9)
+    ax.text(x0 - 0.62, -0.22, "clamp on vibrissa, counted positive", color=_FORCE, fontsize=9)
 
 
 def _plots(axes: list[Axes], exact: Readings, simulated: Readings) -> None:

@@ -20,8 +20,12 @@ from analytic.problem.arrays import Floats, Integers
 from mujoco_models.obstacle import Obstacle
 from mujoco_models.settings import Settings
 
-_BEAD_SPACING = 0.65  # radii, at most: the readings err by the contour's curvature times that
-_CURVED_SPACING = 0.01  # of the contour's smallest radius of curvature: the same for sharp objects
+# A bead is a fixed material point, so the readings err by the contour's curvature times the beads'
+# spacing. It is bounded in radii of the vibrissa, in radii of curvature of the contour, and by the
+# square of the cell's length, lest it spoil the second order.
+_BEAD_SPACING = 0.65
+_CURVED_SPACING = 0.01
+_FINE_SPACING = 3.0
 _MOST_BEADS = 4000
 CLAMP_SITE = "clamp"
 CONTACT_GAP = 0.01  # L; how far ahead the solver sees contacts that carry no force yet
@@ -54,8 +58,12 @@ class Layout:
     def of(cls, settings: Settings, radius: float, obstacle: Obstacle) -> "Layout":
         """The layout for a number of segments and a kind of clamp, with beads dense enough."""
         n = settings.segments
-        spacing = min(_BEAD_SPACING * radius, _CURVED_SPACING / obstacle.curvature.max(), 0.5 / n)
-        a_link = int(np.ceil(min(1 / (n * spacing), _MOST_BEADS / n)))
+        spacing = min(
+            _BEAD_SPACING * radius,
+            _CURVED_SPACING / obstacle.curvature.max(),
+            _FINE_SPACING / n**2,
+        )
+        a_link = max(2, int(np.ceil(min(1 / (n * spacing), _MOST_BEADS / n))))
         cells = np.arange(n)
         joints = (cells + 0.5) / n if settings.clamp == "cell-centre" else cells[1:] / n
         beads = np.arange(1, a_link * n + 1) / (a_link * n)
