@@ -4,11 +4,9 @@ import difflib
 import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal, cast
+from typing import Annotated, Any, Literal, TypeVar, cast
 
-import pint
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 from pydantic_core.core_schema import ValidationInfo
@@ -18,21 +16,20 @@ from analytic import (
     Beam,
     Case,
     InputError,
-    Profile,
     Sweep,
     catenary,
     circle,
     ellipse,
+    mesh_section,
     named_case,
     parabola,
+    polygon,
+    through_points,
     two_circles,
 )
+from analytic.problem.contour import Contour
+from compare.units import in_si
 from mujoco_models.settings import Settings
-
-
-@cache
-def _units() -> pint.UnitRegistry[float]:
-    return pint.UnitRegistry()
 
 
 def _quantity(dimension: str) -> Callable[[Any, ValidationInfo], float]:
@@ -45,9 +42,8 @@ def _quantity(dimension: str) -> Callable[[Any, ValidationInfo], float]:
                 seen["bare"].append(str(info.field_name))
             return float(value)
         try:
-            quantity: pint.Quantity[Any] = _units().Quantity(cast("str", value))
-            number = float(quantity.to(dimension).magnitude)
-        except (pint.PintError, TypeError, ValueError, AttributeError) as error:
+            number = in_si(cast("str", value), dimension)
+        except InputError as error:
             raise PydanticCustomError(
                 "quantity",
                 "a number, or a text with a unit, as '50 {dimension}'",
@@ -81,8 +77,12 @@ class _BeamTable(_Table):
 class _ProfileTable(_Table):
     scale: Length = Field(default=1.0, gt=0)
 
-    def build(self) -> Profile:
+    def build(self, folder: Path) -> Contour:
+        """The contour; a file's path is relative to `folder`."""
         numbers = self.model_dump(exclude={"kind", "scale"})
+        if "file" in numbers:
+            numbers["file"] = folder / numbers["file"]
+            return mesh_section(scale=self.scale, **numbers)
         return _FACTORIES[self.model_dump()["kind"]](**numbers).scaled(self.scale)
 
 
@@ -117,12 +117,32 @@ class _TwoCircles(_ProfileTable):
     lowest: tuple[Length, Length] = (0.0, 0.5)
 
 
-_FACTORIES: dict[str, Callable[..., Profile]] = {
+class _Polygon(_ProfileTable):
+    kind: Literal["polygon"]
+    points: list[tuple[Length, Length]]
+
+
+class _Points(_ProfileTable):
+    kind: Literal["points"]
+    points: list[tuple[Length, Length]]
+
+
+class _Mesh(_ProfileTable):
+    kind: Literal["mesh"]
+    file: str
+    offset: tuple[Length, Length] = (0.0, 0.0)
+    height: float = 0.0
+    axes: str = "xy"
+
+
+_FACTORIES: dict[str, Callable[..., Contour]] = {
     "catenary": catenary,
     "parabola": parabola,
     "circle": circle,
     "ellipse": ellipse,
     "two-circles": two_circles,
+    "polygon": polygon,
+    "points": through_points,
 }
 _TABLES: dict[str, type[_ProfileTable]] = {
     "catenary": _Catenary,
@@ -130,6 +150,9 @@ _TABLES: dict[str, type[_ProfileTable]] = {
     "circle": _Circle,
     "ellipse": _Ellipse,
     "two-circles": _TwoCircles,
+    "polygon": _Polygon,
+    "points": _Points,
+    "mesh": _Mesh,
 }
 
 
@@ -146,10 +169,18 @@ class _CaseFile(_Table):
     name: str | None = None
     beam: _BeamTable = _BeamTable()
     profile: Annotated[
-        _Catenary | _Parabola | _Circle | _Ellipse | _TwoCircles, Field(discriminator="kind")
+        _Catenary | _Parabola | _Circle | _Ellipse | _TwoCircles | _Polygon | _Points | _Mesh,
+        Field(discriminator="kind"),
     ]
     sweep: _SweepTable = _SweepTable()
     mujoco: Annotated[Settings, Field(default_factory=Settings)]
+
+
+class _BeamFile(_Table):
+    beam: _BeamTable
+
+
+_Schema = TypeVar("_Schema", bound=_Table)
 
 
 @dataclass(frozen=True)
@@ -191,12 +222,33 @@ def load_job(name_or_path: str) -> Job:
     return _build(raw, path)
 
 
-def _build(raw: dict[str, Any], path: Path) -> Job:
-    seen: dict[str, list[str]] = {"bare": [], "united": []}
+def read_beam(raw: dict[str, Any], path: Path) -> Beam:
+    """The vibrissa of a file's ``[beam]`` table; other tables do not matter.
+
+    Raises
+    ------
+    InputError
+        If there is no such table or it cannot be used.
+    """
+    if "beam" not in raw:
+        raise InputError(f"{path}: [beam]", "missing", "given", "add the table")
+    return _validated(
+        _BeamFile, {"beam": raw["beam"]}, path, {"bare": [], "united": []}
+    ).beam.build()
+
+
+def _validated(
+    schema: type[_Schema], raw: dict[str, Any], path: Path, seen: dict[str, list[str]]
+) -> _Schema:
     try:
-        file = TypeAdapter(_CaseFile).validate_python(raw, context=seen)
+        return TypeAdapter(schema).validate_python(raw, context=seen)
     except ValidationError as error:
         raise _told(error.errors()[0], path) from error
+
+
+def _build(raw: dict[str, Any], path: Path) -> Job:
+    seen: dict[str, list[str]] = {"bare": [], "united": []}
+    file = _validated(_CaseFile, raw, path, seen)
     scale = raw["profile"].get("scale")
     if isinstance(scale, str):  # the shape's own numbers are then in units of the scale
         seen["bare"] = [name for name in seen["bare"] if name not in raw["profile"]]
@@ -207,7 +259,7 @@ def _build(raw: dict[str, Any], path: Path) -> Job:
             f"given with a unit, as {seen['united'][0]} is",
             "write all dimensions with units, or none",
         )
-    case = Case(file.beam.build(), file.profile.build(), file.sweep.build())
+    case = Case(file.beam.build(), file.profile.build(path.parent), file.sweep.build())
     return Job(replace(case, name=file.name or path.stem), file.mujoco)
 
 

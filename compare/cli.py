@@ -12,11 +12,22 @@ from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
-from analytic import CASE_NAMES, InputError, Readings, named_case, solve_sweep
+from analytic import (
+    CASE_NAMES,
+    InputError,
+    Readings,
+    named_case,
+    relative_noise,
+    solve_sweep,
+)
+from analytic import reconstruct as reconstruct_contour
 from analytic.problem.readings import CLAMP_READINGS
 from compare.casefile import Job, load_job
 from compare.comparison import Comparison
 from compare.comparison import compare as compare_readings
+from compare.figures import reconstruction, save_figure
+from compare.measured import read_measured, write_table
+from compare.paper_figures import paper_figures
 from compare.report import write_report
 
 # Any wrong word on the command line; typer may bring its own copy of click, whose base this is.
@@ -63,11 +74,55 @@ def run(
 
 
 @app.command()
-def analytic(case: CaseName, out: Out = None, stations: Stations = None) -> int:
+def analytic(
+    case: CaseName,
+    out: Out = None,
+    stations: Stations = None,
+    certified: Annotated[
+        bool, typer.Option("--certified", help="Check each station by integration from the clamp.")
+    ] = False,
+    figures: Annotated[
+        bool, typer.Option("--figures", help="Draw the paper's figures 12, 14, 15 and 16.")
+    ] = False,
+) -> int:
     """Sweep in closed form."""
     job = _job(case, stations, None, None)
     folder = _folder(out, job)
-    _wrote(solve_sweep(job.case).write(folder / "analytic.parquet"))
+    readings = solve_sweep(job.case, certified)
+    drawn = paper_figures(job.case, readings) if figures else {}
+    _wrote(readings.write(folder / "analytic.parquet"))
+    for name, figure in drawn.items():
+        _wrote(save_figure(figure, folder / f"{name}.png"))
+    return AGREES if readings.trusted.all() else DISAGREES
+
+
+@app.command()
+def reconstruct(
+    file: Annotated[Path, typer.Argument(help="Readings, Parquet or CSV.")],
+    out: Out = None,
+    beam: Annotated[
+        Path | None,
+        typer.Option(help="TOML file whose [beam] table tells the vibrissa of measured data."),
+    ] = None,
+    column: Annotated[
+        list[str] | None,
+        typer.Option(help="NAME=COLUMN or NAME=COLUMN:UNIT, for a rig's own columns; repeat it."),
+    ] = None,
+    noise: Annotated[
+        float | None,
+        typer.Option(help="Noise of the clamp readings over their largest magnitude, as 0.01."),
+    ] = None,
+) -> int:
+    """Find the object from the clamp readings alone."""
+    readings = read_measured(file, beam, tuple(column or ()))
+    found = reconstruct_contour(
+        readings, None if noise is None else relative_noise(readings, noise)
+    )
+    picture = reconstruction(readings, found)
+    folder = out or Path("results") / f"{file.stem}-reconstructed"
+    _make(folder)
+    _wrote(write_table(found.assign(foot_x=readings.values("foot_x")), folder / "points.csv"))
+    _wrote(save_figure(picture, folder / "reconstruction.png"))
     return AGREES
 
 

@@ -1,10 +1,14 @@
 """The pictures of a comparison, drawn from readings alone."""
 
+from pathlib import Path
+
 import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
+from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Circle
 
 from analytic import Readings, reconstruct
 from analytic.problem.arrays import Words
@@ -108,6 +112,45 @@ def phase_criterion(comparison: Comparison) -> Figure:
     return figure
 
 
+def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
+    """The contact points that the clamp readings tell, with their uncertainty if there is one."""
+    figure = Figure(figsize=(9, 4.5), layout="constrained")
+    ax = figure.subplots()
+    _draw_shapes(ax, readings, found["phase"].to_numpy(dtype=str))
+    scale = readings.beam.length
+    if "contour" in readings.provenance:
+        xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
+        ax.plot(xi, eta, color="#999999", linewidth=3, label="object", zorder=0)
+    x, y = found["contact_x"].to_numpy() / scale, found["contact_y"].to_numpy() / scale
+    if "uncertainty" in found:
+        radius = found["uncertainty"].to_numpy() / scale
+        sure = np.isfinite(radius)
+        circles = PatchCollection(
+            [Circle((x[i], y[i]), radius[i]) for i in np.flatnonzero(sure)],
+            color="#009E73",
+            alpha=0.08,
+            linewidth=0,
+        )
+        ax.add_collection(circles)
+        ax.plot([], [], "o", color="#009E73", alpha=0.3, markersize=9, label="95 % of cases")
+    ax.plot(x, y, "k.", markersize=3.5, label="reconstructed contact")
+    unit = "L" if scale == 1 else f"L = {scale:g}"
+    ax.set_xlabel(f"$x$ / ({unit})")
+    ax.set_ylabel(f"$y$ / ({unit})")
+    ax.set_aspect("equal")
+    ax.set_ylim(-0.05, 1.15)
+    ax.axhline(0, color="#999999", linewidth=0.8)
+    ax.legend(fontsize=9, frameon=False, loc="upper center", ncols=3)
+    return figure
+
+
+def save_figure(figure: Figure, path: Path) -> Path:
+    """Write a PNG, whole or not at all."""
+    unfinished = path.with_name(f".{path.name}.partial")
+    figure.savefig(unfinished, format="png", dpi=150)
+    return unfinished.replace(path)
+
+
 def _sides(comparison: Comparison) -> tuple[tuple[Readings, Readings], tuple[str, str]]:
     return (comparison.reference, comparison.candidate), ("reference", "candidate")
 
@@ -167,7 +210,7 @@ def _shade_phases(ax: Axes, comparison: Comparison) -> None:
 
 def _draw_shapes(ax: Axes, readings: Readings, phase: Words) -> None:
     x, y = deflected_shapes(readings)
-    usable = np.flatnonzero(phase != "")
+    usable = np.flatnonzero(np.isin(phase, list(PHASE_COLOURS)))
     chosen = usable[np.linspace(0, len(usable) - 1, min(_SHAPES, len(usable))).astype(int)]
     scale = readings.beam.length
     lines = LineCollection(

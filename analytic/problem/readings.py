@@ -138,6 +138,17 @@ class Readings:
             partial.unlink(missing_ok=True)
         return path
 
+    @staticmethod
+    def read_table(path: str | Path) -> pd.DataFrame:
+        """The bare table in a Parquet or CSV file, whatever its columns.
+
+        Raises
+        ------
+        InputError
+            If the file is missing or truncated.
+        """
+        return _read(Path(path))[1]
+
     @classmethod
     def read(cls, path: str | Path) -> "Readings":
         """Read what `write` wrote; a CSV without the metadata line is measured data, beam unknown.
@@ -148,8 +159,8 @@ class Readings:
             If the file is missing, truncated or not a sweep.
         """
         path = Path(path)
+        metadata, table = _read(path)
         try:
-            metadata, table = _read_csv(path) if _is_csv(path) else _read_parquet(path)
             beam = Beam(**metadata["beam"]) if "beam" in metadata else Beam()
             return cls(
                 table,
@@ -157,18 +168,26 @@ class Readings:
                 metadata.get("source", f"measured, {path.name}"),
                 metadata.get("provenance", {}),
             )
-        except InputError as error:
+        except (InputError, TypeError, AttributeError) as error:
             raise InputError(
                 f"readings file {path}", "unusable", "one sweep", str(error)
             ) from error
-        except (OSError, ValueError, TypeError, KeyError, pa.ArrowException) as error:
-            reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-            raise InputError(
-                f"readings file {path}",
-                f"unreadable ({reason})",
-                "a whole Parquet or CSV file",
-                "write it anew or name another file",
-            ) from error
+
+
+def _read(path: Path) -> tuple[dict[str, Any], pd.DataFrame]:
+    """Metadata and table of a file."""
+    try:
+        return _read_csv(path) if _is_csv(path) else _read_parquet(path)
+    except InputError:
+        raise
+    except (OSError, ValueError, TypeError, KeyError, pa.ArrowException) as error:
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise InputError(
+            f"readings file {path}",
+            f"unreadable ({reason})",
+            "a whole Parquet or CSV file",
+            "write it anew or name another file",
+        ) from error
 
 
 def _is_csv(path: Path) -> bool:

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 from analytic.problem.beam import Beam
 from analytic.problem.contour import Contour
 from analytic.problem.errors import InputError
-from analytic.solver.equilibria import equilibria, to_table
+from analytic.solver.equilibria import equilibria, to_columns
 
 
 def solve_contact(profile: Contour, alpha: ArrayLike, beam: Beam | None = None) -> pd.DataFrame:
@@ -44,4 +44,5 @@ def solve_contact(profile: Contour, alpha: ArrayLike, beam: Beam | None = None) 
             "angles are in rad",
         )
     centreline = profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
-    return to_table(equilibria(centreline, centreline.parameter(angles)), beam)
+    states = equilibria(centreline, centreline.parameter(angles))
+    return pd.DataFrame(to_columns(states, beam))

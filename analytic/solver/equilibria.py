@@ -3,15 +3,13 @@
 Dimensionless throughout, on the contour that the centreline feels.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
-import pandas as pd
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.beam import Beam
 from analytic.problem.contour import Contour, ContourPoint
-from analytic.problem.readings import COLUMNS
 from analytic.solver.elastica import (
     Frame,
     Span,
@@ -128,27 +126,26 @@ def equilibria(centreline: Contour, t: Floats) -> Equilibria:
     return Equilibria(point, excess, loaded, root_f, tangent)
 
 
-def to_table(states: Equilibria, beam: Beam) -> pd.DataFrame:
-    """The readings table of `states`, in the units of `beam`."""
+Column: TypeAlias = Floats | Words
+
+
+def to_columns(states: Equilibria, beam: Beam) -> dict[str, Column]:
+    """The readings of `states`, column by column, in the units of `beam`."""
     alpha, xi, eta = states.point[:3]
     force = states.root_f**2
     radius = beam.radius / beam.length
-    free_rotation = states.excess + least_rotation(alpha)
     reached = np.isfinite(states.excess)
-    table = pd.DataFrame(
-        {
-            "foot_x": states.foot_x * beam.length,
-            "force_x": -force * np.sin(alpha) * beam.force_unit,
-            "force_y": force * np.cos(alpha) * beam.force_unit,
-            "moment_z": states.root_f * states.span.C * beam.moment_unit,
-            "phase": np.where(states.tangent, "tangent", "tip"),
-            "contact_angle": alpha,
-            "contact_arc_length": states.arc_length * beam.length,
-            "contact_x": (xi - radius * np.sin(alpha)) * beam.length,
-            "contact_y": (eta + radius * np.cos(alpha)) * beam.length,
-            "tip_angle": np.where(states.tangent, alpha, np.pi / 2 - free_rotation),
-            "status": np.where(reached, "ok", "unreachable"),
-        }
-    )
-    table.loc[~reached, "contact_arc_length"] = np.nan
-    return table[list(COLUMNS)]
+    tip_angle = np.pi / 2 - (states.excess + least_rotation(alpha))
+    return {
+        "foot_x": states.foot_x * beam.length,
+        "force_x": -force * np.sin(alpha) * beam.force_unit,
+        "force_y": force * np.cos(alpha) * beam.force_unit,
+        "moment_z": states.root_f * states.span.C * beam.moment_unit,
+        "phase": np.where(states.tangent, "tangent", "tip"),
+        "contact_angle": alpha,
+        "contact_arc_length": np.where(reached, states.arc_length, np.nan) * beam.length,
+        "contact_x": (xi - radius * np.sin(alpha)) * beam.length,
+        "contact_y": (eta + radius * np.cos(alpha)) * beam.length,
+        "tip_angle": np.where(states.tangent, alpha, tip_angle),
+        "status": np.where(reached, "ok", "unreachable"),
+    }

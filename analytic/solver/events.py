@@ -1,21 +1,19 @@
 """What happens in a sweep, and where: first contact, phase limits, snap-off (paper, section 4)."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-import pandas as pd
 from scipy.optimize import brentq
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.contour import Contour
-from analytic.problem.reach import contact_range
+from analytic.solver.branch import surplus, trace
 from analytic.solver.elastica import frame
-from analytic.solver.equilibria import equilibria, tangent_contact, to_table
+from analytic.solver.equilibria import Equilibria, equilibria, tangent_contact, to_columns
 
-_GRID = 401  # samples of the contour between which a limit is looked for; roots are then exact
+_GRID = 401  # samples of the contour to find the minimum of s1 between; it is then exact
 
 
 @dataclass(frozen=True)
@@ -49,21 +47,7 @@ class Events:
     phase_b_start: Event | None
     phase_b_end: Event | None
     contact_length_minimum: Event
-    snap_off: Event | None
-
-
-class Limits(NamedTuple):
-    """The events as parameters t of the contour, decreasing along the sweep."""
-
-    first_contact: float
-    starts_tangent: bool
-    """Whether the side of the vibrissa touches first: the object ends below the tip."""
-    changes: tuple[float, ...]
-    """Where Phases A and B take turns."""
-    contact_length_minimum: float
-    snap_off: float | None
-    last: float
-    """End of the branch: the snap-off, or the end of the contour."""
+    snap_off: Event
 
 
 def find_events(profile: Contour, beam: Beam | None = None) -> Events:
@@ -83,68 +67,46 @@ def find_events(profile: Contour, beam: Beam | None = None) -> Events:
     """
     beam = Beam() if beam is None else beam
     centreline = profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
-    limits = find_limits(centreline)
+    branch = trace(centreline)
+    touch = _first_touch(centreline, branch.first_contact, beam)
 
-    touch = _first_touch(centreline, limits.first_contact, beam)
+    def event(t: float) -> Event:
+        return _event(equilibria(centreline, np.array([t])), beam)
 
-    def event(t: float | None) -> Event | None:
-        return None if t is None else _event(to_table(equilibria(centreline, np.array([t])), beam))
-
-    begins, ends = (
-        limits.changes[limits.starts_tangent :: 2],
-        limits.changes[not limits.starts_tangent :: 2],
-    )
-    begin, end = next(iter(begins), None), next(reversed(ends), None)
-    if len(limits.changes) % 2 != limits.starts_tangent:
-        end = None  # the vibrissa snaps off in Phase B
-    minimum = _event(
-        to_table(tangent_contact(centreline.at(np.array([limits.contact_length_minimum]))), beam)
-    )
+    changes, starts_in_b = branch.phase_changes, bool(branch.tangent[0])
+    into_b, out_of_b = changes[int(starts_in_b) :: 2], changes[int(not starts_in_b) :: 2]
+    starts = touch if starts_in_b else (event(into_b[0]) if into_b.size else None)
+    ends = None if branch.tangent[-1] or not out_of_b.size else event(out_of_b[-1])
+    lowest = _contact_length_minimum(centreline, branch.first_contact)
+    minimum = _event(tangent_contact(centreline.at(np.array([lowest]))), beam)
     return Events(
         touch,
-        touch if limits.starts_tangent else event(begin),
-        event(end),
+        starts,
+        ends,
         minimum if minimum.contact_arc_length < beam.length else _imaginary(minimum),
-        event(limits.snap_off),
+        event(branch.snap_off),
     )
 
 
-def find_limits(centreline: Contour) -> Limits:
-    """The events of a dimensionless sweep, as contour parameters.
-
-    The order is that of section 4: first contact; the minimum of the contact's arc length s1
-    (eq. 21); the limits of Phase B, where s1 = 1; and the fold of the foot position, where the
-    vibrissa snaps off.
-    """
-    _, first = contact_range(centreline)
-    low = centreline.t_range[0]
-    grid = np.unique(np.concatenate([np.linspace(low, first, _GRID), centreline.breaks()]))
-    grid = grid[grid <= first][::-1]
-
-    snap_off = _first_fold(centreline, grid)
-    last = low if snap_off is None else snap_off
-    surplus = _surplus(centreline, grid)
-    lowest = int(np.argmin(np.where(surplus > -np.inf, surplus, np.inf)))
-    inner = grid[max(lowest - 1, 1)], grid[min(lowest + 1, len(grid) - 2)]
-    minimum = _root_or_end(lambda t: _tangent_arc_length_rate(centreline, t), *inner)
-    turns = np.flatnonzero((surplus[1:] < 0) != (surplus[:-1] < 0))
-    changes = [_root(lambda t: _surplus(centreline, t), grid[i + 1], grid[i]) for i in turns]
-    return Limits(
-        first,
-        bool(surplus[0] < 0),
-        tuple(t for t in changes if t > last),
-        minimum,
-        snap_off,
-        last,
+def _contact_length_minimum(centreline: Contour, first: float) -> float:
+    """Contour parameter at which the s1 of eq. 21 is least."""
+    grid = np.linspace(first, centreline.t_range[0], _GRID)
+    breaks = centreline.breaks()
+    grid = np.unique(np.concatenate([grid, breaks[breaks < first]]))[::-1]
+    lowest = int(np.argmin(surplus(centreline, grid)))
+    before, after = grid[max(lowest - 1, 1)], grid[min(lowest + 1, len(grid) - 2)]
+    rates = _tangent_arc_length_rate(centreline, np.array([before, after]))
+    if not rates[0] > 0 > rates[1]:
+        return float(grid[lowest])  # a corner of s1, on the grid itself
+    return float(
+        brentq(
+            lambda t: float(_tangent_arc_length_rate(centreline, np.array([t]))[0]),
+            after,
+            before,
+            xtol=1e-300,
+            rtol=9e-16,
+        )
     )
-
-
-def _surplus(centreline: Contour, t: Floats) -> Floats:
-    """1 - 1/s1 with s1 of eq. 21: negative in Phase B, and smooth through the pole of s1."""
-    states = tangent_contact(centreline.at(t))
-    straight = states.span.q == 0  # against an upright side, at first contact
-    q, root_f = np.where(straight, 1.0, states.span.q), np.where(straight, 1.0, states.root_f)
-    return np.where(straight, 1 - 1 / states.point.eta, 1 - root_f / q)
 
 
 def _tangent_arc_length_rate(centreline: Contour, t: Floats) -> Floats:
@@ -157,38 +119,9 @@ def _tangent_arc_length_rate(centreline: Contour, t: Floats) -> Floats:
     return point.stretch * np.sin(point.alpha) / point.eta + point.turning * by_alpha
 
 
-def _first_fold(centreline: Contour, grid: Floats) -> float | None:
-    """The first minimum of the foot position, or None if the contour ends before."""
-    foot_x = equilibria(centreline, grid[1:]).foot_x
-    turned = np.flatnonzero(~(np.diff(foot_x) < 0))  # rising again, or no longer reachable
-    if turned.size == 0:
-        return None
-    i = int(turned[0]) + 1
-
-    def rate(t: Floats) -> Floats:
-        states = equilibria(centreline, t)
-        return np.where(np.isfinite(states.excess), states.foot_x_rate, -1.0)
-
-    return _root(rate, grid[max(i - 1, 1)], grid[i + 1])
-
-
-def _root_or_end(function: Callable[[Floats], Floats], a: float, b: float) -> float:
-    """A root between `a` and `b`, or the end nearer to one if there is none between."""
-    at_a, at_b = (float(function(np.array([t]))[0]) for t in (a, b))
-    if (at_a < 0) == (at_b < 0):
-        return a if abs(at_a) < abs(at_b) else b
-    return _root(function, a, b)
-
-
-def _root(function: Callable[[Floats], Floats], a: float, b: float) -> float:
-    """A root between `a` and `b`; NaN-free signs must differ there."""
-    return float(brentq(lambda t: float(function(np.array([t]))[0]), a, b, xtol=1e-300, rtol=9e-16))
-
-
-def _event(table: pd.DataFrame) -> Event:
-    row: dict[str, Any] = {
-        str(name): x if isinstance(x, str) else float(x) for name, x in table.iloc[0].items()
-    }
+def _event(state: Equilibria, beam: Beam) -> Event:
+    columns = to_columns(state, beam)
+    row: dict[str, Any] = {name: column[0].item() for name, column in columns.items()}
     return Event(**row)
 
 

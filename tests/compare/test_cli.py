@@ -5,6 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 CASE = """
@@ -154,6 +155,75 @@ def test_cases_are_listed(tmp_path):
     done = vibrissa("cases", cwd=tmp_path)
     assert done.returncode == 0
     assert "two-circles" in done.stdout
+
+
+def test_reconstruction_of_a_rigs_file(tmp_path):
+    """Own column names, millimetres and millinewtons, and the vibrissa told apart."""
+    from analytic import Readings
+
+    (tmp_path / "case.toml").write_text(UNITS)
+    vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
+    sweep = Readings.read(tmp_path / "analytic.parquet")
+    rig = sweep.table[["foot_x"]] * 1e3
+    rig.columns = ["stage"]
+    rig["Fx"], rig["Fy"] = sweep.values("force_x") * 1e3, sweep.values("force_y") * 1e3
+    rig["Mz"] = sweep.values("moment_z") * 1e6
+    rig.to_csv(tmp_path / "rig.csv", index=False)
+    columns = ["foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm"]
+    words = [word for column in columns for word in ("--column", column)]
+    done = vibrissa(
+        "reconstruct", "rig.csv", "--beam", "case.toml", *words, "--out", "out", cwd=tmp_path
+    )
+    assert done.returncode == 0, done.stderr
+    import pandas as pd
+
+    points = pd.read_csv(tmp_path / "out" / "points.csv")
+    np.testing.assert_allclose(points["contact_x"], sweep.values("contact_x"), atol=1e-12)
+    assert (tmp_path / "out" / "reconstruction.png").exists()
+    for words, said in (
+        (["--column", "foot_x"], "NAME=COLUMN"),
+        (["--column", "foot_x=stagee"], "stagee"),
+        (["--column", "foot_x=stage:parsec s"], "parsec s"),
+        (["--beam", "rig.csv"], "rig.csv"),
+    ):
+        done = vibrissa("reconstruct", "rig.csv", *words, cwd=tmp_path)
+        assert done.returncode == 2
+        assert said in done.stderr
+        assert done.stderr.count("\n") == 1
+
+
+def test_the_papers_figures(tmp_path):
+    done = vibrissa(
+        "analytic", "shallow-catenary", "--figures", "--certified", "--out", ".", cwd=tmp_path
+    )
+    assert done.returncode == 0, done.stderr
+    drawn = {path.name for path in tmp_path.glob("*.png")}
+    assert drawn == {f"figure-{n}.png" for n in (12, 14, 15, 16)}
+
+
+@pytest.mark.parametrize(
+    ("profile", "said"),
+    [
+        ('kind = "polygon"\npoints = [[-1, 1.2], [0, 0.4], [1, 1.2]]', None),
+        ('kind = "points"\npoints = [[-1, 1.2], [-0.5, 0.5], [0, 0.4], [1, 1.2]]', None),
+        ('kind = "mesh"\nfile = "ball.stl"\noffset = [0, 1.3]', None),
+        ('kind = "mesh"\nfile = "none.stl"', "none.stl"),
+        ('kind = "polygon"\npoints = [[-1, 1.2], [0, 0.4]]', "three or more"),
+        ('kind = "points"\npoints = [[0, 1], [1, 0], [2, 0.5], [3, 0.8]]', "point 2"),
+    ],
+)
+def test_other_contours(tmp_path, profile, said):
+    import trimesh
+
+    trimesh.creation.icosphere(subdivisions=3).export(tmp_path / "ball.stl")
+    (tmp_path / "case.toml").write_text(f"[profile]\n{profile}\n[sweep]\nstations = 20\n")
+    done = vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
+    if said is None:
+        assert done.returncode == 0, done.stderr
+    else:
+        assert done.returncode == 2
+        assert said in done.stderr
+        assert done.stderr.count("\n") == 1
 
 
 def test_readme_example_runs(tmp_path):

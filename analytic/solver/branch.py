@@ -1,0 +1,126 @@
+"""The equilibria from first contact to snap-off, and which of them a sweep visits.
+
+Along the contour, from first contact on, the foot position x0(t) falls until it folds. On a smooth
+contour it folds once. On a polygon it does so at every corner, which the contact passes in a jump:
+a sweep visits the points where x0 falls below all it was before, and the vibrissa snaps off at the
+least of all. Cells between grid points are smooth and belong to one phase; the first whose end lies
+left of a foot position holds the state there.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.contour import Contour
+from analytic.problem.reach import contact_range
+from analytic.solver.equilibria import equilibria, tangent_contact
+
+_COARSE = 301  # samples of the whole contour to find the snap-off between; the fold is then exact
+_FINE = 129  # samples of the branch to start Newton's method from
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Equilibria on a grid of contour parameters.
+
+    Attributes
+    ----------
+    t : array, shape (n,)
+        Contour parameters, decreasing along the sweep; the last is the snap-off.
+    foot_x, excess : array, shape (n,)
+        Foot position [L] and excess rotation of the tip [rad] there.
+    tangent : array of bool, shape (n - 1,)
+        Whether the cell between two parameters is in Phase B.
+    """
+
+    centreline: Contour
+    t: Floats
+    foot_x: Floats
+    excess: Floats
+    tangent: Booleans
+
+    @property
+    def first_contact(self) -> float:
+        """Contour parameter of the first contact."""
+        return float(self.t[0])
+
+    @property
+    def snap_off(self) -> float:
+        """Contour parameter at which the vibrissa snaps off."""
+        return float(self.t[-1])
+
+    @property
+    def phase_changes(self) -> Floats:
+        """Contour parameters at which Phases A and B take turns, decreasing."""
+        return np.asarray(self.t[1:-1][self.tangent[1:] != self.tangent[:-1]])
+
+    def cells(self, foot_x: Floats) -> Integers:
+        """Cell that holds the state at each foot position; they must lie on the branch."""
+        least = np.minimum.accumulate(self.foot_x)
+        end = np.searchsorted(-least, -foot_x, side="left")
+        return np.clip(end, 1, len(self.t) - 1) - 1
+
+
+def trace(centreline: Contour) -> Branch:
+    """Follow the equilibria along a dimensionless contour, from first contact to snap-off."""
+    _, first = contact_range(centreline)
+    last = _snap_off(centreline, first)
+    # Dense at both ends: x0 starts like a square root at first contact and folds at snap-off.
+    fraction = (1 - np.cos(np.linspace(0, np.pi, _FINE))) / 2
+    corners = centreline.breaks()
+    corners = corners[(corners > last) & (corners < first)]
+    grid = _descending(first + (last - first) * fraction, corners)
+    grid = _descending(grid, _phase_changes(centreline, grid))
+    states = equilibria(centreline, grid[1:])
+    return Branch(
+        centreline,
+        grid,
+        np.append(centreline.at(grid[:1]).xi, states.foot_x),
+        np.append(0.0, states.excess),
+        surplus(centreline, (grid[1:] + grid[:-1]) / 2) < 0,
+    )
+
+
+def surplus(centreline: Contour, t: Floats) -> Floats:
+    """1 - 1/s1 with s1 of eq. 21: negative in Phase B, and smooth through the pole of s1."""
+    states = tangent_contact(centreline.at(t))
+    straight = states.span.q == 0  # against an upright side, at first contact
+    q, root_f = np.where(straight, 1.0, states.span.q), np.where(straight, 1.0, states.root_f)
+    return np.where(straight, 1 - 1 / states.point.eta, 1 - root_f / q)
+
+
+def _phase_changes(centreline: Contour, grid: Floats) -> Floats:
+    """Contour parameters between neighbours in `grid` where s1 passes 1."""
+    tangential = surplus(centreline, grid) < 0
+    turns = np.flatnonzero(tangential[1:] != tangential[:-1])
+
+    def at(t: float) -> float:
+        return float(surplus(centreline, np.array([t]))[0])
+
+    return np.array([brentq(at, grid[i + 1], grid[i], xtol=1e-300, rtol=9e-16) for i in turns])
+
+
+def _descending(*grids: Floats) -> Floats:
+    return np.unique(np.concatenate(grids))[::-1]
+
+
+def _snap_off(centreline: Contour, first: float) -> float:
+    """The parameter of the least foot position that is reached without a gap."""
+    low = centreline.t_range[0]
+    breaks = centreline.breaks()
+    grid = _descending(np.linspace(first, low, _COARSE), breaks[(breaks > low) & (breaks < first)])
+    foot_x = equilibria(centreline, grid[1:]).foot_x
+    beyond = np.flatnonzero(np.isnan(foot_x))
+    reached = foot_x[: beyond[0]] if beyond.size else foot_x
+    least = 1 + int(np.argmin(reached))
+
+    def rate(t: float) -> float:
+        states = equilibria(centreline, np.array([t]))
+        return float(states.foot_x_rate[0]) if np.isfinite(states.excess[0]) else -1.0
+
+    before, after = grid[max(least - 1, 1)], grid[min(least + 1, len(grid) - 1)]
+    if not rate(before) > 0 > rate(after):
+        return float(grid[least])  # a corner of x0, on the grid itself
+    return float(brentq(rate, after, before, xtol=1e-300, rtol=9e-16))

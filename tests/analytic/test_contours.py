@@ -1,0 +1,277 @@
+"""Contours other than the families: polygons, curves through points, sections of meshes."""
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from analytic import (
+    Beam,
+    Case,
+    InputError,
+    Profile,
+    Sweep,
+    catenary,
+    circle,
+    ellipse,
+    find_events,
+    mesh_section,
+    named_case,
+    polygon,
+    reconstruct,
+    solve_contact,
+    solve_sweep,
+    through_points,
+    two_circles,
+)
+from analytic.problem.reach import contact_range
+from analytic.problem.readings import CLAMP_READINGS
+
+
+def inscribed(case: Case, count: int) -> Case:
+    """The case with a polygon of `count` vertices on its contour, swept over the same stations."""
+    last, first = contact_range(case.centreline)
+    chain = case.profile.outline(last, first, count)
+    top = [[chain[-1, 0] - 1e-3, 3.0], [chain[0, 0] + 1e-3, 3.0]]
+    sweep = Sweep(200, float(case.foot_x[0]), float(case.foot_x[-1]))
+    return Case(case.beam, polygon(np.vstack([chain, top])), sweep)
+
+
+def worst_rms(one, other) -> float:
+    both = ((one.table["phase"] != "free") & (other.table["phase"] != "free")).to_numpy()
+    return max(
+        np.sqrt(np.mean((one.values(name) - other.values(name))[both] ** 2))
+        / np.abs(other.values(name)).max()
+        for name in CLAMP_READINGS
+    )
+
+
+def test_polygon_tends_to_the_curve(case):
+    """First order: the contact stays on a facet to its end, so alpha lags by half a facet."""
+    smooth = solve_sweep(Case(case.beam, case.profile, inscribed(case, 8).sweep))
+    counts = np.array([100, 200, 400, 800, 1600, 3200])
+    errors = np.array([worst_rms(solve_sweep(inscribed(case, n)), smooth) for n in counts])
+    order = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
+    assert abs(order - 1) < 0.15, (errors, order)
+    assert errors[-1] < 1e-3
+
+
+def test_polygon_keeps_balance_and_can_be_reconstructed(case):
+    readings = solve_sweep(inscribed(case, 60))
+    found, table = reconstruct(readings), readings.table
+    error = np.hypot(
+        found["contact_x"] - table["contact_x"], found["contact_y"] - table["contact_y"]
+    )
+    assert error.max() < 1e-13
+    assert (np.diff(table.loc[table["phase"] != "free", "contact_angle"]) <= 1e-12).all()
+
+
+def test_polygon_states_are_those_of_its_points():
+    """On an edge the angle is the edge's; round a vertex the point stays."""
+    square = polygon([[-0.6, 0.5], [0.0, 0.3], [0.6, 0.5], [0.9, 2.0], [-0.9, 2.0]])
+    t = np.linspace(*square.t_range, 4001)
+    point = square.at(t)
+    assert (np.diff(point.alpha) >= 0).all()
+    moved = np.hypot(np.diff(point.xi), np.diff(point.eta))
+    turned = np.diff(point.alpha)
+    assert ((moved < 1e-12) | (turned < 1e-12) | (moved + turned < 2 * (t[1] - t[0]))).all()
+    r = 0.05
+    offset = square.offset(r).at(t)
+    np.testing.assert_allclose(offset.xi, point.xi + r * np.sin(point.alpha), atol=1e-15)
+    np.testing.assert_allclose(offset.eta, point.eta - r * np.cos(point.alpha), atol=1e-15)
+
+
+def test_order_of_vertices_does_not_matter():
+    points = np.array([[-1, 1.2], [-0.5, 0.5], [0.2, 0.4], [1, 1.2]])
+    one = polygon(points)
+    for other in (points[::-1], np.roll(points, 2, axis=0), np.vstack([points, points[:1]])):
+        np.testing.assert_array_equal(polygon(other).vertices, one.vertices)
+
+
+def test_a_thin_vibrissa_on_a_sharp_corner():
+    """Phase A and B at one point: between the edges' angles only the angle moves."""
+    wedge = polygon([[-1.5, 1.3], [0.0, 0.4], [1.5, 1.3]])
+    readings = solve_sweep(Case(Beam(radius=0.0), wedge, Sweep(stations=300)))
+    at_corner = np.abs(readings.values("contact_x")) < 1e-12
+    assert at_corner.sum() > 30
+    assert np.ptp(readings.values("contact_angle")[at_corner]) > 0.5
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.lists(st.floats(-1.3, 1.3), min_size=3, max_size=9, unique=True), st.floats(0.1, 0.7))
+def test_any_polygon(angles, height):
+    """Edges of random slopes: the sweep ends in a snap-off, in balance all the way."""
+    slopes = np.sort(angles)
+    slopes = slopes[np.append(True, np.diff(slopes) > 1e-3)]
+    chain = np.vstack(
+        [[0, 0], np.cumsum(0.4 * np.column_stack([np.cos(slopes), np.sin(slopes)]), 0)]
+    )
+    chain[:, 1] += height - chain[:, 1].min()
+    top = chain[:, 1].max() + 1
+    profile = polygon(np.vstack([chain, [[chain[-1, 0], top], [chain[0, 0], top]]]))
+    readings = solve_sweep(Case(profile=profile, sweep=Sweep(stations=80)))
+    table = readings.table
+    assert table["phase"].iloc[-1] == "free"
+    touching = table[table["phase"] != "free"]
+    moment = (
+        touching["force_y"] * (touching["contact_x"] - touching["foot_x"])
+        - touching["force_x"] * (touching["contact_y"])
+    )
+    assert np.abs(moment - touching["moment_z"]).max() < 1e-11 * (1 + touching["force_y"].max())
+
+
+def test_curve_through_points_of_a_circle_is_the_circle():
+    angles = np.array([-1.0, -0.7, -0.1, 0.2, 0.9, 1.1])
+    exact = circle(1.3, (0.2, 0.4))
+    curve = through_points(np.column_stack([exact.xi(angles), exact.eta(angles)]))
+    dense = np.linspace(*curve.alpha_range, 99)
+    np.testing.assert_allclose(curve.alpha_range, [-1.0, 1.1], rtol=1e-14)
+    np.testing.assert_allclose(curve.xi(dense), exact.xi(dense), atol=2e-15)
+    np.testing.assert_allclose(curve.eta(dense), exact.eta(dense), atol=2e-15)
+
+
+def test_curve_through_points_is_third_order():
+    exact, errors = catenary(0.5, -0.8), []
+    for count in (11, 21, 41, 81):
+        x = np.linspace(-2.6, 2.6, count)
+        curve = through_points(np.column_stack([x, np.cosh(x / 2) - 0.8]))
+        angle = np.linspace(-0.6, 0.6, 301)
+        across = (curve.xi(angle) - exact.xi(angle)) * np.sin(angle) - (
+            curve.eta(angle) - exact.eta(angle)
+        ) * np.cos(angle)
+        errors.append(np.abs(across).max())
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert (orders > 2.8).all(), orders
+
+
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply"])
+def test_section_of_a_mesh_file(tmp_path, suffix):
+    """A cylinder of 400 sides, in millimetres, standing along z: its section is its own polygon."""
+    file = tmp_path / f"cylinder.{suffix}"
+    trimesh.creation.cylinder(radius=30, height=20, sections=400).export(file)
+    section = mesh_section(file, scale=1 / 30, offset=(0.0, 1.4), height=3.0)
+    exact = find_events(circle(1.0, (0.0, 0.4))).snap_off.foot_x
+    assert find_events(section).snap_off.foot_x == pytest.approx(exact, abs=8e-3)
+    radius = np.hypot(section.vertices[:, 0], section.vertices[:, 1] - 1.4)
+    np.testing.assert_allclose(radius, 1, atol=1e-6)
+
+
+def test_an_object_that_ends_below_the_tip():
+    """The side of the straight vibrissa touches first, at alpha = pi/2: Phase B from the start."""
+    ball = circle(0.15, (0.0, 0.4))
+    events = find_events(ball)
+    assert events.first_contact.contact_angle == np.pi / 2
+    assert events.first_contact.contact_arc_length == pytest.approx(0.55)
+    assert events.phase_b_start == events.first_contact
+    table = solve_sweep(Case(profile=ball)).table
+    phase = table["phase"]
+    assert phase[phase != phase.shift()].tolist()[:2] == ["free", "tangent"]
+    assert events.first_contact.foot_x == pytest.approx(0.15 + 0.005)
+
+
+def test_the_vibrissa_slides_off_an_open_end():
+    """Beyond its range a contour is a corner: the contact stays there while the angle goes on."""
+    short = circle(1.0, (0.0, 0.4))
+    open_end = Profile(xi=short.xi, eta=short.eta, alpha_range=(0.3, np.pi / 2))
+    case = Case(Beam(radius=0.0), open_end, Sweep(stations=400))
+    table = solve_sweep(case).table
+    at_end = table[table["contact_angle"] < 0.3]
+    assert len(at_end) > 10
+    np.testing.assert_allclose(at_end["contact_x"], short.xi(np.array(0.3)), rtol=1e-12)
+    assert table["phase"].iloc[-1] == "free"
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(0.1, 3), st.floats(0.1, 3), st.floats(0.1, 0.6))
+def test_mirror_symmetry(one, other, height):
+    """Mirrored object, mirrored force: the span at -alpha is that at alpha with the clamp side.
+
+    The integrals of a span depend on alpha only through its sign and size; a vibrissa that touches
+    the mirrored object at -alpha with the same rotation of its end sees the mirrored geometry.
+    """
+    profile, mirrored = two_circles(one, other, (0, height)), two_circles(other, one, (0, height))
+    angles = np.linspace(0.05, 1.2, 12)
+    np.testing.assert_allclose(profile.xi(angles), -mirrored.xi(-angles), rtol=1e-15)
+    np.testing.assert_allclose(profile.eta(angles), mirrored.eta(-angles), rtol=1e-15)
+    a = solve_contact(profile, [0.0], Beam(radius=0.0))
+    b = solve_contact(mirrored, [0.0], Beam(radius=0.0))
+    for name in ("foot_x", *CLAMP_READINGS):
+        assert a[name].iloc[0] == pytest.approx(b[name].iloc[0], abs=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("points", "said"),
+    [
+        ([[0, 0], [1, 1]], "three or more"),
+        ([[0, 0], [1, np.nan], [2, 3]], "vertex 1"),
+        ([[0, 0], [1, 0], [1, 0], [0, 1]], "vertex 1"),
+        ([[0, 0], [1, 0], [2, 0]], "total turn|degenerate|convex"),
+        ([[0, 1], [1, 0], [2, 1], [1, 0.5]], r"vertex 3, \(1, 0.5\)"),
+        ([[0, 0], [1, 1], [1, 0], [0, 1]], "crosses itself|dent"),
+        (
+            [[np.cos(a), np.sin(a)] for a in 2 * np.pi * np.arange(5) * 2 / 5],
+            "winding 2 times",
+        ),
+    ],
+)
+def test_bad_polygons(points, said):
+    with pytest.raises(InputError, match=said) as refused:
+        polygon(points)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("points", "said"),
+    [
+        ([[0, 0], [1, 1]], "three or more"),
+        ([[0, 0], [1, np.inf], [2, 3]], "point 1"),
+        ([[0, 1], [1, 0], [1, 0.5], [2, 2]], "point 2"),
+        ([[0, 1], [1, 0], [2, 0.5], [3, 0.8]], r"point 2 from the left, \(2, 0.5\)"),
+        ([[0, 0], [1, 0], [2, 0]], "turn of 0 deg"),
+    ],
+)
+def test_bad_points(points, said):
+    with pytest.raises(InputError, match=said):
+        through_points(points)
+
+
+def test_bad_meshes(tmp_path):
+    ring = tmp_path / "ring.stl"
+    trimesh.creation.annulus(0.5, 1.0, 1.0).export(ring)
+    with pytest.raises(InputError, match="of its convex hull, dented at"):
+        mesh_section(ring)
+    ball = trimesh.creation.icosphere()
+    ball.export(tmp_path / "ball.stl")
+    with pytest.raises(InputError, match=r"outside -1\.\.1 along z"):
+        mesh_section(tmp_path / "ball.stl", height=2.0)
+    ball.update_faces(np.arange(len(ball.faces)) > 5)
+    ball.export(tmp_path / "open.stl")
+    with pytest.raises(InputError, match="watertight"):
+        mesh_section(tmp_path / "open.stl")
+    (tmp_path / "text.stl").write_text("solid nothing")
+    (tmp_path / "other.xyz").write_text("")
+    for name in ("text.stl", "missing.stl", "other.xyz"):
+        with pytest.raises(InputError, match=name) as refused:
+            mesh_section(tmp_path / name)
+        assert "\n" not in str(refused.value)
+    with pytest.raises(InputError, match="axes"):
+        mesh_section(tmp_path / "ball.stl", axes="xx")
+
+
+def test_flat_below_an_ellipse_has_two_stretches_of_phase_b():
+    """Wide and flat: Phase B, then the tip below the flat side, then Phase B again."""
+    case = Case(profile=ellipse((2.0, 0.5), (-1, 0.46875)), sweep=Sweep(stations=200))
+    phase = solve_sweep(case).table["phase"]
+    order = phase[phase != phase.shift()].tolist()
+    assert order[0] == order[-1] == "free"
+    assert order.count("tangent") >= 1
+    events = find_events(case.profile)
+    assert events.phase_b_start is not None
+
+
+def test_named_case_is_unchanged_by_scaling_twice():
+    profile = named_case("two-circles").profile
+    back = profile.scaled(7.0).scaled(1 / 7.0)
+    angle = np.linspace(-1, 1, 11)
+    np.testing.assert_allclose(back.xi(angle), profile.xi(angle), rtol=1e-15)
