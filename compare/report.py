@@ -69,7 +69,7 @@ def _html(comparison: Comparison, drawn: Mapping[str, Figure]) -> str:
 
 
 def _origin(readings: Readings) -> dict[str, Any]:
-    known = {k: v for k, v in readings.provenance.items() if k not in ("contour", "snap_off")}
+    known = {k: v for k, v in readings.provenance.items() if k not in ("contour", "events")}
     beam = ", ".join(f"{name} {value:g}" for name, value in asdict(readings.beam).items())
     return {"source": readings.source, "beam": beam, "stations": len(readings.table), **known}
 

@@ -35,8 +35,8 @@ def simulate_sweep(
     -------
     Readings
         In the units of the case's beam, source ``"mujoco <beam>"``, with a column ``residual``:
-        the largest moment out of balance at any joint. ``provenance["snap_off"]`` is where the
-        simulation let go.
+        the largest moment out of balance at any joint. ``provenance["events"]["snap_off"]`` is
+        where the simulation let go.
 
     Raises
     ------

@@ -15,7 +15,6 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
-from analytic.problem.reach import contact_range
 
 _FINE = 32  # vertices at full resolution on either side of a window's centre
 _GRADED = 8  # vertices a level farther out; the spacing doubles from level to level
@@ -43,7 +42,7 @@ class Obstacle:
     @classmethod
     def of(cls, case: Case, points: int) -> "Obstacle":
         """The part of the case's object that the vibrissa can reach, with `points` vertices."""
-        last, first = contact_range(case.centreline)
+        last, first = case.reach
         body = case.profile.scaled(1 / case.beam.length)
         return cls(body.outline(last, first, points))
 

@@ -54,7 +54,9 @@ def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Re
         "settings": asdict(settings),
         "obstacle": f"{len(obstacle.vertices)} contour points, chord error "
         f"{obstacle.chord_error:.1e} L, normal error {obstacle.normal_error:.1e} rad",
-        "snap_off": None if walk.snap_off is None else walk.snap_off * beam.length,
+        "events": {
+            "snap_off": None if walk.snap_off is None else walk.snap_off * beam.length,
+        },
     }
     extra = [name for name in table if name not in COLUMNS]
     return Readings(table[[*COLUMNS, *extra]], beam, f"mujoco {settings.beam}", provenance)

@@ -95,6 +95,11 @@ class Case:
         """The contour that the centreline feels, in units of the vibrissa's length."""
         return self.profile.scaled(1 / self.beam.length).offset(self.radius)
 
+    @cached_property
+    def reach(self) -> tuple[float, float]:
+        """Contour parameters of the last point within reach and of the first contact."""
+        return contact_range(self.centreline)
+
     @property
     def radius(self) -> float:
         """The beam's radius in units of its length."""
@@ -108,7 +113,7 @@ class Case:
     @cached_property
     def digest(self) -> str:
         """A hash of the physics: equal for equal problems, whatever the case is called."""
-        last, first = contact_range(self.centreline)
+        last, first = self.reach
         point = self.centreline.at(np.linspace(last, first, 67))
         beam = self.beam
         numbers = np.concatenate(
@@ -134,13 +139,13 @@ class Case:
 
     def outline(self, points: int = 181) -> tuple[Floats, Floats]:
         """The body's contour within reach of the vibrissa, for pictures: xi, eta [length]."""
-        last, first = contact_range(self.centreline)
+        last, first = self.reach
         vertices = self.profile.scaled(1 / self.beam.length).outline(last, first, points)
         return vertices[:, 0] * self.beam.length, vertices[:, 1] * self.beam.length
 
     @cached_property
     def _first_contact(self) -> float:
-        _, first = contact_range(self.centreline)
+        _, first = self.reach
         return float(self.centreline.at(np.array([first])).xi[0])
 
     @cached_property
@@ -153,7 +158,7 @@ class Case:
     def _stop(self) -> float:
         if self.sweep.stop is not None:
             return self.sweep.stop
-        return (out_of_reach(self.centreline) - _MARGIN) * self.beam.length
+        return (out_of_reach(self.centreline, *self.reach) - _MARGIN) * self.beam.length
 
 
 _NAMED_PROFILES = {

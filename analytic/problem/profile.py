@@ -67,7 +67,7 @@ class Profile(Contour):
     def at(self, t: Floats) -> ContourPoint:
         """Points at slope angles `t`, shape (n,)."""
         t = np.asarray(t, dtype=float)
-        on = np.clip(t, *self.alpha_range)
+        on = self._on(t)
         stretch = np.where(t == on, self._stretch(on), 0.0)
         return ContourPoint(t, self.xi(on), self.eta(on), np.ones_like(t), stretch)
 
@@ -107,6 +107,11 @@ class Profile(Contour):
             eta=partial(_scaled, self.eta, factor),
             radius_of_curvature=partial(_scaled, self._stretch, factor),
         )
+
+    def _on(self, alpha: Floats) -> Floats:
+        """The nearest slope angles within the range."""
+        low, high = self.alpha_range
+        return np.minimum(np.maximum(alpha, low), high)
 
     def _stretch(self, alpha: Floats) -> Floats:
         if self.radius_of_curvature is not None:
@@ -164,12 +169,13 @@ def _scaled(curve: Curve, factor: float, alpha: Floats) -> Floats:
 
 
 def _offset_xi(profile: Profile, radius: float, alpha: Floats) -> Floats:
-    return profile.at(alpha).xi + radius * np.sin(alpha)
+    return profile.xi(profile._on(alpha)) + radius * np.sin(alpha)
 
 
 def _offset_eta(profile: Profile, radius: float, alpha: Floats) -> Floats:
-    return profile.at(alpha).eta - radius * np.cos(alpha)
+    return profile.eta(profile._on(alpha)) - radius * np.cos(alpha)
 
 
 def _offset_stretch(profile: Profile, radius: float, alpha: Floats) -> Floats:
-    return profile.at(alpha).stretch + radius
+    on = profile._on(alpha)
+    return np.where(alpha == on, profile._stretch(on), 0.0) + radius

@@ -42,16 +42,19 @@ def contact_range(centreline: Contour) -> tuple[float, float]:
     return _height_one(centreline, low, bottom), _height_one(centreline, high, bottom)
 
 
-def out_of_reach(centreline: Contour) -> float:
-    """The foot position, left of the contour, from which all of it is farther away than 1."""
-    last, first = contact_range(centreline)
+def out_of_reach(centreline: Contour, last: float, first: float) -> float:
+    """The foot position, left of the contour, from which all of it is farther away than 1.
+
+    `last` and `first` are those of `contact_range`.
+    """
 
     def leftmost_foot(t: float) -> float:
         point = centreline.at(np.array([t]))
         return float(point.xi[0] - np.sqrt(max(0.0, 1 - float(point.eta[0]) ** 2)))
 
     grid = np.linspace(last, first, 257)
-    best = int(np.argmin([leftmost_foot(t) for t in grid]))
+    points = centreline.at(grid)
+    best = int(np.argmin(points.xi - np.sqrt(np.maximum(0.0, 1 - points.eta**2))))
     bounds = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
     return float(minimize_scalar(leftmost_foot, bounds=bounds, method="bounded").fun)
 

@@ -92,8 +92,8 @@ class Readings:
 
     @property
     def snap_off(self) -> float | None:
-        """Foot position of the snap-off [length], if the source located it; see `provenance`."""
-        value = self.provenance.get("snap_off")
+        """Foot position of the snap-off [length], if the source located it (`provenance`)."""
+        value = self.provenance.get("events", {}).get("snap_off")
         return None if value is None else float(value)
 
     def values(self, column: str) -> Floats:

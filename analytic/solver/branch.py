@@ -14,7 +14,6 @@ from scipy.optimize import brentq
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contour import Contour
-from analytic.problem.reach import contact_range
 from analytic.solver.equilibria import equilibria, tangent_contact
 
 _COARSE = 301  # samples of the whole contour to find the snap-off between; the fold is then exact
@@ -56,6 +55,17 @@ class Branch:
         """Contour parameters at which Phases A and B take turns, decreasing."""
         return np.asarray(self.t[1:-1][self.tangent[1:] != self.tangent[:-1]])
 
+    def events(self) -> dict[str, float | None]:
+        """Foot positions of first contact, limits of Phase B and snap-off [L]."""
+        change = np.append(self.tangent[1:] != self.tangent[:-1], False)
+        at, into_b = self.foot_x[1:][change], self.tangent[1:][change[:-1]]
+        starts, ends = at[into_b], at[~into_b]
+        start = self.foot_x[0] if self.tangent[0] else (starts[0] if starts.size else None)
+        end = None if self.tangent[-1] or not ends.size else ends[-1]
+        places = (self.foot_x[0], start, end, self.foot_x[-1])
+        names = ("first_contact", "phase_b_start", "phase_b_end", "snap_off")
+        return {n: None if x is None else float(x) for n, x in zip(names, places, strict=True)}
+
     def cells(self, foot_x: Floats) -> Integers:
         """Cell that holds the state at each foot position; they must lie on the branch."""
         least = np.minimum.accumulate(self.foot_x)
@@ -63,9 +73,16 @@ class Branch:
         return np.clip(end, 1, len(self.t) - 1) - 1
 
 
-def trace(centreline: Contour) -> Branch:
-    """Follow the equilibria along a dimensionless contour, from first contact to snap-off."""
-    _, first = contact_range(centreline)
+def trace(centreline: Contour, first: float) -> Branch:
+    """Follow the equilibria along a dimensionless contour, from first contact to snap-off.
+
+    Parameters
+    ----------
+    centreline : Contour
+        Contour that the centreline feels, in units of the vibrissa's length.
+    first : float
+        Contour parameter of the first contact, as `contact_range` has it.
+    """
     last = _snap_off(centreline, first)
     # Dense at both ends: x0 starts like a square root at first contact and folds at snap-off.
     fraction = (1 - np.cos(np.linspace(0, np.pi, _FINE))) / 2

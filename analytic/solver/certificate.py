@@ -21,10 +21,11 @@ def certify(readings: Readings) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        A row a station, dimensionless: ``residual_boundary``, the largest of the misses of contact
-        position, of zero curvature at the contact, of the slope there (the contour's in Phase B, the
-        tip's in Phase A) and of the force's direction, normal to the contour; ``residual_moment``, of M = F_y (xi - x0) - F_x eta. Zero where the
-        vibrissa is free, NaN where the readings have no contact to check.
+        A row a station, dimensionless. ``residual_boundary`` is the largest of the misses of the
+        contact's position, of zero curvature there, of the slope there (the contour's in Phase B,
+        the tip's in Phase A) and of the force's direction, normal to the contour;
+        ``residual_moment`` is that of M = F_y (xi - x0) - F_x eta. Zero where the vibrissa is free,
+        NaN where the readings have no contact to check.
     """
     beam = readings.beam
     length = beam.length

@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.contour import Contour
+from analytic.problem.reach import contact_range
 from analytic.solver.branch import surplus, trace
 from analytic.solver.elastica import frame
 from analytic.solver.equilibria import Equilibria, equilibria, tangent_contact, to_columns
@@ -67,7 +68,7 @@ def find_events(profile: Contour, beam: Beam | None = None) -> Events:
     """
     beam = Beam() if beam is None else beam
     centreline = profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
-    branch = trace(centreline)
+    branch = trace(centreline, contact_range(centreline)[1])
     touch = _first_touch(centreline, branch.first_contact, beam)
 
     def event(t: float) -> Event:

@@ -47,7 +47,7 @@ def solve_sweep(case: Case, certified: bool = False) -> Readings:
     """
     beam = case.beam
     foot_x = case.foot_x / beam.length
-    branch = trace(case.centreline)
+    branch = trace(case.centreline, case.reach[1])
     columns = _free(case.foot_x)
     touching = (foot_x < branch.foot_x[0]) & (foot_x >= branch.foot_x[-1])
     cells = branch.cells(foot_x)
@@ -60,7 +60,9 @@ def solve_sweep(case: Case, certified: bool = False) -> Readings:
     provenance = {
         **case.provenance(),
         "engine": f"vibrissa-testbed {version('vibrissa-testbed')}",
-        "snap_off": float(branch.foot_x[-1]) * beam.length,
+        "events": {
+            name: None if x is None else x * beam.length for name, x in branch.events().items()
+        },
     }
     readings = Readings(pd.DataFrame(columns), beam, "analytic", provenance)
     return _with_certificate(readings) if certified else readings

@@ -54,7 +54,7 @@ def test_in_other_units():
 
 @pytest.mark.parametrize("level", [1e-4, 1e-2])
 def test_uncertainty_covers_the_error(exact, level):
-    """95 % of the contacts of 30 noisy sweeps lie within what is stated: 5,000 contacts, so +-1 %."""
+    """95 % of the contacts of 30 noisy sweeps lie within what is stated: 5,000, so +-1 %."""
     noise = relative_noise(exact, level)
     covered = counted = 0
     for seed in range(30):

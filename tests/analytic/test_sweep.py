@@ -84,6 +84,10 @@ def test_events_stand_where_the_sweep_has_them(case, exact):
     assert foot_x[phase != "free"].max() <= events.first_contact.foot_x
     assert foot_x[phase != "free"].min() >= exact.snap_off
     assert events.snap_off.foot_x == pytest.approx(exact.snap_off, rel=1e-15)
+    located = exact.provenance["events"]
+    for name in ("first_contact", "phase_b_start", "phase_b_end"):
+        event = getattr(events, name)
+        assert located[name] == (None if event is None else pytest.approx(event.foot_x, rel=1e-13))
     if events.phase_b_start is None:
         assert events.contact_length_minimum.contact_arc_length > 1
         return
