@@ -1,6 +1,6 @@
 """Coming to rest: Newton's method on MuJoCo's own balance of moments.
 
-A station is settled when MuJoCo's springs and contacts, and nothing else, hold the chain to a
+A station is settled when MuJoCo's springs and contacts, and nothing else, hold the beam to a
 tolerance; how it got there is of no account, and time stepping to the same balance takes hundreds
 of steps. Each step minimises the quadratic model of the energy, with the contacts' unilateral
 constraints linearised; its stiffness includes what turning levers and turning normals contribute.
@@ -13,7 +13,7 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 from scipy.optimize import nnls
 
 from analytic.problem.arrays import Floats, Integers
-from mujoco_models.model import ChainModel, Contacts
+from mujoco_models.model import BeamModel, Contacts
 
 _ITERATIONS = 25
 _STIFFENING = 1e3  # EI/L^3; loaded contacts convexify the quadratic model, without effect at rest
@@ -24,33 +24,41 @@ _MARGIN = 2  # beads beyond the loaded ones that must do so
 
 @dataclass(frozen=True)
 class State:
-    """A configuration of the chain.
+    """A configuration of the beam.
 
     Attributes
     ----------
     angles : array, shape (n_joints,)
         Joint angles [rad].
+    tension : array, shape (n_joints,)
+        Axial force in the links [EI/L^2]; it stretches those that can be stretched.
     forces : dict
         Contact force by bead [EI/L^2].
     imbalance : float
-        Largest moment out of balance at any joint [EI/L].
+        Largest moment out of balance anywhere [EI/L].
     settled : bool
         Whether that is below the tolerance, with the whole beam looking at the obstacle.
     """
 
     angles: Floats
+    tension: Floats
     forces: dict[int, float]
     imbalance: float = np.inf
     settled: bool = False
 
+    @classmethod
+    def straight(cls, joints: int) -> "State":
+        """The unloaded beam."""
+        return cls(np.zeros(joints), np.zeros(joints), {})
 
-def relax(model: ChainModel, foot_x: float, start: State, tolerance: float) -> State:
-    """Bring the chain to rest with its foot at `foot_x`, from `start`.
+
+def relax(model: BeamModel, foot_x: float, start: State, tolerance: float) -> State:
+    """Bring the beam to rest with its foot at `foot_x`, from `start`.
 
     Parameters
     ----------
-    model : ChainModel
-        The chain and the obstacle; left in the returned state.
+    model : BeamModel
+        The beam and the obstacle; left in the returned state.
     foot_x : float
         Foot position [L].
     start : State
@@ -71,7 +79,7 @@ def relax(model: ChainModel, foot_x: float, start: State, tolerance: float) -> S
     whole = False
     last_normal: dict[int, float] = {}
     for _ in range(_ITERATIONS):
-        residual = float(np.abs(model.imbalance(foot_x, state.angles)).max())
+        residual = float(np.abs(model.imbalance(foot_x, state.angles, state.tension)).max())
         contacts = model.contacts()
         state = replace(state, imbalance=residual)
         if residual < tolerance:
@@ -90,14 +98,14 @@ def relax(model: ChainModel, foot_x: float, start: State, tolerance: float) -> S
     return state
 
 
-def _around(model: ChainModel, loaded: dict[int, float], reach: int) -> frozenset[int]:
+def _around(model: BeamModel, loaded: dict[int, float], reach: int) -> frozenset[int]:
     count = len(model.layout.beads)
     return frozenset(
         i for bead in loaded for i in range(max(0, bead - reach), min(count, bead + reach + 1))
     )
 
 
-def _move_window(model: ChainModel, contacts: Contacts) -> bool:
+def _move_window(model: BeamModel, contacts: Contacts) -> bool:
     """See to it that all load rests on full resolution; True if the mesh had to be changed."""
     loaded = contacts.distance < 0
     if not loaded.any():
@@ -112,12 +120,12 @@ def _move_window(model: ChainModel, contacts: Contacts) -> bool:
     return True
 
 
-def _vertices(model: ChainModel, normal: Floats) -> Integers:
+def _vertices(model: BeamModel, normal: Floats) -> Integers:
     return model.obstacle.nearest_vertex(np.arctan2(normal[:, 0], -normal[:, 1]))
 
 
 def _newton_step(
-    model: ChainModel, state: State, contacts: Contacts, last_normal: dict[int, float]
+    model: BeamModel, state: State, contacts: Contacts, last_normal: dict[int, float]
 ) -> State:
     layout = model.layout
     count = len(layout.joints)
@@ -129,7 +137,7 @@ def _newton_step(
     force = np.array([state.forces.get(i, 0.0) for i in bead.tolist()])
     loaded = force > 0
 
-    stiffness = np.diag(np.full(count, layout.stiffness))
+    stiffness = np.diag(model.beam.stiffness(state.angles))
     outer = np.maximum.outer(np.arange(count), np.arange(count))
     vertex = _vertices(model, normal)
     for i in np.flatnonzero(loaded):
@@ -144,8 +152,8 @@ def _newton_step(
     # The loaded contacts convexify the model; at rest their slack is zero, and so is the effect.
     held, slack = along[loaded], (distance + force / model.contact_stiffness)[loaded]
     stiffness += _STIFFENING * held.T @ held
-    gradient = layout.stiffness * state.angles + _STIFFENING * held.T @ slack
-    factor = _cholesky(stiffness, layout.stiffness)
+    gradient = -model.elastic_moments() + _STIFFENING * held.T @ slack
+    factor = _cholesky(stiffness, 1 / layout.cell)
     solved, _ = dpotrs(factor, np.column_stack([-gradient, along.T]), lower=1)
     free, compliance = solved[:, 0], solved[:, 1:]
     forces = _unilateral(
@@ -153,8 +161,12 @@ def _newton_step(
     )
     step = free + compliance @ forces
     turn = float(np.abs(np.cumsum(step)).max())
+    angles = state.angles + step * min(1.0, _LARGEST_TURN / max(turn, 1e-300))
+    heading = np.pi / 2 + np.cumsum(angles)
+    pull = (forces[:, None] * normal).T @ carried
     return State(
-        state.angles + step * min(1.0, _LARGEST_TURN / max(turn, 1e-300)),
+        angles,
+        pull[0] * np.cos(heading) + pull[1] * np.sin(heading),
         {int(i): float(f) for i, f in zip(bead, forces, strict=True) if f > 0},
         state.imbalance,
     )

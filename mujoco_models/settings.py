@@ -16,19 +16,19 @@ class Settings:
 
     Parameters
     ----------
-    beam : {"chain"}
-        Which of MuJoCo's models of a slender beam.
+    beam : {"chain", "rod", "cable"}
+        Which of MuJoCo's models of a slender beam; see `mujoco_models.available_beams`.
     segments : int
-        Number of segments N, at least 2: rigid links whose hinges sit at the centres of N cells.
+        Number of segments N, at least 2.
     contour_points : int
         Points of the obstacle's mesh along the contour, at equal steps of slope angle.
     contact_stiffness : float
         Force over penetration of a contact [EI/L^3].
-    clamp : {"cell-centre", "rigid-first-link"}
-        Where the first hinge sits: half a cell from the clamp (second order in 1/N), or a whole one
-        (the naive chain, first order; here to be compared with).
+    clamp : {"second-order", "naive"}
+        Where the beam first bends: half a cell from the clamp (second order in 1/N), or a whole one
+        (first order; here to be compared with).
     tolerance : float
-        A station has settled when no joint is out of balance by more than this [EI/L].
+        A station has settled when nothing is out of balance by more than this [EI/L].
 
     Raises
     ------
@@ -38,11 +38,11 @@ class Settings:
 
     __pydantic_config__ = ConfigDict(extra="forbid")  # a misspelt key in a case file is an error
 
-    beam: Literal["chain"] = "chain"
+    beam: Literal["chain", "rod", "cable"] = "chain"
     segments: int = 40
     contour_points: int = 3200
     contact_stiffness: float = 1e7
-    clamp: Literal["cell-centre", "rigid-first-link"] = "cell-centre"
+    clamp: Literal["second-order", "naive"] = "second-order"
     tolerance: float = 1e-8
 
     def __post_init__(self) -> None:

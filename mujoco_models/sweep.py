@@ -12,8 +12,8 @@ import pandas as pd
 
 from analytic.problem.case import Case
 from analytic.problem.readings import COLUMNS, Readings
-from mujoco_models.chain import Layout
-from mujoco_models.model import ChainModel
+from mujoco_models.beams import build
+from mujoco_models.model import BeamModel
 from mujoco_models.obstacle import Obstacle
 from mujoco_models.rest import State, relax
 from mujoco_models.settings import Settings
@@ -24,10 +24,9 @@ _HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below it ju
 
 
 def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Readings:
-    """Sweep the chain; see `mujoco_models.simulate_sweep`."""
+    """Sweep the beam; see `mujoco_models.simulate_sweep`."""
     obstacle = Obstacle.of(case, settings.contour_points)
-    layout = Layout.of(settings)
-    model = ChainModel(layout, case.radius, obstacle, settings.contact_stiffness)
+    model = BeamModel(build(settings), case.radius, obstacle, settings.contact_stiffness)
     foot_x = case.foot_x / case.beam.length
     walk = _Walk(model, float(foot_x[0]), settings.tolerance)
     rows = []
@@ -58,13 +57,13 @@ def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Re
 
 
 class _Walk:
-    """The chain on its way: the last state at rest, and the one before it to extrapolate from."""
+    """The beam on its way: the last state at rest, and the one before it to extrapolate from."""
 
-    def __init__(self, model: ChainModel, foot_x: float, tolerance: float) -> None:
+    def __init__(self, model: BeamModel, foot_x: float, tolerance: float) -> None:
         self._model = model
         self._tolerance = tolerance
         self._foot_x = foot_x
-        self._state = State(np.zeros(len(model.layout.joints)), {})
+        self._state = State.straight(len(model.layout.joints))
         self._before: tuple[float, State] | None = None
         self.snap_off: float | None = None
         """Where the last contact was let go [L]."""
@@ -95,7 +94,7 @@ class _Walk:
                 step = target - trial
 
     def _snap(self, trial: float) -> None:
-        straight = State(np.zeros_like(self._state.angles), {})
+        straight = State.straight(len(self._state.angles))
         self.snap_off = (self._foot_x + trial) / 2
         self._state = relax(self._model, trial, straight, self._tolerance)
         self._foot_x, self._before = trial, None
@@ -104,10 +103,14 @@ class _Walk:
         """The last state, carried on along the branch."""
         state = self._state
         if self._before is None:
-            return State(state.angles, state.forces)
+            return State(state.angles, state.tension, state.forces)
         x, before = self._before
         ahead = (foot_x - self._foot_x) / (self._foot_x - x)
-        return State(state.angles + ahead * (state.angles - before.angles), state.forces)
+        return State(
+            state.angles + ahead * (state.angles - before.angles),
+            state.tension + ahead * (state.tension - before.tension),
+            state.forces,
+        )
 
     def _follows(self, state: State) -> bool:
         """Whether `state` is the neighbour of the last one on the branch."""
@@ -116,7 +119,7 @@ class _Walk:
         return bool(state.settled and turn < _LARGEST_TURN and not let_go)
 
     def row(self) -> dict[str, Any]:
-        """The dimensionless readings of the state that the chain is in."""
+        """The dimensionless readings of the state that the beam is in."""
         model, state = self._model, self._state
         clamp = model.clamp()
         contacts = model.contacts()

@@ -1,0 +1,90 @@
+"""The vibrissa as MuJoCo's composite cable with the plugin `mujoco.elasticity.cable`: 3.x only.
+
+The plugin bends ball joints with the stiffness EI/h, and the composite's first segment is rigid on
+its parent: a naive cable is of first order. Here that segment straddles the clamp, from -h/2 to
++h/2, so that all joints sit half a cell off, as the chain's do. In the plane of the sweep the balls
+turn about z alone, and nothing pushes them out of it: what MuJoCo says of the other two axes is zero
+by symmetry.
+"""
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from mujoco_models.beams.layout import Layout
+from mujoco_models.beams.protocol import FOOT
+from mujoco_models.beams.strip import half_cell_off
+from mujoco_models.settings import Settings
+
+_BEADS_A_LINK = 4  # as many as the chain has
+_XML = """
+<mujoco>
+  <extension><plugin plugin="mujoco.elasticity.cable"/></extension>
+  <worldbody>
+    <body name="{foot}" mocap="true">
+      <composite type="cable" vertex="{vertices}" initial="none">
+        <plugin plugin="mujoco.elasticity.cable">
+          <config key="bend" value="{young!r}"/>
+          <config key="twist" value="{shear!r}"/>
+        </plugin>
+        <joint kind="main" armature="{armature!r}"/>
+        <geom type="capsule" size="{radius!r}" contype="0" conaffinity="0" density="1e-3"/>
+      </composite>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+class Cable:
+    """A composite cable; see `mujoco_models.beams.protocol.Beam`."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._vertices = half_cell_off(settings)
+        cell = float(self._vertices[1] - self._vertices[0])
+        self.layout = Layout.of(self._vertices[1:-1], cell, _BEADS_A_LINK)
+
+    def spec(self, radius: float) -> mujoco.MjSpec:
+        """The foot and the cable on it; only XML makes a composite."""
+        area_moment = np.pi * radius**4 / 4
+        xml = _XML.format(
+            foot=FOOT,
+            vertices=" ".join(f"0 {s!r} 0" for s in self._vertices.tolist()),
+            young=1 / area_moment,
+            shear=1 / (2 * area_moment),  # any: the twist is never loaded in the plane
+            armature=1e-4 / self.layout.cell,
+            radius=radius,
+        )
+        spec = mujoco.MjSpec.from_string(xml)
+        for i in range(len(self.layout.joints)):
+            spec.body(self._name(i)).pos = [self.layout.cell, 0, 0]  # was in single precision
+        spec.body("B_first").pos = [0, self._vertices[0], 0]
+        return spec
+
+    def _name(self, link: int) -> str:
+        return "B_last" if link == len(self.layout.joints) - 1 else f"B_{link + 1}"
+
+    def mount(self, spec: mujoco.MjSpec, link: int, s: float) -> tuple[mujoco.MjsBody, Floats]:
+        """The segment itself, which lies along its own x axis."""
+        return spec.body(self._name(link)), np.array([s - self.layout.joints[link], 0, 0])
+
+    def stiffen(self, model: mujoco.MjModel) -> None:
+        """Nothing is left to be set."""
+
+    def place(self, data: mujoco.MjData, angles: Floats, tension: Floats) -> None:
+        """Every ball turns about z."""
+        data.qpos[:] = 0
+        data.qpos[0::4] = np.cos(angles / 2)
+        data.qpos[3::4] = np.sin(angles / 2)
+
+    def balance(self, data: mujoco.MjData, force: Floats) -> Floats:
+        """Moments about z, then those about the other two axes of every ball."""
+        return np.concatenate([force[2::3], force[0::3], force[1::3]])
+
+    def stiffness(self, angles: Floats) -> Floats:
+        """EI/h."""
+        return np.full(len(angles), 1 / self.layout.cell)
+
+    def joint_positions(self, data: mujoco.MjData) -> Floats:
+        """Shape (n_joints, 2) [L]."""
+        return np.asarray(data.xanchor[:, :2])
