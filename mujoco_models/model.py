@@ -56,7 +56,6 @@ class BeamModel:
         self.evaluations = 0
         self.model = _spec(beam, radius, obstacle).compile()
         self.data = mujoco.MjData(self.model)
-        beam.stiffen(self.model)
         model = self.model
         self._windows = np.array(
             [model.geom(f"{MESH_PREFIX}{i}").id for i in range(len(obstacle.centres))]
@@ -95,24 +94,23 @@ class BeamModel:
             self.model.geom_conaffinity[self._beads[sorted(beads)]] = 1
             self.watched = beads
 
-    def imbalance(self, foot_x: float, angles: Floats, tension: Floats) -> Floats:
-        """What is out of balance at rest, first the moment at each joint [EI/L].
+    def imbalance(self, foot_x: float, angles: Floats) -> Floats:
+        """Moment out of balance at each joint, shape (n_joints,) [EI/L], at rest.
 
         Elasticity and contacts only: with zero velocity nothing else acts. Contacts and clamp
         readings are then those of this configuration.
         """
         data = self.data
         data.mocap_pos[0, 0] = foot_x
-        self.beam.place(data, angles, tension)
+        self.beam.place(data, angles)
         data.qvel[:] = 0
         mujoco.mj_forward(self.model, data)
         self.evaluations += 1
-        return self.beam.balance(data, data.qfrc_passive + data.qfrc_constraint)
+        return self.beam.moments(data.qfrc_passive + data.qfrc_constraint)
 
     def elastic_moments(self) -> Floats:
         """The beam's own moment at each joint, shape (n_joints,) [EI/L]."""
-        data = self.data
-        return self.beam.balance(data, data.qfrc_passive)[: len(self.layout.joints)]
+        return self.beam.moments(self.data.qfrc_passive)
 
     def contacts(self) -> Contacts:
         """All reported contacts of the last evaluated configuration."""
@@ -125,7 +123,7 @@ class BeamModel:
 
     def joint_positions(self) -> Floats:
         """Shape (n_joints, 2) [L]."""
-        return self.beam.joint_positions(self.data)
+        return np.asarray(self.data.xanchor[:, :2])
 
     def bead_positions(self, beads: Integers) -> Floats:
         """Shape (n, 2) [L]."""

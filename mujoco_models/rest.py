@@ -30,18 +30,15 @@ class State:
     ----------
     angles : array, shape (n_joints,)
         Joint angles [rad].
-    tension : array, shape (n_joints,)
-        Axial force in the links [EI/L^2]; it stretches those that can be stretched.
     forces : dict
         Contact force by bead [EI/L^2].
     imbalance : float
-        Largest moment out of balance anywhere [EI/L].
+        Largest moment out of balance at any joint [EI/L].
     settled : bool
         Whether that is below the tolerance, with the whole beam looking at the obstacle.
     """
 
     angles: Floats
-    tension: Floats
     forces: dict[int, float]
     imbalance: float = np.inf
     settled: bool = False
@@ -49,7 +46,7 @@ class State:
     @classmethod
     def straight(cls, joints: int) -> "State":
         """The unloaded beam."""
-        return cls(np.zeros(joints), np.zeros(joints), {})
+        return cls(np.zeros(joints), {})
 
 
 def relax(model: BeamModel, foot_x: float, start: State, tolerance: float) -> State:
@@ -79,7 +76,7 @@ def relax(model: BeamModel, foot_x: float, start: State, tolerance: float) -> St
     whole = False
     last_normal: dict[int, float] = {}
     for _ in range(_ITERATIONS):
-        residual = float(np.abs(model.imbalance(foot_x, state.angles, state.tension)).max())
+        residual = float(np.abs(model.imbalance(foot_x, state.angles)).max())
         contacts = model.contacts()
         state = replace(state, imbalance=residual)
         if residual < tolerance:
@@ -161,12 +158,8 @@ def _newton_step(
     )
     step = free + compliance @ forces
     turn = float(np.abs(np.cumsum(step)).max())
-    angles = state.angles + step * min(1.0, _LARGEST_TURN / max(turn, 1e-300))
-    heading = np.pi / 2 + np.cumsum(angles)
-    pull = (forces[:, None] * normal).T @ carried
     return State(
-        angles,
-        pull[0] * np.cos(heading) + pull[1] * np.sin(heading),
+        state.angles + step * min(1.0, _LARGEST_TURN / max(turn, 1e-300)),
         {int(i): float(f) for i, f in zip(bead, forces, strict=True) if f > 0},
         state.imbalance,
     )

@@ -28,7 +28,7 @@ class Settings:
         Where the beam first bends: half a cell from the clamp (second order in 1/N), or a whole one
         (first order; here to be compared with).
     tolerance : float
-        A station has settled when nothing is out of balance by more than this [EI/L].
+        A station has settled when no joint is out of balance by more than this [EI/L].
 
     Raises
     ------

@@ -103,14 +103,10 @@ class _Walk:
         """The last state, carried on along the branch."""
         state = self._state
         if self._before is None:
-            return State(state.angles, state.tension, state.forces)
+            return State(state.angles, state.forces)
         x, before = self._before
         ahead = (foot_x - self._foot_x) / (self._foot_x - x)
-        return State(
-            state.angles + ahead * (state.angles - before.angles),
-            state.tension + ahead * (state.tension - before.tension),
-            state.forces,
-        )
+        return State(state.angles + ahead * (state.angles - before.angles), state.forces)
 
     def _follows(self, state: State) -> bool:
         """Whether `state` is the neighbour of the last one on the branch."""

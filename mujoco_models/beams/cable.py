@@ -2,9 +2,9 @@
 
 The plugin bends ball joints with the stiffness EI/h, and the composite's first segment is rigid on
 its parent: a naive cable is of first order. Here that segment straddles the clamp, from -h/2 to
-+h/2, so that all joints sit half a cell off, as the chain's do. In the plane of the sweep the balls
-turn about z alone, and nothing pushes them out of it: what MuJoCo says of the other two axes is zero
-by symmetry.
++h/2, so that all joints sit half a cell off, as the chain's do. The plugin takes balls only; in the
+plane of the sweep they turn about z alone, and by symmetry nothing pushes them out of it but the
+rounding of the mesh's normals.
 """
 
 import mujoco
@@ -68,23 +68,16 @@ class Cable:
         """The segment itself, which lies along its own x axis."""
         return spec.body(self._name(link)), np.array([s - self.layout.joints[link], 0, 0])
 
-    def stiffen(self, model: mujoco.MjModel) -> None:
-        """Nothing is left to be set."""
-
-    def place(self, data: mujoco.MjData, angles: Floats, tension: Floats) -> None:
+    def place(self, data: mujoco.MjData, angles: Floats) -> None:
         """Every ball turns about z."""
         data.qpos[:] = 0
         data.qpos[0::4] = np.cos(angles / 2)
         data.qpos[3::4] = np.sin(angles / 2)
 
-    def balance(self, data: mujoco.MjData, force: Floats) -> Floats:
-        """Moments about z, then those about the other two axes of every ball."""
-        return np.concatenate([force[2::3], force[0::3], force[1::3]])
+    def moments(self, force: Floats) -> Floats:
+        """Those of the balls about z."""
+        return force[2::3]
 
     def stiffness(self, angles: Floats) -> Floats:
         """EI/h."""
         return np.full(len(angles), 1 / self.layout.cell)
-
-    def joint_positions(self, data: mujoco.MjData) -> Floats:
-        """Shape (n_joints, 2) [L]."""
-        return np.asarray(data.xanchor[:, :2])
