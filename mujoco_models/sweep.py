@@ -12,7 +12,7 @@ import pandas as pd
 
 from analytic.problem.case import Case
 from analytic.problem.readings import COLUMNS, Readings
-from mujoco_models.beams import build
+from mujoco_models.beams.kinds import build
 from mujoco_models.model import BeamModel
 from mujoco_models.obstacle import Obstacle
 from mujoco_models.rest import State, relax
@@ -20,6 +20,7 @@ from mujoco_models.settings import Settings
 
 _SMALLEST_STEP = 1e-5  # L; a jump that a step this small does not prevent is a snap-off
 _LARGEST_TURN = 0.35  # rad; a link that turns farther in one step has left the branch
+_DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
 _HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below it just faded
 
 
@@ -54,6 +55,16 @@ def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Re
     }
     extra = [name for name in table if name not in COLUMNS]
     return Readings(table[[*COLUMNS, *extra]], beam, f"mujoco {settings.beam}", provenance)
+
+
+class ClampError(RuntimeError):
+    """The clamp's sensors do not read what holds the beam: a defect of the model or of MuJoCo."""
+
+    def __init__(self, foot_x: float, discrepancy: float) -> None:
+        super().__init__(
+            f"at foot_x = {foot_x:.6g} L MuJoCo's clamp sensors differ by {discrepancy:.1e} "
+            f"(EI/L^2, EI/L) from what contacts and elasticity ask for; at most {_DISCREPANCY:g}"
+        )
 
 
 class _Walk:
@@ -129,7 +140,10 @@ class _Walk:
             "tip_angle": np.pi / 2 + float(state.angles.sum()),
             "status": "ok" if state.settled else "unsettled",
             "residual": state.imbalance,
+            "discrepancy": model.discrepancy(),
         }
+        if state.settled and row["discrepancy"] > _DISCREPANCY:
+            raise ClampError(self._foot_x, row["discrepancy"])
         if loaded.any():
             weight = -contacts.distance[loaded] / -contacts.distance[loaded].sum()
             beads, normal = contacts.bead[loaded], weight @ contacts.normal[loaded]

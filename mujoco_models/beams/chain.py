@@ -2,7 +2,7 @@
 
 Each hinge has the stiffness EI/h of the cell of length h that it stands for. The hinges sit at the
 cells' centres, half a cell from the clamp and from the tip, which makes the chain a second-order
-discretisation; the naive chain, whose first whole link is rigid in the clamp, is one of first order.
+discretisation; the naive chain, whose first whole link is rigid in the clamp, is of first order.
 """
 
 import mujoco

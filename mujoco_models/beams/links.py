@@ -25,7 +25,9 @@ def hinged_links(layout: Layout, radius: float) -> mujoco.MjSpec:
     return spec
 
 
-def mount(spec: mujoco.MjSpec, layout: Layout, link: int, s: float) -> tuple[mujoco.MjsBody, Floats]:
+def mount(
+    spec: mujoco.MjSpec, layout: Layout, link: int, s: float
+) -> tuple[mujoco.MjsBody, Floats]:
     """The link, and the place in its frame at arc length `s`."""
     return spec.body(link_name(link)), np.array([0, s - layout.joints[link], 0])
 

@@ -4,7 +4,7 @@ The flex bends at its vertices, with the energy (2 EI/h) tan^2(theta/2). Where a
 give each vertex slides of its own and hold the edges' lengths by a soft constraint, here the
 vertices are fixed to rigid links on hinges, as MuJoCo lets them: the edges cannot stretch at all,
 loads may act anywhere along an edge and not at vertices only, and the beam stays in the plane.
-MuJoCo leaves the contacts of a flex out of what its force sensors feel; those of the links it feels.
+MuJoCo leaves the contacts of a flex out of what its force sensors feel, but not those of links.
 
 A first edge that is rigid in the clamp makes a naive rod of first order; one that straddles it,
 from -h/2 to +h/2, makes one of second order.

@@ -15,5 +15,5 @@ def half_cell_off(settings: Settings) -> Floats:
     """
     n = settings.segments
     if settings.clamp == "second-order":
-        return (np.arange(n + 1) - 0.5) / (n - 0.5)
-    return np.arange(n + 1) / n
+        return np.asarray((np.arange(n + 1) - 0.5) / (n - 0.5))
+    return np.asarray(np.arange(n + 1) / n)
