@@ -56,6 +56,7 @@ class BeamModel:
         self.evaluations = 0
         self.model = _spec(beam, radius, obstacle).compile()
         self.data = mujoco.MjData(self.model)
+        self._foot = self.model.body(FOOT).id
         model = self.model
         self._windows = np.array(
             [model.geom(f"{MESH_PREFIX}{i}").id for i in range(len(obstacle.centres))]
@@ -101,7 +102,7 @@ class BeamModel:
         readings are then those of this configuration.
         """
         data = self.data
-        data.mocap_pos[0, 0] = foot_x
+        self.model.body_pos[self._foot, 0] = foot_x
         self.beam.place(data, angles)
         data.qvel[:] = 0
         mujoco.mj_forward(self.model, data)
@@ -141,7 +142,7 @@ class BeamModel:
     def clamp_by_contacts(self) -> Clamp:
         """The wrench at the foot that holds all contact forces."""
         data = self.data
-        foot = data.mocap_pos[0, :2]
+        foot = data.xpos[self._foot, :2]
         held = np.zeros(3)
         wrench = np.zeros(6)
         for i in range(data.ncon):

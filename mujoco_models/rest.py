@@ -150,7 +150,7 @@ def _newton_step(
     held, slack = along[loaded], (distance + force / model.contact_stiffness)[loaded]
     stiffness += _STIFFENING * held.T @ held
     gradient = -model.elastic_moments() + _STIFFENING * held.T @ slack
-    factor = _cholesky(stiffness, 1 / layout.cell)
+    factor = _cholesky(stiffness, float(count))
     solved, _ = dpotrs(factor, np.column_stack([-gradient, along.T]), lower=1)
     free, compliance = solved[:, 0], solved[:, 1:]
     forces = _unilateral(

@@ -13,15 +13,14 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.protocol import FOOT
-from mujoco_models.beams.strip import half_cell_off
+from mujoco_models.beams.strip import vertices
 from mujoco_models.settings import Settings
 
-_BEADS_A_LINK = 4  # as many as the chain has
 _XML = """
 <mujoco>
   <extension><plugin plugin="mujoco.elasticity.cable"/></extension>
   <worldbody>
-    <body name="{foot}" mocap="true">
+    <body name="{foot}">
       <composite type="cable" vertex="{vertices}" initial="none">
         <plugin plugin="mujoco.elasticity.cable">
           <config key="bend" value="{young!r}"/>
@@ -40,9 +39,10 @@ class Cable:
     """A composite cable; see `mujoco_models.beams.protocol.Beam`."""
 
     def __init__(self, settings: Settings) -> None:
-        self._vertices = half_cell_off(settings)
-        cell = float(self._vertices[1] - self._vertices[0])
-        self.layout = Layout.of(self._vertices[1:-1], cell, _BEADS_A_LINK)
+        self._vertices = vertices(settings)
+        self._cell = float(self._vertices[1] - self._vertices[0])
+        joints = self._vertices[1:-1]
+        self.layout = Layout.of(joints, np.full(len(joints), self._cell))
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """The foot and the cable on it; only XML makes a composite."""
@@ -52,12 +52,12 @@ class Cable:
             vertices=" ".join(f"0 {s!r} 0" for s in self._vertices.tolist()),
             young=1 / area_moment,
             shear=1 / (2 * area_moment),  # any: the twist is never loaded in the plane
-            armature=1e-4 / self.layout.cell,
+            armature=1e-4 / self._cell,
             radius=radius,
         )
         spec = mujoco.MjSpec.from_string(xml)
         for i in range(len(self.layout.joints)):
-            spec.body(self._name(i)).pos = [self.layout.cell, 0, 0]  # was in single precision
+            spec.body(self._name(i)).pos = [self._cell, 0, 0]  # was in single precision
         spec.body("B_first").pos = [0, self._vertices[0], 0]
         return spec
 
@@ -80,4 +80,4 @@ class Cable:
 
     def stiffness(self, angles: Floats) -> Floats:
         """EI/h."""
-        return np.full(len(angles), 1 / self.layout.cell)
+        return 1 / self.layout.cells

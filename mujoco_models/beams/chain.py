@@ -13,8 +13,6 @@ from mujoco_models.beams import links
 from mujoco_models.beams.layout import Layout
 from mujoco_models.settings import Settings
 
-_BEADS_A_LINK = 4  # spacing h/4: the object dips between two of them by curvature (h/4)^2 / 8
-
 
 class Chain:
     """Hinges with springs; see `mujoco_models.beams.protocol.Beam`."""
@@ -23,13 +21,13 @@ class Chain:
         n = settings.segments
         cells = np.arange(n)
         joints = (cells + 0.5) / n if settings.clamp == "second-order" else cells[1:] / n
-        self.layout = Layout.of(joints, 1 / n, _BEADS_A_LINK)
+        self.layout = Layout.of(joints, np.full(len(joints), 1 / n))
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """The links, and a spring in every hinge."""
         spec = links.hinged_links(self.layout, radius)
-        for joint in spec.joints:
-            joint.stiffness[0] = 1 / self.layout.cell
+        for joint, cell in zip(spec.joints, self.layout.cells, strict=True):
+            joint.stiffness[0] = 1 / cell
         return spec
 
     def mount(self, spec: mujoco.MjSpec, link: int, s: float) -> tuple[mujoco.MjsBody, Floats]:
@@ -46,4 +44,4 @@ class Chain:
 
     def stiffness(self, angles: Floats) -> Floats:
         """EI/h."""
-        return np.full(len(angles), 1 / self.layout.cell)
+        return 1 / self.layout.cells

@@ -6,6 +6,8 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 
+_BEADS_A_CELL = 4
+
 
 @dataclass(frozen=True)
 class Layout:
@@ -15,27 +17,29 @@ class Layout:
     ----------
     joints : array, shape (n_joints,)
         Arc length of each joint, or vertex, where the beam bends; link i begins at joint i.
-    cell : float
-        Length h of the piece of beam that bends at a joint.
+    cells : array, shape (n_joints,)
+        Length h of the piece of beam that bends at each joint.
     beads : array, shape (n_beads,)
         Arc length of each bead, the last one at the tip; none before the first joint.
     links : array of int, shape (n_beads,)
-        The link that carries each bead.
+        The link that carries each bead; a bead at a joint is carried by the link that ends there.
     """
 
     joints: Floats
-    cell: float
+    cells: Floats
     beads: Floats
     links: Integers
 
     @classmethod
-    def of(cls, joints: Floats, cell: float, beads_a_link: int) -> "Layout":
-        """Beads equally spaced `cell / beads_a_link` from the tip down to the first joint."""
-        from_tip = np.arange(int(beads_a_link * (1 - joints[0]) / cell + 0.5))
-        beads = 1 - from_tip[::-1] * cell / beads_a_link
-        # A bead at a joint belongs to the link that ends there: turning the joint leaves it alone.
-        links = np.searchsorted(joints, beads - 1e-9) - 1
-        return cls(joints, cell, beads, links)
+    def of(cls, joints: Floats, cells: Floats) -> "Layout":
+        """Four beads to a cell: between two the obstacle bulges by its curvature times h^2/128."""
+        lengths = np.diff(joints, append=1.0)
+        counts = np.rint(_BEADS_A_CELL * lengths / cells).astype(int)
+        beads = [
+            start + length * np.arange(1, count + 1) / count
+            for start, length, count in zip(joints, lengths, counts, strict=True)
+        ]
+        return cls(joints, cells, np.concatenate(beads), np.repeat(np.arange(len(joints)), counts))
 
     @property
     def lengths(self) -> Floats:

@@ -14,12 +14,12 @@ _ARMATURE = 1e-4  # of a joint with unit stiffness: likewise
 def hinged_links(layout: Layout, radius: float) -> mujoco.MjSpec:
     """Links that turn about z, on hinges without stiffness; link i is the body `link_name(i)`."""
     spec = mujoco.MjSpec()
-    body = spec.worldbody.add_body(name=FOOT, mocap=True)
+    body = spec.worldbody.add_body(name=FOOT)
     _add_capsule(body, layout.joints[0], radius)
     for i, offset in enumerate(np.diff(layout.joints, prepend=0.0)):
         body = body.add_body(name=link_name(i), pos=[0, offset, 0])
         body.add_joint(
-            type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 0, 1], armature=_ARMATURE / layout.cell
+            type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 0, 1], armature=_ARMATURE / layout.cells[i]
         )
         _add_capsule(body, layout.lengths[i], radius)
     return spec

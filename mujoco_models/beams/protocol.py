@@ -7,13 +7,15 @@ import mujoco
 from analytic.problem.arrays import Floats
 from mujoco_models.beams.layout import Layout
 
+# Moved by its place in the model. Not a mocap body: 3.17's cable measures its segments before the
+# places of mocap bodies are known, and its stiffness is then off, or not a number, at random.
 FOOT = "foot"
 
 
 class Beam(Protocol):
     """One of MuJoCo's models of a slender beam, in the plane of the sweep.
 
-    Dimensionless: L = EI = 1. Undeformed it stands along y on a body called `FOOT`, and a
+    Dimensionless: L = EI = 1. Undeformed it stands along y on a fixed body called `FOOT`, and a
     configuration is stated by the angles of its joints, whatever MuJoCo's own coordinates are. All
     its links are rigid, so it keeps its length.
     """
