@@ -7,6 +7,7 @@ constraints linearised; its stiffness includes what turning levers and turning n
 """
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
@@ -18,6 +19,7 @@ from mujoco_models.model import BeamModel, Contacts
 _ITERATIONS = 25
 _STIFFENING = 1e3  # EI/L^3; loaded contacts convexify the quadratic model, without effect at rest
 _LARGEST_TURN = 0.3  # rad, of any link in one step
+_SAME_NORMAL = 1e-9  # rad; what rounding makes of a facet's normal
 _AHEAD = 4  # beads beyond the loaded ones that take part in collisions
 _MARGIN = 2  # beads beyond the loaded ones that must do so
 
@@ -74,7 +76,7 @@ def relax(model: BeamModel, foot_x: float, start: State, tolerance: float) -> St
     lookout |= {len(model.layout.beads) - 1}
     model.watch(_around(model, state.forces, _AHEAD) or lookout)
     whole = False
-    last_normal: dict[int, float] = {}
+    last: dict[int, Touch] = {}
     for _ in range(_ITERATIONS):
         residual = float(np.abs(model.imbalance(foot_x, state.angles)).max())
         contacts = model.contacts()
@@ -87,8 +89,9 @@ def relax(model: BeamModel, foot_x: float, start: State, tolerance: float) -> St
             whole = True
             model.watch(model.watched | lookout)
             continue
-        state = _newton_step(model, state, contacts, last_normal)
-        last_normal = dict(zip(contacts.bead.tolist(), contacts.normal[:, 0].tolist(), strict=True))
+        touches = _touches(model, contacts)
+        state = _newton_step(model, state, contacts, _curvatures(model, touches, last))
+        last = touches
         if not _around(model, state.forces, _MARGIN) <= model.watched:
             model.watch(model.watched | _around(model, state.forces, _AHEAD))
             whole = False
@@ -121,9 +124,43 @@ def _vertices(model: BeamModel, normal: Floats) -> Integers:
     return model.obstacle.nearest_vertex(np.arctan2(normal[:, 0], -normal[:, 1]))
 
 
-def _newton_step(
-    model: BeamModel, state: State, contacts: Contacts, last_normal: dict[int, float]
-) -> State:
+class Touch(NamedTuple):
+    """Where a bead is, and which way the obstacle faces it."""
+
+    normal_angle: float
+    position: Floats
+
+
+def _touches(model: BeamModel, contacts: Contacts) -> dict[int, Touch]:
+    angles = np.arctan2(contacts.normal[:, 0], -contacts.normal[:, 1])
+    places = model.bead_positions(contacts.bead)
+    return {
+        bead: Touch(float(angle), place.copy())
+        for bead, angle, place in zip(contacts.bead.tolist(), angles, places, strict=True)
+    }
+
+
+def _curvatures(model: BeamModel, now: dict[int, Touch], last: dict[int, Touch]) -> Floats:
+    """How fast each contact's normal turns as the bead slides, shape (n_contacts,) [1/L].
+
+    A bead sees a polygon: no turn along a facet, all of it within 1e-8 L at a vertex. Only the
+    secant through the last two iterates sees what is at hand; with the contour's mean curvature
+    Newton's method can jump for ever between a vertex's two facets.
+    """
+    found = np.empty(len(now))
+    for i, (bead, touch) in enumerate(now.items()):
+        before = last.get(bead)
+        if before is None:
+            vertex = model.obstacle.nearest_vertex(np.array([touch.normal_angle]))
+            found[i] = model.obstacle.curvature[vertex[0]]
+        else:
+            turn = touch.normal_angle - before.normal_angle
+            slid = float(np.hypot(*(touch.position - before.position)))
+            found[i] = 0.0 if abs(turn) < _SAME_NORMAL else abs(turn) / slid
+    return found
+
+
+def _newton_step(model: BeamModel, state: State, contacts: Contacts, curvature: Floats) -> State:
     layout = model.layout
     count = len(layout.joints)
     bead, normal, distance = contacts
@@ -136,15 +173,12 @@ def _newton_step(
 
     stiffness = np.diag(model.beam.stiffness(state.angles))
     outer = np.maximum.outer(np.arange(count), np.arange(count))
-    vertex = _vertices(model, normal)
     for i in np.flatnonzero(loaded):
         n = layout.links[bead[i]] + 1
         # The lever of a force turns with every joint below the outer one of the two ...
         stiffness[:n, :n] += (force[i] * across[i, :n])[outer[:n, :n]]
-        # ... and the normal turns as the bead slides along the contour, unless it stays on a facet.
-        if abs(last_normal.get(int(bead[i]), np.inf) - normal[i, 0]) > 1e-9:
-            curvature = model.obstacle.curvature[vertex[i]]
-            stiffness -= force[i] * curvature * np.outer(across[i], across[i])
+        # ... and the normal turns as the bead slides along the contour.
+        stiffness -= force[i] * curvature[i] * np.outer(across[i], across[i])
 
     # The loaded contacts convexify the model; at rest their slack is zero, and so is the effect.
     held, slack = along[loaded], (distance + force / model.contact_stiffness)[loaded]
