@@ -8,6 +8,9 @@ from pydantic import ConfigDict
 from analytic.problem.errors import InputError
 
 
+BEAMS = ("chain", "rod", "cable")
+
+
 @dataclass(frozen=True)
 class Settings:
     """How MuJoCo simulates a case.
@@ -33,7 +36,7 @@ class Settings:
     Raises
     ------
     InputError
-        If a number is out of its range.
+        If a number is out of its range, or there is no such beam in any version of MuJoCo.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid")  # a misspelt key in a case file is an error
@@ -46,6 +49,8 @@ class Settings:
     tolerance: float = 1e-8
 
     def __post_init__(self) -> None:
+        if self.beam not in BEAMS:
+            raise InputError("mujoco.beam", self.beam, ", ".join(BEAMS), "choose one of these")
         for name, low, high, remedy in (
             ("segments", 2, 1000, "40 is usual"),
             ("contour_points", 8, 50_000, "3200 is usual"),
