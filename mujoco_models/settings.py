@@ -7,7 +7,6 @@ from pydantic import ConfigDict
 
 from analytic.problem.errors import InputError
 
-
 BEAMS = ("chain", "rod", "cable")
 
 
