@@ -175,6 +175,8 @@ def main() -> None:
     except _UsageError as error:
         told = cast(Any, error).format_message().replace("\n", " ")
         code = _refuse(f"{told.rstrip('.')}; see `vibrissa --help`")
+    except ArithmeticError as error:
+        code = _refuse(str(error))
     except (typer.Abort, KeyboardInterrupt):
         code = _refuse("interrupted")
     except OSError as error:

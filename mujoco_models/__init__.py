@@ -7,14 +7,10 @@ from collections.abc import Callable
 
 from analytic.problem.case import Case
 from analytic.problem.readings import Readings
+from mujoco_models.beams.available import available_beams
 from mujoco_models.settings import Settings
 
-__all__ = ["Settings", "available_beams", "simulate_sweep"]
-
-
-def available_beams() -> tuple[str, ...]:
-    """The beams that the installed MuJoCo has."""
-    return ("chain",)
+__all__ = ["Settings", "available_beams", "load_tip", "simulate_sweep"]
 
 
 def simulate_sweep(
@@ -34,15 +30,27 @@ def simulate_sweep(
     Returns
     -------
     Readings
-        In the units of the case's beam, source ``"mujoco <beam>"``, with a column ``residual``:
-        the largest moment out of balance at any joint. ``provenance["events"]["snap_off"]`` is
-        where the simulation let go.
+        In the units of the case's beam, source ``"mujoco <beam>"``, with two columns more:
+        ``residual``, the largest moment out of balance at any joint, and ``discrepancy``, by how
+        much (dimensionless) the clamp's sensors differ from the sum of the contacts' forces and
+        moments or from the beam's own moment at its first joint, whichever is worse.
+        ``provenance["events"]["snap_off"]`` is where the simulation let go.
 
     Raises
     ------
     InputError
-        If the case's beam has no radius: MuJoCo cannot collide a line.
+        If the case's beam has no radius: MuJoCo cannot collide a line. If the installed MuJoCo
+        lacks the beam that the settings ask for.
+    ClampError
+        If that discrepancy is more than the station's residual can explain.
     """
     from mujoco_models.sweep import run_sweep
 
     return run_sweep(case, settings or Settings(), advance)
+
+
+def load_tip(load: float, settings: Settings | None = None) -> tuple[float, float]:
+    """Tip of a cantilever under a dead load; see `mujoco_models.cantilever.load_tip`."""
+    from mujoco_models import cantilever
+
+    return cantilever.load_tip(load, settings or Settings())

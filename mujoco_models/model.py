@@ -1,4 +1,4 @@
-"""The compiled chain and obstacle: what MuJoCo says of a configuration at rest."""
+"""The compiled beam and obstacle: what MuJoCo says of a configuration at rest."""
 
 from typing import NamedTuple
 
@@ -6,9 +6,10 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
-from mujoco_models.chain import Layout, chain_spec
+from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.obstacle import MESH_PREFIX, Obstacle
 
+_CONTACT_GAP = 0.01  # L; how far ahead the solver sees contacts that carry no force yet
 _IMPEDANCE = 0.9  # MuJoCo's d; with the stiffness set below it cancels out of the law at rest
 
 
@@ -30,13 +31,13 @@ class Clamp(NamedTuple):
     moment_z: float
 
 
-class ChainModel:
+class BeamModel:
     """MuJoCo's model and state; everything physical is asked of it.
 
     Parameters
     ----------
-    layout : Layout
-        Joints and beads.
+    beam : Beam
+        Which beam, and where its joints and beads are.
     radius : float
         Of the vibrissa [L].
     obstacle : Obstacle
@@ -46,14 +47,16 @@ class ChainModel:
     """
 
     def __init__(
-        self, layout: Layout, radius: float, obstacle: Obstacle, contact_stiffness: float
+        self, beam: Beam, radius: float, obstacle: Obstacle, contact_stiffness: float
     ) -> None:
-        self.layout = layout
+        self.beam = beam
+        self.layout = beam.layout
         self.obstacle = obstacle
         self.contact_stiffness = contact_stiffness
         self.evaluations = 0
-        self.model = chain_spec(layout, radius, obstacle).compile()
+        self.model = _spec(beam, radius, obstacle).compile()
         self.data = mujoco.MjData(self.model)
+        self._foot = self.model.body(FOOT).id
         model = self.model
         self._windows = np.array(
             [model.geom(f"{MESH_PREFIX}{i}").id for i in range(len(obstacle.centres))]
@@ -109,36 +112,40 @@ class ChainModel:
     def imbalance(self, foot_x: float, angles: Floats) -> Floats:
         """Moment out of balance at each joint, shape (n_joints,) [EI/L], at rest.
 
-        Springs and contacts only: with zero velocity nothing else acts. Contacts and clamp
+        Elasticity and contacts only: with zero velocity nothing else acts. Contacts and clamp
         readings are then those of this configuration.
         """
         data = self.data
-        data.mocap_pos[0, 0] = foot_x
-        data.qpos[:] = angles
+        self.model.body_pos[self._foot, 0] = foot_x
+        self.beam.place(data, angles)
         data.qvel[:] = 0
         mujoco.mj_forward(self.model, data)
         self.evaluations += 1
-        return np.asarray(data.qfrc_passive + data.qfrc_constraint)
+        return self.beam.moments(data.qfrc_passive + data.qfrc_constraint)
+
+    def elastic_moments(self) -> Floats:
+        """The beam's own moment at each joint, shape (n_joints,) [EI/L]."""
+        return self.beam.moments(self.data.qfrc_passive)
 
     def slide(self, foot_x: float, angles: Floats, far: float, steps: int) -> Floats:
         """Angles after MuJoCo's own motion without momentum, until it rests or `steps` are over.
 
-        `far` is how far a link must have turned for the steps to become ten times longer [rad].
+        `far` is how far a link must have turned for the steps to become five times longer [rad].
         """
         model, data = self.model, self.data
         model.opt.integrator, model.opt.timestep = mujoco.mjtIntegrator.mjINT_DISCRETE, 1e-3
-        data.mocap_pos[0, 0] = foot_x
-        data.qpos[:] = angles
+        model.body_pos[self._foot, 0] = foot_x
+        self.beam.place(data, angles)
         for _ in range(steps):
             before = data.qpos.copy()
             data.qvel[:] = 0
             mujoco.mj_step(model, data)
             if np.abs(data.qpos - before).max() < 1e-10:
                 break
-            if np.abs(np.cumsum(data.qpos - angles)).max() > far:
-                model.opt.timestep = 1e-2
+            if np.abs(np.cumsum(self.beam.angles(data) - angles)).max() > far:
+                model.opt.timestep = 5e-3  # 3.17's cable is explicit: 1e-2 would be too long
         model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
-        return np.array(data.qpos)
+        return self.beam.angles(data)
 
     def contacts(self) -> Contacts:
         """All reported contacts of the last evaluated configuration."""
@@ -160,8 +167,76 @@ class ChainModel:
     def clamp(self) -> Clamp:
         """MuJoCo's force and torque sensors at the clamp, turned into the paper's frame.
 
-        The site sits at the foot on the clamped link, its axes those of the world: what it
-        transmits to the chain is what the clamp does to the vibrissa.
+        The site sits at the foot, its axes are those of the world: what it transmits to the beam
+        is what the clamp does to the vibrissa.
         """
         fx, fy, _, _, _, mz = self.data.sensordata
         return Clamp(float(fx), float(fy), float(mz))
+
+    def clamp_by_contacts(self) -> Clamp:
+        """The wrench at the foot that holds all contact forces."""
+        data = self.data
+        foot = data.xpos[self._foot, :2]
+        held = np.zeros(3)
+        wrench = np.zeros(6)
+        for i in range(data.ncon):
+            mujoco.mj_contactForce(self.model, data, i, wrench)
+            contact = data.contact[i]
+            force = wrench[:3] @ contact.frame.reshape(3, 3)
+            force *= 1.0 if self._bead_of[contact.geom[1]] >= 0 else -1.0
+            arm = contact.pos[:2] - foot
+            held += [force[0], force[1], arm[0] * force[1] - arm[1] * force[0]]
+        return Clamp(*(-held).tolist())
+
+    def discrepancy(self) -> float:
+        """By how much three accounts of the clamp differ, the worst of all [EI/L^2, EI/L].
+
+        The sensors, the contacts, and the beam's own moment at its first joint, to which the
+        sensors' wrench is carried.
+        """
+        clamp = self.clamp()
+        by_contacts = np.abs(np.subtract(clamp, self.clamp_by_contacts())).max()
+        at_joint = clamp.moment_z + self.layout.joints[0] * clamp.force_x
+        return float(max(by_contacts, abs(at_joint - self.elastic_moments()[0])))
+
+
+def add_options(spec: mujoco.MjSpec) -> None:
+    """What every model needs for its forces to be right to rounding."""
+    option = spec.option
+    option.gravity = [0, 0, 0]
+    option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE  # 4.0.0: wrong Hessian with sparse ones
+    option.tolerance = 1e-14
+    option.ccd_tolerance = 1e-12
+    option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
+    # The midphase's tree tests every bead against every window: seven times the cost of a step.
+    option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MIDPHASE
+
+
+def _spec(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
+    """The beam with its beads, the clamp's sensors and the obstacle.
+
+    The beam touches the obstacle with spheres on its axis, not with capsules: the distance of a
+    point to a convex body has a continuous derivative, so an equilibrium exists at every station; a
+    capsule that lies along a facet has no single nearest point, its contact jumps from end to end,
+    and nothing comes to rest.
+    """
+    spec = beam.spec(radius)
+    add_options(spec)
+    obstacle.add_to(spec)
+    for s, link in zip(beam.layout.beads, beam.layout.links.tolist(), strict=True):
+        body, place = beam.mount(spec, link, float(s))
+        body.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_SPHERE,
+            pos=place,
+            size=[radius, 0, 0],
+            contype=0,
+            conaffinity=1,
+            condim=1,
+            density=0,
+            gap=_CONTACT_GAP,
+            priority=1,
+        )
+    spec.body(FOOT).add_site(name="clamp")
+    for kind in (mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE):
+        spec.add_sensor(type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="clamp")
+    return spec

@@ -1,23 +1,25 @@
 """Coming to rest: Newton's method on MuJoCo's own balance of moments.
 
-A station is settled when MuJoCo's springs and contacts, and nothing else, hold the chain to a
+A station is settled when MuJoCo's springs and contacts, and nothing else, hold the beam to a
 tolerance; how it got there is of no account, and time stepping to the same balance takes hundreds
 of steps. Each step minimises the quadratic model of the energy, with the contacts' unilateral
 constraints linearised; its stiffness includes what turning levers and turning normals contribute.
 """
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
 from scipy.optimize import nnls
 
 from analytic.problem.arrays import Floats, Integers
-from mujoco_models.model import ChainModel, Contacts
+from mujoco_models.model import BeamModel, Contacts
 
 _ITERATIONS = 25
 _STIFFENING = 1e3  # EI/L^3; loaded contacts convexify the quadratic model, without effect at rest
 _LARGEST_TURN = 0.3  # rad, of any link in one step
+_SAME_NORMAL = 1e-9  # rad; what rounding makes of a facet's normal
 _AHEAD = 4  # beads beyond the loaded ones that take part in collisions
 _MARGIN = 2  # beads beyond the loaded ones that must do so
 _LEFT = 0.35  # rad; a link that has turned farther has left the branch
@@ -27,7 +29,7 @@ _FALL_STEPS = 5000
 
 @dataclass(frozen=True)
 class State:
-    """A configuration of the chain.
+    """A configuration of the beam.
 
     Attributes
     ----------
@@ -46,14 +48,19 @@ class State:
     imbalance: float = np.inf
     settled: bool = False
 
+    @classmethod
+    def straight(cls, joints: int) -> "State":
+        """The unloaded beam."""
+        return cls(np.zeros(joints), {})
 
-def relax(model: ChainModel, foot_x: float, start: State, tolerance: float) -> State:
-    """Bring the chain to rest with its foot at `foot_x`, from `start`.
+
+def relax(model: BeamModel, foot_x: float, start: State, tolerance: float) -> State:
+    """Bring the beam to rest with its foot at `foot_x`, from `start`.
 
     Parameters
     ----------
-    model : ChainModel
-        The chain and the obstacle; left in the returned state.
+    model : BeamModel
+        The beam and the obstacle; left in the returned state.
     foot_x : float
         Foot position [L].
     start : State
@@ -74,7 +81,7 @@ def relax(model: ChainModel, foot_x: float, start: State, tolerance: float) -> S
     if state.forces:
         model.anticipate_window()
     whole = False
-    last_normal: dict[int, float] = {}
+    last: dict[int, Touch] = {}
     for _ in range(_ITERATIONS):
         residual = float(np.abs(model.imbalance(foot_x, state.angles)).max())
         contacts = model.contacts()
@@ -91,8 +98,9 @@ def relax(model: ChainModel, foot_x: float, start: State, tolerance: float) -> S
             whole = True
             model.watch(model.watched | lookout)
             continue
-        state = _newton_step(model, state, contacts, last_normal)
-        last_normal = dict(zip(contacts.bead.tolist(), contacts.normal[:, 0].tolist(), strict=True))
+        touches = _touches(model, contacts)
+        state = _newton_step(model, state, contacts, _curvatures(model, touches, last))
+        last = touches
         if not _around(model, state.forces, _MARGIN) <= model.watched:
             model.watch(model.watched | _around(model, state.forces, _AHEAD))
             whole = False
@@ -100,7 +108,7 @@ def relax(model: ChainModel, foot_x: float, start: State, tolerance: float) -> S
     return best
 
 
-def fall(model: ChainModel, foot_x: float, start: State) -> State:
+def fall(model: BeamModel, foot_x: float, start: State) -> State:
     """Where MuJoCo's own overdamped motion ends with the foot at `foot_x`; not yet at rest.
 
     Decides what Newton's method cannot: whether a vibrissa without a neighbouring equilibrium has
@@ -119,14 +127,14 @@ def turned(angles: Floats, before: Floats) -> float:
     return float(np.abs(np.cumsum(angles - before)).max())
 
 
-def _around(model: ChainModel, loaded: dict[int, float], reach: int) -> frozenset[int]:
+def _around(model: BeamModel, loaded: dict[int, float], reach: int) -> frozenset[int]:
     count = len(model.layout.beads)
     return frozenset(
         i for bead in loaded for i in range(max(0, bead - reach), min(count, bead + reach + 1))
     )
 
 
-def _move_window(model: ChainModel, loaded: Integers) -> bool:
+def _move_window(model: BeamModel, loaded: Integers) -> bool:
     """See to it that all load rests on full resolution; True if the mesh had to be changed."""
     if loaded.size == 0 or model.obstacle.is_inside(model.window, loaded):
         return False
@@ -137,13 +145,47 @@ def _move_window(model: ChainModel, loaded: Integers) -> bool:
     return True
 
 
-def _vertices(model: ChainModel, normal: Floats) -> Integers:
+def _vertices(model: BeamModel, normal: Floats) -> Integers:
     return model.obstacle.nearest_vertex(np.arctan2(normal[:, 0], -normal[:, 1]))
 
 
-def _newton_step(
-    model: ChainModel, state: State, contacts: Contacts, last_normal: dict[int, float]
-) -> State:
+class Touch(NamedTuple):
+    """Where a bead is, and which way the obstacle faces it."""
+
+    normal_angle: float
+    position: Floats
+
+
+def _touches(model: BeamModel, contacts: Contacts) -> dict[int, Touch]:
+    angles = np.arctan2(contacts.normal[:, 0], -contacts.normal[:, 1])
+    places = model.bead_positions(contacts.bead)
+    return {
+        bead: Touch(float(angle), place.copy())
+        for bead, angle, place in zip(contacts.bead.tolist(), angles, places, strict=True)
+    }
+
+
+def _curvatures(model: BeamModel, now: dict[int, Touch], last: dict[int, Touch]) -> Floats:
+    """How fast each contact's normal turns as the bead slides, shape (n_contacts,) [1/L].
+
+    A bead sees a polygon: no turn along a facet, all of it within 1e-8 L at a vertex. Only the
+    secant through the last two iterates sees what is at hand; with the contour's mean curvature
+    Newton's method can jump for ever between a vertex's two facets.
+    """
+    found = np.empty(len(now))
+    for i, (bead, touch) in enumerate(now.items()):
+        before = last.get(bead)
+        if before is None:
+            vertex = model.obstacle.nearest_vertex(np.array([touch.normal_angle]))
+            found[i] = model.contact_curvature[vertex[0]]
+        else:
+            turn = touch.normal_angle - before.normal_angle
+            slid = float(np.hypot(*(touch.position - before.position)))
+            found[i] = 0.0 if abs(turn) < _SAME_NORMAL else abs(turn) / slid
+    return found
+
+
+def _newton_step(model: BeamModel, state: State, contacts: Contacts, curvature: Floats) -> State:
     layout = model.layout
     count = len(layout.joints)
     bead, normal, distance = contacts
@@ -154,23 +196,20 @@ def _newton_step(
     force = np.array([state.forces.get(i, 0.0) for i in bead.tolist()])
     loaded = force > 0
 
-    stiffness = np.diag(np.full(count, layout.stiffness))
+    stiffness = np.diag(model.beam.stiffness(state.angles))
     outer = np.maximum.outer(np.arange(count), np.arange(count))
-    vertex = _vertices(model, normal)
     for i in np.flatnonzero(loaded):
         n = layout.links[bead[i]] + 1
         # The lever of a force turns with every joint below the outer one of the two ...
         stiffness[:n, :n] += (force[i] * across[i, :n])[outer[:n, :n]]
-        # ... and the normal turns as the bead slides along the contour, unless it stays on a facet.
-        if abs(last_normal.get(int(bead[i]), np.inf) - normal[i, 0]) > 1e-9:
-            curvature = model.contact_curvature[vertex[i]]
-            stiffness -= force[i] * curvature * np.outer(across[i], across[i])
+        # ... and the normal turns as the bead slides along the contour.
+        stiffness -= force[i] * curvature[i] * np.outer(across[i], across[i])
 
     # The loaded contacts convexify the model; at rest their slack is zero, and so is the effect.
     held, slack = along[loaded], (distance + force / model.contact_stiffness)[loaded]
     stiffness += _STIFFENING * held.T @ held
-    gradient = layout.stiffness * state.angles + _STIFFENING * held.T @ slack
-    factor = _cholesky(stiffness, layout.stiffness)
+    gradient = -model.elastic_moments() + _STIFFENING * held.T @ slack
+    factor = _cholesky(stiffness, float(count))
     solved, _ = dpotrs(factor, np.column_stack([-gradient, along.T]), lower=1)
     free, compliance = solved[:, 0], solved[:, 1:]
     forces = _unilateral(

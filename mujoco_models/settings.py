@@ -7,8 +7,8 @@ from pydantic import ConfigDict
 
 from analytic.problem.errors import InputError
 
-BeamKind: TypeAlias = Literal["chain"]
-ClampKind: TypeAlias = Literal["cell-centre", "rigid-first-link"]
+BeamKind: TypeAlias = Literal["chain", "rod", "cable"]
+ClampKind: TypeAlias = Literal["second-order", "naive"]
 BEAMS, CLAMPS = get_args(BeamKind), get_args(ClampKind)
 
 
@@ -23,14 +23,14 @@ class Settings:
     beam : str
         Which of MuJoCo's models of a slender beam; see `available_beams`.
     segments : int
-        Number of segments N, at least 2: rigid links whose hinges sit at the centres of N cells.
+        Number of segments N, at least 2.
     contour_points : int
         Points of the obstacle's mesh along the contour, at equal steps of slope angle.
     contact_stiffness : float
         Force over penetration of a contact [EI/L^3].
     clamp : str
-        Where the first hinge sits: half a cell from the clamp, ``"cell-centre"`` (second order in
-        1/N), or a whole one, ``"rigid-first-link"`` (the naive chain, first order; for comparison).
+        Where the beam first bends: half a cell from the clamp, ``"second-order"`` in 1/N, or a
+        whole one, ``"naive"`` (first order; for comparison).
     tolerance : float
         A station has settled when no joint is out of balance by more than this [EI/L].
 
@@ -46,7 +46,7 @@ class Settings:
     segments: int = 40
     contour_points: int = 3200
     contact_stiffness: float = 1e7
-    clamp: ClampKind = "cell-centre"
+    clamp: ClampKind = "second-order"
     tolerance: float = 1e-8
 
     def __post_init__(self) -> None:

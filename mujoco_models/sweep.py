@@ -13,24 +13,27 @@ import pandas as pd
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from analytic.problem.readings import COLUMNS, Readings
-from mujoco_models.chain import Layout
-from mujoco_models.model import ChainModel
+from mujoco_models.beams.kinds import build
+from mujoco_models.beams.layout import bead_spacing
+from mujoco_models.model import BeamModel
 from mujoco_models.obstacle import Obstacle
 from mujoco_models.rest import State, fall, relax, turned
 from mujoco_models.settings import Settings
 
 _SMALLEST_STEP = 1e-5  # L; a jump that a step this small does not prevent is a snap-off
 _LARGEST_TURN = 0.35  # rad; a link that turns farther in one step has left the branch
+_DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
 _HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below it just faded
 
 
 def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Readings:
-    """Sweep the chain; see `mujoco_models.simulate_sweep`."""
+    """Sweep the beam; see `mujoco_models.simulate_sweep`."""
     if case.radius == 0:
         raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
     obstacle = Obstacle.of(case, settings.contour_points)
-    layout = Layout.of(settings, case.radius, obstacle)
-    model = ChainModel(layout, case.radius, obstacle, settings.contact_stiffness)
+    spacing = bead_spacing(settings.segments, case.radius, float(obstacle.curvature.max()))
+    beam_model = build(settings, spacing)
+    model = BeamModel(beam_model, case.radius, obstacle, settings.contact_stiffness)
     foot_x = case.foot_x / case.beam.length
     walk = _Walk(model, float(foot_x[0]), settings.tolerance)
     rows = []
@@ -62,14 +65,24 @@ def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Re
     return Readings(table[[*COLUMNS, *extra]], beam, f"mujoco {settings.beam}", provenance)
 
 
-class _Walk:
-    """The chain on its way: the last state at rest, and the one before it to extrapolate from."""
+class ClampError(ArithmeticError):
+    """The clamp's sensors do not read what holds the beam: a defect of the model or of MuJoCo."""
 
-    def __init__(self, model: ChainModel, foot_x: float, tolerance: float) -> None:
+    def __init__(self, foot_x: float, discrepancy: float) -> None:
+        super().__init__(
+            f"at foot_x = {foot_x:.6g} L MuJoCo's clamp sensors differ by {discrepancy:.1e} "
+            f"(EI/L^2, EI/L) from what contacts and elasticity ask for; at most {_DISCREPANCY:g}"
+        )
+
+
+class _Walk:
+    """The beam on its way: the last state at rest, and the one before it to extrapolate from."""
+
+    def __init__(self, model: BeamModel, foot_x: float, tolerance: float) -> None:
         self._model = model
         self._tolerance = tolerance
         self._foot_x = foot_x
-        self._state = State(np.zeros(len(model.layout.joints)), {})
+        self._state = State.straight(len(model.layout.joints))
         self._before: tuple[float, State] | None = None
         self.snap_off: float | None = None
         """Where the last contact was let go [L]."""
@@ -120,7 +133,7 @@ class _Walk:
         return state.settled and near and not let_go
 
     def row(self) -> dict[str, Any]:
-        """The dimensionless readings of the state that the chain is in."""
+        """The dimensionless readings of the state that the beam is in."""
         model, state = self._model, self._state
         clamp = model.clamp()
         contacts = model.contacts()
@@ -134,7 +147,12 @@ class _Walk:
             "tip_angle": np.pi / 2 + float(state.angles.sum()),
             "status": "ok" if state.settled else "unsettled",
             "residual": state.imbalance,
+            "discrepancy": model.discrepancy(),
         }
+        if not np.isfinite(state.imbalance):
+            row["status"] = "diverged"
+        if state.settled and row["discrepancy"] > _DISCREPANCY:
+            raise ClampError(self._foot_x, row["discrepancy"])
         if loaded.any():
             weight = -contacts.distance[loaded] / -contacts.distance[loaded].sum()
             beads, normal = contacts.bead[loaded], weight @ contacts.normal[loaded]

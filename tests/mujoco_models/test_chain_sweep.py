@@ -58,7 +58,7 @@ def test_second_order_in_the_number_of_segments():
 def test_the_naive_clamp_is_found_out():
     """A rigid first link makes the chain too stiff, by 1/N; the comparison must not let it pass."""
     name = "catenary"
-    naive = simulated_sweep(name, Settings(clamp="rigid-first-link"))
+    naive = simulated_sweep(name, Settings(clamp="naive"))
     found = compare(solve_sweep(named_case(name)), naive)
     assert not found.agrees
     assert all(found.disagreement[reading].rms > 1e-2 for reading in CLAMP_READINGS)

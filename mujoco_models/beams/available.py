@@ -1,0 +1,50 @@
+"""Which beams the installed MuJoCo has."""
+
+from importlib.metadata import version
+
+from analytic.problem.errors import InputError
+
+
+class Beams(tuple[str, ...]):
+    """The beams that there are; ``missing`` tells of each other one why it is not.
+
+    Attributes
+    ----------
+    missing : dict
+        Reason by name.
+    """
+
+    missing: dict[str, str]
+
+
+def available_beams() -> Beams:
+    """The beams that the installed MuJoCo has, and why not the others.
+
+    Judged by MuJoCo's version alone, without importing it.
+    """
+    old = int(version("mujoco").split(".")[0]) < 4
+    found = Beams(("chain", "cable") if old else ("chain", "rod"))
+    found.missing = (
+        {"rod": "the elastic one-dimensional flex came with MuJoCo 4: install mujoco>=4,<5"}
+        if old
+        else {"cable": "the composite cable went with MuJoCo 3: install mujoco==3.17.*"}
+    )
+    return found
+
+
+def require(beam: str) -> None:
+    """Refuse a beam that the installed MuJoCo lacks.
+
+    Raises
+    ------
+    InputError
+        Naming the version that has it.
+    """
+    beams = available_beams()
+    if beam in beams.missing:
+        raise InputError(
+            "mujoco.beam",
+            beam,
+            f"{' or '.join(beams)} with the installed MuJoCo {version('mujoco')}",
+            beams.missing[beam],
+        )

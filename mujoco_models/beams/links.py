@@ -1,0 +1,49 @@
+"""A foot and rigid links on hinges, one on the other: what the chain and the rod are built on."""
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from mujoco_models.beams.layout import Layout
+from mujoco_models.beams.protocol import FOOT
+
+_DENSITY = 1e-3  # any small number: at rest masses do not matter
+_ARMATURE = 1e-4  # of a joint with unit stiffness: likewise
+
+
+def hinged_links(layout: Layout, radius: float) -> mujoco.MjSpec:
+    """Links that turn about z, on hinges without stiffness; link i is the body `link_name(i)`."""
+    spec = mujoco.MjSpec()
+    body = spec.worldbody.add_body(name=FOOT)
+    _add_capsule(body, layout.joints[0], radius)
+    for i, offset in enumerate(np.diff(layout.joints, prepend=0.0)):
+        body = body.add_body(name=link_name(i), pos=[0, offset, 0])
+        body.add_joint(
+            type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 0, 1], armature=_ARMATURE / layout.cells[i]
+        )
+        _add_capsule(body, layout.lengths[i], radius)
+    return spec
+
+
+def mount(
+    spec: mujoco.MjSpec, layout: Layout, link: int, s: float
+) -> tuple[mujoco.MjsBody, Floats]:
+    """The link, and the place in its frame at arc length `s`."""
+    return spec.body(link_name(link)), np.array([0, s - layout.joints[link], 0])
+
+
+def link_name(link: int) -> str:
+    """Name of a link's body."""
+    return f"link{link}"
+
+
+def _add_capsule(body: mujoco.MjsBody, length: float, radius: float) -> None:
+    """What the eye sees of a link; its mass is there because MuJoCo wants one."""
+    body.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_CAPSULE,
+        fromto=[0, 0, 0, 0, length, 0],
+        size=[radius, 0, 0],
+        contype=0,
+        conaffinity=0,
+        density=_DENSITY,
+    )

@@ -1,0 +1,47 @@
+"""What the beams have in common, and the few things in which they differ."""
+
+from typing import Protocol
+
+import mujoco
+
+from analytic.problem.arrays import Floats
+from mujoco_models.beams.layout import Layout
+
+# Moved by its place in the model. Not a mocap body: 3.17's cable measures its segments before the
+# places of mocap bodies are known, and its stiffness is then off, or not a number, at random.
+FOOT = "foot"
+
+
+class Beam(Protocol):
+    """One of MuJoCo's models of a slender beam, in the plane of the sweep.
+
+    Dimensionless: L = EI = 1. Undeformed it stands along y on a fixed body called `FOOT`, and a
+    configuration is stated by the angles of its joints, whatever MuJoCo's own coordinates are. All
+    its links are rigid, so it keeps its length.
+    """
+
+    layout: Layout
+
+    def spec(self, radius: float) -> mujoco.MjSpec:
+        """The foot and the beam on it, with all collisions off.
+
+        Parameters
+        ----------
+        radius : float
+            Of the vibrissa [L].
+        """
+
+    def mount(self, spec: mujoco.MjSpec, link: int, s: float) -> tuple[mujoco.MjsBody, Floats]:
+        """The body that moves with `link` at arc length `s`, and the place in its frame."""
+
+    def place(self, data: mujoco.MjData, angles: Floats) -> None:
+        """Set MuJoCo's coordinates to joint angles, shape (n_joints,) [rad]."""
+
+    def angles(self, data: mujoco.MjData) -> Floats:
+        """Joint angles of MuJoCo's coordinates, shape (n_joints,) [rad]."""
+
+    def moments(self, force: Floats) -> Floats:
+        """Moment about z at each joint, shape (n_joints,) [EI/L], of a generalised force."""
+
+    def stiffness(self, angles: Floats) -> Floats:
+        """Derivative of each joint's elastic moment by its angle, shape (n_joints,) [EI/L]."""
