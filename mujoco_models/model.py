@@ -10,6 +10,7 @@ from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.obstacle import MESH_PREFIX, Obstacle
 
 _CONTACT_GAP = 0.01  # L; how far ahead the solver sees contacts that carry no force yet
+_OVERLOOKED = 1e-6  # L; how deep an unloaded bead may be in the obstacle
 _IMPEDANCE = 0.9  # MuJoCo's d; with the stiffness set below it cancels out of the law at rest
 
 
@@ -51,6 +52,7 @@ class BeamModel:
     ) -> None:
         self.beam = beam
         self.layout = beam.layout
+        self._radius = radius
         self.obstacle = obstacle
         self.contact_stiffness = contact_stiffness
         self.evaluations = 0
@@ -163,6 +165,22 @@ class BeamModel:
     def bead_positions(self, beads: Integers) -> Floats:
         """Shape (n, 2) [L]."""
         return np.asarray(self.data.geom_xpos[self._beads[beads], :2])
+
+    def overlooked(self) -> tuple[int, int] | None:
+        """A bead inside the obstacle that MuJoCo reports no load on, and the vertex it is at.
+
+        The mesh in use is too small away from its window, and most beads are not watched: this is
+        what makes sure, at every state at rest, that neither has let the beam through.
+        """
+        positions = self.data.geom_xpos[self._beads, :2]
+        contacts = self.contacts()
+        inside = self._radius - _OVERLOOKED
+        suspects = self.obstacle.near(positions, inside)
+        for bead in np.setdiff1d(suspects, contacts.bead[contacts.distance < 0]):
+            clearance, vertex = self.obstacle.clearance(positions[bead])
+            if clearance < inside:
+                return int(bead), vertex
+        return None
 
     def clamp(self) -> Clamp:
         """MuJoCo's force and torque sensors at the clamp, turned into the paper's frame.

@@ -18,6 +18,7 @@ from analytic.problem.case import Case
 
 _FINE = 32  # vertices at full resolution on either side of a window's centre
 _GRADED = 8  # vertices a level farther out; the spacing doubles from level to level
+_BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
 _HALF_DEPTH = 0.25  # L, of the extrusion: much more than a penetration, or depths come out wrong
 MESH_PREFIX = "obstacle"
 
@@ -30,6 +31,9 @@ _OCTAHEDRON = [
 @dataclass(frozen=True)
 class Obstacle:
     """A convex polygon's lower side, and the meshes that stand for it.
+
+    Where the contour goes on beyond the reach of the vibrissa, so does the polygon, along its
+    tangent: a tip that presses on the very end must not be pushed out through the top.
 
     Parameters
     ----------
@@ -44,7 +48,12 @@ class Obstacle:
         """The part of the case's object that the vibrissa can reach, with `points` vertices."""
         last, first = case.reach
         body = case.profile.scaled(1 / case.beam.length)
-        return cls(body.outline(last, first, points))
+        inscribed = body.outline(last, first, points)
+        ends = case.centreline.at(np.array([last, first]))
+        cut = ends.eta > 1 - 1e-9  # by the reach of the tip; else the object ends there itself
+        heading = np.column_stack([np.cos(ends.alpha), np.sin(ends.alpha)])
+        beyond = inscribed[[0, -1]] + _BEYOND * heading * [[-1], [1]]
+        return cls(np.concatenate([beyond[:1][cut[:1]], inscribed, beyond[1:][cut[1:]]]))
 
     @cached_property
     def facet_angles(self) -> Floats:
@@ -81,6 +90,33 @@ class Obstacle:
     def nearest_vertex(self, slope: Floats) -> Integers:
         """Vertices at which the contour has these slope angles."""
         return np.searchsorted(self.facet_angles, slope)
+
+    def faces(self, slope: Floats) -> bool:
+        """Whether contacts with these slope angles are with the contour, not with its far side."""
+        slack = 2 * self.normal_error + 1e-9
+        return bool(
+            ((slope > self.facet_angles[0] - slack) & (slope < self.facet_angles[-1] + slack)).all()
+        )
+
+    def near(self, points: Floats, distance: float) -> Integers:
+        """Which of the points, shape (n, 2), may be nearer to the contour than `distance`."""
+        x = self.vertices[:, 0]
+        facet = np.clip(np.searchsorted(x, points[:, 0]) - 1, 0, len(self.facet_angles) - 1)
+        slope = self.facet_angles[facet]
+        offset = points - self.vertices[facet]
+        # The distance from the line of any one facet is not more than that from the polygon.
+        bound = offset[:, 0] * np.sin(slope) - offset[:, 1] * np.cos(slope)
+        beside = np.maximum(x[0] - points[:, 0], points[:, 0] - x[-1])
+        return np.flatnonzero(np.maximum(bound, beside) < distance)
+
+    def clearance(self, point: Floats) -> tuple[float, int]:
+        """Distance of a point from the polygon, negative inside, and the vertex it is at."""
+        offset = point - self.vertices[:-1]
+        distance = offset[:, 0] * np.sin(self.facet_angles) - offset[:, 1] * np.cos(
+            self.facet_angles
+        )
+        facet = int(np.argmax(distance))
+        return float(distance[facet]), facet
 
     def window_of(self, vertex: float) -> int:
         """The window whose centre is nearest to a vertex."""

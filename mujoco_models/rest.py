@@ -88,8 +88,18 @@ def relax(model: BeamModel, foot_x: float, start: State, tolerance: float) -> St
         state = replace(state, imbalance=residual)
         best = min(best, state, key=lambda s: s.imbalance)
         if residual < tolerance:
-            loaded = _vertices(model, contacts.normal[contacts.distance < 0])
+            normals = contacts.normal[contacts.distance < 0]
+            if not model.obstacle.faces(_slopes(normals)):
+                break  # pushed out through the far side of the object: no state of the sweep
+            loaded = _vertices(model, normals)
             if _move_window(model, loaded):
+                continue
+            if (missed := model.overlooked()) is not None:
+                bead, vertex = missed
+                model.watch(model.watched | _around(model, {bead: 0.0}, _AHEAD))
+                if not model.obstacle.is_inside(model.window, np.array([vertex])):
+                    model.use_window(model.obstacle.window_of(vertex))
+                whole = False
                 continue
             if whole:
                 if loaded.size:
@@ -146,7 +156,13 @@ def _move_window(model: BeamModel, loaded: Integers) -> bool:
 
 
 def _vertices(model: BeamModel, normal: Floats) -> Integers:
-    return model.obstacle.nearest_vertex(np.arctan2(normal[:, 0], -normal[:, 1]))
+    return model.obstacle.nearest_vertex(_slopes(normal))
+
+
+def _slopes(normal: Floats) -> Floats:
+    """Slope angles of the contour with these normals, shape (n,) [rad]."""
+    angles: Floats = np.arctan2(normal[:, 0], -normal[:, 1])
+    return angles
 
 
 class Touch(NamedTuple):
@@ -157,7 +173,7 @@ class Touch(NamedTuple):
 
 
 def _touches(model: BeamModel, contacts: Contacts) -> dict[int, Touch]:
-    angles = np.arctan2(contacts.normal[:, 0], -contacts.normal[:, 1])
+    angles = _slopes(contacts.normal)
     places = model.bead_positions(contacts.bead)
     return {
         bead: Touch(float(angle), place.copy())
