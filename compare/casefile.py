@@ -282,10 +282,10 @@ def read_beam(raw: dict[str, Any], path: Path) -> Beam:
     """
     if "beam" not in raw:
         raise InputError(f"{path}: [beam]", "missing", "given", "add the table")
-    tables, seen = {"beam": raw["beam"]}, {"bare": [], "united": []}
-    return _validated(
-        _BeamFile, tables, lambda keys: f"{path}: {'.'.join(keys)}", seen
-    ).beam.build()
+    seen: dict[str, list[str]] = {"bare": [], "united": []}
+    tables = {"beam": raw["beam"]}
+    file = _validated(_BeamFile, tables, lambda keys: f"{path}: {'.'.join(keys)}", seen)
+    return file.beam.build()
 
 
 def _validated(

@@ -29,7 +29,7 @@ from compare.figures import reconstruction, save_figure
 from compare.measured import read_measured, write_table
 from compare.paper_figures import paper_figures
 from compare.report import write_report
-from compare.study.cli import study
+from compare.study.cli import study, study_report
 
 # Any wrong word on the command line; typer may bring its own copy of click, whose base this is.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
@@ -42,6 +42,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command()(study)
+app.command()(study_report)
 _told = Console(highlight=False)
 _noted = Console(stderr=True, highlight=False)
 

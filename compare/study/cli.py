@@ -23,6 +23,7 @@ from compare.study.crews import dask_crew, local_crew
 from compare.study.estimate import estimate
 from compare.study.execute import carry_out
 from compare.study.plan import Plan
+from compare.study.report import write_report
 from compare.study.run import Recipe
 from compare.study.store import Store
 from compare.study.studyfile import load_study
@@ -70,6 +71,14 @@ def study(
                     advance()
     said = ", ".join(f"{number} {outcome}" for outcome, number in sorted(counts.items()))
     _told.print(f"{said or 'nothing to do'}; in {folder}", soft_wrap=True, markup=False)
+    return 0
+
+
+def study_report(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a study.")],
+) -> int:
+    """Tables and figures of a study, also of one that is under way."""
+    _told.print(f"wrote {write_report(folder, _warn)}", soft_wrap=True, markup=False)
     return 0
 
 
