@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from itertools import combinations
+from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -9,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from analytic.problem.readings import CLAMP_READINGS
 from compare.figures import PHASE_COLOURS
@@ -29,6 +31,7 @@ _AXES = {
     "beam.radius": "radius of the vibrissa [length]",
     "noise.relative": "noise, of each reading's largest magnitude",
     "profile.a": "$a$ of the object [1/length]",
+    "profile.c": "$c$ of the object [length]",
 }
 PANELS: dict[str, dict[str, str]] = {
     "disagreement, rms\n(of the largest magnitude)": {
@@ -69,15 +72,15 @@ def axis_curves(found: Findings) -> Iterator[tuple[str, Figure]]:
                     ax.fill_between(
                         line[axis], line["low"], line["high"], color=colour, alpha=0.15, linewidth=0
                     )
-            _scale(ax, found.done[axis], "x")
+            _place(ax, found.done[axis], "x")
             if column == "contact_length_minimum":
                 ax.axhline(1, color="#555555", linestyle="--", linewidth=1, label="Phase B below")
-            else:
-                _scale(ax, pd.concat([found.done[c].abs() for c in columns]), "y")
+            elif _spans_decades(pd.concat([found.done[c].abs() for c in columns])):
+                ax.set_yscale("log")
             ax.set_xlabel(_label(axis))
             ax.set_ylabel(label)
             if ax.get_legend_handles_labels()[0] and len(ax.lines) > 1:
-                ax.legend(fontsize=8, frameon=False)
+                ax.legend(fontsize=8, framealpha=0.85)
         yield f"curves-{axis}", figure
 
 
@@ -88,8 +91,8 @@ def heat_maps(found: Findings) -> Iterator[tuple[str, Figure]]:
         for label, columns in panels(found).items()
     ]
     for across, up in combinations(found.plain_axes, 2) if shown else ():
-        if tables.together(found.done, across, up) and _few(found.done[across]):
-            continue  # a line, not a plane
+        if tables.together(found.done, across, up) and tables.together(found.done, up, across):
+            continue  # zipped or each sampled: see the curves
         figure = Figure(figsize=(1 + 4.4 * len(shown), 3.8), layout="constrained")
         for ax, (label, column) in zip(
             np.atleast_1d(figure.subplots(1, len(shown))), shown, strict=True
@@ -98,8 +101,8 @@ def heat_maps(found: Findings) -> Iterator[tuple[str, Figure]]:
             ax.set_title(label if column != WORST else "worst reading's " + label, fontsize=9)
             ax.set_xlabel(_label(across))
             ax.set_ylabel(_label(up))
-            _scale(ax, found.done[across], "x")
-            _scale(ax, found.done[up], "y")
+            _place(ax, found.done[across], "x")
+            _place(ax, found.done[up], "y")
         yield f"map-{across}-{up}", figure
 
 
@@ -128,7 +131,7 @@ def _map(ax: Axes, done: pd.DataFrame, across: str, up: str, column: str) -> Non
     table = done[[across, up, column]].dropna().abs()
     norm = LogNorm() if _spans_decades(table[column]) else Normalize()
     drawn: ScalarMappable
-    if _few(table[across]) and _few(table[up]):
+    if len(table) >= table[across].nunique() * table[up].nunique():  # a grid, not a sample
         grid = table.pivot_table(values=column, index=up, columns=across, aggfunc="median")
         drawn = ax.pcolormesh(
             grid.columns, grid.index, grid, shading="nearest", norm=norm, cmap="cividis"
@@ -148,19 +151,23 @@ def _map(ax: Axes, done: pd.DataFrame, across: str, up: str, column: str) -> Non
         bar.ax.axhline(1, color=PHASE_COLOURS["tangent"], linewidth=2)
 
 
-def _scale(ax: Axes, values: pd.Series, which: str) -> None:
-    """Logarithmic where the values ask for it."""
-    if _spans_decades(values):
+def _place(ax: Axes, values: pd.Series, which: Literal["x", "y"]) -> None:
+    """Logarithmic where a parameter asks for it; ticks at its values where they are few."""
+    logarithmic = values.min() > 0 and _spans_decades(values)
+    if logarithmic:
         (ax.set_xscale if which == "x" else ax.set_yscale)("log")
+    place = ax.xaxis if which == "x" else ax.yaxis
+    ticks = np.unique(values)
+    if not logarithmic:
+        place.set_major_locator(MaxNLocator(5))
+    if len(ticks) <= 6:
+        place.set_ticks(ticks, [f"{tick:.4g}" for tick in ticks])
+        place.set_ticks([], minor=True)
 
 
 def _spans_decades(values: pd.Series) -> bool:
     values = values[values != 0]
     return bool(len(values) and values.min() > 0 and values.max() / values.min() >= 7)
-
-
-def _few(values: pd.Series) -> bool:
-    return values.nunique() <= 60
 
 
 def _varies(done: pd.DataFrame, column: str) -> bool:

@@ -143,6 +143,12 @@ class _Reader:
         tables = self._case_tables()
         self._tables = flatten(tables)
         checked = validate(tables, file.place)
+        try:
+            checked.physics(self._folder)
+        except InputError as error:
+            named, _, _ = str(error).partition(" = ")
+            where = file.place(named.split(".") if "." in named else ["profile"])
+            raise InputError(where, "unusable", "usable", str(error)) from error
         base = flatten(checked.model_dump(exclude={"name"})) | self._noise({})
         self._base = {key: value for key, value in base.items() if value is not None}
         if MESH in base:
@@ -303,7 +309,8 @@ class _Reader:
 
     def _told(self, error: ValidationError, outer: list[str]) -> InputError:
         """A validation error of the study's own tables in one line."""
-        first = error.errors()[0]
+        # A misspelt key also leaves one missing: the misspelling is the cause.
+        first = min(error.errors(), key=lambda found: found["type"] != "extra_forbidden")
         where = outer or [str(part) for part in first["loc"]]
         name, value = self._file.place(where), repr(first["input"])
         if first["type"] == "extra_forbidden":

@@ -165,8 +165,7 @@ def together(done: pd.DataFrame, one: str, other: str) -> bool:
 def _grouped(
     done: pd.DataFrame, keys: Sequence[str]
 ) -> Iterator[tuple[dict[str, object], pd.DataFrame]]:
-    """The runs by the values of `keys`; together if there are too many values to tell apart."""
-    keys = [key for key in keys if done[key].nunique() <= 30]
+    """The runs by the values of `keys`."""
     if not keys:
         yield {}, done
         return
