@@ -8,6 +8,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from compare.cli import main
 from compare.study.plan import Plan
 from compare.study.store import read_rows
 from compare.study.studyfile import load_study
@@ -46,3 +47,18 @@ def plan_of(tmp_path) -> Callable[[str], Plan]:
         return Plan.of(load_study(str(path)))
 
     return make
+
+
+@pytest.fixture
+def command(tmp_path, monkeypatch, capsys) -> Callable[..., subprocess.CompletedProcess]:
+    """The command line without a new process; what it starts itself is real."""
+
+    def run(*arguments):
+        monkeypatch.chdir(tmp_path)
+        monkeypatch.setattr(sys, "argv", ["vibrissa", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        told = capsys.readouterr()
+        return subprocess.CompletedProcess(arguments, ended.value.code, told.out, told.err)
+
+    return run

@@ -3,21 +3,20 @@
 import os
 import signal
 import time
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
-from multiprocessing import get_context
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 
 import pytest
 
+from compare.study.crews import local_crew
 from compare.study.execute import Crew, carry_out
 from compare.study.run import Recipe, Result, perform, perform_alone
 from tests.study.conftest import EVENTS_ONLY
 
 
-def crew(perform, executor=None):
-    def processes():
-        return ProcessPoolExecutor(2, get_context("forkserver"))
-
-    return Crew(executor or processes, perform, 5, pytest.fail)
+def crew(perform, hire=None):
+    local = local_crew(2)
+    return Crew(hire or local.hire, perform, 5, pytest.fail)
 
 
 def quick(recipe, run):
@@ -26,11 +25,10 @@ def quick(recipe, run):
 
 def killed_once(recipe, run):
     """The first run that finds no mark kills its worker, as the system does when memory is out."""
-    try:
+    with suppress(FileExistsError):
         os.close(os.open(recipe.base["mark"], os.O_CREAT | os.O_EXCL))
-    except FileExistsError:
-        return quick(recipe, run)
-    os.kill(os.getpid(), signal.SIGKILL)
+        os.kill(os.getpid(), signal.SIGKILL)
+    return quick(recipe, run)
 
 
 def deadly(recipe, run):

@@ -101,7 +101,7 @@ def test_a_plan_survives_its_file(plan_of):
     ("text", "told"),
     [
         ("[axes]\nbeam.radis = [1]\n", ["line 3", "axes.beam.radis", "did you mean radius"]),
-        ("[axes]\nbeam.radius = [\n  0.1,\n  -1,\n]\n", ["line 3", "axes.beam.radius", "-1"]),
+        ("[axes]\nbeam.radius = [\n  0.01,\n  -1,\n]\n", ["line 3", "axes.beam.radius", "-1"]),
         ("[axes]\nbeam.radius = { from = 0.0, to = 1e-2, count = 3, spacing = 'log' }\n",
          ["line 3", "both positive"]),
         ("[axes]\nbeam.radius = { from = 0.0, too = 1e-2 }\n", ["line 3", "did you mean to"]),
