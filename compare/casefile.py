@@ -1,11 +1,10 @@
 """Cases from names and TOML files, with units and with errors that a person can act on."""
 
 import difflib
-import tomllib
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar, cast
+from typing import Annotated, Any, Literal, TypeAlias, TypeVar, cast
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
@@ -28,8 +27,12 @@ from analytic import (
     two_circles,
 )
 from analytic.problem.contour import Contour
+from compare.tomlfile import TomlFile
 from compare.units import in_si
 from mujoco_models.settings import Settings
+
+Place: TypeAlias = Callable[[Sequence[str]], str]
+"""What an error calls a key: where it is, and its name."""
 
 
 def _quantity(dimension: str) -> Callable[[Any, ValidationInfo], float]:
@@ -165,7 +168,19 @@ class _SweepTable(_Table):
         return Sweep(self.stations, self.start, self.stop)
 
 
-class _CaseFile(_Table):
+class CaseFile(_Table):
+    """What a case file holds; dimensions in one system of units, SI if units are given.
+
+    Parameters
+    ----------
+    name : str, optional
+        What files and reports call the case.
+    beam, profile, sweep : table
+        The physics.
+    mujoco : Settings
+        The numerics of the simulation.
+    """
+
     name: str | None = None
     beam: _BeamTable = _BeamTable()
     profile: Annotated[
@@ -174,6 +189,14 @@ class _CaseFile(_Table):
     ]
     sweep: _SweepTable = _SweepTable()
     mujoco: Annotated[Settings, Field(default_factory=Settings)]
+
+    def physics(self, folder: Path) -> tuple[Beam, Contour]:
+        """The vibrissa and the object, without a sweep; file paths are relative to `folder`."""
+        return self.beam.build(), self.profile.build(folder)
+
+    def case(self, folder: Path, name: str) -> Case:
+        """The whole problem, called `name` if the file does not say otherwise."""
+        return Case(*self.physics(folder), self.sweep.build(), self.name or name)
 
 
 class _BeamFile(_Table):
@@ -211,15 +234,42 @@ def load_job(name_or_path: str) -> Job:
             f"one of {', '.join(CASE_NAMES)}, or the path of a .toml file",
             f"did you mean {near[0]}?" if near else "`vibrissa cases` lists them",
         )
-    try:
-        raw = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
+    file = TomlFile.read(path, "case file")
+    case_file = validate(file.tables, file.place)
+    return Job(case_file.case(path.parent, path.stem), case_file.mujoco)
+
+
+def validate(tables: dict[str, Any], place: Place) -> CaseFile:
+    """What a case file's tables say.
+
+    Parameters
+    ----------
+    tables : dict
+        As parsed.
+    place : callable
+        What an error calls a key.
+
+    Raises
+    ------
+    InputError
+        If there are unknown keys, wrong types, unknown units, or numbers with and without units
+        mixed.
+    """
+    seen: dict[str, list[str]] = {"bare": [], "united": []}
+    file = _validated(CaseFile, tables, place, seen)
+    scale = tables["profile"].get("scale")
+    if isinstance(scale, str):  # the shape's own numbers are then in units of the scale
+        seen["bare"] = [name for name in seen["bare"] if name not in tables["profile"]]
+    if seen["bare"] and seen["united"]:
+        bare = seen["bare"][0]
+        table = next(t for t in ("beam", "profile", "sweep") if bare in tables.get(t, {}))
         raise InputError(
-            "case file", path, "readable", f"check the path ({type(error).__name__})"
-        ) from error
-    except tomllib.TOMLDecodeError as error:
-        raise InputError("case file", path, "valid TOML", f"mend it: {error}") from error
-    return _build(raw, path)
+            place([table, bare]),
+            "without a unit",
+            f"given with a unit, as {seen['united'][0]} is",
+            "write all dimensions with units, or none",
+        )
+    return file
 
 
 def read_beam(raw: dict[str, Any], path: Path) -> Beam:
@@ -232,43 +282,27 @@ def read_beam(raw: dict[str, Any], path: Path) -> Beam:
     """
     if "beam" not in raw:
         raise InputError(f"{path}: [beam]", "missing", "given", "add the table")
-    return _validated(
-        _BeamFile, {"beam": raw["beam"]}, path, {"bare": [], "united": []}
-    ).beam.build()
+    seen: dict[str, list[str]] = {"bare": [], "united": []}
+    tables = {"beam": raw["beam"]}
+    file = _validated(_BeamFile, tables, lambda keys: f"{path}: {'.'.join(keys)}", seen)
+    return file.beam.build()
 
 
 def _validated(
-    schema: type[_Schema], raw: dict[str, Any], path: Path, seen: dict[str, list[str]]
+    schema: type[_Schema], raw: dict[str, Any], place: Place, seen: dict[str, list[str]]
 ) -> _Schema:
     try:
         return TypeAdapter(schema).validate_python(raw, context=seen)
     except ValidationError as error:
-        raise _told(error.errors()[0], path) from error
+        raise _told(error.errors()[0], place) from error
 
 
-def _build(raw: dict[str, Any], path: Path) -> Job:
-    seen: dict[str, list[str]] = {"bare": [], "united": []}
-    file = _validated(_CaseFile, raw, path, seen)
-    scale = raw["profile"].get("scale")
-    if isinstance(scale, str):  # the shape's own numbers are then in units of the scale
-        seen["bare"] = [name for name in seen["bare"] if name not in raw["profile"]]
-    if seen["bare"] and seen["united"]:
-        raise InputError(
-            f"{path}: {seen['bare'][0]}",
-            "without a unit",
-            f"given with a unit, as {seen['united'][0]} is",
-            "write all dimensions with units, or none",
-        )
-    case = Case(file.beam.build(), file.profile.build(path.parent), file.sweep.build())
-    return Job(replace(case, name=file.name or path.stem), file.mujoco)
-
-
-def _told(error: ErrorDetails, path: Path) -> InputError:
+def _told(error: ErrorDetails, place: Place) -> InputError:
     """A validation error in one line."""
     where = [str(part) for part in error["loc"]]
     if len(where) > 1 and where[0] == "profile":  # drop the union's tag
         where = [where[0], *where[2:]]
-    name = f"{path}: {'.'.join(where)}"
+    name = place(where)
     value = error["input"]
     match error["type"]:
         case "extra_forbidden" | "unexpected_keyword_argument":
@@ -301,7 +335,7 @@ def _keys(where: list[str], error: ErrorDetails) -> list[str]:
     """The keys that the table at `where` may have."""
     match where:
         case []:
-            return list(_CaseFile.model_fields)
+            return list(CaseFile.model_fields)
         case ["beam"]:
             return list(_BeamTable.model_fields)
         case ["sweep"]:

@@ -29,6 +29,7 @@ from compare.figures import reconstruction, save_figure
 from compare.measured import read_measured, write_table
 from compare.paper_figures import paper_figures
 from compare.report import write_report
+from compare.study.cli import study, study_report
 
 # Any wrong word on the command line; typer may bring its own copy of click, whose base this is.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
@@ -40,6 +41,8 @@ app = typer.Typer(
     help="A vibrissa swept past a convex object: the exact elastica against MuJoCo.",
     pretty_exceptions_enable=False,
 )
+app.command()(study)
+app.command()(study_report)
 _told = Console(highlight=False)
 _noted = Console(stderr=True, highlight=False)
 

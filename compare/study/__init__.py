@@ -1,0 +1,12 @@
+"""Parameter studies: one case, many runs, on every core or on a cluster, resumable.
+
+``studyfile -> plan -> execute(run) -> store -> report``: a study file says what is varied, the plan
+lists the runs lazily, an executor of any kind does them, each becomes one row of a Parquet
+dataset, and the report reads nothing but that.
+"""
+
+from compare.study.plan import Plan
+from compare.study.store import read_rows
+from compare.study.studyfile import Study, load_study
+
+__all__ = ["Plan", "Study", "load_study", "read_rows"]

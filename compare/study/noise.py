@@ -1,0 +1,38 @@
+"""Sensor noise, added to the clamp readings of a sweep."""
+
+from dataclasses import replace
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+from analytic import Readings
+from analytic.problem.readings import CLAMP_READINGS
+
+
+class Noise(BaseModel):
+    """Gaussian noise of the sensor at the clamp.
+
+    Parameters
+    ----------
+    relative : float
+        Standard deviation, relative to each reading's largest magnitude.
+    seed : int
+        The same seed draws the same noise, whatever the case.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    relative: float = Field(default=0.0, ge=0, lt=1)
+    seed: int = Field(default=0, ge=0)
+
+    def add_to(self, readings: Readings) -> Readings:
+        """`readings` as a sensor with this noise gives them; the contact truth is kept."""
+        if self.relative == 0:
+            return readings
+        generator = np.random.default_rng(self.seed)
+        noisy = {}
+        for name in CLAMP_READINGS:
+            values = readings.values(name)
+            deviation = self.relative * np.nanmax(np.abs(values))
+            noisy[name] = values + deviation * generator.standard_normal(len(values))
+        return replace(readings, table=readings.table.assign(**noisy))
