@@ -169,5 +169,5 @@ def _grouped(
     if not keys:
         yield {}, done
         return
-    for values, group in done.groupby(keys):
+    for values, group in done.groupby(list(keys)):
         yield dict(zip(keys, values, strict=True)), group

@@ -89,7 +89,7 @@ def test_snap_off_stays_when_the_relaxation_is_refined(change):
 
 
 def test_the_tip_is_not_pushed_out_through_the_top():
-    """The mesh goes on beyond the tip's reach; cut at it, the first contacts once had -9e4 EI/L^2."""
+    """The mesh goes on beyond the reach of the tip; cut there, first contacts had -9e4 EI/L^2."""
     table = simulated_sweep("catenary", Settings(contour_points=12_800)).table
     exact = solve_sweep(named_case("catenary")).table
     assert (table["force_y"] - exact["force_y"]).abs().max() < 0.5
