@@ -1,0 +1,197 @@
+"""The budget of a disagreement, from readings alone."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from analytic import InputError, Readings
+from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.readings import CLAMP_READINGS
+from compare.budget.plan import REFINED, STIFFER
+from compare.budget.suspects import Suspect, suspects
+from compare.tolerances import Tolerances
+
+PARTS = (
+    "discretisation",
+    "facets",
+    "softness",
+    "unrest",
+    "sensor",
+    "extension",
+    "unexplained",
+)
+_SAFETY = 1.25  # Roache's, for a convergence index from three or more grids
+_ORDERS = (1.0, 2.0)  # what a chain can have: of a naive clamp, and of one at mid-cell
+_UNRESOLVED = 5e-5  # of the largest magnitude; what may stay unexplained in any case
+
+
+@dataclass(frozen=True)
+class Part:
+    """One part of the disagreement of one reading, relative to its largest magnitude."""
+
+    rms: float
+    uncertainty: float
+
+
+@dataclass(frozen=True)
+class Budget:
+    """What the disagreement of two sweeps is made of.
+
+    Attributes
+    ----------
+    parts : dict
+        `Part` by name and reading.
+    disagreement : dict
+        Root mean square by reading.
+    by_phase : dict
+        Root mean square by part, reading and phase.
+    order : float
+        Observed order of convergence in the number of segments.
+    closes : bool
+        Whether what is unexplained lies within the uncertainty of the parts.
+    blame : str
+        The part that dominates.
+    suspects : tuple of Suspect
+        Faults of the physics that would explain what the numerics do not, likeliest first.
+    stations : int
+        Compared stations.
+    """
+
+    parts: dict[str, dict[str, Part]]
+    disagreement: dict[str, float]
+    by_phase: dict[str, dict[str, dict[str, float]]]
+    order: float
+    closes: bool
+    blame: str
+    suspects: tuple[Suspect, ...]
+    stations: int
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``budget.json`` holds."""
+        return asdict(self)
+
+
+def budget(
+    exact: Readings,
+    runs: Mapping[str, Readings],
+    variations: Mapping[str, Readings],
+    tolerances: Tolerances | None = None,
+) -> Budget:
+    """Split the disagreement of ``runs["base"]`` with `exact` into its parts.
+
+    Parameters
+    ----------
+    exact : Readings
+        The reference.
+    runs : mapping
+        Sweeps of the candidate by the names of `controlled_changes`, over the same stations.
+    variations : mapping
+        The reference with one thing of the physics changed, by the names of `suspects.VARIED`.
+    tolerances : Tolerances, optional
+        Only its window before the snap-off is used, where readings grow without bound.
+
+    Raises
+    ------
+    InputError
+        If no station is in contact and trusted in all sweeps.
+    """
+    tolerances = Tolerances() if tolerances is None else tolerances
+    kept = _common(exact, [*runs.values()], tolerances.snap_off_window)
+    if not kept.any():
+        raise InputError(
+            "stations common to all sweeps of the budget", 0, "some", "see their status"
+        )
+    scale = {
+        name: float(np.abs(exact.values(name)[exact.trusted]).max()) for name in CLAMP_READINGS
+    }
+
+    def signal(readings: Readings) -> Floats:
+        return np.stack([readings.values(name)[kept] / scale[name] for name in CLAMP_READINGS])
+
+    truth = signal(exact)
+    run = {name: signal(readings) for name, readings in runs.items()}
+    order = _order(run["base"] - run["two"], run["two"] - run["four"])
+    ahead = (run["four"] - run["two"]) / (2**order - 1)  # from the finest segments to their limit
+    signals = {
+        "discretisation": run["base"] - (run["four"] + ahead),
+        "facets": run["four"] - run["four_smooth"],
+        "softness": (run["smooth"] - run["smooth_stiff"]) * STIFFER / (STIFFER - 1),
+        "unrest": run["base"] - run["calm"],
+        "sensor": _sensor(runs["base"], kept, scale),
+        "extension": np.zeros_like(truth),  # every beam's links are rigid
+    }
+    total = run["base"] - truth
+    signals["unexplained"] = total - np.sum(list(signals.values()), axis=0)
+    uncertainty = {
+        "discretisation": _SAFETY * _rms(ahead),
+        "facets": _SAFETY * _rms(signals["facets"]) / (REFINED - 1),
+        "softness": _SAFETY * _rms(signals["softness"]) / (STIFFER - 1),
+        "unrest": _rms(signals["unrest"]),
+        "sensor": _rms(signals["sensor"]),
+        "extension": np.zeros(len(CLAMP_READINGS)),
+    }
+    uncertainty["unexplained"] = np.sqrt(np.sum([u**2 for u in uncertainty.values()], axis=0))
+    sizes = {name: _rms(part) for name, part in signals.items()}
+    unresolved = np.hypot(uncertainty["unexplained"], _UNRESOLVED)
+    phase = exact.table["phase"].to_numpy()[kept]
+    return Budget(
+        {
+            name: {
+                reading: Part(float(sizes[name][i]), float(uncertainty[name][i]))
+                for i, reading in enumerate(CLAMP_READINGS)
+            }
+            for name in PARTS
+        },
+        {reading: float(x) for reading, x in zip(CLAMP_READINGS, _rms(total), strict=True)},
+        {
+            name: {
+                reading: {str(p): float(_rms(part[i, phase == p])) for p in np.unique(phase)}
+                for i, reading in enumerate(CLAMP_READINGS)
+            }
+            for name, part in signals.items()
+        },
+        order,
+        bool((sizes["unexplained"] <= unresolved).all()),
+        max(PARTS, key=lambda name: float(np.linalg.norm(sizes[name]))),
+        suspects(
+            signals["unexplained"],
+            {name: signal(varied) - truth for name, varied in variations.items()},
+            float(np.linalg.norm(unresolved)),
+        ),
+        int(kept.sum()),
+    )
+
+
+def _common(exact: Readings, runs: list[Readings], window: float) -> Booleans:
+    """Stations in contact and trusted in every sweep, outside the window before the snap-off."""
+    foot_x = exact.values("foot_x")
+    kept = np.ones(len(foot_x), dtype=bool)
+    for readings in (exact, *runs):
+        kept &= readings.trusted & (readings.table["phase"] != "free").to_numpy()
+    if exact.snap_off is not None:
+        kept &= foot_x - exact.snap_off > window * np.ptp(foot_x)
+    return kept
+
+
+def _order(coarse: Floats, fine: Floats) -> float:
+    """Observed order of convergence, within what it can be."""
+    with np.errstate(divide="ignore"):
+        observed = np.log2(np.linalg.norm(coarse) / np.linalg.norm(fine))
+    return float(np.clip(observed, *_ORDERS))
+
+
+def _sensor(base: Readings, kept: Booleans, scale: Mapping[str, float]) -> Floats:
+    """The sensors' discrepancy from the sum of the contacts, the worst of the three readings."""
+    discrepancy = base.values("discrepancy")[kept]
+    beam = base.beam
+    units = (beam.force_unit, beam.force_unit, beam.moment_unit)
+    return np.stack(
+        [discrepancy * u / scale[name] for name, u in zip(CLAMP_READINGS, units, strict=True)]
+    )
+
+
+def _rms(signals: Floats) -> Floats:
+    """Over the stations, the last axis."""
+    return np.asarray(np.sqrt(np.mean(signals**2, axis=-1)))
