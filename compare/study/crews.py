@@ -1,5 +1,6 @@
 """The crews that there are: the cores of this machine, or a Dask cluster."""
 
+import logging
 import os
 import signal
 from concurrent.futures import Executor, ProcessPoolExecutor
@@ -12,6 +13,9 @@ from compare.study.execute import Crew
 from compare.study.run import perform, perform_alone
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+# What they log when the scheduler goes, this module tells in a line.
+_CHATTY = ("distributed.client", "distributed.core", "tornado.application", "asyncio")
 
 
 def local_crew(workers: int) -> Crew:
@@ -44,6 +48,8 @@ def dask_crew(address: str) -> Crew:
         raise InputError(
             "--scheduler", address, "left out without Dask", "pip install 'vibrissa-testbed[dask]'"
         ) from error
+    for name in _CHATTY:
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         client: Any = Client(address, timeout=10)  # type: ignore[no-untyped-call]
         threads = client.nthreads()

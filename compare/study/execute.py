@@ -63,7 +63,9 @@ def carry_out(runs: Iterable[Run], recipe: Recipe, crew: Crew) -> Iterator[Resul
                     yield _alone(run, recipe, crew)
                 executor = crew.hire()
     finally:
-        executor.shutdown(wait=False, cancel_futures=True)
+        for future in under_way:
+            future.cancel()
+        executor.shutdown(wait=False)
 
 
 def _collect(under_way: dict[Future[Result], Run], crew: Crew) -> Iterator[Result]:

@@ -106,16 +106,16 @@ def test_a_cluster_gives_the_same_table(folder, cluster):
 
 def test_a_scheduler_that_goes_loses_nothing(folder, cluster):
     address, scheduler = cluster
-    (folder / "grid.toml").write_text(FEW_HUNDRED.replace("100", "1000"))
+    (folder / "grid.toml").write_text(FEW_HUNDRED.replace("100", "500"))
     process = start(folder, "--scheduler", address)
     while not list((folder / "out" / "runs").glob(".journal*")):
         time.sleep(0.1)
     time.sleep(6)
     scheduler.kill()
     _, error = process.communicate(timeout=120)
+    assert process.returncode == 2, error
     assert process.returncode == 2
-    assert "--scheduler" in error.splitlines()[-1]
-    assert "Traceback" not in error
+    assert [line for line in error.splitlines() if "--scheduler" not in line] == []
     before = len(results(folder / "out"))
     assert before > 0
     again = vibrissa("study", "grid.toml", "--out", "out", cwd=folder)
@@ -123,8 +123,8 @@ def test_a_scheduler_that_goes_loses_nothing(folder, cluster):
 
 
 def spin(recipe, run):
-    """A run of a tenth of a second of work."""
-    end = time.process_time() + 0.1
+    """A run of a fifth of a second of work."""
+    end = time.process_time() + 0.2
     while time.process_time() < end:
         pass
     return Result({"run": run.id, "outcome": "done"})
