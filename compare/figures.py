@@ -42,7 +42,9 @@ def geometry(comparison: Comparison) -> Figure:
         ax.set_ylabel("$y$ / $L$")
         ax.set_aspect("equal")
         ax.axhline(0, color="#999999", linewidth=0.8, zorder=0)
-    axes[-1].set_xlabel("$x$ / $L$   (the foot moves to the left along $y = 0$)")
+    foot_x = _foot(comparison.reference)
+    whither = "right" if foot_x[-1] > foot_x[0] else "left"
+    axes[-1].set_xlabel(f"$x$ / $L$   (the foot moves to the {whither} along $y = 0$)")
     handles = [Line2D([], [], color=PHASE_COLOURS[p], label=PHASE_NAMES[p]) for p in PHASE_COLOURS]
     handles += [
         Line2D([], [], color="#555555", linewidth=2.5, label="object"),

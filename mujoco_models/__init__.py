@@ -6,6 +6,7 @@ MuJoCo itself is imported when a sweep starts, not before.
 from collections.abc import Callable
 
 from analytic.problem.case import Case
+from analytic.problem.mirror import solve_either_way
 from analytic.problem.readings import Readings
 from mujoco_models.settings import Settings
 
@@ -45,4 +46,5 @@ def simulate_sweep(
     """
     from mujoco_models.sweep import run_sweep
 
-    return run_sweep(case, settings or Settings(), advance)
+    chosen = settings or Settings()
+    return solve_either_way(case, lambda leftward: run_sweep(leftward, chosen, advance))

@@ -25,7 +25,7 @@ _HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below it ju
 
 
 def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Readings:
-    """Sweep the chain; see `mujoco_models.simulate_sweep`."""
+    """Sweep the chain to the left; see `mujoco_models.simulate_sweep`."""
     if case.radius == 0:
         raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
     obstacle = Obstacle.of(case, settings.contour_points)

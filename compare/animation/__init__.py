@@ -47,16 +47,21 @@ def write_animation(
     Raises
     ------
     InputError
-        If there are too few frames.
+        If there are too few frames, or nothing is touched.
     """
     if frames < 2:
         raise InputError("--frames", frames, "2 or more", "60 is usual")
-    scene = Scene(Motion.of(reference), Motion.of(candidate))
-    touching = np.flatnonzero(scene.reference.phase != "free")
+    moving = Motion.of(reference), Motion.of(candidate)
+    touching = np.flatnonzero(np.isin(moving[0].phase, ("tip", "tangent")))
+    if not touching.size:
+        raise InputError(
+            f"stations in contact ({reference.source})", 0, "one or more", "sweep farther"
+        )
+    scene = Scene(*moving)
     chosen = np.linspace(0, len(reference.table) - 1, frames).astype(int)
     images = list(scene.images(np.unique(chosen), advance))
     written = [save_gif(images, folder / "animation.gif")]
-    for number, share in enumerate(_STILLS if touching.size else (), start=1):
+    for number, share in enumerate(_STILLS, start=1):
         station = touching[round(share * (len(touching) - 1))]
         written.append(scene.save_still(int(station), folder / f"still-{number}.png"))
     return written

@@ -1,5 +1,7 @@
 """The parts of the picture that move: the vibrissae in front of the object, and the curves."""
 
+from typing import Literal
+
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.artist import Artist
@@ -24,6 +26,7 @@ _SYMBOLS = {
 }
 _MARKS = 50  # of the candidate in a curve
 _LONGEST_ARROW = 0.75  # L; the largest contact force
+_LOWEST, _HIGHEST = -0.1, 1.08  # L; the least that is shown
 
 
 class View:
@@ -60,9 +63,10 @@ class View:
         (self._contact,) = ax.plot(
             [], [], "o", color=INK, markersize=4.5 if follows else 2.5, zorder=6
         )
+        longest, pivot = _arrow(reference)
         self.force = ax.quiver(
-            [0.0], [0.0], [0.0], [0.0], color=INK, angles="xy", scale_units="xy", pivot="tip",
-            scale=reference.force.max() / _LONGEST_ARROW, zorder=6,
+            [0.0], [0.0], [0.0], [0.0], color=INK, angles="xy", scale_units="xy", pivot=pivot,
+            scale=reference.force.max() / longest, zorder=6,
             units="dots", width=2.4 if follows else 1.4, minlength=0,
         )  # fmt: skip
         ax.add_patch(body)
@@ -84,7 +88,7 @@ class View:
         if not self._follows:
             x = np.append(x, self._outline[:, 0])
         left, right = _padded(x, 0.12 if self._follows else 0.02)
-        low, high = (-0.2, 1.1) if self._follows else (-0.1, 1.08)
+        low, high = (_LOWEST - 0.1 * self._follows, _HIGHEST)
         box = self.ax.get_position(original=True)
         width, height = np.array(size) * (box.width, box.height)
         wide = max(0.0, (high - low) * width / height - (right - left)) / 2
@@ -142,6 +146,20 @@ class Curve:
         self._line.set_data(x[: station + 1], values[: station + 1])
         self._dots.set_data(other_x[: other + 1], other_values[: other + 1])
         self._head.set_data(x[station : station + 1], values[station : station + 1])
+
+
+def _arrow(motion: Motion) -> tuple[float, Literal["tip", "tail"]]:
+    """How long the largest contact force may be drawn [L], and by which end it is held.
+
+    It ends at the contact if there is more room above, inside a low object, and starts there if
+    there is more below a high one.
+    """
+    eta = motion.contact[:, 1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        stretch = motion.force.max() / motion.clamp["force_y"]
+        above = float(np.nanmin((_HIGHEST - eta) * stretch))
+        below = float(np.nanmin((eta - _LOWEST) * stretch))
+    return min(_LONGEST_ARROW, max(above, below)), "tip" if above > below else "tail"
 
 
 def _outline(readings: Readings) -> Floats:
