@@ -143,6 +143,18 @@ def simulate(
 
 
 @app.command()
+def view(
+    case: CaseName, stations: Stations = None, segments: Segments = None, beam: Beam = None
+) -> int:
+    """Show the sweep in MuJoCo's interactive viewer."""
+    from mujoco_models import view_sweep  # MuJoCo is imported only where it is used
+
+    job = _job(case, stations, segments, beam)
+    view_sweep(job.case, job.settings)
+    return AGREES
+
+
+@app.command()
 def animate(
     case: CaseName,
     out: Out = None,

@@ -10,7 +10,7 @@ from analytic.problem.mirror import solve_either_way
 from analytic.problem.readings import Readings
 from mujoco_models.settings import Settings
 
-__all__ = ["Settings", "available_beams", "simulate_sweep"]
+__all__ = ["Settings", "available_beams", "simulate_sweep", "view_sweep"]
 
 
 def available_beams() -> tuple[str, ...]:
@@ -48,3 +48,16 @@ def simulate_sweep(
 
     chosen = settings or Settings()
     return solve_either_way(case, lambda leftward: run_sweep(leftward, chosen, advance))
+
+
+def view_sweep(case: Case, settings: Settings | None = None) -> None:
+    """Show the sweep of `case` in MuJoCo's interactive viewer, until its window is closed.
+
+    Raises
+    ------
+    InputError
+        If there is no display, or the case's beam has no radius.
+    """
+    from mujoco_models.view import show
+
+    show(case, settings or Settings())

@@ -26,15 +26,10 @@ _HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below it ju
 
 def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Readings:
     """Sweep the chain to the left; see `mujoco_models.simulate_sweep`."""
-    if case.radius == 0:
-        raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
-    obstacle = Obstacle.of(case, settings.contour_points)
-    layout = Layout.of(settings, case.radius, obstacle)
-    model = ChainModel(layout, case.radius, obstacle, settings.contact_stiffness)
-    foot_x = case.foot_x / case.beam.length
-    walk = _Walk(model, float(foot_x[0]), settings.tolerance)
+    walk = set_out(case, settings)
+    obstacle = walk.model.obstacle
     rows = []
-    for target in foot_x:
+    for target in case.foot_x / case.beam.length:
         walk.go_to(float(target))
         rows.append(walk.row())
         advance()
@@ -62,11 +57,21 @@ def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Re
     return Readings(table[[*COLUMNS, *extra]], beam, f"mujoco {settings.beam}", provenance)
 
 
-class _Walk:
+def set_out(case: Case, settings: Settings) -> "Walk":
+    """The chain, straight, with its foot at the first station of a sweep to the left."""
+    if case.radius == 0:
+        raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
+    obstacle = Obstacle.of(case, settings.contour_points)
+    layout = Layout.of(settings, case.radius, obstacle)
+    model = ChainModel(layout, case.radius, obstacle, settings.contact_stiffness)
+    return Walk(model, float(case.foot_x[0]) / case.beam.length, settings.tolerance)
+
+
+class Walk:
     """The chain on its way: the last state at rest, and the one before it to extrapolate from."""
 
     def __init__(self, model: ChainModel, foot_x: float, tolerance: float) -> None:
-        self._model = model
+        self.model = model
         self._tolerance = tolerance
         self._foot_x = foot_x
         self._state = State(np.zeros(len(model.layout.joints)), {})
@@ -83,7 +88,7 @@ class _Walk:
         step = target - self._foot_x
         while True:
             trial = target if abs(step) >= abs(target - self._foot_x) else self._foot_x + step
-            state = relax(self._model, trial, self._guess(trial), self._tolerance)
+            state = relax(self.model, trial, self._guess(trial), self._tolerance)
             if self._follows(state):
                 if trial != self._foot_x:
                     self._before = (self._foot_x, self._state)
@@ -98,10 +103,10 @@ class _Walk:
                 return
 
     def _let_go(self, where: float, target: float) -> None:
-        fallen = fall(self._model, target, self._state)
+        fallen = fall(self.model, target, self._state)
         if not fallen.forces:
             self.snap_off = where
-        self._state = relax(self._model, target, fallen, self._tolerance)
+        self._state = relax(self.model, target, fallen, self._tolerance)
         self._foot_x, self._before = target, None
 
     def _guess(self, foot_x: float) -> State:
@@ -121,7 +126,7 @@ class _Walk:
 
     def row(self) -> dict[str, Any]:
         """The dimensionless readings of the state that the chain is in."""
-        model, state = self._model, self._state
+        model, state = self.model, self._state
         clamp = model.clamp()
         contacts = model.contacts()
         loaded = contacts.distance < 0
