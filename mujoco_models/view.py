@@ -18,7 +18,7 @@ from mujoco_models.sweep import set_out
 _PAUSE = 0.04  # s, after every station
 _BODY, _VIBRISSA = (0.7, 0.72, 0.76, 0.5), (0.95, 0.65, 0.0, 1.0)
 _HIDDEN = (0.0, 0.0, 0.0, 0.0)
-_ARROW = 0.04  # L for a force of EI/L^2
+_ARROW = 0.04  # L for a force of EI/L^2 at one bead
 _WIDTH_TO_HEIGHT = 1.6  # of the window, about
 _THICK = 0.012  # L; the radius that a vibrissa is drawn with is at least this
 
@@ -66,7 +66,7 @@ class _Stage:
         links = model.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE
         model.geom_rgba[links] = _VIBRISSA
         model.geom_size[links, 0] = np.maximum(model.geom_size[links, 0], _THICK)
-        model.vis.map.force = _ARROW
+        model.vis.map.force = _ARROW * model.stat.meanmass  # which MuJoCo divides by
         model.vis.scale.forcewidth = 0.02 / model.stat.meansize
         model.vis.headlight.ambient[:] = 0.4
         model.vis.global_.fovy = height  # a length: the camera has no perspective
