@@ -26,6 +26,7 @@ from analytic import (
     through_points,
     two_circles,
 )
+from analytic.problem.case import Direction
 from analytic.problem.contour import Contour
 from compare.tomlfile import TomlFile
 from compare.units import in_si
@@ -163,9 +164,10 @@ class _SweepTable(_Table):
     stations: int = Sweep().stations
     start: Length | None = None
     stop: Length | None = None
+    direction: Direction = Sweep().direction
 
     def build(self) -> Sweep:
-        return Sweep(self.stations, self.start, self.stop)
+        return Sweep(self.stations, self.start, self.stop, self.direction)
 
 
 class CaseFile(_Table):
@@ -326,6 +328,8 @@ def _told(error: ErrorDetails, place: Place) -> InputError:
             )
         case "union_tag_not_found":
             return InputError(f"{name}.kind", "missing", "given", "say what the profile is")
+        case "literal_error":
+            return InputError(name, repr(value), f"one of {error['ctx']['expected']}", "choose one")
         case "value_error":
             return InputError(name, repr(value), "usable", str(error["ctx"]["error"]))
     return InputError(name, repr(value), error["msg"], "mend it")

@@ -22,6 +22,7 @@ from analytic import (
 )
 from analytic import reconstruct as reconstruct_contour
 from analytic.problem.readings import CLAMP_READINGS
+from compare.animation import write_animation
 from compare.casefile import Job, load_job
 from compare.comparison import Comparison
 from compare.comparison import compare as compare_readings
@@ -141,6 +142,37 @@ def simulate(
     job = _job(case, stations, segments, beam)
     folder = _folder(out, job)
     _wrote(_simulate(job).write(folder / f"mujoco-{job.settings.beam}.parquet"))
+    return AGREES
+
+
+@app.command()
+def view(
+    case: CaseName, stations: Stations = None, segments: Segments = None, beam: Beam = None
+) -> int:
+    """Show the sweep in MuJoCo's interactive viewer."""
+    from mujoco_models import view_sweep  # MuJoCo is imported only where it is used
+
+    job = _job(case, stations, segments, beam)
+    view_sweep(job.case, job.settings)
+    return AGREES
+
+
+@app.command()
+def animate(
+    case: CaseName,
+    out: Out = None,
+    frames: Annotated[int, typer.Option(help="Frames of the animation.")] = 60,
+    stations: Stations = None,
+    segments: Segments = None,
+    beam: Beam = None,
+) -> int:
+    """Sweep in both models, and show it in motion: a GIF and stills."""
+    job = _job(case, stations, segments, beam)
+    exact, simulated = solve_sweep(job.case), _simulate(job)
+    folder = _folder(out, job)
+    with _progress("frames", frames) as advance:
+        for path in write_animation(exact, simulated, folder, frames, advance):
+            _wrote(path)
     return AGREES
 
 

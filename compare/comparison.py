@@ -194,7 +194,9 @@ def _disagreements(
     ends = [x for x in (snap.reference, snap.candidate) if x is not None]
     if ends:
         travel = np.ptp(reference.values("foot_x"))
-        window = foot_x - max(ends) < tolerances.snap_off_window * travel
+        way = np.sign(reference.values("foot_x")[-1] - reference.values("foot_x")[0])
+        ahead = min(way * np.array(ends)) - way * foot_x
+        window = ahead < tolerances.snap_off_window * travel
     found = {}
     for name in CLAMP_READINGS:
         scale = float(np.abs(reference.values(name)[reference.trusted]).max())

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
 from analytic import Readings, reconstruct
-from analytic.problem.arrays import Words
+from analytic.problem.arrays import Floats, Words
 from analytic.problem.readings import CLAMP_READINGS
 from analytic.solver.shape import deflected_shapes
 from compare.comparison import Comparison
@@ -42,7 +42,9 @@ def geometry(comparison: Comparison) -> Figure:
         ax.set_ylabel("$y$ / $L$")
         ax.set_aspect("equal")
         ax.axhline(0, color="#999999", linewidth=0.8, zorder=0)
-    axes[-1].set_xlabel("$x$ / $L$   (the foot moves to the left along $y = 0$)")
+    foot_x = _foot(comparison.reference)
+    whither = "right" if foot_x[-1] > foot_x[0] else "left"
+    axes[-1].set_xlabel(f"$x$ / $L$   (the foot moves to the {whither} along $y = 0$)")
     handles = [Line2D([], [], color=PHASE_COLOURS[p], label=PHASE_NAMES[p]) for p in PHASE_COLOURS]
     handles += [
         Line2D([], [], color="#555555", linewidth=2.5, label="object"),
@@ -61,8 +63,8 @@ def readings(comparison: Comparison) -> Figure:
     both = (comparison.reference, comparison.candidate)
     for i, name in enumerate(_SYMBOLS):
         symbol, unit = _SYMBOLS[name]
-        _shade_phases(upper[i], comparison)
-        _shade_phases(lower[i], comparison)
+        shade_phases(upper[i], *_phases(comparison))
+        shade_phases(lower[i], *_phases(comparison))
         for one, style in zip(
             both,
             ({"color": _REFERENCE, "linewidth": 1.6}, _dots(comparison)),
@@ -96,7 +98,7 @@ def phase_criterion(comparison: Comparison) -> Figure:
         axes[0].plot(x, judged.criterion, label=readings.source, **style)
         axes[1].plot(x, 1 - judged.shortfall, **style)
     for ax in axes:
-        _shade_phases(ax, comparison)
+        shade_phases(ax, *_phases(comparison))
     axes[0].axhline(0, color="#555555", linewidth=0.8, linestyle="--")
     axes[1].axhline(1, color="#555555", linewidth=0.8, linestyle="--")
     axes[0].set_ylabel(r"$(2F_{Ay} - M_{Az}^2)\,/\,2f$  (26)" + "\nzero in Phase B")
@@ -144,6 +146,21 @@ def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
     return figure
 
 
+def shade_phases(ax: Axes, foot_x: Floats, phase: Words) -> None:
+    """The phases of a sweep as a background over its foot positions."""
+    edges = np.flatnonzero(phase[1:] != phase[:-1])
+    begins, ends = np.append(0, edges + 1), np.append(edges, len(phase) - 1)
+    for begin, end in zip(begins, ends, strict=True):
+        if phase[begin] in ("tip", "tangent"):
+            ax.axvspan(
+                foot_x[max(begin - 1, 0)],
+                foot_x[end],
+                color=PHASE_COLOURS[str(phase[begin])],
+                alpha=0.10,
+                linewidth=0,
+            )
+
+
 def save_figure(figure: Figure, path: Path) -> Path:
     """Write a PNG, whole or not at all."""
     unfinished = path.with_name(f".{path.name}.partial")
@@ -153,6 +170,11 @@ def save_figure(figure: Figure, path: Path) -> Path:
 
 def _sides(comparison: Comparison) -> tuple[tuple[Readings, Readings], tuple[str, str]]:
     return (comparison.reference, comparison.candidate), ("reference", "candidate")
+
+
+def _phases(comparison: Comparison) -> tuple[Floats, Words]:
+    """Foot positions and phases of the reference."""
+    return _foot(comparison.reference), comparison.judged["reference"].phase
 
 
 def _dots(comparison: Comparison) -> dict[str, object]:
@@ -190,22 +212,6 @@ def _difference(comparison: Comparison, name: str) -> tuple[np.ndarray, np.ndarr
         for side in ("candidate", "reference")
     ]
     return foot_x / beam.length, _reading(sides[0], name) - _reading(sides[1], name)
-
-
-def _shade_phases(ax: Axes, comparison: Comparison) -> None:
-    """The reference's phases as a background."""
-    foot_x, phase = _foot(comparison.reference), comparison.judged["reference"].phase
-    edges = np.flatnonzero(phase[1:] != phase[:-1])
-    begins, ends = np.append(0, edges + 1), np.append(edges, len(phase) - 1)
-    for begin, end in zip(begins, ends, strict=True):
-        if phase[begin] in ("tip", "tangent"):
-            ax.axvspan(
-                foot_x[max(begin - 1, 0)],
-                foot_x[end],
-                color=PHASE_COLOURS[str(phase[begin])],
-                alpha=0.10,
-                linewidth=0,
-            )
 
 
 def _draw_shapes(ax: Axes, readings: Readings, phase: Words) -> None:

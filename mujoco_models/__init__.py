@@ -6,11 +6,12 @@ MuJoCo itself is imported when a sweep starts, not before.
 from collections.abc import Callable
 
 from analytic.problem.case import Case
+from analytic.problem.mirror import solve_either_way
 from analytic.problem.readings import Readings
 from mujoco_models.beams.available import available_beams
 from mujoco_models.settings import Settings
 
-__all__ = ["Settings", "available_beams", "load_tip", "simulate_sweep"]
+__all__ = ["Settings", "available_beams", "load_tip", "simulate_sweep", "view_sweep"]
 
 
 def simulate_sweep(
@@ -46,7 +47,8 @@ def simulate_sweep(
     """
     from mujoco_models.sweep import run_sweep
 
-    return run_sweep(case, settings or Settings(), advance)
+    chosen = settings or Settings()
+    return solve_either_way(case, lambda leftward: run_sweep(leftward, chosen, advance))
 
 
 def load_tip(load: float, settings: Settings | None = None) -> tuple[float, float]:
@@ -54,3 +56,16 @@ def load_tip(load: float, settings: Settings | None = None) -> tuple[float, floa
     from mujoco_models import cantilever
 
     return cantilever.load_tip(load, settings or Settings())
+
+
+def view_sweep(case: Case, settings: Settings | None = None) -> None:
+    """Show the sweep of `case` in MuJoCo's interactive viewer, until its window is closed.
+
+    Raises
+    ------
+    InputError
+        If there is no display, or the case's beam has no radius.
+    """
+    from mujoco_models.view import show
+
+    show(case, settings or Settings())

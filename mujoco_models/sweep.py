@@ -27,17 +27,11 @@ _HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below it ju
 
 
 def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Readings:
-    """Sweep the beam; see `mujoco_models.simulate_sweep`."""
-    if case.radius == 0:
-        raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
-    obstacle = Obstacle.of(case, settings.contour_points)
-    spacing = bead_spacing(settings.segments, case.radius, float(obstacle.curvature.max()))
-    beam_model = build(settings, spacing)
-    model = BeamModel(beam_model, case.radius, obstacle, settings.contact_stiffness)
-    foot_x = case.foot_x / case.beam.length
-    walk = _Walk(model, float(foot_x[0]), settings.tolerance)
+    """Sweep the beam to the left; see `mujoco_models.simulate_sweep`."""
+    walk = set_out(case, settings)
+    obstacle = walk.model.obstacle
     rows = []
-    for target in foot_x:
+    for target in case.foot_x / case.beam.length:
         walk.go_to(float(target))
         rows.append(walk.row())
         advance()
@@ -65,6 +59,17 @@ def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Re
     return Readings(table[[*COLUMNS, *extra]], beam, f"mujoco {settings.beam}", provenance)
 
 
+def set_out(case: Case, settings: Settings) -> "Walk":
+    """The beam, straight, with its foot at the first station of a sweep to the left."""
+    if case.radius == 0:
+        raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
+    obstacle = Obstacle.of(case, settings.contour_points)
+    spacing = bead_spacing(settings.segments, case.radius, float(obstacle.curvature.max()))
+    beam = build(settings, spacing)
+    model = BeamModel(beam, case.radius, obstacle, settings.contact_stiffness)
+    return Walk(model, float(case.foot_x[0]) / case.beam.length, settings.tolerance)
+
+
 class ClampError(ArithmeticError):
     """The clamp's sensors do not read what holds the beam: a defect of the model or of MuJoCo."""
 
@@ -75,11 +80,11 @@ class ClampError(ArithmeticError):
         )
 
 
-class _Walk:
+class Walk:
     """The beam on its way: the last state at rest, and the one before it to extrapolate from."""
 
     def __init__(self, model: BeamModel, foot_x: float, tolerance: float) -> None:
-        self._model = model
+        self.model = model
         self._tolerance = tolerance
         self._foot_x = foot_x
         self._state = State.straight(len(model.layout.joints))
@@ -96,7 +101,7 @@ class _Walk:
         step = target - self._foot_x
         while True:
             trial = target if abs(step) >= abs(target - self._foot_x) else self._foot_x + step
-            state = relax(self._model, trial, self._guess(trial), self._tolerance)
+            state = relax(self.model, trial, self._guess(trial), self._tolerance)
             if self._follows(state):
                 if trial != self._foot_x:
                     self._before = (self._foot_x, self._state)
@@ -111,10 +116,10 @@ class _Walk:
                 return
 
     def _let_go(self, where: float, target: float) -> None:
-        fallen = fall(self._model, target, self._state)
+        fallen = fall(self.model, target, self._state)
         if not fallen.forces:
             self.snap_off = where
-        self._state = relax(self._model, target, fallen, self._tolerance)
+        self._state = relax(self.model, target, fallen, self._tolerance)
         self._foot_x, self._before = target, None
 
     def _guess(self, foot_x: float) -> State:
@@ -134,7 +139,7 @@ class _Walk:
 
     def row(self) -> dict[str, Any]:
         """The dimensionless readings of the state that the beam is in."""
-        model, state = self._model, self._state
+        model, state = self.model, self._state
         clamp = model.clamp()
         contacts = model.contacts()
         loaded = contacts.distance < 0

@@ -4,7 +4,7 @@ import hashlib
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
@@ -15,12 +15,14 @@ from analytic.problem.errors import InputError
 from analytic.problem.families import catenary, parabola, two_circles
 from analytic.problem.reach import contact_range, out_of_reach
 
+Direction: TypeAlias = Literal["left", "right"]
+
 _MARGIN = 0.01  # L; the default sweep starts and ends this far beyond reach
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """Stations of the foot, equally spaced from `start` down to `stop`.
+    """Stations of the foot, equally spaced from `start` to `stop`.
 
     Parameters
     ----------
@@ -30,11 +32,21 @@ class Sweep:
         First and last foot position [length]. By default from just before the first contact to
         just past the position from which the contour is out of reach: geometry only, so that no
         engine is told the answer.
+    direction : str
+        Whither the foot moves: ``"left"``, as in the paper, or ``"right"``. The vibrissa starts
+        clear of the object and straight either way, so the two are different sweeps: what one
+        touches first, the other lets go of last and elsewhere.
+
+    Raises
+    ------
+    InputError
+        If a number or the direction cannot be.
     """
 
     stations: int = 200
     start: float | None = None
     stop: float | None = None
+    direction: Direction = "left"
 
     def __post_init__(self) -> None:
         if not (isinstance(self.stations, int) and self.stations >= 2):
@@ -45,6 +57,13 @@ class Sweep:
             value = getattr(self, name)
             if value is not None and not math.isfinite(value):
                 raise InputError(f"sweep.{name}", value, "finite", "leave it out for the default")
+        if self.direction not in get_args(Direction):
+            raise InputError(
+                "sweep.direction",
+                repr(self.direction),
+                f"one of {', '.join(get_args(Direction))}",
+                "it is where the foot moves to",
+            )
 
 
 @dataclass(frozen=True)
@@ -74,20 +93,21 @@ class Case:
     name: str = "case"
 
     def __post_init__(self) -> None:
-        length = self.beam.length
-        if self._start < self._first_contact * length:
+        touch = self._first_contact * self.beam.length
+        if self._way * self._start > self._way * touch:
             raise InputError(
                 "sweep.start",
                 self.sweep.start,
-                f"at least {self._first_contact * length:.6g}, where the tip first touches",
+                f"at {'most' if self._way > 0 else 'least'} {touch:.6g}, "
+                "where the tip first touches",
                 "a sweep starts clear of the object",
             )
-        if not self._stop < self._start:
+        if not self._way * self._stop > self._way * self._start:
             raise InputError(
                 "sweep.stop",
                 self.sweep.stop,
-                f"less than the start, {self._start:.6g}",
-                "the vibrissa is swept in the direction of decreasing x",
+                f"{'more' if self._way > 0 else 'less'} than the start, {self._start:.6g}",
+                f"the foot moves to the {self.sweep.direction} (sweep.direction)",
             )
 
     @cached_property
@@ -97,7 +117,10 @@ class Case:
 
     @cached_property
     def reach(self) -> tuple[float, float]:
-        """Contour parameters of the last point within reach and of the first contact."""
+        """Contour parameters of the leftmost and the rightmost point within reach.
+
+        A sweep to the left touches the right one first, one to the right the left one.
+        """
         return contact_range(self.centreline)
 
     @property
@@ -107,14 +130,14 @@ class Case:
 
     @cached_property
     def foot_x(self) -> Floats:
-        """Foot positions, shape (stations,), decreasing [length]."""
+        """Foot positions, shape (stations,), in sweep order [length]."""
         return np.linspace(self._start, self._stop, self.sweep.stations)
 
     @cached_property
     def digest(self) -> str:
         """A hash of the physics: equal for equal problems, whatever the case is called."""
-        last, first = self.reach
-        point = self.centreline.at(np.linspace(last, first, 67))
+        left, right = self.reach
+        point = self.centreline.at(np.linspace(left, right, 67))
         beam = self.beam
         numbers = np.concatenate(
             [
@@ -139,25 +162,40 @@ class Case:
 
     def outline(self, points: int = 181) -> tuple[Floats, Floats]:
         """The body's contour within reach of the vibrissa, for pictures: xi, eta [length]."""
-        last, first = self.reach
-        vertices = self.profile.scaled(1 / self.beam.length).outline(last, first, points)
+        left, right = self.reach
+        vertices = self.profile.scaled(1 / self.beam.length).outline(left, right, points)
         return vertices[:, 0] * self.beam.length, vertices[:, 1] * self.beam.length
+
+    def mirrored(self) -> "Case":
+        """The mirror image of the problem, x to -x, whose foot moves the other way."""
+        opposite: Direction = "left" if self.sweep.direction == "right" else "right"
+        sweep = Sweep(self.sweep.stations, -self._start, -self._stop, opposite)
+        return replace(self, profile=self.profile.mirrored(), sweep=sweep)
+
+    @property
+    def _way(self) -> int:
+        """The sign of the foot's motion along x."""
+        return 1 if self.sweep.direction == "right" else -1
 
     @cached_property
     def _first_contact(self) -> float:
-        _, first = self.reach
+        left, right = self.reach
+        first = left if self._way > 0 else right
         return float(self.centreline.at(np.array([first])).xi[0])
 
     @cached_property
     def _start(self) -> float:
         if self.sweep.start is not None:
             return self.sweep.start
-        return (self._first_contact + _MARGIN) * self.beam.length
+        return (self._first_contact - self._way * _MARGIN) * self.beam.length
 
     @cached_property
     def _stop(self) -> float:
         if self.sweep.stop is not None:
             return self.sweep.stop
+        if self._way > 0:
+            mirrored = self.centreline.mirrored()
+            return (_MARGIN - out_of_reach(mirrored, *contact_range(mirrored))) * self.beam.length
         return (out_of_reach(self.centreline, *self.reach) - _MARGIN) * self.beam.length
 
 

@@ -65,3 +65,7 @@ class Contour(ABC):
     @abstractmethod
     def scaled(self, factor: float) -> "Contour":
         """The contour enlarged by `factor` about the origin, to change its unit of length."""
+
+    @abstractmethod
+    def mirrored(self) -> "Contour":
+        """The mirror image: x becomes -x, alpha becomes -alpha, left and right change places."""

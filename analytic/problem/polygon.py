@@ -82,6 +82,11 @@ class Polygon(Contour):
         """The polygon enlarged by `factor` about the origin."""
         return replace(self, vertices=factor * self.vertices, distance=factor * self.distance)
 
+    def mirrored(self) -> "Polygon":
+        """The mirror image: x becomes -x; the vertices still run from left to right."""
+        vertices = self.vertices[::-1] * [-1, 1]
+        return replace(self, vertices=vertices, label=f"{self.label}, mirrored")
+
     @cached_property
     def _angles(self) -> Floats:
         """Slope angles of the edges, between those of the upright sides."""

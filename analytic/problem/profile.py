@@ -108,6 +108,18 @@ class Profile(Contour):
             radius_of_curvature=partial(_scaled, self._stretch, factor),
         )
 
+    def mirrored(self) -> "Profile":
+        """The mirror image: x becomes -x and alpha becomes -alpha."""
+        low, high = self.alpha_range
+        return replace(
+            self,
+            xi=partial(_mirrored, self.xi, -1),
+            eta=partial(_mirrored, self.eta, 1),
+            alpha_range=(-high, -low),
+            radius_of_curvature=partial(_mirrored, self._stretch, 1),
+            label=f"{self.label}, mirrored",
+        )
+
     def _on(self, alpha: Floats) -> Floats:
         """The nearest slope angles within the range."""
         low, high = self.alpha_range
@@ -166,6 +178,10 @@ def _slope(curve: Curve, centre: Floats, h: float) -> Floats:
 
 def _scaled(curve: Curve, factor: float, alpha: Floats) -> Floats:
     return factor * curve(alpha)
+
+
+def _mirrored(curve: Curve, sign: int, alpha: Floats) -> Floats:
+    return sign * curve(-alpha)
 
 
 def _offset_xi(profile: Profile, radius: float, alpha: Floats) -> Floats:

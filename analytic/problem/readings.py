@@ -3,7 +3,7 @@
 import json
 import os
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +23,7 @@ PHASES = ("free", "tip", "tangent")
 STATUSES = ("ok", "unsettled", "diverged", "unreachable")
 COLUMNS = (*SENSED, "phase", *CONTACT, "status")
 
+_ODD = ("foot_x", "force_x", "moment_z", "contact_angle", "contact_x")  # change sign in a mirror
 _METADATA_KEY = b"vibrissa"
 _CSV_PREFIX = "# vibrissa "
 
@@ -113,6 +114,26 @@ class Readings:
             finite &= (self.table["status"] == "ok").to_numpy()
         return np.asarray(finite, dtype=bool)
 
+    @property
+    def bends_left(self) -> bool:
+        """Whether the vibrissa bends to the left, as when its foot moves to the right.
+
+        The clamp's moment tells: it is negative then. The sum over the sweep decides, lest the
+        noise of a hardly loaded station does.
+        """
+        return float(np.nansum(self.values("moment_z"))) < 0
+
+    def mirrored(self) -> "Readings":
+        """The readings in a mirror, x to -x, with what `provenance` knows of events and contour."""
+        provenance = dict(self.provenance)
+        if "events" in provenance:
+            events = provenance["events"]
+            provenance["events"] = {n: None if x is None else -x for n, x in events.items()}
+        if "contour" in provenance:
+            xi, eta = provenance["contour"]
+            provenance["contour"] = [[-x for x in reversed(xi)], list(reversed(eta))]
+        return replace(self, table=mirrored_table(self.table), provenance=provenance)
+
     def write(self, path: str | Path) -> Path:
         """Write to Parquet (metadata inside) or CSV (metadata in the first line), by the suffix.
 
@@ -172,6 +193,14 @@ class Readings:
             raise InputError(
                 f"readings file {path}", "unusable", "one sweep", str(error)
             ) from error
+
+
+def mirrored_table(table: pd.DataFrame) -> pd.DataFrame:
+    """A table with columns of readings, x to -x; angles are measured from the x-axis as before."""
+    changed = {name: 0.0 - table[name] for name in _ODD if name in table}  # lest a 0 become -0
+    if "tip_angle" in table:
+        changed["tip_angle"] = np.pi - table["tip_angle"]
+    return table.assign(**changed)
 
 
 def _read(path: Path) -> tuple[dict[str, Any], pd.DataFrame]:

@@ -27,6 +27,8 @@ def certify(readings: Readings) -> pd.DataFrame:
         ``residual_moment`` is that of M = F_y (xi - x0) - F_x eta. Zero where the vibrissa is free,
         NaN where the readings have no contact to check.
     """
+    if readings.bends_left:
+        return certify(readings.mirrored())
     beam = readings.beam
     length = beam.length
     force_x = readings.values("force_x") / beam.force_unit

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from analytic.problem.arrays import Booleans, Floats
-from analytic.problem.readings import CLAMP_READINGS, SENSED, Readings
+from analytic.problem.readings import CLAMP_READINGS, SENSED, Readings, mirrored_table
 from analytic.solver.elastica import frame, span, span_of_moment
 from analytic.solver.integration import integrate_span
 
@@ -55,6 +55,8 @@ def reconstruct(
         ``uncertainty``: the true contact point lies within this distance of the stated one in 95 %
         of all cases [length]; infinite where the noise allows readings that no elastica has.
     """
+    if readings.bends_left:
+        return mirrored_table(reconstruct(readings.mirrored(), noise, seed))
     beam = readings.beam
     sensed = _dimensionless(readings)
     loaded = np.hypot(sensed[1], sensed[2]) > _threshold(readings, noise)
@@ -81,6 +83,8 @@ def reconstruct_by_decision(readings: Readings, tolerance: float = 1e-6) -> pd.D
     pandas.DataFrame
         As `reconstruct`.
     """
+    if readings.bends_left:
+        return mirrored_table(reconstruct_by_decision(readings.mirrored(), tolerance))
     sensed = _dimensionless(readings)
     force = np.hypot(sensed[1], sensed[2])
     loaded = force > _UNLOADED

@@ -3,7 +3,7 @@
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.readings import Readings
+from analytic.problem.readings import SENSED, Readings
 from analytic.solver.reconstruct import reconstruct
 
 _STEPS = 64  # of a fourth-order method: far below the width of a line
@@ -54,3 +54,25 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
     states.append(np.stack([x + rest * np.cos(phi), y + rest * np.sin(phi), phi]))
     path = np.stack(states, axis=-1)
     return (path[0] + foot_x[:, None]) * beam.length, path[1] * beam.length
+
+
+def curvatures(readings: Readings, x: Floats, y: Floats) -> Floats:
+    """Curvature along the centrelines that `deflected_shapes` drew of these readings.
+
+    Parameters
+    ----------
+    readings : Readings
+        Only the four sensed columns are used.
+    x, y : array, shape (stations, points)
+        Coordinates [length]; the last point is the tip, which carries no moment.
+
+    Returns
+    -------
+    array, shape (stations, points)
+        kappa [1/length], positive where the vibrissa bends to the left of its way from clamp to
+        tip.
+    """
+    foot_x, force_x, force_y, moment = (readings.values(name)[:, None] for name in SENSED)
+    kappa = (force_y * (x - foot_x) - force_x * y - moment) / readings.beam.flexural_rigidity
+    kappa[:, -1] = 0.0
+    return kappa

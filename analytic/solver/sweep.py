@@ -1,6 +1,7 @@
 """The sweep on given foot positions, by Newton's method on both phases' closed forms."""
 
 from dataclasses import replace
+from functools import partial
 from importlib.metadata import version
 
 import numpy as np
@@ -8,6 +9,7 @@ import pandas as pd
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
+from analytic.problem.mirror import solve_either_way
 from analytic.problem.readings import CLAMP_READINGS, COLUMNS, Readings
 from analytic.solver.branch import Branch, trace
 from analytic.solver.certificate import certify
@@ -28,9 +30,6 @@ _CERTIFIED = 1e-9  # L and EI/L; the check itself is good to 1e-12
 def solve_sweep(case: Case, certified: bool = False) -> Readings:
     """The readings of `case` in closed form, at its stations.
 
-    Right of the first contact and left of the snap-off the vibrissa is free. Between them the foot
-    position falls along the contour, so that each station has one state.
-
     Parameters
     ----------
     case : Case
@@ -44,6 +43,15 @@ def solve_sweep(case: Case, certified: bool = False) -> Readings:
     -------
     Readings
         In the units of the case's beam; source ``"analytic"``.
+    """
+    return solve_either_way(case, partial(_solve_leftward, certified=certified))
+
+
+def _solve_leftward(case: Case, certified: bool) -> Readings:
+    """Solve a sweep to the left.
+
+    Right of the first contact and left of the snap-off the vibrissa is free. Between them the foot
+    position falls along the contour, so that each station has one state.
     """
     beam = case.beam
     foot_x = case.foot_x / beam.length

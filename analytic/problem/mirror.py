@@ -1,0 +1,26 @@
+"""Sweeps to the right, as mirror images of sweeps to the left."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from analytic.problem.case import Case
+from analytic.problem.readings import Readings
+
+
+def solve_either_way(case: Case, solve: Callable[[Case], Readings]) -> Readings:
+    """The readings of a case, whichever way its foot moves.
+
+    Without friction and gravity a sweep to the right is the mirror image of a sweep to the left
+    past the mirrored object, and nothing else has to be solved.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+    solve : callable
+        Makes readings of a case whose foot moves to the left.
+    """
+    if case.sweep.direction == "left":
+        return solve(case)
+    found = solve(case.mirrored()).mirrored()
+    return replace(found, provenance={**found.provenance, **case.provenance()})

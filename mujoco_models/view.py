@@ -1,0 +1,107 @@
+"""The sweep in MuJoCo's interactive viewer."""
+
+import time
+import warnings
+
+import glfw
+import mujoco
+import mujoco.viewer
+import numpy as np
+
+from analytic.problem.case import Case
+from analytic.problem.errors import InputError
+from mujoco_models.model import BeamModel
+from mujoco_models.obstacle import MESH_PREFIX
+from mujoco_models.settings import Settings
+from mujoco_models.sweep import set_out
+
+_PAUSE = 0.04  # s, after every station
+_BODY, _VIBRISSA = (0.7, 0.72, 0.76, 0.5), (0.95, 0.65, 0.0, 1.0)
+_HIDDEN = (0.0, 0.0, 0.0, 0.0)
+_ARROW = 0.04  # L for a force of EI/L^2 at one bead
+_WIDTH_TO_HEIGHT = 1.6  # of the window, about
+_THICK = 0.012  # L; the radius that a vibrissa is drawn with is at least this
+
+
+def show(case: Case, settings: Settings) -> None:
+    """Open the viewer; see `mujoco_models.view_sweep`.
+
+    A sweep to the right is simulated as its mirror image, so it is looked at from behind.
+    """
+    _ask_for_display()
+    to_right = case.sweep.direction == "right"
+    leftward = case.mirrored() if to_right else case
+    walk = set_out(leftward, settings)
+    model, data = walk.model.model, walk.model.data
+    foot_x = leftward.foot_x / leftward.beam.length
+    stage = _Stage(walk.model, height=max(1.3, (np.ptp(foot_x) + 1) / _WIDTH_TO_HEIGHT))
+    with mujoco.viewer.launch_passive(
+        model, data, show_left_ui=False, show_right_ui=False
+    ) as viewer:
+        with viewer.lock():
+            stage.light(viewer.opt)
+            _aim(viewer.cam, float(foot_x.mean()), to_right)
+        for target in foot_x:
+            with viewer.lock():
+                walk.go_to(float(target))
+                stage.dress()
+            if not viewer.is_running():
+                return
+            viewer.sync()
+            time.sleep(_PAUSE)
+        while viewer.is_running():
+            time.sleep(_PAUSE)
+
+
+class _Stage:
+    """What is seen of the model: one of the obstacle's many meshes, and the links."""
+
+    def __init__(self, beam: BeamModel, height: float) -> None:
+        self._beam = beam
+        model = beam.model
+        self._windows = [
+            model.geom(f"{MESH_PREFIX}{i}").id for i in range(len(beam.obstacle.centres))
+        ]
+        model.geom_rgba[model.geom_type == mujoco.mjtGeom.mjGEOM_SPHERE] = _HIDDEN
+        links = model.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE
+        model.geom_rgba[links] = _VIBRISSA
+        model.geom_size[links, 0] = np.maximum(model.geom_size[links, 0], _THICK)
+        model.vis.map.force = _ARROW * model.stat.meanmass  # which MuJoCo divides by
+        model.vis.scale.forcewidth = 0.02 / model.stat.meansize
+        model.vis.headlight.ambient[:] = 0.4
+        model.vis.global_.fovy = height  # a length: the camera has no perspective
+        self.dress()
+
+    def light(self, options: mujoco.MjvOption) -> None:
+        """Show the meshes' hulls, which is what collides, and the contact forces."""
+        options.flags[mujoco.mjtVisFlag.mjVIS_CONVEXHULL] = True
+        options.flags[mujoco.mjtVisFlag.mjVIS_CONTACTFORCE] = True
+
+    def dress(self) -> None:
+        """Show the mesh that takes part in collisions, and no other."""
+        rgba = self._beam.model.geom_rgba
+        rgba[self._windows] = _HIDDEN
+        rgba[self._windows[self._beam.window]] = _BODY
+
+
+def _aim(camera: mujoco.MjvCamera, centre: float, behind: bool) -> None:
+    """Look along z, x to the right and y upwards; from behind, x to the left."""
+    camera.type = mujoco.mjtCamera.mjCAMERA_FREE
+    camera.orthographic = 1
+    camera.lookat = np.array([centre, 0.5, 0.0])
+    camera.azimuth, camera.elevation = (-90, 90) if behind else (90, -90)
+    camera.distance = 3.0
+
+
+def _ask_for_display() -> None:
+    """Find out before the viewer does, in a thread that would wait for ever."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        if glfw.init():
+            return
+    raise InputError(
+        "display",
+        "none",
+        "a screen for MuJoCo's viewer",
+        "`vibrissa animate` draws the sweep without one",
+    )
