@@ -1,9 +1,12 @@
 """The command ``vibrissa``."""
 
+import json
 import sys
 from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Annotated, Any, cast
 
@@ -14,6 +17,7 @@ from rich.table import Table
 
 from analytic import (
     CASE_NAMES,
+    Case,
     InputError,
     Readings,
     named_case,
@@ -23,14 +27,19 @@ from analytic import (
 from analytic import reconstruct as reconstruct_contour
 from analytic.problem.readings import CLAMP_READINGS
 from compare.animation import write_animation
+from compare.budget import Budget, controlled_changes
+from compare.budget import budget as measure_budget
+from compare.budget.figure import picture
+from compare.budget.suspects import variations
 from compare.casefile import Job, load_job
 from compare.comparison import Comparison
 from compare.comparison import compare as compare_readings
 from compare.figures import reconstruction, save_figure
-from compare.measured import read_measured, write_table
+from compare.measured import read_measured, write_table, write_text
 from compare.paper_figures import paper_figures
 from compare.report import write_report
 from compare.study.cli import study, study_report
+from mujoco_models.settings import Settings
 
 # Any wrong word on the command line; typer may bring its own copy of click, whose base this is.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
@@ -190,6 +199,32 @@ def compare(
 
 
 @app.command()
+def budget(
+    case: CaseName,
+    out: Out = None,
+    stations: Stations = None,
+    segments: Segments = None,
+    beam: Beam = None,
+) -> int:
+    """Split the disagreement into its parts, each measured by a change of its own."""
+    job = _job(case, stations, segments, beam)
+    folder = _folder(out, job)
+    found = measure_budget(solve_sweep(job.case), _controlled(job), variations(job.case))
+    drawn = picture(found)
+    _told.print(_budget_table(found, job))
+    verdict = "closes" if found.closes else "does not close: more is unexplained than uncertain"
+    _told.print(f"The budget {verdict}; the largest part is {found.blame}.", soft_wrap=True)
+    for suspect in found.suspects:
+        _told.print(
+            f"  suspect: {suspect.name} differs by {suspect.change:+.2%} "
+            f"(accounts for {suspect.share:.0%} of the unexplained)"
+        )
+    _wrote(write_text(json.dumps(found.to_dict(), indent=2), folder / "budget.json"))
+    _wrote(save_figure(drawn, folder / "budget.png"))
+    return AGREES if found.closes else DISAGREES
+
+
+@app.command()
 def cases() -> int:
     """List the named cases."""
     table = Table("case", "object", "foot from", "to")
@@ -262,6 +297,40 @@ def _progress(what: str, total: int) -> Iterator[Callable[[], None]]:
     with Progress(console=_noted, disable=not _noted.is_terminal, transient=True) as bar:
         task = bar.add_task(what, total=total)
         yield lambda: bar.advance(task)
+
+
+def _controlled(job: Job) -> dict[str, Readings]:
+    """The sweeps that a budget needs, one process each on all cores."""
+    changes = controlled_changes(job.settings)
+    with (
+        ProcessPoolExecutor(mp_context=get_context("spawn")) as pool,
+        _progress("controlled changes", len(changes)) as advance,
+    ):
+        # The longest first, so that no core waits for it at the end.
+        sweeps = {
+            name: pool.submit(sweep_alone, job.case, changed)
+            for name, changed in sorted(changes.items(), key=lambda c: -c[1].segments)
+        }
+        for sweep in sweeps.values():
+            sweep.add_done_callback(lambda _: advance())
+        return {name: sweep.result() for name, sweep in sweeps.items()}
+
+
+def sweep_alone(case: Case, settings: Settings) -> Readings:
+    """One MuJoCo sweep, in a process of its own."""
+    from mujoco_models import simulate_sweep
+
+    return simulate_sweep(case, settings)
+
+
+def _budget_table(found: Budget, job: Job) -> Table:
+    table = Table("part", *CLAMP_READINGS, title=f"Budget of {job.case.name}, rms +- uncertainty")
+    for name, readings in found.parts.items():
+        cells = [f"{p.rms:.1e} +- {p.uncertainty:.0e}" for p in readings.values()]
+        table.add_row(name, *cells)
+    table.add_section()
+    table.add_row("disagreement", *(f"{x:.1e}" for x in found.disagreement.values()))
+    return table
 
 
 def _finish(comparison: Comparison, folder: Path) -> int:

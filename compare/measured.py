@@ -64,6 +64,13 @@ def write_table(table: pd.DataFrame, path: Path) -> Path:
     return unfinished.replace(path)
 
 
+def write_text(text: str, path: Path) -> Path:
+    """Write a text file, whole or not at all."""
+    unfinished = path.with_name(f".{path.name}.partial")
+    unfinished.write_text(text, encoding="utf-8")
+    return unfinished.replace(path)
+
+
 def _beam(file: Path) -> Beam:
     try:
         raw = tomllib.loads(file.read_text(encoding="utf-8"))

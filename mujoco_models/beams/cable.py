@@ -27,7 +27,7 @@ _XML = """
           <config key="twist" value="{shear!r}"/>
         </plugin>
         <joint kind="main" armature="{armature!r}"/>
-        <geom type="capsule" size="{radius!r}" contype="0" conaffinity="0" density="1e-3"/>
+        <geom type="capsule" size="{radius!r}" contype="0" conaffinity="0" mass="1e-5"/>
       </composite>
     </body>
   </worldbody>

@@ -7,7 +7,7 @@ from analytic.problem.arrays import Floats
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.protocol import FOOT
 
-_DENSITY = 1e-3  # any small number: at rest masses do not matter
+_MASS = 1e-5  # of a link, any small number: at rest masses do not matter
 _ARMATURE = 1e-4  # of a joint with unit stiffness: likewise
 
 
@@ -45,5 +45,5 @@ def _add_capsule(body: mujoco.MjsBody, length: float, radius: float) -> None:
         size=[radius, 0, 0],
         contype=0,
         conaffinity=0,
-        density=_DENSITY,
+        mass=_MASS,
     )

