@@ -41,10 +41,10 @@ clean:           ## remove what the targets above made
 
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,dask]'
 	touch $@
 
 .venv-mujoco3/installed: pyproject.toml
 	$(PYTHON) -m venv .venv-mujoco3
-	$(BIN_MUJOCO3)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]' 'mujoco==3.17.*'
+	$(BIN_MUJOCO3)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,dask]' 'mujoco==3.17.*'
 	touch $@
