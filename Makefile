@@ -6,7 +6,10 @@ ARGS ?=
 BIN := .venv/bin
 BIN_MUJOCO3 := .venv-mujoco3/bin
 
-.PHONY: help install run test test-all lint bench install-mujoco3 test-mujoco3 clean
+STUDIES := resolution contact-stiffness phase-b sweep-step sensor-noise
+CASES := catenary parabola two-circles shallow-catenary tip-only
+
+.PHONY: help install run test test-all lint bench results install-mujoco3 test-mujoco3 clean
 
 help:            ## list the targets
 	@grep -E '^[a-z0-9-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -30,6 +33,12 @@ lint: install    ## format, style, types, import rules
 
 bench: install   ## speed, side by side in one run
 	$(BIN)/python -m tests.bench $(ARGS)
+
+results: install ## all named cases and all shipped studies at full size, and the README's picture
+	$(BIN)/python -m compare.overview results/overview.png
+	set -e; for case in $(CASES); do $(BIN)/vibrissa run $$case; done
+	set -e; for study in $(STUDIES); do \
+	  $(BIN)/vibrissa study $$study; $(BIN)/vibrissa study-report results/$$study; done
 
 install-mujoco3: .venv-mujoco3/installed   ## build .venv-mujoco3 with MuJoCo 3.17
 

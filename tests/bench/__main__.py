@@ -2,9 +2,10 @@
 
 import sys
 
-from tests.bench import analytic_speed
+from tests.bench import analytic_speed, mujoco_speed, study_speed
 
-PARTS = {"analytic": analytic_speed.main}
+PARTS = {"analytic": analytic_speed.main, "mujoco": mujoco_speed.main, "study": study_speed.main}
 
-for name in sys.argv[1:] or PARTS:
-    PARTS[name]()
+if __name__ == "__main__":  # the studies start processes of their own
+    for name in sys.argv[1:] or PARTS:
+        PARTS[name]()

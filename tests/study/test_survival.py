@@ -1,21 +1,16 @@
-"""A study survives what is done to it, and goes as fast as it must. Slow."""
+"""A study survives what is done to it, in flat memory. Slow."""
 
 import json
-import os
 import random
 import signal
 import subprocess
 import sys
 import time
-from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
-from compare.study.crews import local_crew
-from compare.study.execute import carry_out
-from compare.study.run import Recipe, Result
 from tests.study.conftest import COMMAND, EVENTS_ONLY, results, vibrissa
 
 pytestmark = pytest.mark.slow
@@ -122,39 +117,6 @@ def test_a_scheduler_that_goes_loses_nothing(folder, cluster):
     assert f"{before} of them done already" in again.stdout
 
 
-def spin(recipe, run):
-    """A run of a fifth of a second of work."""
-    end = time.process_time() + 0.2
-    while time.process_time() < end:
-        pass
-    return Result({"run": run.id, "outcome": "done"})
-
-
-def nothing(recipe, run):
-    return Result({"run": run.id, "outcome": "done"})
-
-
-def seconds(plan, workers, perform):
-    begin = time.perf_counter()
-    crew = replace(local_crew(workers), perform=perform)
-    assert sum(1 for _ in carry_out(plan, Recipe.of(plan.study), crew)) == len(plan)
-    return time.perf_counter() - begin
-
-
-@pytest.mark.skipif(len(os.sched_getaffinity(0)) < 2, reason="needs two cores")
-def test_two_cores_are_used(plan_of):
-    plan = plan_of(EVENTS_ONLY.replace("count = 10", "count = 16"))
-    assert len(plan) == 64
-    # The better of three: other programs may be running.
-    assert max(seconds(plan, 1, spin) / seconds(plan, 2, spin) for _ in range(3)) > 1.8
-
-
-def test_the_overhead_of_a_run(plan_of):
-    plan = plan_of(FEW_HUNDRED)
-    seconds(plan, 2, nothing)
-    assert seconds(plan, 2, nothing) / len(plan) < 5e-3
-
-
 def peak_memory(folder: Path, runs: int) -> int:
     text = EVENTS_ONLY.replace("count = 10", f"count = {runs // 4}")
     (folder / "grid.toml").write_text(text)
@@ -169,10 +131,6 @@ def peak_memory(folder: Path, runs: int) -> int:
     return int(done.stdout.split()[-1])
 
 
-def test_ten_thousand_runs(tmp_path):
-    few = peak_memory(tmp_path, 100)
-    begin = time.perf_counter()
-    many = peak_memory(tmp_path, 10_000)
-    took = time.perf_counter() - begin
+def test_memory_is_flat_in_the_number_of_runs(tmp_path):
+    few, many = peak_memory(tmp_path, 100), peak_memory(tmp_path, 4_000)
     assert many < 1.2 * few
-    assert took < 60

@@ -1,0 +1,38 @@
+"""The beams: time a station against segments and contour points, with the error beside it."""
+
+import time
+
+from rich.console import Console
+from rich.table import Table
+
+from analytic import named_case, solve_sweep
+from compare import compare
+from mujoco_models import Settings, available_beams, simulate_sweep
+
+
+def main() -> None:
+    case = named_case("catenary")
+    exact = solve_sweep(case)
+    table = Table(
+        "beam", "segments", "contour points", "ms a station", "largest rms", "unsettled",
+        title="MuJoCo sweeps of the catenary, 200 stations; building the model included",
+    )  # fmt: skip
+    sizes = [(20, 3200), (40, 400), (40, 3200), (40, 4000), (80, 3200), (160, 3200)]
+    for beam in available_beams():
+        for segments, points in sizes:
+            settings = Settings(beam=beam, segments=segments, contour_points=points)
+            begin = time.perf_counter()
+            sweep = simulate_sweep(case, settings)
+            took = (time.perf_counter() - begin) / len(sweep.table)
+            found = compare(exact, sweep)
+            worst = max(d.rms for d in found.disagreement.values())
+            unsettled = int((sweep.table["status"] != "ok").sum())
+            table.add_row(
+                beam,
+                str(segments),
+                str(points),
+                f"{1e3 * took:.1f}",
+                f"{worst:.1e}",
+                str(unsettled),
+            )
+    Console().print(table)

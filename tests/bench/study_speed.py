@@ -1,0 +1,62 @@
+"""Studies: what scheduling and storing cost, and how well two cores are used."""
+
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from rich.console import Console
+
+from compare.study.crews import local_crew
+from compare.study.execute import carry_out
+from compare.study.plan import Plan, Run
+from compare.study.run import Recipe, Result
+from compare.study.studyfile import load_study
+from tests.study.conftest import EVENTS_ONLY, vibrissa
+
+_RUNS = 2_000
+
+
+def spin(recipe: Recipe, run: Run) -> Result:
+    """A run of a fifth of a second of work."""
+    end = time.process_time() + 0.2
+    while time.process_time() < end:
+        pass
+    return nothing(recipe, run)
+
+
+def nothing(recipe: Recipe, run: Run) -> Result:
+    return Result({"run": run.id, "outcome": "done"})
+
+
+def main() -> None:
+    console = Console()
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "grid.toml"
+        equal = _plan(path, 64)
+        ratio = _seconds(equal, 1, spin) / _seconds(equal, 2, spin)
+        console.print(f"64 equal runs: two processes are {ratio:.2f} times as fast as one")
+        many = _plan(path, 400)
+        _seconds(many, 2, nothing)
+        overhead = _seconds(many, 2, nothing) / 400
+        console.print(f"scheduling: {1e3 * overhead:.2f} ms a run, the workers' start included")
+        _plan(path, _RUNS)
+        begin = time.perf_counter()
+        vibrissa("study", path, "--out", folder + "/out", cwd=folder).check_returncode()
+        took = time.perf_counter() - begin
+        console.print(
+            f"{_RUNS:,} analytic runs (events): {took:.0f} s, {1e3 * took / _RUNS:.1f} ms each"
+        )
+
+
+def _plan(path: Path, runs: int) -> Plan:
+    path.write_text(EVENTS_ONLY.replace("count = 10", f"count = {runs // 4}"))
+    return Plan.of(load_study(str(path)))
+
+
+def _seconds(plan: Plan, workers: int, perform: Callable[[Recipe, Run], Result]) -> float:
+    begin = time.perf_counter()
+    crew = replace(local_crew(workers), perform=perform)
+    assert sum(1 for _ in carry_out(plan, Recipe.of(plan.study), crew)) == len(plan)
+    return time.perf_counter() - begin
