@@ -138,8 +138,8 @@ def test_a_folder_without_a_study(command):
 def test_shipped_studies_at_small_size(command, tmp_path, name):
     """Every range cut to its two ends; a report of the runs.
 
-    Contacts as stiff as 1e9 EI/L^3 feel the rounding of the mesh, so a station may not settle there:
-    that is what this study is to find, and a run of its own outcome.
+    Contacts as stiff as 1e9 EI/L^3 feel the rounding of the mesh, so a station may not settle
+    there: that is what this study is to find, and an outcome of its own.
     """
     text = shipped_studies()[name].read_text()
     (tmp_path / "small.toml").write_text(re.sub(r"count = \d+", "count = 2", text))
