@@ -65,6 +65,7 @@ Out = Annotated[
 Stations = Annotated[int | None, typer.Option(help="Stations of the sweep, instead of the case's.")]
 Segments = Annotated[int | None, typer.Option(help="Segments of MuJoCo's beam.")]
 Beam = Annotated[str | None, typer.Option(help="MuJoCo's beam.")]
+Obstacle = Annotated[str | None, typer.Option(help="MuJoCo's obstacle, mesh or primitive.")]
 
 
 @app.command()
@@ -74,9 +75,10 @@ def run(
     stations: Stations = None,
     segments: Segments = None,
     beam: Beam = None,
+    obstacle: Obstacle = None,
 ) -> int:
     """Sweep in both models, compare, and write the report."""
-    job = _job(case, stations, segments, beam)
+    job = _job(case, stations, segments, beam, obstacle)
     folder = _folder(out, job)
     exact = solve_sweep(job.case)
     simulated = _simulate(job)
@@ -99,7 +101,7 @@ def analytic(
     ] = False,
 ) -> int:
     """Sweep in closed form."""
-    job = _job(case, stations, None, None)
+    job = _job(case, stations)
     folder = _folder(out, job)
     readings = solve_sweep(job.case, certified)
     drawn = paper_figures(job.case, readings) if figures else {}
@@ -146,9 +148,10 @@ def simulate(
     stations: Stations = None,
     segments: Segments = None,
     beam: Beam = None,
+    obstacle: Obstacle = None,
 ) -> int:
     """Sweep in MuJoCo."""
-    job = _job(case, stations, segments, beam)
+    job = _job(case, stations, segments, beam, obstacle)
     folder = _folder(out, job)
     _wrote(_simulate(job).write(folder / f"mujoco-{job.settings.beam}.parquet"))
     return AGREES
@@ -156,12 +159,16 @@ def simulate(
 
 @app.command()
 def view(
-    case: CaseName, stations: Stations = None, segments: Segments = None, beam: Beam = None
+    case: CaseName,
+    stations: Stations = None,
+    segments: Segments = None,
+    beam: Beam = None,
+    obstacle: Obstacle = None,
 ) -> int:
     """Show the sweep in MuJoCo's interactive viewer."""
     from mujoco_models import view_sweep  # MuJoCo is imported only where it is used
 
-    job = _job(case, stations, segments, beam)
+    job = _job(case, stations, segments, beam, obstacle)
     view_sweep(job.case, job.settings)
     return AGREES
 
@@ -174,9 +181,10 @@ def animate(
     stations: Stations = None,
     segments: Segments = None,
     beam: Beam = None,
+    obstacle: Obstacle = None,
 ) -> int:
     """Sweep in both models, and show it in motion: a GIF and stills."""
-    job = _job(case, stations, segments, beam)
+    job = _job(case, stations, segments, beam, obstacle)
     exact, simulated = solve_sweep(job.case), _simulate(job)
     folder = _folder(out, job)
     with _progress("frames", frames) as advance:
@@ -205,9 +213,10 @@ def budget(
     stations: Stations = None,
     segments: Segments = None,
     beam: Beam = None,
+    obstacle: Obstacle = None,
 ) -> int:
     """Split the disagreement into its parts, each measured by a change of its own."""
-    job = _job(case, stations, segments, beam)
+    job = _job(case, stations, segments, beam, obstacle)
     folder = _folder(out, job)
     found = measure_budget(solve_sweep(job.case), _controlled(job), variations(job.case))
     drawn = picture(found)
@@ -259,16 +268,20 @@ def _refuse(message: str) -> int:
     return BAD_INPUT
 
 
-def _job(name: str, stations: int | None, segments: int | None, beam: str | None) -> Job:
+def _job(
+    name: str,
+    stations: int | None,
+    segments: int | None = None,
+    beam: str | None = None,
+    obstacle: str | None = None,
+) -> Job:
     job = load_job(name)
-    case, settings = job.case, job.settings
+    case = job.case
     if stations is not None:
         case = replace(case, sweep=replace(case.sweep, stations=stations))
-    if segments is not None:
-        settings = replace(settings, segments=segments)
-    if beam is not None:
-        settings = replace(settings, beam=beam)  # type: ignore[arg-type]  # validated by Settings
-    return Job(case, settings)
+    given: dict[str, Any] = {"segments": segments, "beam": beam, "obstacle": obstacle}
+    changes = {name: value for name, value in given.items() if value is not None}
+    return Job(case, replace(job.settings, **changes))
 
 
 def _folder(out: Path | None, job: Job) -> Path:

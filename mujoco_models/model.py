@@ -7,7 +7,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from mujoco_models.beams.protocol import FOOT, Beam
-from mujoco_models.obstacle import MESH_PREFIX, Obstacle
+from mujoco_models.obstacles.protocol import GEOM_PREFIX, Obstacle
 
 _CONTACT_GAP = 0.01  # L; how far ahead the solver sees contacts that carry no force yet
 _OVERLOOKED = 1e-6  # L; how deep an unloaded bead may be in the obstacle
@@ -61,15 +61,12 @@ class BeamModel:
         self._foot = self.model.body(FOOT).id
         model = self.model
         self._windows = np.array(
-            [model.geom(f"{MESH_PREFIX}{i}").id for i in range(len(obstacle.centres))]
+            [model.geom(f"{GEOM_PREFIX}{i}").id for i in range(obstacle.windows)]
         )
         self._beads = np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_SPHERE)
         self._bead_of = np.full(model.ngeom, -1)
         self._bead_of[self._beads] = np.arange(len(self._beads))
         self._set_contact_stiffness()
-        curvature = obstacle.curvature
-        self.contact_curvature = curvature / (1 + radius * curvature)
-        """Of the contour that the beads' centres feel, by vertex of the obstacle [1/L]."""
         self.window = -1
         self.use_window(0)
         self._trail: tuple[float, ...] = ()
@@ -88,7 +85,7 @@ class BeamModel:
         self.model.geom_solimp[self._beads] = [_IMPEDANCE, _IMPEDANCE, 1e-3, 0.5, 2]
 
     def use_window(self, window: int) -> None:
-        """Let the obstacle's mesh with this window, and no other, take part in collisions."""
+        """Let the obstacle's geom with this window, and no other, take part in collisions."""
         if window != self.window:
             self.model.geom_contype[self._windows] = 0
             self.model.geom_contype[self._windows[window]] = 1
@@ -100,9 +97,14 @@ class BeamModel:
             before, last = self._trail
             self.use_window(self.obstacle.window_of(2 * last - before))
 
-    def leave_trail(self, vertex: float) -> None:
+    def leave_trail(self, place: float) -> None:
         """Remember where the contact rests, for `anticipate_window`."""
-        self._trail = (*self._trail[-1:], vertex)
+        self._trail = (*self._trail[-1:], place)
+
+    def contact_curvature(self, slope: Floats) -> Floats:
+        """Of the contour that the beads' centres feel, at these slope angles [1/L]."""
+        curvature = self.obstacle.curvature(slope)
+        return np.asarray(curvature / (1 + self._radius * curvature))
 
     def watch(self, beads: frozenset[int]) -> None:
         """Let these beads, and no others, take part in collisions."""
@@ -166,8 +168,8 @@ class BeamModel:
         """Shape (n, 2) [L]."""
         return np.asarray(self.data.geom_xpos[self._beads[beads], :2])
 
-    def overlooked(self) -> tuple[int, int] | None:
-        """A bead inside the obstacle that MuJoCo reports no load on, and the vertex it is at.
+    def overlooked(self) -> tuple[int, float] | None:
+        """A bead inside the obstacle that MuJoCo reports no load on, and the place it is at.
 
         The mesh in use is too small away from its window, and most beads are not watched: this is
         what makes sure, at every state at rest, that neither has let the beam through.
@@ -177,9 +179,9 @@ class BeamModel:
         inside = self._radius - _OVERLOOKED
         suspects = self.obstacle.near(positions, inside)
         for bead in np.setdiff1d(suspects, contacts.bead[contacts.distance < 0]):
-            clearance, vertex = self.obstacle.clearance(positions[bead])
+            clearance, place = self.obstacle.clearance(positions[bead])
             if clearance < inside:
-                return int(bead), vertex
+                return int(bead), place
         return None
 
     def clamp(self) -> Clamp:

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
 from scipy.optimize import nnls
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.problem.arrays import Floats
 from mujoco_models.model import BeamModel, Contacts
 
 _ITERATIONS = 25
@@ -66,7 +66,8 @@ def relax(model: BeamModel, foot_x: float, start: State, tolerance: float) -> St
     start : State
         Where to start from.
     tolerance : float
-        Largest moment out of balance at rest [EI/L].
+        Largest moment out of balance at rest [EI/L]; what the noise of the obstacle's normals
+        makes of the load, at an arm of L, is allowed on top.
 
     Returns
     -------
@@ -87,18 +88,18 @@ def relax(model: BeamModel, foot_x: float, start: State, tolerance: float) -> St
         contacts = model.contacts()
         state = replace(state, imbalance=residual)
         best = min(best, state, key=lambda s: s.imbalance)
-        if residual < tolerance:
+        if residual < tolerance + model.obstacle.normal_noise * sum(state.forces.values()):
             normals = contacts.normal[contacts.distance < 0]
             if not model.obstacle.faces(_slopes(normals)):
                 break  # pushed out through the far side of the object: no state of the sweep
-            loaded = _vertices(model, normals)
+            loaded = model.obstacle.place(_slopes(normals))
             if _move_window(model, loaded):
                 continue
             if (missed := model.overlooked()) is not None:
-                bead, vertex = missed
+                bead, place = missed
                 model.watch(model.watched | _around(model, {bead: 0.0}, _AHEAD))
-                if not model.obstacle.is_inside(model.window, np.array([vertex])):
-                    model.use_window(model.obstacle.window_of(vertex))
+                if not model.obstacle.is_inside(model.window, np.array([place])):
+                    model.use_window(model.obstacle.window_of(place))
                 whole = False
                 continue
             if whole:
@@ -144,7 +145,7 @@ def _around(model: BeamModel, loaded: dict[int, float], reach: int) -> frozenset
     )
 
 
-def _move_window(model: BeamModel, loaded: Integers) -> bool:
+def _move_window(model: BeamModel, loaded: Floats) -> bool:
     """See to it that all load rests on full resolution; True if the mesh had to be changed."""
     if loaded.size == 0 or model.obstacle.is_inside(model.window, loaded):
         return False
@@ -153,10 +154,6 @@ def _move_window(model: BeamModel, loaded: Integers) -> bool:
         return False
     model.use_window(best)
     return True
-
-
-def _vertices(model: BeamModel, normal: Floats) -> Integers:
-    return model.obstacle.nearest_vertex(_slopes(normal))
 
 
 def _slopes(normal: Floats) -> Floats:
@@ -184,17 +181,16 @@ def _touches(model: BeamModel, contacts: Contacts) -> dict[int, Touch]:
 def _curvatures(model: BeamModel, now: dict[int, Touch], last: dict[int, Touch]) -> Floats:
     """How fast each contact's normal turns as the bead slides, shape (n_contacts,) [1/L].
 
-    A bead sees a polygon: no turn along a facet, all of it within 1e-8 L at a vertex. Only the
-    secant through the last two iterates sees what is at hand; with the contour's mean curvature
-    Newton's method can jump for ever between a vertex's two facets.
+    On a faceted obstacle a bead sees a polygon: no turn along a facet, all of it within 1e-8 L at a
+    vertex. Only the secant through the last two iterates sees what is at hand; with the contour's
+    mean curvature Newton's method can jump for ever between a vertex's two facets.
     """
-    found = np.empty(len(now))
+    found = model.contact_curvature(np.array([touch.normal_angle for touch in now.values()]))
+    if not model.obstacle.faceted:
+        return found
     for i, (bead, touch) in enumerate(now.items()):
         before = last.get(bead)
-        if before is None:
-            vertex = model.obstacle.nearest_vertex(np.array([touch.normal_angle]))
-            found[i] = model.contact_curvature[vertex[0]]
-        else:
+        if before is not None:
             turn = touch.normal_angle - before.normal_angle
             slid = float(np.hypot(*(touch.position - before.position)))
             found[i] = 0.0 if abs(turn) < _SAME_NORMAL else abs(turn) / slid

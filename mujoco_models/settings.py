@@ -9,7 +9,8 @@ from analytic.problem.errors import InputError
 
 BeamKind: TypeAlias = Literal["chain", "rod", "cable"]
 ClampKind: TypeAlias = Literal["second-order", "naive"]
-BEAMS, CLAMPS = get_args(BeamKind), get_args(ClampKind)
+ObstacleKind: TypeAlias = Literal["mesh", "primitive"]
+BEAMS, CLAMPS, OBSTACLES = map(get_args, (BeamKind, ClampKind, ObstacleKind))
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,9 @@ class Settings:
     clamp : str
         Where the beam first bends: half a cell from the clamp, ``"second-order"`` in 1/N, or a
         whole one, ``"naive"`` (first order; for comparison).
+    obstacle : str
+        The object as a ``"mesh"``, or as MuJoCo's smooth ``"primitive"`` if it is a circle or an
+        ellipse.
     tolerance : float
         A station has settled when no joint is out of balance by more than this [EI/L].
 
@@ -47,10 +51,11 @@ class Settings:
     contour_points: int = 3200
     contact_stiffness: float = 1e7
     clamp: ClampKind = "second-order"
+    obstacle: ObstacleKind = "mesh"
     tolerance: float = 1e-8
 
     def __post_init__(self) -> None:
-        for name, allowed in (("beam", BEAMS), ("clamp", CLAMPS)):
+        for name, allowed in (("beam", BEAMS), ("clamp", CLAMPS), ("obstacle", OBSTACLES)):
             value = getattr(self, name)
             if value not in allowed:
                 raise InputError(

@@ -16,7 +16,7 @@ from analytic.problem.readings import COLUMNS, Readings
 from mujoco_models.beams.kinds import build
 from mujoco_models.beams.layout import bead_spacing
 from mujoco_models.model import BeamModel
-from mujoco_models.obstacle import Obstacle
+from mujoco_models.obstacles.kinds import place
 from mujoco_models.rest import State, fall, relax, turned
 from mujoco_models.settings import Settings
 
@@ -29,7 +29,6 @@ _HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below it ju
 def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Readings:
     """Sweep the beam to the left; see `mujoco_models.simulate_sweep`."""
     walk = set_out(case, settings)
-    obstacle = walk.model.obstacle
     rows = []
     for target in case.foot_x / case.beam.length:
         walk.go_to(float(target))
@@ -49,8 +48,7 @@ def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Re
         "engine": f"MuJoCo {mujoco.__version__}, vibrissa-testbed {version('vibrissa-testbed')}",
         "python": platform.python_version(),
         "settings": asdict(settings),
-        "obstacle": f"{len(obstacle.vertices)} contour points, chord error "
-        f"{obstacle.chord_error:.1e} L, normal error {obstacle.normal_error:.1e} rad",
+        "obstacle": walk.model.obstacle.label,
         "events": {
             "snap_off": None if walk.snap_off is None else walk.snap_off * beam.length,
         },
@@ -63,8 +61,8 @@ def set_out(case: Case, settings: Settings) -> "Walk":
     """The beam, straight, with its foot at the first station of a sweep to the left."""
     if case.radius == 0:
         raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
-    obstacle = Obstacle.of(case, settings.contour_points)
-    spacing = bead_spacing(settings.segments, case.radius, float(obstacle.curvature.max()))
+    obstacle = place(case, settings)
+    spacing = bead_spacing(settings.segments, case.radius, obstacle.largest_curvature)
     beam = build(settings, spacing)
     model = BeamModel(beam, case.radius, obstacle, settings.contact_stiffness)
     return Walk(model, float(case.foot_x[0]) / case.beam.length, settings.tolerance)

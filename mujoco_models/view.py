@@ -11,7 +11,7 @@ import numpy as np
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from mujoco_models.model import BeamModel
-from mujoco_models.obstacle import MESH_PREFIX
+from mujoco_models.obstacles.protocol import GEOM_PREFIX
 from mujoco_models.settings import Settings
 from mujoco_models.sweep import set_out
 
@@ -59,9 +59,7 @@ class _Stage:
     def __init__(self, beam: BeamModel, height: float) -> None:
         self._beam = beam
         model = beam.model
-        self._windows = [
-            model.geom(f"{MESH_PREFIX}{i}").id for i in range(len(beam.obstacle.centres))
-        ]
+        self._windows = [model.geom(f"{GEOM_PREFIX}{i}").id for i in range(beam.obstacle.windows)]
         model.geom_rgba[model.geom_type == mujoco.mjtGeom.mjGEOM_SPHERE] = _HIDDEN
         links = model.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE
         model.geom_rgba[links] = _VIBRISSA

@@ -4,6 +4,7 @@ from abc import ABC, abstractmethod
 from typing import NamedTuple
 
 from analytic.problem.arrays import Floats
+from analytic.problem.solid import EllipticCylinder
 
 
 class ContourPoint(NamedTuple):
@@ -30,6 +31,8 @@ class Contour(ABC):
     """
 
     label: str
+    solid: EllipticCylinder | None
+    """What the contour is the lower side of, where that is known."""
 
     @property
     @abstractmethod

@@ -34,6 +34,7 @@ class Polygon(Contour):
     vertices: Floats
     distance: float = 0.0
     label: str = "polygon"
+    solid: None = None
 
     @property
     def t_range(self) -> tuple[float, float]:

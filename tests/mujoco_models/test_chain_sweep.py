@@ -102,9 +102,9 @@ def test_the_first_contact_is_not_overlooked(case, exact, simulated):
 
 
 def test_clearance_of_points_from_the_polygon():
-    from mujoco_models.obstacle import Obstacle
+    from mujoco_models.obstacles.prism import Prism
 
-    circle = Obstacle.of(named_case("two-circles"), 400)
+    circle = Prism.of(named_case("two-circles"), 400)
     outward = np.array([[0.3, 0.2], [-0.50005, 0.02], [2.5, 0.9], [0.0, 0.499]])
     found = [circle.clearance(point)[0] for point in outward]
     exact = [np.hypot(0.3, 2.3) - 2, np.hypot(0.50005, 0.98) - 0.5, None, 0.001]

@@ -20,12 +20,12 @@ pytestmark = pytest.mark.skipif(
 def test_sideways_stiffness_has_the_sign_of_the_contact_angle(case):
     from mujoco_models.beams.kinds import build
     from mujoco_models.model import BeamModel
-    from mujoco_models.obstacle import Obstacle
+    from mujoco_models.obstacles.prism import Prism
     from mujoco_models.rest import State, relax
     from mujoco_models.sideways import sideways_stiffness
 
     beam = build(Settings(beam="cable", segments=20), spacing=0.003)
-    model = BeamModel(beam, case.radius, Obstacle.of(case, 3200), 1e7)
+    model = BeamModel(beam, case.radius, Prism.of(case, 3200), 1e7)
     state = State.straight(len(beam.layout.joints))
     signs = []
     for foot_x in case.foot_x[:-1]:

@@ -15,12 +15,12 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
+from mujoco_models.obstacles.protocol import GEOM_PREFIX, Obstacle
 
 _FINE = 32  # vertices at full resolution on either side of a window's centre
 _GRADED = 8  # vertices a level farther out; the spacing doubles from level to level
 _BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
 _HALF_DEPTH = 0.25  # L, of the extrusion: much more than a penetration, or depths come out wrong
-MESH_PREFIX = "obstacle"
 
 # Corners +x, -x, +y, -y, +z, -z; every face with its corners counterclockwise from outside.
 _OCTAHEDRON = [
@@ -28,8 +28,8 @@ _OCTAHEDRON = [
 ]
 
 
-@dataclass(frozen=True)
-class Obstacle:
+@dataclass(frozen=True, eq=False)
+class Prism(Obstacle):
     """A convex polygon's lower side, and the meshes that stand for it.
 
     Where the contour goes on beyond the reach of the vibrissa, so does the polygon, along its
@@ -42,9 +42,10 @@ class Obstacle:
     """
 
     vertices: Floats
+    faceted = True
 
     @classmethod
-    def of(cls, case: Case, points: int) -> "Obstacle":
+    def of(cls, case: Case, points: int) -> "Prism":
         """The part of the case's object that the vibrissa can reach, with `points` vertices."""
         last, first = case.reach
         body = case.profile.scaled(1 / case.beam.length)
@@ -62,8 +63,30 @@ class Obstacle:
         angles: Floats = np.arctan2(rise, run)
         return angles
 
+    @property
+    def label(self) -> str:
+        """How fine the polygon is."""
+        return (
+            f"{len(self.vertices)} contour points, chord error {self.chord_error:.1e} L, "
+            f"normal error {self.normal_error:.1e} rad"
+        )
+
+    @property
+    def windows(self) -> int:
+        """As many as it takes."""
+        return len(self._centres)
+
+    @property
+    def largest_curvature(self) -> float:
+        """The largest mean curvature [1/L]."""
+        return float(self._curvature.max())
+
+    def curvature(self, slope: Floats) -> Floats:
+        """Mean curvature near the vertex at which the slope angle is passed."""
+        return self._curvature[self._vertex(slope)]
+
     @cached_property
-    def curvature(self) -> Floats:
+    def _curvature(self) -> Floats:
         """Mean curvature near each vertex, shape (n,) [1/L]."""
         length = np.hypot(*np.diff(self.vertices, axis=0).T)
         inner = 2 * np.diff(self.facet_angles) / (length[1:] + length[:-1])
@@ -82,13 +105,16 @@ class Obstacle:
         return float((np.minimum(length[1:], length[:-1]) * turn).max()) / 8
 
     @cached_property
-    def centres(self) -> Integers:
+    def _centres(self) -> Integers:
         """Vertices at which the windows are centred; neighbouring windows overlap by half."""
         n = len(self.vertices)
         return np.append(np.arange(0, n - 1, _FINE), n - 1)
 
-    def nearest_vertex(self, slope: Floats) -> Integers:
-        """Vertices at which the contour has these slope angles."""
+    def place(self, slope: Floats) -> Floats:
+        """The number of the vertex at which the slope angle is passed."""
+        return self._vertex(slope).astype(float)
+
+    def _vertex(self, slope: Floats) -> Integers:
         return np.searchsorted(self.facet_angles, slope)
 
     def faces(self, slope: Floats) -> bool:
@@ -109,27 +135,27 @@ class Obstacle:
         beside = np.maximum(x[0] - points[:, 0], points[:, 0] - x[-1])
         return np.flatnonzero(np.maximum(bound, beside) < distance)
 
-    def clearance(self, point: Floats) -> tuple[float, int]:
+    def clearance(self, point: Floats) -> tuple[float, float]:
         """Distance of a point from the polygon, negative inside, and the vertex it is at."""
         offset = point - self.vertices[:-1]
         distance = offset[:, 0] * np.sin(self.facet_angles) - offset[:, 1] * np.cos(
             self.facet_angles
         )
         facet = int(np.argmax(distance))
-        return float(distance[facet]), facet
+        return float(distance[facet]), float(facet)
 
-    def window_of(self, vertex: float) -> int:
+    def window_of(self, place: float) -> int:
         """The window whose centre is nearest to a vertex."""
-        return int(np.argmin(np.abs(self.centres - vertex)))
+        return int(np.argmin(np.abs(self._centres - place)))
 
-    def is_inside(self, window: int, vertices: Integers) -> bool:
+    def is_inside(self, window: int, places: Floats) -> bool:
         """Whether `window` has all of the contour around these vertices."""
-        return bool((np.abs(vertices - self.centres[window]) <= _FINE - 2).all())
+        return bool((np.abs(places - self._centres[window]) <= _FINE - 2).all())
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
-        """Add one mesh geom a window to the world body, named `MESH_PREFIX` and its number."""
-        for i, centre in enumerate(self.centres):
-            mesh = spec.add_mesh(name=f"{MESH_PREFIX}{i}")
+        """Add one mesh geom a window to the world body, named `GEOM_PREFIX` and its number."""
+        for i, centre in enumerate(self._centres):
+            mesh = spec.add_mesh(name=f"{GEOM_PREFIX}{i}")
             mesh.uservert, mesh.userface = self._prism(int(centre))
             spec.worldbody.add_geom(
                 name=mesh.name,

@@ -1,0 +1,1 @@
+"""MuJoCo's models of the object."""

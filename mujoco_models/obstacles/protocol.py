@@ -1,0 +1,69 @@
+"""What the obstacles have in common, and what the relaxation asks of them."""
+
+from abc import ABC, abstractmethod
+
+import mujoco
+
+from analytic.problem.arrays import Floats, Integers
+
+GEOM_PREFIX = "obstacle"
+
+
+class Obstacle(ABC):
+    """The object in MuJoCo, convex, swept past from below; dimensionless, L = 1.
+
+    It is one geom or several that stand for one another (windows), named `GEOM_PREFIX` and their
+    number; only one at a time takes part in collisions. Most obstacles have one.
+    """
+
+    faceted: bool
+    """Whether the normal turns in jumps, so that a curvature does not tell where it turns."""
+    normal_noise: float = 0.0
+    """By how much MuJoCo's contact normals err at random [rad]."""
+
+    @property
+    @abstractmethod
+    def label(self) -> str:
+        """What it is and how true to the contour, for provenance."""
+
+    @property
+    @abstractmethod
+    def largest_curvature(self) -> float:
+        """Of the contour [1/L]."""
+
+    @property
+    def windows(self) -> int:
+        """How many geoms there are."""
+        return 1
+
+    @abstractmethod
+    def add_to(self, spec: mujoco.MjSpec) -> None:
+        """Add the geoms to the world body."""
+
+    @abstractmethod
+    def curvature(self, slope: Floats) -> Floats:
+        """Curvature of the contour where it has these slope angles, shape (n,) [1/L]."""
+
+    @abstractmethod
+    def faces(self, slope: Floats) -> bool:
+        """Whether contacts with these slope angles are with the contour, not with its far side."""
+
+    @abstractmethod
+    def near(self, points: Floats, distance: float) -> Integers:
+        """Which of the points, shape (n, 2), may be nearer to the contour than `distance`."""
+
+    @abstractmethod
+    def clearance(self, point: Floats) -> tuple[float, float]:
+        """Distance of a point from the contour, negative inside, and the place it is at."""
+
+    def place(self, slope: Floats) -> Floats:
+        """Where along the contour these slope angles are, in whatever measure windows have."""
+        return slope
+
+    def window_of(self, place: float) -> int:
+        """The window that is best for a place."""
+        return 0
+
+    def is_inside(self, window: int, places: Floats) -> bool:
+        """Whether `window` has all of the contour around these places."""
+        return True
