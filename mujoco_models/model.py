@@ -60,15 +60,16 @@ class BeamModel:
         self.data = mujoco.MjData(self.model)
         self._foot = self.model.body(FOOT).id
         model = self.model
-        self._windows = np.array(
-            [model.geom(f"{GEOM_PREFIX}{i}").id for i in range(obstacle.windows)]
+        self._obstacle_geoms = np.array(
+            [model.geom(f"{GEOM_PREFIX}{i}").id for i in range(obstacle.geoms)]
         )
         self._beads = np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_SPHERE)
         self._bead_of = np.full(model.ngeom, -1)
         self._bead_of[self._beads] = np.arange(len(self._beads))
         self._set_contact_stiffness()
         self.window = -1
-        self.use_window(0)
+        right_end = obstacle.place(np.array([np.pi / 2]))
+        self.use_window(obstacle.window_of(float(right_end[0])))
         self._trail: tuple[float, ...] = ()
         self.watched: frozenset[int] = frozenset()
         self.watch(frozenset(range(len(self._beads))))
@@ -85,10 +86,9 @@ class BeamModel:
         self.model.geom_solimp[self._beads] = [_IMPEDANCE, _IMPEDANCE, 1e-3, 0.5, 2]
 
     def use_window(self, window: int) -> None:
-        """Let the obstacle's geom with this window, and no other, take part in collisions."""
+        """Let MuJoCo see what the obstacle has for this window."""
         if window != self.window:
-            self.model.geom_contype[self._windows] = 0
-            self.model.geom_contype[self._windows[window]] = 1
+            self.obstacle.show(self.model, self._obstacle_geoms, window)
             self.window = window
 
     def anticipate_window(self) -> None:

@@ -66,8 +66,7 @@ def relax(model: BeamModel, foot_x: float, start: State, tolerance: float) -> St
     start : State
         Where to start from.
     tolerance : float
-        Largest moment out of balance at rest [EI/L]; what the noise of the obstacle's normals
-        makes of the load, at an arm of L, is allowed on top.
+        Largest moment out of balance at rest [EI/L].
 
     Returns
     -------
@@ -88,7 +87,7 @@ def relax(model: BeamModel, foot_x: float, start: State, tolerance: float) -> St
         contacts = model.contacts()
         state = replace(state, imbalance=residual)
         best = min(best, state, key=lambda s: s.imbalance)
-        if residual < tolerance + model.obstacle.normal_noise * sum(state.forces.values()):
+        if residual < tolerance:
             normals = contacts.normal[contacts.distance < 0]
             if not model.obstacle.faces(_slopes(normals)):
                 break  # pushed out through the far side of the object: no state of the sweep

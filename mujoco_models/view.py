@@ -59,7 +59,9 @@ class _Stage:
     def __init__(self, beam: BeamModel, height: float) -> None:
         self._beam = beam
         model = beam.model
-        self._windows = [model.geom(f"{GEOM_PREFIX}{i}").id for i in range(beam.obstacle.windows)]
+        self._obstacle = np.array(
+            [model.geom(f"{GEOM_PREFIX}{i}").id for i in range(beam.obstacle.geoms)]
+        )
         model.geom_rgba[model.geom_type == mujoco.mjtGeom.mjGEOM_SPHERE] = _HIDDEN
         links = model.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE
         model.geom_rgba[links] = _VIBRISSA
@@ -76,10 +78,10 @@ class _Stage:
         options.flags[mujoco.mjtVisFlag.mjVIS_CONTACTFORCE] = True
 
     def dress(self) -> None:
-        """Show the mesh that takes part in collisions, and no other."""
-        rgba = self._beam.model.geom_rgba
-        rgba[self._windows] = _HIDDEN
-        rgba[self._windows[self._beam.window]] = _BODY
+        """Show the geom that takes part in collisions, and no other."""
+        model = self._beam.model
+        collides = model.geom_contype[self._obstacle] != 0
+        model.geom_rgba[self._obstacle] = np.where(collides[:, None], _BODY, _HIDDEN)
 
 
 def _aim(camera: mujoco.MjvCamera, centre: float, behind: bool) -> None:

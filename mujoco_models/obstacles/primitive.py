@@ -1,120 +1,138 @@
-"""The object as MuJoCo's smooth primitive: a cylinder for a circle, an ellipsoid for an ellipse.
+"""The object as MuJoCo's smooth primitive: a cylinder that osculates the contour at the contact.
 
-Free of facets, it separates their error from all others. MuJoCo's distance of a sphere from a
-cylinder is a formula. That from an ellipsoid is searched for by comparing distances, which settles
-them to rounding, but the place, and so the normal, only to its square root.
+Free of facets, it separates their error from all others, on any smooth contour: where the vibrissa
+touches, a cylinder with the contour's circle of curvature has its point, its normal and its
+curvature, and it follows the contact. MuJoCo's distance of a sphere from a cylinder is a formula,
+so its normals are exact; those of an ellipsoid come out of a search and are good to 1e-7 only.
 """
+
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
-from scipy.optimize import brentq
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
-from analytic.problem.solid import EllipticCylinder
+from mujoco_models.obstacles.prism import Prism
 from mujoco_models.obstacles.protocol import GEOM_PREFIX, Obstacle
 
-_HALF_LENGTH = 100.0  # L, along z; an ellipsoid this long is a cylinder to 5e-5 L at z = L
-_TOP = 0.75 * np.pi  # rad; the lower side ends at pi/2
+# rad, between neighbouring circles. A contact is off its circle's point of osculation by no more,
+# and the contour from the circle by the cube of that; where curvature jumps, by the square.
+_STEP = 5e-5
+_HALF_LENGTH = 50.0  # radii; the caps must be farther away than the centre
+_OUTLINE = 3200  # points of the polygon that looks for overlooked beads: 1e-7 L off the contour
+
+
+class _Circles(NamedTuple):
+    slope: Floats
+    radius: Floats
+    centre: Floats
 
 
 class Primitive(Obstacle):
-    """A cylinder along z, or an ellipsoid so long that it is one.
+    """One cylinder along z, wherever the contact is; a window is one of the contour's circles.
 
     Parameters
     ----------
-    solid : EllipticCylinder
-        In units of the vibrissa's length.
-    radius : float
-        Of the vibrissa [L].
+    circles : _Circles
+        Of curvature, at equal steps of slope angle, in units of the vibrissa's length.
+    outline : Prism
+        The contour as a fine polygon, for what is far from the contact.
     """
 
     faceted = False
+    geoms = 1
 
-    def __init__(self, solid: EllipticCylinder, radius: float) -> None:
-        self._centre = np.array(solid.centre)
-        self._axes = np.array(solid.semi_axes)
-        self._round = self._axes[0] == self._axes[1]
-        if not self._round:
-            self.normal_noise = float(np.sqrt(np.finfo(float).eps / radius))
+    def __init__(self, circles: _Circles, outline: Prism) -> None:
+        self._circles = circles
+        self._outline = outline
 
     @classmethod
     def of(cls, case: Case) -> "Primitive":
-        """The whole object of a case, within reach or not.
+        """The part of the case's object that the vibrissa can reach.
 
         Raises
         ------
         InputError
-            If its contour is neither a circle nor an ellipse.
+            If its contour has corners or straight parts.
         """
-        solid = case.profile.scaled(1 / case.beam.length).solid
-        if not isinstance(solid, EllipticCylinder):
+        body = case.profile.scaled(1 / case.beam.length)
+        begin, end = case.centreline.at(np.array(case.reach)).alpha
+        slope = np.linspace(begin, end, 2 + int((end - begin) / _STEP))
+        point = body.at(body.parameter(slope))
+        with np.errstate(divide="ignore"):
+            radius = point.stretch / point.turning
+        chord = np.hypot(np.diff(point.xi), np.diff(point.eta)) / np.diff(slope)
+        curved = np.isfinite(radius).all() and (radius > 0).all()
+        if not curved or (chord > 1.01 * np.maximum(radius[1:], radius[:-1])).any():
             raise InputError(
                 "mujoco.obstacle",
                 f"'primitive' for {case.profile.label}",
-                "'mesh', or the contour a circle or an ellipse",
-                "MuJoCo has no other smooth obstacle",
+                "'mesh', or a contour without corners and straight parts",
+                "no circle of curvature is there",
             )
-        return cls(solid, case.radius)
+        inward = np.column_stack([-np.sin(slope), np.cos(slope)])
+        centre = np.column_stack([point.xi, point.eta]) + radius[:, None] * inward
+        return cls(_Circles(slope, radius, centre), Prism.of(case, _OUTLINE))
 
     @property
     def label(self) -> str:
-        """Which of MuJoCo's primitives."""
-        return f"MuJoCo's {'cylinder' if self._round else 'ellipsoid'}"
+        """What it is."""
+        return "MuJoCo's cylinder, with the contour's circle of curvature where the contact is"
 
     @property
     def largest_curvature(self) -> float:
-        """At the ends of the longer axis [1/L]."""
-        return float(self._axes.max() / self._axes.min() ** 2)
+        """Of all its circles [1/L]."""
+        return float(1 / self._circles.radius.min())
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
-        """One geom."""
-        kind, size = mujoco.mjtGeom.mjGEOM_ELLIPSOID, [*self._axes, _HALF_LENGTH]
-        if self._round:
-            kind, size = mujoco.mjtGeom.mjGEOM_CYLINDER, [self._axes[0], _HALF_LENGTH, 0]
+        """One geom; not at the origin, or MuJoCo takes it that it never leaves it."""
         spec.worldbody.add_geom(
             name=f"{GEOM_PREFIX}0",
-            type=kind,
-            pos=[*self._centre, 0],
-            size=size,
+            type=mujoco.mjtGeom.mjGEOM_CYLINDER,
+            pos=[1, 1, 0],
+            size=[1, _HALF_LENGTH, 0],
             contype=1,
             conaffinity=0,
             condim=1,
         )
 
+    def show(self, model: mujoco.MjModel, geoms: Integers, window: int) -> None:
+        """Put the cylinder where the window's circle is."""
+        (geom,) = geoms
+        radius = self._circles.radius[window]
+        model.geom_size[geom, :2] = radius * np.array([1, _HALF_LENGTH])
+        model.geom_rbound[geom] = radius * np.hypot(1, _HALF_LENGTH)
+        model.geom_pos[geom, :2] = self._circles.centre[window]
+
     def curvature(self, slope: Floats) -> Floats:
-        """That of the ellipse, exactly."""
-        support = self._support(np.column_stack([np.sin(slope), -np.cos(slope)]))
-        return np.asarray(support**3 / np.prod(self._axes) ** 2)
+        """That of the nearest circle."""
+        return np.asarray(1 / self._circles.radius[np.rint(self.place(slope)).astype(int)])
 
     def faces(self, slope: Floats) -> bool:
-        """Whether none is at the top; where it is widest, a bead may touch a little above that."""
-        return bool((np.abs(slope) < _TOP).all())
+        """Whether contacts with these slope angles are within reach."""
+        return self._outline.faces(slope)
 
     def near(self, points: Floats, distance: float) -> Integers:
-        """By one tangent each, which is not farther away than the contour."""
-        offset = points - self._centre
-        normal = offset / self._axes**2
-        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-        return np.flatnonzero((normal * offset).sum(axis=1) - self._support(normal) < distance)
+        """Told by the polygon."""
+        return self._outline.near(points, distance)
 
     def clearance(self, point: Floats) -> tuple[float, float]:
-        """From the nearest point of the ellipse, of which `point` is t gradients away."""
-        offset = point - self._centre
-        squares = self._axes**2
+        """From the polygon; the place is that of its nearest facet."""
+        clearance, facet = self._outline.clearance(point)
+        slope = self._outline.facet_angles[int(facet)]
+        return clearance, float(self.place(np.array([slope]))[0])
 
-        def excess(t: float) -> float:
-            return float((squares * (offset / (squares + t)) ** 2).sum()) - 1
+    def place(self, slope: Floats) -> Floats:
+        """Number of the circle, with a fraction."""
+        number = np.arange(len(self._circles.slope), dtype=float)
+        return np.interp(slope, self._circles.slope, number)
 
-        inmost = -float(squares.min())
-        outmost = float(np.linalg.norm(self._axes * offset))
-        t = brentq(excess, inmost * (1 - 1e-9), outmost, xtol=1e-16, rtol=1e-14)
-        nearest = squares * offset / (squares + t)
-        normal = nearest / squares
-        slope = float(np.arctan2(normal[0], -normal[1]))
-        return float(np.copysign(np.linalg.norm(offset - nearest), t)), slope
+    def window_of(self, place: float) -> int:
+        """The nearest circle."""
+        return round(min(max(place, 0), len(self._circles.slope) - 1))
 
-    def _support(self, normal: Floats) -> Floats:
-        """Distance of the tangents with these normals, shape (n, 2), from the centre."""
-        return np.asarray(np.linalg.norm(self._axes * normal, axis=1))
+    def is_inside(self, window: int, places: Floats) -> bool:
+        """Whether the circle is the nearest to the mean of these places, or next to that."""
+        return bool(abs(places.mean() - window) <= 1)

@@ -72,8 +72,8 @@ class Prism(Obstacle):
         )
 
     @property
-    def windows(self) -> int:
-        """As many as it takes."""
+    def geoms(self) -> int:  # type: ignore[override]
+        """One a window."""
         return len(self._centres)
 
     @property
@@ -165,6 +165,11 @@ class Prism(Obstacle):
                 conaffinity=0,
                 condim=1,
             )
+
+    def show(self, model: mujoco.MjModel, geoms: Integers, window: int) -> None:
+        """Let the window's mesh collide."""
+        model.geom_contype[geoms] = 0
+        model.geom_contype[geoms[window]] = 1
 
     def _kept(self, centre: int) -> Integers:
         n = len(self.vertices)

@@ -12,14 +12,14 @@ GEOM_PREFIX = "obstacle"
 class Obstacle(ABC):
     """The object in MuJoCo, convex, swept past from below; dimensionless, L = 1.
 
-    It is one geom or several that stand for one another (windows), named `GEOM_PREFIX` and their
-    number; only one at a time takes part in collisions. Most obstacles have one.
+    It is one geom or several that stand for one another, named `GEOM_PREFIX` and their number. What
+    MuJoCo sees of it is best near one place of the contour, its window, which follows the contact.
     """
 
     faceted: bool
     """Whether the normal turns in jumps, so that a curvature does not tell where it turns."""
-    normal_noise: float = 0.0
-    """By how much MuJoCo's contact normals err at random [rad]."""
+    geoms: int
+    """How many geoms there are."""
 
     @property
     @abstractmethod
@@ -31,14 +31,23 @@ class Obstacle(ABC):
     def largest_curvature(self) -> float:
         """Of the contour [1/L]."""
 
-    @property
-    def windows(self) -> int:
-        """How many geoms there are."""
-        return 1
-
     @abstractmethod
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """Add the geoms to the world body."""
+
+    @abstractmethod
+    def show(self, model: mujoco.MjModel, geoms: Integers, window: int) -> None:
+        """Let what is best for `window`, and nothing else, take part in collisions.
+
+        Parameters
+        ----------
+        model : mujoco.MjModel
+            Changed in place.
+        geoms : array of int, shape (geoms,)
+            Their numbers in the model.
+        window : int
+            Which window.
+        """
 
     @abstractmethod
     def curvature(self, slope: Floats) -> Floats:
@@ -56,14 +65,14 @@ class Obstacle(ABC):
     def clearance(self, point: Floats) -> tuple[float, float]:
         """Distance of a point from the contour, negative inside, and the place it is at."""
 
+    @abstractmethod
     def place(self, slope: Floats) -> Floats:
         """Where along the contour these slope angles are, in whatever measure windows have."""
-        return slope
 
+    @abstractmethod
     def window_of(self, place: float) -> int:
         """The window that is best for a place."""
-        return 0
 
+    @abstractmethod
     def is_inside(self, window: int, places: Floats) -> bool:
         """Whether `window` has all of the contour around these places."""
-        return True
