@@ -33,8 +33,8 @@ class Settings:
         Where the beam first bends: half a cell from the clamp, ``"second-order"`` in 1/N, or a
         whole one, ``"naive"`` (first order; for comparison).
     obstacle : str
-        The object as a ``"mesh"``, or as MuJoCo's smooth ``"primitive"`` if it is a circle or an
-        ellipse.
+        The object as a ``"mesh"``, or, if its contour has no corners, as MuJoCo's smooth
+        ``"primitive"``: a cylinder that osculates the contour where the vibrissa touches.
     tolerance : float
         A station has settled when no joint is out of balance by more than this [EI/L].
 

@@ -9,6 +9,7 @@ from typing import Any
 import mujoco
 import numpy as np
 import pandas as pd
+from threadpoolctl import threadpool_limits
 
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
@@ -30,10 +31,12 @@ def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Re
     """Sweep the beam to the left; see `mujoco_models.simulate_sweep`."""
     walk = set_out(case, settings)
     rows = []
-    for target in case.foot_x / case.beam.length:
-        walk.go_to(float(target))
-        rows.append(walk.row())
-        advance()
+    # The matrices are small: more threads only wait for each other, on a busy machine for long.
+    with threadpool_limits(1):
+        for target in case.foot_x / case.beam.length:
+            walk.go_to(float(target))
+            rows.append(walk.row())
+            advance()
     table = pd.DataFrame(rows)
     beam = case.beam
     for name in ("force_x", "force_y"):

@@ -55,21 +55,18 @@ class Primitive(Obstacle):
         Raises
         ------
         InputError
-            If its contour has corners or straight parts.
+            If its contour has corners.
         """
         body = case.profile.scaled(1 / case.beam.length)
         begin, end = case.centreline.at(np.array(case.reach)).alpha
         slope = np.linspace(begin, end, 2 + int((end - begin) / _STEP))
         point = body.at(body.parameter(slope))
-        with np.errstate(divide="ignore"):
-            radius = point.stretch / point.turning
-        chord = np.hypot(np.diff(point.xi), np.diff(point.eta)) / np.diff(slope)
-        curved = np.isfinite(radius).all() and (radius > 0).all()
-        if not curved or (chord > 1.01 * np.maximum(radius[1:], radius[:-1])).any():
+        radius = point.stretch / point.turning
+        if not (np.isfinite(radius).all() and (radius > 0).all()):
             raise InputError(
                 "mujoco.obstacle",
                 f"'primitive' for {case.profile.label}",
-                "'mesh', or a contour without corners and straight parts",
+                "'mesh', or a contour without corners",
                 "no circle of curvature is there",
             )
         inward = np.column_stack([-np.sin(slope), np.cos(slope)])
