@@ -3,10 +3,8 @@
 import json
 import sys
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Annotated, Any, cast
 
@@ -17,7 +15,6 @@ from rich.table import Table
 
 from analytic import (
     CASE_NAMES,
-    Case,
     InputError,
     Readings,
     named_case,
@@ -27,10 +24,8 @@ from analytic import (
 from analytic import reconstruct as reconstruct_contour
 from analytic.problem.readings import CLAMP_READINGS
 from compare.animation import write_animation
-from compare.budget import Budget, controlled_changes
-from compare.budget import budget as measure_budget
+from compare.budget import Budget, controlled_changes, measure_budget
 from compare.budget.figure import picture
-from compare.budget.suspects import variations
 from compare.casefile import Job, load_job
 from compare.comparison import Comparison
 from compare.comparison import compare as compare_readings
@@ -39,7 +34,6 @@ from compare.measured import read_measured, write_table, write_text
 from compare.paper_figures import paper_figures
 from compare.report import write_report
 from compare.study.cli import study, study_report
-from mujoco_models.settings import Settings
 
 # Any wrong word on the command line; typer may bring its own copy of click, whose base this is.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
@@ -218,7 +212,7 @@ def budget(
     """Split the disagreement into its parts, each measured by a change of its own."""
     job = _job(case, stations, segments, beam, obstacle)
     folder = _folder(out, job)
-    found = measure_budget(solve_sweep(job.case), _controlled(job), variations(job.case))
+    found, _ = _measure_budget(job)
     drawn = picture(found)
     _told.print(_budget_table(found, job))
     verdict = "closes" if found.closes else "does not close: more is unexplained than uncertain"
@@ -312,28 +306,10 @@ def _progress(what: str, total: int) -> Iterator[Callable[[], None]]:
         yield lambda: bar.advance(task)
 
 
-def _controlled(job: Job) -> dict[str, Readings]:
-    """The sweeps that a budget needs, one process each on all cores."""
-    changes = controlled_changes(job.settings)
-    with (
-        ProcessPoolExecutor(mp_context=get_context("spawn")) as pool,
-        _progress("controlled changes", len(changes)) as advance,
-    ):
-        # The longest first, so that no core waits for it at the end.
-        sweeps = {
-            name: pool.submit(sweep_alone, job.case, changed)
-            for name, changed in sorted(changes.items(), key=lambda c: -c[1].segments)
-        }
-        for sweep in sweeps.values():
-            sweep.add_done_callback(lambda _: advance())
-        return {name: sweep.result() for name, sweep in sweeps.items()}
-
-
-def sweep_alone(case: Case, settings: Settings) -> Readings:
-    """One MuJoCo sweep, in a process of its own."""
-    from mujoco_models import simulate_sweep
-
-    return simulate_sweep(case, settings)
+def _measure_budget(job: Job) -> tuple[Budget, dict[str, Readings]]:
+    changes = len(set(controlled_changes(job.settings).values()))
+    with _progress("controlled changes", changes) as advance:
+        return measure_budget(job.case, job.settings, advance)
 
 
 def _budget_table(found: Budget, job: Job) -> Table:
@@ -343,6 +319,9 @@ def _budget_table(found: Budget, job: Job) -> Table:
         table.add_row(name, *cells)
     table.add_section()
     table.add_row("disagreement", *(f"{x:.1e}" for x in found.disagreement.values()))
+    table.add_section()
+    for name, sizes in found.checks.items():
+        table.add_row(f"{name}, closed form alone", *(f"{x:.1e}" for x in sizes.values()))
     return table
 
 

@@ -31,10 +31,12 @@ def simulate_sweep(
     Returns
     -------
     Readings
-        In the units of the case's beam, source ``"mujoco <beam>"``, with two columns more:
-        ``residual``, the largest moment out of balance at any joint, and ``discrepancy``, by how
+        In the units of the case's beam, source ``"mujoco <beam>"``, with four columns more:
+        ``residual``, the largest moment out of balance at any joint; ``discrepancy``, by how
         much (dimensionless) the clamp's sensors differ from the sum of the contacts' forces and
-        moments or from the beam's own moment at its first joint, whichever is worse.
+        moments or from the beam's own moment at its first joint, whichever is worse;
+        ``penetration``, how deep the loaded beads are in the obstacle on average [length]; and
+        ``extension``, by how much the beam is too long, over its length.
         ``provenance["events"]["snap_off"]`` is where the simulation let go.
 
     Raises

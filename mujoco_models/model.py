@@ -149,6 +149,12 @@ class BeamModel:
         """Shape (n, 2) [L]."""
         return np.asarray(self.data.geom_xpos[self._beads[beads], :2])
 
+    def extension(self) -> float:
+        """By how much MuJoCo's beam is longer than it should be, over its length."""
+        ends = [*self.data.xanchor, self.data.geom_xpos[self._beads[-1]]]
+        bent = np.linalg.norm(np.diff(ends, axis=0), axis=1).sum()
+        return float(bent + self.layout.joints[0] - 1)
+
     def near_the_obstacle(self) -> frozenset[int]:
         """Beads that touch the obstacle or nearly do, whether or not MuJoCo looks at them."""
         positions = self.data.geom_xpos[self._beads, :2]

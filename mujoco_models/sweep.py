@@ -1,6 +1,7 @@
 """The sweep: station after station at rest, and the snap-off found by smaller and smaller steps."""
 
 import platform
+import time
 from collections.abc import Callable
 from dataclasses import asdict
 from importlib.metadata import version
@@ -29,6 +30,7 @@ _HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below it ju
 
 def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Readings:
     """Sweep the beam to the left; see `mujoco_models.simulate_sweep`."""
+    begun = time.perf_counter()
     walk = set_out(case, settings)
     rows = []
     # The matrices are small: more threads only wait for each other, on a busy machine for long.
@@ -43,7 +45,7 @@ def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Re
         table[name] *= beam.force_unit
     for name in ("moment_z", "residual"):
         table[name] *= beam.moment_unit
-    for name in ("contact_arc_length", "contact_x", "contact_y"):
+    for name in ("contact_arc_length", "contact_x", "contact_y", "penetration"):
         table[name] *= beam.length
     table.insert(0, "foot_x", case.foot_x)
     provenance = {
@@ -52,6 +54,7 @@ def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Re
         "python": platform.python_version(),
         "settings": asdict(settings),
         "obstacle": walk.model.obstacle.label,
+        "seconds": round(time.perf_counter() - begun, 3),
         "events": {
             "snap_off": None if walk.snap_off is None else walk.snap_off * beam.length,
         },
@@ -159,6 +162,8 @@ class Walk:
             "status": "ok" if state.settled else "unsettled",
             "residual": state.imbalance,
             "discrepancy": model.discrepancy(),
+            "penetration": 0.0,
+            "extension": model.extension(),
         }
         if not np.isfinite(state.imbalance):
             row["status"] = "diverged"
@@ -174,5 +179,6 @@ class Walk:
                 "contact_arc_length": float(weight @ model.layout.beads[beads]),
                 "contact_x": float(x),
                 "contact_y": float(y),
+                "penetration": float(-weight @ contacts.distance[loaded]),
             }
         return row

@@ -9,7 +9,9 @@ import numpy as np
 from analytic import InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.readings import CLAMP_READINGS
-from compare.budget.plan import REFINED, STIFFER
+from compare.budget.convergence import convergence
+from compare.budget.exact import shifted_inward, stretched
+from compare.budget.plan import STIFFER
 from compare.budget.suspects import Suspect, suspects
 from compare.tolerances import Tolerances
 
@@ -24,7 +26,8 @@ PARTS = (
 )
 _SAFETY = 1.25  # Roache's, for a convergence index from three or more grids
 _ORDERS = (1.0, 2.0)  # what a chain can have: of a naive clamp, and of one at mid-cell
-_UNRESOLVED = 5e-5  # of the largest magnitude; what may stay unexplained in any case
+UNRESOLVED = 5e-5
+"""What may stay unexplained in any case, of a reading's largest magnitude."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +60,11 @@ class Budget:
         Faults of the physics that would explain what the numerics do not, likeliest first.
     stations : int
         Compared stations.
+    convergence : dict
+        Root mean square of the disagreement, without facets, by number of segments and reading.
+    checks : dict
+        What the closed form says of two parts, with no simulator in it, as root mean square by
+        reading: ``facets``, of a contact that is hard, and ``softness``.
     """
 
     parts: dict[str, dict[str, Part]]
@@ -67,6 +75,8 @@ class Budget:
     blame: str
     suspects: tuple[Suspect, ...]
     stations: int
+    convergence: dict[int, dict[str, float]]
+    checks: dict[str, dict[str, float]]
 
     def to_dict(self) -> dict[str, Any]:
         """What ``budget.json`` holds."""
@@ -77,6 +87,7 @@ def budget(
     exact: Readings,
     runs: Mapping[str, Readings],
     variations: Mapping[str, Readings],
+    faceted: Readings | None = None,
     tolerances: Tolerances | None = None,
 ) -> Budget:
     """Split the disagreement of ``runs["base"]`` with `exact` into its parts.
@@ -88,7 +99,9 @@ def budget(
     runs : mapping
         Sweeps of the candidate by the names of `controlled_changes`, over the same stations.
     variations : mapping
-        The reference with one thing of the physics changed, by the names of `suspects.VARIED`.
+        The reference with one thing of the physics changed; see `compare.budget.exact`.
+    faceted : Readings, optional
+        The reference on the very polygon that the candidate's mesh is, for a check.
     tolerances : Tolerances, optional
         Only its window before the snap-off is used, where readings grow without bound.
 
@@ -98,7 +111,8 @@ def budget(
         If no station is in contact and trusted in all sweeps.
     """
     tolerances = Tolerances() if tolerances is None else tolerances
-    kept = _common(exact, [*runs.values()], tolerances.snap_off_window)
+    others = [*runs.values()] if faceted is None else [*runs.values(), faceted]
+    kept = _common(exact, others, tolerances.snap_off_window)
     if not kept.any():
         raise InputError(
             "stations common to all sweeps of the budget", 0, "some", "see their status"
@@ -112,39 +126,47 @@ def budget(
 
     truth = signal(exact)
     run = {name: signal(readings) for name, readings in runs.items()}
-    order = _order(run["base"] - run["two"], run["two"] - run["four"])
-    ahead = (run["four"] - run["two"]) / (2**order - 1)  # from the finest segments to their limit
+    signatures = {name: signal(varied) - truth for name, varied in variations.items()}
+    base, beam = runs["base"], exact.beam
+    order = _order(run["smooth"] - run["two"], run["two"] - run["four"])
+    limit = _limit(run["smooth"], run["two"], run["four"], order)
     signals = {
-        "discretisation": run["base"] - (run["four"] + ahead),
-        "facets": run["four"] - run["four_smooth"],
-        "softness": (run["smooth"] - run["smooth_stiff"]) * STIFFER / (STIFFER - 1),
+        "discretisation": run["smooth"] - limit,
+        "facets": run["calm"] - run["smooth"],
+        "softness": (run["four"] - run["stiff"]) * STIFFER / (STIFFER - 1),
         "unrest": run["base"] - run["calm"],
-        "sensor": _sensor(runs["base"], kept, scale),
-        "extension": np.zeros_like(truth),  # every beam's links are rigid
+        "sensor": _sensor(base, kept, scale),
+        "extension": stretched(signatures, base.values("extension")[kept]),
     }
     total = run["base"] - truth
     signals["unexplained"] = total - np.sum(list(signals.values()), axis=0)
+    rms = {name: _rms(part) for name, part in signals.items()}
     uncertainty = {
-        "discretisation": _SAFETY * _rms(ahead),
-        "facets": _SAFETY * _rms(signals["facets"]) / (REFINED - 1),
-        "softness": _SAFETY * _rms(signals["softness"]) / (STIFFER - 1),
-        "unrest": _rms(signals["unrest"]),
-        "sensor": _rms(signals["sensor"]),
-        "extension": np.zeros(len(CLAMP_READINGS)),
+        "discretisation": _SAFETY * _rms(run["four"] - limit),
+        "facets": rms["unrest"],
+        "softness": _SAFETY * rms["softness"] / (STIFFER - 1),
+        "unrest": rms["unrest"],
+        "sensor": rms["sensor"],
+        "extension": rms["extension"],
     }
     uncertainty["unexplained"] = np.sqrt(np.sum([u**2 for u in uncertainty.values()], axis=0))
-    sizes = {name: _rms(part) for name, part in signals.items()}
-    unresolved = np.hypot(uncertainty["unexplained"], _UNRESOLVED)
+    unresolved = np.hypot(uncertainty["unexplained"], UNRESOLVED)
     phase = exact.table["phase"].to_numpy()[kept]
+    shifted = shifted_inward(
+        signatures, base.values("penetration")[kept] / beam.length, beam.radius / beam.length
+    )
+    checks = {"softness": shifted}
+    if faceted is not None:
+        checks["facets"] = signal(faceted) - truth
     return Budget(
         {
             name: {
-                reading: Part(float(sizes[name][i]), float(uncertainty[name][i]))
+                reading: Part(float(rms[name][i]), float(uncertainty[name][i]))
                 for i, reading in enumerate(CLAMP_READINGS)
             }
             for name in PARTS
         },
-        {reading: float(x) for reading, x in zip(CLAMP_READINGS, _rms(total), strict=True)},
+        _by_reading(total),
         {
             name: {
                 reading: {str(p): float(_rms(part[i, phase == p])) for p in np.unique(phase)}
@@ -153,14 +175,12 @@ def budget(
             for name, part in signals.items()
         },
         order,
-        bool((sizes["unexplained"] <= unresolved).all()),
-        max(PARTS, key=lambda name: float(np.linalg.norm(sizes[name]))),
-        suspects(
-            signals["unexplained"],
-            {name: signal(varied) - truth for name, varied in variations.items()},
-            float(np.linalg.norm(unresolved)),
-        ),
+        bool((rms["unexplained"] <= unresolved).all()),
+        max(PARTS, key=lambda name: float(np.linalg.norm(rms[name]))),
+        suspects(signals["unexplained"], signatures, float(np.linalg.norm(unresolved))),
         int(kept.sum()),
+        convergence(exact, [runs[name] for name in ("smooth", "two", "four")], kept),
+        {name: _by_reading(check) for name, check in checks.items()},
     )
 
 
@@ -182,6 +202,19 @@ def _order(coarse: Floats, fine: Floats) -> float:
     return float(np.clip(observed, *_ORDERS))
 
 
+def _limit(coarse: Floats, middle: Floats, fine: Floats, order: float) -> Floats:
+    """What the sweeps tend to as segments are refined: Richardson's extrapolation, from all three.
+
+    As the contact passes from segment to segment each sweep's error swings about its power of h,
+    and no less fast than that falls. So a line in that power is fitted, each sweep weighed by it:
+    the limit has three quarters of the swing that the two finest sweeps alone leave it.
+    """
+    power = 2.0 ** (-order * np.arange(3))
+    design = np.column_stack([np.ones(3), power]) / power[:, None]
+    weights = np.linalg.pinv(design)[0] / power
+    return np.asarray(np.tensordot(weights, np.stack([coarse, middle, fine]), axes=1))
+
+
 def _sensor(base: Readings, kept: Booleans, scale: Mapping[str, float]) -> Floats:
     """The sensors' discrepancy from the sum of the contacts, the worst of the three readings."""
     discrepancy = base.values("discrepancy")[kept]
@@ -190,6 +223,10 @@ def _sensor(base: Readings, kept: Booleans, scale: Mapping[str, float]) -> Float
     return np.stack(
         [discrepancy * u / scale[name] for name, u in zip(CLAMP_READINGS, units, strict=True)]
     )
+
+
+def _by_reading(signals: Floats) -> dict[str, float]:
+    return dict(zip(CLAMP_READINGS, _rms(signals).tolist(), strict=True))
 
 
 def _rms(signals: Floats) -> Floats:

@@ -2,27 +2,54 @@
 
 from dataclasses import replace
 
+from analytic import InputError
 from mujoco_models.settings import Settings
 
-REFINED = 4  # times the facets
 STIFFER = 10  # times the contact stiffness
 CALMER = 100  # times less out of balance
+COARSER = 4  # times fewer points of the mesh; for advice only
+_AT_REST = 1e-8  # EI/L; what all the other sweeps are out of balance by at most
 
 
-def controlled_changes(settings: Settings) -> dict[str, Settings]:
+def controlled_changes(settings: Settings, smooth: bool = True) -> dict[str, Settings]:
     """The settings of all sweeps by name; ``base`` is the one that the budget is of.
 
-    Facets are changed where segments are finest, lest a long rigid link bridge several of them, and
-    stiffness where facets are finest: a soft contact spreads the load over several and hides them.
+    They lead from the base to the exact problem, one thing after the other: ``calm`` is more at
+    rest, ``smooth`` has no facets, ``two`` and ``four`` have more segments, and ``stiff`` has
+    harder contacts too. Facets come first, for without them the beam's order is plain to see, and
+    stiffness last: where beads are few, the load is handed from one to the next otherwise if they
+    are harder.
+
+    Parameters
+    ----------
+    settings : Settings
+        Of the base.
+    smooth : bool
+        Whether the contour is; if it has corners, its facets are no error.
+
+    Raises
+    ------
+    InputError
+        If there is no room to refine.
     """
-    n, points, k = settings.segments, settings.contour_points, settings.contact_stiffness
-    smooth = replace(settings, contour_points=REFINED * points)
+    n, k = settings.segments, settings.contact_stiffness
+    for name, value, most in (("segments", n, 250), ("contact_stiffness", k, 1e8)):
+        if value > most:
+            raise InputError(
+                f"mujoco.{name} of a budget", value, f"at most {most:g}", "it is refined from there"
+            )
+    rest = replace(settings, tolerance=min(settings.tolerance, _AT_REST))
+    plain = replace(rest, obstacle="primitive") if smooth else rest
     return {
         "base": settings,
-        "two": replace(settings, segments=2 * n),
-        "four": replace(settings, segments=4 * n),
-        "four_smooth": replace(smooth, segments=4 * n),
-        "smooth": smooth,
-        "smooth_stiff": replace(smooth, contact_stiffness=STIFFER * k),
-        "calm": replace(settings, tolerance=settings.tolerance / CALMER),
+        "calm": replace(settings, tolerance=min(settings.tolerance / CALMER, _AT_REST)),
+        "smooth": plain,
+        "two": replace(plain, segments=2 * n),
+        "four": replace(plain, segments=4 * n),
+        "stiff": replace(plain, segments=4 * n, contact_stiffness=STIFFER * k),
     }
+
+
+def coarser_mesh(settings: Settings) -> Settings:
+    """The base on a coarser mesh: tells how its facets' part falls with their number."""
+    return replace(settings, contour_points=max(8, settings.contour_points // COARSER))

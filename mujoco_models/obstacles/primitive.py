@@ -105,7 +105,8 @@ class Primitive(Obstacle):
 
     def curvature(self, slope: Floats) -> Floats:
         """That of the nearest circle."""
-        return np.asarray(1 / self._circles.radius[np.rint(self.place(slope)).astype(int)])
+        nearest = np.rint(self.place(slope)).astype(int)
+        return np.asarray(1 / self._circles.radius[nearest])
 
     def faces(self, slope: Floats) -> bool:
         """Whether contacts with these slope angles are within reach."""
@@ -124,7 +125,7 @@ class Primitive(Obstacle):
     def place(self, slope: Floats) -> Floats:
         """Number of the circle, with a fraction."""
         number = np.arange(len(self._circles.slope), dtype=float)
-        return np.interp(slope, self._circles.slope, number)
+        return np.asarray(np.interp(slope, self._circles.slope, number))
 
     def window_of(self, place: float) -> int:
         """The nearest circle."""

@@ -1,0 +1,70 @@
+"""What the closed form alone knows of a disagreement: no simulator in it."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from analytic import Case, Readings, polygon, solve_sweep
+from analytic.problem.arrays import Floats
+from analytic.solver.friction import with_friction
+
+STEP = 1e-3
+"""Relative change of each quantity, from which its signature is taken."""
+
+
+def variations(case: Case) -> dict[str, Readings]:
+    """The exact sweep over the case's stations with one thing of the physics changed, by name.
+
+    ``flexural_rigidity``, ``length`` and ``radius`` are larger by a thousandth, ``foot_x`` is by a
+    thousandth of the length, and ``friction`` is the coefficient of a thousandth.
+    """
+    beam, length = case.beam, case.beam.length
+    start, stop = (float(x) for x in case.foot_x[[0, -1]])
+    shift = STEP * length
+    same = replace(case.sweep, start=start, stop=stop)
+    cases = {
+        "flexural_rigidity": replace(
+            case, beam=replace(beam, flexural_rigidity=beam.flexural_rigidity * (1 + STEP))
+        ),
+        "length": replace(case, beam=replace(beam, length=length * (1 + STEP))),
+        "radius": replace(case, beam=replace(beam, radius=beam.radius * (1 + STEP))),
+        "foot_x": case,
+    }
+    # Nearby cases start a little elsewhere by default; all are swept over the same stations.
+    shifted = replace(same, start=start + shift, stop=stop + shift)
+    found = {
+        name: solve_sweep(replace(varied, sweep=shifted if name == "foot_x" else same))
+        for name, varied in cases.items()
+    }
+    return {**found, "friction": with_friction(case, STEP)}
+
+
+def on_polygon(case: Case, points: int) -> Readings:
+    """The exact sweep past the polygon that a mesh of so many points of the contour is."""
+    left, right = case.reach
+    length = case.beam.length
+    vertices = length * case.profile.scaled(1 / length).outline(left, right, points)
+    start, stop = (float(x) for x in case.foot_x[[0, -1]])
+    sweep = replace(case.sweep, start=start, stop=stop)
+    return solve_sweep(replace(case, profile=polygon(vertices), sweep=sweep))
+
+
+def shifted_inward(signatures: Mapping[str, Floats], penetration: Floats, radius: float) -> Floats:
+    """What a contact that gives way does, as if the contour lay deeper by the penetration.
+
+    Parameters
+    ----------
+    signatures : mapping
+        What each of `variations` does to the readings, shape (3, stations).
+    penetration : array, shape (stations,)
+        [L]
+    radius : float
+        Of the vibrissa [L].
+    """
+    return -signatures["radius"] * penetration / (STEP * radius)
+
+
+def stretched(signatures: Mapping[str, Floats], extension: Floats) -> Floats:
+    """What a vibrissa does that is longer by `extension`, shape (stations,), over its length."""
+    return np.asarray(signatures["length"] * extension / STEP)
