@@ -25,6 +25,7 @@ from analytic import reconstruct as reconstruct_contour
 from analytic.problem.readings import CLAMP_READINGS
 from compare.animation import write_animation
 from compare.budget import Budget, controlled_changes, measure_budget
+from compare.budget.advice import Followed, follow_advice
 from compare.budget.figure import picture
 from compare.casefile import Job, load_job
 from compare.comparison import Comparison
@@ -204,6 +205,10 @@ def compare(
 def budget(
     case: CaseName,
     out: Out = None,
+    target: Annotated[
+        float | None,
+        typer.Option(help="Find the cheapest settings with an rms of at most this, as 1e-3."),
+    ] = None,
     stations: Stations = None,
     segments: Segments = None,
     beam: Beam = None,
@@ -212,7 +217,8 @@ def budget(
     """Split the disagreement into its parts, each measured by a change of its own."""
     job = _job(case, stations, segments, beam, obstacle)
     folder = _folder(out, job)
-    found, _ = _measure_budget(job)
+    found, runs = _measure_budget(job)
+    advice = None if target is None else follow_advice(job.case, found, runs, target)
     drawn = picture(found)
     _told.print(_budget_table(found, job))
     verdict = "closes" if found.closes else "does not close: more is unexplained than uncertain"
@@ -222,9 +228,13 @@ def budget(
             f"  suspect: {suspect.name} differs by {suspect.change:+.2%} "
             f"(accounts for {suspect.share:.0%} of the unexplained)"
         )
-    _wrote(write_text(json.dumps(found.to_dict(), indent=2), folder / "budget.json"))
+    content = found.to_dict()
+    if advice is not None:
+        _tell_advice(advice)
+        content["advice"] = advice.to_dict()
+    _wrote(write_text(json.dumps(content, indent=2), folder / "budget.json"))
     _wrote(save_figure(drawn, folder / "budget.png"))
-    return AGREES if found.closes else DISAGREES
+    return AGREES if found.closes and (advice is None or advice.reached) else DISAGREES
 
 
 @app.command()
@@ -323,6 +333,22 @@ def _budget_table(found: Budget, job: Job) -> Table:
     for name, sizes in found.checks.items():
         table.add_row(f"{name}, closed form alone", *(f"{x:.1e}" for x in sizes.values()))
     return table
+
+
+def _tell_advice(advice: Followed) -> None:
+    settings = advice.foretold.settings
+    mesh = f" of {settings.contour_points} points" if settings.obstacle == "mesh" else ""
+    _told.print(
+        f"Cheapest for {advice.target:g}: {settings.beam} of {settings.segments} segments, "
+        f"{settings.obstacle}{mesh}, contact stiffness {settings.contact_stiffness:.1e}."
+    )
+    for told, error, seconds in (
+        ("foretold", advice.foretold.error, advice.foretold.seconds_a_station),
+        ("measured", advice.error, advice.seconds_a_station),
+    ):
+        _told.print(f"  {told}: {error:.1e} rms, {1e3 * seconds:.1f} ms a station")
+    if not advice.reached:
+        _told.print("  The target was missed: ask for a little less.")
 
 
 def _finish(comparison: Comparison, folder: Path) -> int:

@@ -1,14 +1,16 @@
 """The cheapest settings that reach a wanted tolerance, foretold from a budget."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from analytic import InputError, Readings
+from analytic import Case, InputError, Readings, solve_sweep
 from analytic.problem.readings import CLAMP_READINGS
-from compare.budget.budget import Budget
-from compare.budget.plan import COARSER
+from compare.budget.budget import Budget, largest_rms
+from compare.budget.measure import sweep_alone
+from compare.budget.plan import COARSER, coarser_mesh
 from mujoco_models.settings import Settings
 
 _SEGMENTS = np.unique(np.geomspace(5, 1000, 120).astype(int))
@@ -98,6 +100,65 @@ def advise(found: Budget, runs: Mapping[str, Readings], coarser: Readings, targe
         contact_stiffness=stiffness,
     )
     return Advice(chosen, float(error[best]), float(time[best]))
+
+
+@dataclass(frozen=True)
+class Followed:
+    """Advice, and what came of it.
+
+    Attributes
+    ----------
+    target : float
+        The wanted error.
+    foretold : Advice
+        The settings, and what was expected.
+    error, seconds_a_station : float
+        What was measured with them.
+    reached : bool
+        Whether that is enough.
+    """
+
+    target: float
+    foretold: Advice
+    error: float
+    seconds_a_station: float
+
+    @property
+    def reached(self) -> bool:
+        """Whether the measured error is at most the target."""
+        return self.error <= self.target
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``budget.json`` holds."""
+        return {**asdict(self), "reached": self.reached}
+
+
+def follow_advice(
+    case: Case, found: Budget, runs: Mapping[str, Readings], target: float
+) -> Followed:
+    """Ask for advice, sweep with the advised settings, and measure.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+    found, runs
+        What `compare.budget.measure_budget` returns of it.
+    target : float
+        Wanted error; see `advise`.
+
+    Raises
+    ------
+    InputError
+        If no settings reach the target.
+    """
+    if not 0 < target < 1:
+        raise InputError("--target", target, "between 0 and 1", "1e-3 is usual")
+    base = Settings(**runs["base"].provenance["settings"])
+    coarser = sweep_alone(case, coarser_mesh(base))
+    foretold = advise(found, runs, coarser, target)
+    made = sweep_alone(case, foretold.settings)
+    return Followed(target, foretold, largest_rms(solve_sweep(case), made), _seconds(made))
 
 
 def _facets(mesh: Readings, smooth: Readings) -> np.ndarray:

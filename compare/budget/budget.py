@@ -184,6 +184,16 @@ def budget(
     )
 
 
+def largest_rms(
+    exact: Readings, candidate: Readings, tolerances: Tolerances | None = None
+) -> float:
+    """The largest of the three readings' disagreements, as a budget counts it."""
+    window = (Tolerances() if tolerances is None else tolerances).snap_off_window
+    kept = _common(exact, [candidate], window)
+    (errors,) = convergence(exact, [candidate], kept).values()
+    return max(errors.values())
+
+
 def _common(exact: Readings, runs: list[Readings], window: float) -> Booleans:
     """Stations in contact and trusted in every sweep, outside the window before the snap-off."""
     foot_x = exact.values("foot_x")
