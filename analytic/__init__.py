@@ -16,6 +16,7 @@ from analytic.solver.certificate import certify
 from analytic.solver.contact import solve_contact
 from analytic.solver.events import Event, Events, find_events
 from analytic.solver.reconstruct import reconstruct, reconstruct_by_decision, relative_noise
+from analytic.solver.sideways import sideways_stiffness
 from analytic.solver.sweep import solve_sweep
 
 __all__ = [
@@ -40,6 +41,7 @@ __all__ = [
     "reconstruct",
     "reconstruct_by_decision",
     "relative_noise",
+    "sideways_stiffness",
     "solve_contact",
     "solve_sweep",
     "through_points",

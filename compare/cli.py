@@ -65,6 +65,9 @@ Out = Annotated[
 Stations = Annotated[int | None, typer.Option(help="Stations of the sweep, instead of the case's.")]
 Segments = Annotated[int | None, typer.Option(help="Segments of MuJoCo's beam.")]
 Beam = Annotated[str | None, typer.Option(help="MuJoCo's beam.")]
+Spatial = Annotated[
+    bool, typer.Option("--spatial", help="Let MuJoCo's beam leave the plane of the sweep.")
+]
 
 
 @app.command()
@@ -74,9 +77,10 @@ def run(
     stations: Stations = None,
     segments: Segments = None,
     beam: Beam = None,
+    spatial: Spatial = False,
 ) -> int:
     """Sweep in both models, compare, and write the report."""
-    job = _job(case, stations, segments, beam)
+    job = _job(case, stations, segments, beam, spatial)
     folder = _folder(out, job)
     exact = solve_sweep(job.case)
     simulated = _simulate(job)
@@ -146,9 +150,10 @@ def simulate(
     stations: Stations = None,
     segments: Segments = None,
     beam: Beam = None,
+    spatial: Spatial = False,
 ) -> int:
     """Sweep in MuJoCo."""
-    job = _job(case, stations, segments, beam)
+    job = _job(case, stations, segments, beam, spatial)
     folder = _folder(out, job)
     _wrote(_simulate(job).write(folder / f"mujoco-{job.settings.beam}.parquet"))
     return AGREES
@@ -259,7 +264,13 @@ def _refuse(message: str) -> int:
     return BAD_INPUT
 
 
-def _job(name: str, stations: int | None, segments: int | None, beam: str | None) -> Job:
+def _job(
+    name: str,
+    stations: int | None,
+    segments: int | None,
+    beam: str | None,
+    spatial: bool = False,
+) -> Job:
     job = load_job(name)
     case, settings = job.case, job.settings
     if stations is not None:
@@ -268,6 +279,8 @@ def _job(name: str, stations: int | None, segments: int | None, beam: str | None
         settings = replace(settings, segments=segments)
     if beam is not None:
         settings = replace(settings, beam=beam)  # type: ignore[arg-type]  # validated by Settings
+    if spatial:
+        settings = replace(settings, planar=False)
     return Job(case, settings)
 
 

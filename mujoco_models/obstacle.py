@@ -19,8 +19,8 @@ from analytic.problem.case import Case
 _FINE = 32  # vertices at full resolution on either side of a window's centre
 _GRADED = 8  # vertices a level farther out; the spacing doubles from level to level
 _BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
-# L, of the extrusion: more than the vibrissa's length, so that it cannot leave over the prism's ends,
-# and much more than a penetration, or depths come out wrong.
+# L, of the extrusion: more than the vibrissa's length, so that it cannot leave over the prism's
+# ends, and much more than a penetration, or depths come out wrong.
 _HALF_DEPTH = 1.5
 MESH_PREFIX = "obstacle"
 

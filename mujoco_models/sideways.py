@@ -1,9 +1,9 @@
 """How stiffly a vibrissa at rest in the plane of its sweep is held in that plane.
 
-The obstacle is a frictionless prism along z: nothing of it holds the vibrissa sideways. What does is
-that a turn about the clamp's tangent drags the contact along the contour. In closed form
-(`analytic.solver.sideways`) the stiffness is -force_x over the contact's distance from that tangent,
-and it changes sign where the contact passes the lowest point. Here it is asked of MuJoCo.
+The obstacle is a frictionless prism along z: nothing of it holds the vibrissa sideways. What does
+is that a turn about the clamp's tangent drags the contact along the contour. In closed form
+(`analytic.solver.sideways`) the stiffness is -force_x over the contact's distance from that
+tangent, and it changes its sign where the contact passes the lowest point. Here MuJoCo is asked.
 """
 
 from dataclasses import dataclass

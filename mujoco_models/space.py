@@ -17,6 +17,9 @@ from mujoco_models.sweep import LARGEST_TURN, Walk
 
 _ONSET = 1e-4  # L; how closely the place where the beam leaves is located
 _NUDGES = (1e-4, 1e-3, 1e-2, 1e-1)  # L, across the plane
+# Of MuJoCo's motion across the plane. In steps of 5e-3 the contact chatters once the beam is nudged
+# by 1e-3 L or more, and beams seem to leave that are held.
+GENTLE_STEP = 2e-3
 _TRIAL = 25  # steps of MuJoCo's motion, for the beam to settle into its mode, then for it to grow
 _STEPS = 5000  # of that motion at one station; a beam still on its way then goes on at the next
 _LAST_STEPS = 300  # short ones, since contacts are softer in long steps than they are at rest
@@ -41,7 +44,7 @@ class SpatialWalk(Walk):
     def go_to(self, target: float) -> None:
         """Follow the planar branch to `target` as long as the beam would keep to its plane."""
         if self._on_its_way:
-            self._drift(target, (self._foot_x + target) / 2)
+            self._drift(target, (self._foot_x + target) / 2, GENTLE_STEP)
             return
         start = self._foot_x, self._state
         if self._is_held_at(target):
@@ -50,9 +53,10 @@ class SpatialWalk(Walk):
         self._resume(start)
         if self._is_held_at(target) or self._held is None:
             return
-        if self._leaves(self._held.softest(self.model.model.nv)):
-            self.left_plane = onset if self.left_plane is None else self.left_plane
-        self._drift(target, onset)
+        leaves = self._leaves(self._held.softest(self.model.model.nv))
+        if leaves and self.left_plane is None:
+            self.left_plane = onset
+        self._drift(target, onset, LONG_STEP if leaves else GENTLE_STEP)
 
     def row(self) -> dict[str, Any]:
         """The readings, how far the beam is out of the plane, and how stiffly it is held there."""
@@ -103,9 +107,9 @@ class SpatialWalk(Walk):
         unit = model.out_of_plane() / _NUDGES[0]
         for amplitude in _NUDGES:
             model.turn(rest, amplitude / unit * mode)
-            self._move(LONG_STEP, _TRIAL)
+            self._move(GENTLE_STEP, _TRIAL)
             begun = model.out_of_plane()
-            self._move(LONG_STEP, _TRIAL)
+            self._move(GENTLE_STEP, _TRIAL)
             if model.out_of_plane() <= begun:
                 return False
         return True
@@ -119,7 +123,7 @@ class SpatialWalk(Walk):
             model.follow_contact()
         model.evaluate()
 
-    def _drift(self, target: float, where: float) -> None:
+    def _drift(self, target: float, where: float, timestep: float) -> None:
         """Let MuJoCo's own motion carry the beam, with its foot at `target`, to where it rests.
 
         `where` is the place that counts if it comes back to the plane as another beam than it was.
@@ -127,7 +131,7 @@ class SpatialWalk(Walk):
         model = self.model
         before = self._state.angles
         model.move_foot(target)
-        self._move(LONG_STEP, _STEPS)
+        self._move(timestep, _STEPS)
         self._move(STEP, _LAST_STEPS)
         angles = model.beam.angles(model.data)
         self._foot_x, self._before, self._held = target, None, None

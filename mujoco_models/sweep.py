@@ -54,9 +54,7 @@ def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Re
         "settings": asdict(settings),
         "obstacle": f"{len(obstacle.vertices)} contour points, chord error "
         f"{obstacle.chord_error:.1e} L, normal error {obstacle.normal_error:.1e} rad",
-        "events": {
-            name: None if x is None else x * beam.length for name, x in walk.events.items()
-        },
+        "events": {name: None if x is None else x * beam.length for name, x in walk.events.items()},
     }
     extra = [name for name in table if name not in COLUMNS]
     return Readings(table[[*COLUMNS, *extra]], beam, f"mujoco {settings.beam}", provenance)
