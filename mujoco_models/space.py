@@ -5,7 +5,7 @@ too. At every station MuJoCo's own forces tell whether the beam would return to 
 would not, it is nudged, and MuJoCo's own motion carries it to wherever it comes to rest.
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,9 +21,17 @@ _NUDGES = (1e-4, 1e-3, 1e-2, 1e-1)  # L, across the plane
 # by 1e-3 L or more, and beams seem to leave that are held.
 GENTLE_STEP = 2e-3
 _TRIAL = 25  # steps of MuJoCo's motion, for the beam to settle into its mode, then for it to grow
-_STEPS = 5000  # of that motion at one station; a beam still on its way then goes on at the next
+_STEPS = 20_000  # of that motion at one station; a beam still on its way then goes on at the next
 _LAST_STEPS = 300  # short ones, since contacts are softer in long steps than they are at rest
 _IN_PLANE = 1e-5  # L; a nudged beam that is nearer than this has come back to the plane
+
+
+class _Departure(NamedTuple):
+    """A beam that was nudged out of its plane: where, from which angles, and how fast it moves."""
+
+    foot_x: float
+    angles: Floats
+    timestep: float
 
 
 class SpatialWalk(Walk):
@@ -34,7 +42,7 @@ class SpatialWalk(Walk):
         self.left_plane: float | None = None
         """Where the beam first left the plane of the sweep [L]."""
         self._held: Sideways | None = None
-        self._on_its_way = False
+        self._departure: _Departure | None = None
 
     @property
     def events(self) -> dict[str, float | None]:
@@ -43,8 +51,8 @@ class SpatialWalk(Walk):
 
     def go_to(self, target: float) -> None:
         """Follow the planar branch to `target` as long as the beam would keep to its plane."""
-        if self._on_its_way:
-            self._drift(target, (self._foot_x + target) / 2, GENTLE_STEP)
+        if self._departure is not None:
+            self._drift(target, self._departure)
             return
         start = self._foot_x, self._state
         if self._is_held_at(target):
@@ -56,7 +64,8 @@ class SpatialWalk(Walk):
         leaves = self._leaves(self._held.softest(self.model.model.nv))
         if leaves and self.left_plane is None:
             self.left_plane = onset
-        self._drift(target, onset, LONG_STEP if leaves else GENTLE_STEP)
+        step = LONG_STEP if leaves else GENTLE_STEP
+        self._drift(target, _Departure(onset, self._state.angles, step))
 
     def row(self) -> dict[str, Any]:
         """The readings, how far the beam is out of the plane, and how stiffly it is held there."""
@@ -123,24 +132,21 @@ class SpatialWalk(Walk):
             model.follow_contact()
         model.evaluate()
 
-    def _drift(self, target: float, where: float, timestep: float) -> None:
-        """Let MuJoCo's own motion carry the beam, with its foot at `target`, to where it rests.
-
-        `where` is the place that counts if it comes back to the plane as another beam than it was.
-        """
+    def _drift(self, target: float, departure: _Departure) -> None:
+        """Let MuJoCo's own motion carry the beam, with its foot at `target`, to where it rests."""
         model = self.model
-        before = self._state.angles
         model.move_foot(target)
-        self._move(timestep, _STEPS)
+        self._move(departure.timestep, _STEPS)
         self._move(STEP, _LAST_STEPS)
         angles = model.beam.angles(model.data)
         self._foot_x, self._before, self._held = target, None, None
-        self._on_its_way = model.out_of_plane() > _IN_PLANE
-        if self._on_its_way:
+        if model.out_of_plane() > _IN_PLANE:
             imbalance = float(np.abs(model.moments()).max())
             self._state = State(angles, {}, imbalance, imbalance < self._tolerance)
+            self._departure = departure
         else:
             self._state = relax(model, target, State(angles, {}), self._tolerance)
             self._look()
-            if turned(angles, before) > LARGEST_TURN:
-                self.snap_off = where
+            self._departure = None
+            if turned(angles, departure.angles) > LARGEST_TURN:
+                self.snap_off = departure.foot_x
