@@ -18,6 +18,7 @@ from analytic.solver.events import Event, Events, find_events
 from analytic.solver.reconstruct import reconstruct, reconstruct_by_decision, relative_noise
 from analytic.solver.sideways import sideways_stiffness
 from analytic.solver.sweep import solve_sweep
+from analytic.solver.tilt import slip_off
 
 __all__ = [
     "CASE_NAMES",
@@ -42,6 +43,7 @@ __all__ = [
     "reconstruct_by_decision",
     "relative_noise",
     "sideways_stiffness",
+    "slip_off",
     "solve_contact",
     "solve_sweep",
     "through_points",
