@@ -84,7 +84,7 @@ def _foot_x(centreline: Contour, t: Floats, tilt: float) -> Floats:
     def rise(loaded: Span) -> Floats:
         """The contact's height, times sqrt(f)."""
         up, across = frame(loaded, lean)
-        return up * np.cos(tilt) - across * sunk
+        return np.asarray(up * np.cos(tilt) - across * sunk)
 
     # Tangential contact if that fits on the vibrissa, else the rotation at which the tip is there.
     high = np.pi / 2 - lean
