@@ -14,6 +14,7 @@ from analytic import (
     circle,
     find_events,
     named_case,
+    reconstruct,
     sideways_stiffness,
     solve_sweep,
 )
@@ -125,6 +126,11 @@ def test_it_comes_to_rest_on_the_other_side_bent_the_other_way():
         expected = np.interp(table["foot_x"], other["foot_x"], other[name])
         # 10 segments: 1e-2 of the largest reading of the whole sweep.
         np.testing.assert_allclose(table[name], expected, atol=1e-2 * found.table[name].abs().max())
+    # The clamp tells the contact on either side; at first contact, where hardly a force acts, with
+    # an error of the vibrissa's radius.
+    points = reconstruct(found).loc[table.index]
+    for name in ("contact_x", "contact_y"):
+        np.testing.assert_allclose(points[name], table[name], atol=CIRCLE.beam.radius)
 
 
 def test_a_sweep_to_the_right_is_the_mirror_image():
@@ -174,9 +180,20 @@ def test_torsional_stiffness_does_not_matter_to_second_order(monkeypatch):
         assert (np.log2(errors[:-1] / errors[1:]) > 1.7).all()
 
 
-def test_planar_is_a_yes_or_no():
-    with pytest.raises(InputError, match=r"mujoco\.planar"):
+def test_planar_is_a_yes_or_no(tmp_path):
+    from compare.casefile import load_job
+
+    with pytest.raises(InputError, match=r"mujoco\.planar = 'no'"):
         Settings(planar="no")
+    file = tmp_path / "case.toml"
+    profile = '[profile]\nkind = "circle"\nradius = 1\nlowest = [0, 0.4]\n[mujoco]\n'
+    file.write_text(profile + "planar = false\n", encoding="utf-8")
+    assert load_job(str(file)).settings.planar is False
+    file.write_text(profile + 'planar = "perhaps"\n', encoding="utf-8")
+    with pytest.raises(
+        InputError, match=r"line 6: mujoco\.planar = 'perhaps': must be true or fal"
+    ):
+        load_job(str(file))
 
 
 def test_named_case_in_space_from_the_command_line(tmp_path):
