@@ -16,7 +16,9 @@ from analytic.solver.certificate import certify
 from analytic.solver.contact import solve_contact
 from analytic.solver.events import Event, Events, find_events
 from analytic.solver.reconstruct import reconstruct, reconstruct_by_decision, relative_noise
+from analytic.solver.sideways import sideways_stiffness
 from analytic.solver.sweep import solve_sweep
+from analytic.solver.tilt import slip_off
 
 __all__ = [
     "CASE_NAMES",
@@ -40,6 +42,8 @@ __all__ = [
     "reconstruct",
     "reconstruct_by_decision",
     "relative_noise",
+    "sideways_stiffness",
+    "slip_off",
     "solve_contact",
     "solve_sweep",
     "through_points",

@@ -330,6 +330,8 @@ def _told(error: ErrorDetails, place: Place) -> InputError:
             return InputError(f"{name}.kind", "missing", "given", "say what the profile is")
         case "literal_error":
             return InputError(name, repr(value), f"one of {error['ctx']['expected']}", "choose one")
+        case "bool_parsing" | "bool_type":
+            return InputError(name, repr(value), "true or false", "write it without quotes")
         case "value_error":
             return InputError(name, repr(value), "usable", str(error["ctx"]["error"]))
     return InputError(name, repr(value), error["msg"], "mend it")

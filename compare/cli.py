@@ -61,6 +61,9 @@ Stations = Annotated[int | None, typer.Option(help="Stations of the sweep, inste
 Segments = Annotated[int | None, typer.Option(help="Segments of MuJoCo's beam.")]
 Beam = Annotated[str | None, typer.Option(help="MuJoCo's beam.")]
 Obstacle = Annotated[str | None, typer.Option(help="MuJoCo's obstacle, mesh or primitive.")]
+Spatial = Annotated[
+    bool, typer.Option("--spatial", help="Let MuJoCo's beam leave the plane of the sweep.")
+]
 
 
 @app.command()
@@ -71,9 +74,10 @@ def run(
     segments: Segments = None,
     beam: Beam = None,
     obstacle: Obstacle = None,
+    spatial: Spatial = False,
 ) -> int:
     """Sweep in both models, compare, and write the report."""
-    job = _job(case, stations, segments, beam, obstacle)
+    job = _job(case, stations, segments, beam, obstacle, spatial)
     folder = _folder(out, job)
     exact = solve_sweep(job.case)
     simulated = _simulate(job)
@@ -144,9 +148,10 @@ def simulate(
     segments: Segments = None,
     beam: Beam = None,
     obstacle: Obstacle = None,
+    spatial: Spatial = False,
 ) -> int:
     """Sweep in MuJoCo."""
-    job = _job(case, stations, segments, beam, obstacle)
+    job = _job(case, stations, segments, beam, obstacle, spatial)
     folder = _folder(out, job)
     _wrote(_simulate(job).write(folder / f"mujoco-{job.settings.beam}.parquet"))
     return AGREES
@@ -278,6 +283,7 @@ def _job(
     segments: int | None = None,
     beam: str | None = None,
     obstacle: str | None = None,
+    spatial: bool = False,
 ) -> Job:
     job = load_job(name)
     case = job.case
@@ -285,6 +291,8 @@ def _job(
         case = replace(case, sweep=replace(case.sweep, stations=stations))
     given: dict[str, Any] = {"segments": segments, "beam": beam, "obstacle": obstacle}
     changes = {name: value for name, value in given.items() if value is not None}
+    if spatial:
+        changes["planar"] = False
     return Job(case, replace(job.settings, **changes))
 
 

@@ -39,6 +39,12 @@ def simulate_sweep(
         ``extension``, by how much the beam is too long, over its length.
         ``provenance["events"]["snap_off"]`` is where the simulation let go.
 
+        If the settings let the beam leave the plane of the sweep, there are also the columns
+        ``out_of_plane``, the largest distance of any of its points from the plane, and
+        ``sideways_stiffness``, force across the plane over displacement at the contact
+        [force/length], NaN where nothing touches; the residual is then that of all directions, and
+        ``provenance["events"]["out_of_plane"]`` is where the beam left the plane.
+
     Raises
     ------
     InputError

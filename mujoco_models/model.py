@@ -12,6 +12,9 @@ from mujoco_models.obstacles.protocol import GEOM_PREFIX, Obstacle
 _CONTACT_GAP = 0.01  # L; how far ahead the solver sees contacts that carry no force yet
 _NEAR = 1e-6  # L; beads that are nearer to the obstacle must be watched at rest
 _OVERLOOKED = 1e-6  # L; how deep an unloaded bead may be in the obstacle
+STEP = 1e-3  # of MuJoCo's own motion
+LONG_STEP = 5e-3  # of it, where nothing can be mistaken; 1e-2 would be too long for 3.17's cable
+AT_REST = 1e-10  # of a coordinate, in a step: the motion has come to its end
 _IMPEDANCE = 0.9  # MuJoCo's d; with the stiffness set below it cancels out of the law at rest
 
 
@@ -67,6 +70,8 @@ class BeamModel:
         self._beads = np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_SPHERE)
         self._bead_of = np.full(model.ngeom, -1)
         self._bead_of[self._beads] = np.arange(len(self._beads))
+        # One of those at each of the beam's joints: a universal joint has two of MuJoCo's.
+        self._joints = np.unique(model.jnt_bodyid, return_index=True)[1]
         self._set_contact_stiffness()
         self.window = -1
         right_end = obstacle.place(np.array([np.pi / 2]))
@@ -98,6 +103,15 @@ class BeamModel:
             before, last = self._trail
             self.use_window(self.obstacle.window_of(2 * last - before))
 
+    def follow_contact(self) -> None:
+        """Use the window that is nearest to the deepest contact, if there is a loaded one."""
+        contacts = self.contacts()
+        if contacts.distance.size and contacts.distance.min() < 0:
+            x, y = contacts.normal[np.argmin(contacts.distance)]
+            place = self.obstacle.place(np.arctan2([x], [-y]))
+            if not self.obstacle.is_inside(self.window, place):
+                self.use_window(self.obstacle.window_of(float(place[0])))
+
     def leave_trail(self, place: float) -> None:
         """Remember where the contact rests, for `anticipate_window`."""
         self._trail = (*self._trail[-1:], place)
@@ -120,17 +134,45 @@ class BeamModel:
         Elasticity and contacts only: with zero velocity nothing else acts. Contacts and clamp
         readings are then those of this configuration.
         """
-        data = self.data
-        self.model.body_pos[self._foot, 0] = foot_x
-        self.beam.place(data, angles)
-        data.qvel[:] = 0
-        mujoco.mj_forward(self.model, data)
+        self.move_foot(foot_x)
+        self.beam.place(self.data, angles)
+        self.evaluate()
         self.evaluations += 1
-        return self.beam.moments(data.qfrc_passive + data.qfrc_constraint)
+        return self.beam.moments(self.moments())
+
+    def move_foot(self, foot_x: float) -> None:
+        """Put the foot there [L]."""
+        self.model.body_pos[self._foot, 0] = foot_x
+
+    def evaluate(self) -> None:
+        """Let MuJoCo evaluate the configuration that the beam is in, at rest."""
+        self.data.qvel[:] = 0
+        mujoco.mj_forward(self.model, self.data)
+
+    def moments(self) -> Floats:
+        """Elasticity and contacts in all of MuJoCo's coordinates, shape (nv,) [EI/L]."""
+        return np.asarray(self.data.qfrc_passive + self.data.qfrc_constraint)
+
+    def turn(self, start: Floats, turns: Floats) -> None:
+        """Evaluate the configuration that these turns, shape (nv,) [rad], make of `start`."""
+        configuration = start.copy()
+        mujoco.mj_integratePos(self.model, configuration, turns, 1.0)
+        self.data.qpos[:] = configuration
+        self.evaluate()
 
     def elastic_moments(self) -> Floats:
         """The beam's own moment at each joint, shape (n_joints,) [EI/L]."""
         return self.beam.moments(self.data.qfrc_passive)
+
+    def creep(self, timestep: float) -> float:
+        """One step of MuJoCo's own motion without momentum; the largest change of a coordinate."""
+        model, data = self.model, self.data
+        model.opt.integrator, model.opt.timestep = mujoco.mjtIntegrator.mjINT_DISCRETE, timestep
+        before = data.qpos.copy()
+        data.qvel[:] = 0
+        mujoco.mj_step(model, data)
+        model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
+        return float(np.abs(data.qpos - before).max())
 
     def contacts(self) -> Contacts:
         """All reported contacts of the last evaluated configuration."""
@@ -143,7 +185,23 @@ class BeamModel:
 
     def joint_positions(self) -> Floats:
         """Shape (n_joints, 2) [L]."""
-        return np.asarray(self.data.xanchor[:, :2])
+        return np.asarray(self.data.xanchor[self._joints, :2])
+
+    def out_of_plane(self) -> float:
+        """Largest distance of a bead from the plane of the sweep [L]."""
+        return float(np.abs(self.data.geom_xpos[self._beads, 2]).max())
+
+    def contact_rise(self) -> Floats:
+        """How fast the loaded contacts' mean place leaves the plane with each turn, shape (nv,)."""
+        contacts = self.contacts()
+        loaded = np.minimum(contacts.distance, 0)
+        rise, jacobian = np.zeros(self.model.nv), np.zeros((3, self.model.nv))
+        for bead, weight in zip(contacts.bead, loaded / loaded.sum(), strict=True):
+            geom = self._beads[bead]
+            body, place = self.model.geom_bodyid[geom], self.data.geom_xpos[geom]
+            mujoco.mj_jac(self.model, self.data, jacobian, None, place, body)
+            rise += weight * jacobian[2]
+        return rise
 
     def bead_positions(self, beads: Integers) -> Floats:
         """Shape (n, 2) [L]."""

@@ -37,6 +37,8 @@ class Settings:
         ``"primitive"``: a cylinder that osculates the contour where the vibrissa touches.
     tolerance : float
         A station has settled when no joint is out of balance by more than this [EI/L].
+    planar : bool
+        Whether the beam stays in the plane of the sweep, as in the theory, or may leave it.
 
     Raises
     ------
@@ -53,6 +55,7 @@ class Settings:
     clamp: ClampKind = "second-order"
     obstacle: ObstacleKind = "mesh"
     tolerance: float = 1e-8
+    planar: bool = True
 
     def __post_init__(self) -> None:
         for name, allowed in (("beam", BEAMS), ("clamp", CLAMPS), ("obstacle", OBSTACLES)):
@@ -61,6 +64,13 @@ class Settings:
                 raise InputError(
                     f"mujoco.{name}", repr(value), f"one of {', '.join(allowed)}", "choose one"
                 )
+        if not isinstance(self.planar, bool):
+            raise InputError(
+                "mujoco.planar",
+                repr(self.planar),
+                "true or false",
+                "false lets the beam leave the plane",
+            )
         for name, low, high, remedy in (
             ("segments", 2, 1000, "40 is usual"),
             ("contour_points", 8, 50_000, "3200 is usual"),

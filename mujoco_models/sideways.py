@@ -1,49 +1,70 @@
-"""Whether a planar equilibrium would stay in its plane if nothing but the obstacle held it there.
+"""How stiffly a vibrissa at rest in the plane of its sweep is held in that plane.
 
-A vibrissa of circular section, bent in a plane, can turn as a whole about the tangent at its clamp
-without any change of its elastic energy. Turned by a small angle t, a contact at the distance X
-from that tangent moves by t X across the plane and by -X t^2/2 along x; the obstacle, a prism along
-z, pushes with f sin(alpha) along x. So the energy of this motion is f X sin(alpha) t^2/2: the
-planar equilibrium is unstable wherever alpha < 0, long before the planar snap-off. At alpha = 0 the
-motion is neutral, since beam and load are then both symmetric about the tangent.
+The obstacle is a frictionless prism along z: nothing of it holds the vibrissa sideways. What does
+is that a turn about the clamp's tangent drags the contact along the contour. In closed form
+(`analytic.solver.sideways`) the stiffness is -force_x over the contact's distance from that
+tangent, and it changes its sign where the contact passes the lowest point. Here MuJoCo is asked.
 """
 
-import mujoco
-import numpy as np
+from dataclasses import dataclass
 
+import numpy as np
+from scipy.linalg.lapack import dpotrf
+
+from analytic.problem.arrays import Floats, Integers
 from mujoco_models.model import BeamModel
 
-_TURN = 1e-5  # rad, of the central differences
+_TURN = 1e-5  # rad, of the differences: good to its square, since both sides of the plane are alike
+_ROUNDING = 1e-3  # EI/L; what differences and the corners of a polygon leave of a neutral turn
+_ALONG_Z = 0.5  # of a joint's unit axis; it is either 0 or 1
 
 
-def sideways_stiffness(model: BeamModel) -> float:
-    """Least stiffness of a cable at rest against leaving the plane of the sweep [EI/L].
+@dataclass(frozen=True)
+class Sideways:
+    """Resistance of a planar equilibrium to leaving its plane.
 
-    Parameters
+    Attributes
     ----------
-    model : BeamModel
-        Of a beam on ball joints, in an equilibrium; it is left there.
-
-    Returns
-    -------
-    float
-        The least eigenvalue of the derivative of MuJoCo's own moments about x and y by the balls'
-        turns about these axes; negative if the planar equilibrium is unstable.
+    stiffness : float
+        Force across the plane over displacement, at the contact [EI/L^3].
+    stable : bool
+        Whether the vibrissa returns to its plane, whichever way it is turned out of it.
+    joints : array, shape (n, n)
+        Moments of the n joint axes in the plane by turns about them [EI/L].
+    axes : array of int, shape (n,)
+        Which of MuJoCo's velocities these are.
     """
-    data = model.data
+
+    stiffness: float
+    stable: bool
+    joints: Floats
+    axes: Integers
+
+    def softest(self, count: int) -> Floats:
+        """The turns that are resisted least, as one of MuJoCo's velocities, shape (count,)."""
+        mode = np.zeros(count)
+        mode[self.axes] = np.linalg.eigh(self.joints)[1][:, 0]
+        return mode
+
+
+def sideways(model: BeamModel) -> Sideways:
+    """How stiffly the equilibrium in which `model` is, with a loaded contact, is held in its plane.
+
+    The derivative of MuJoCo's own moments by turns out of the plane, by differences; the model is
+    left as it was.
+    """
+    data, count = model.data, model.model.nv
+    axes = np.flatnonzero(np.abs(data.cdof[:, 2]) < _ALONG_Z)
     rest = data.qpos.copy()
-    across = np.flatnonzero(np.arange(model.model.nv) % 3 != 2)
-    stiffness = np.empty((len(across), len(across)))
-    for column, dof in enumerate(across):
-        moments = []
-        for turn in (_TURN, -_TURN):
-            turned, velocity = rest.copy(), np.zeros(model.model.nv)
-            velocity[dof] = turn
-            mujoco.mj_integratePos(model.model, turned, velocity, 1.0)
-            data.qpos[:] = turned
-            mujoco.mj_forward(model.model, data)
-            moments.append((data.qfrc_passive + data.qfrc_constraint)[across])
-        stiffness[:, column] = (moments[1] - moments[0]) / (2 * _TURN)
-    data.qpos[:] = rest
-    mujoco.mj_forward(model.model, data)
-    return float(np.linalg.eigvalsh((stiffness + stiffness.T) / 2)[0])
+    joints = np.empty((len(axes), len(axes)))
+    for column, axis in enumerate(axes):
+        turn = np.zeros(count)
+        turn[axis] = _TURN
+        model.turn(rest, turn)
+        joints[:, column] = -model.moments()[axes] / _TURN
+    model.turn(rest, np.zeros(count))
+    joints = (joints + joints.T) / 2
+    push = model.contact_rise()[axes]
+    compliance = float(push @ np.linalg.solve(joints, push))
+    _, failed_at = dpotrf(joints + _ROUNDING * np.eye(len(axes)))
+    return Sideways(1 / compliance, failed_at == 0, joints, axes)

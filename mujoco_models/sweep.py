@@ -23,7 +23,7 @@ from mujoco_models.rest import State, fall, relax, turned
 from mujoco_models.settings import Settings
 
 _SMALLEST_STEP = 1e-5  # L; a jump that a step this small does not prevent is a snap-off
-_LARGEST_TURN = 0.35  # rad; a link that turns farther in one step has left the branch
+LARGEST_TURN = 0.35  # rad; a link that turns farther in one step has left the branch
 _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
 _HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below it just faded
 
@@ -47,6 +47,9 @@ def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Re
         table[name] *= beam.moment_unit
     for name in ("contact_arc_length", "contact_x", "contact_y", "penetration"):
         table[name] *= beam.length
+    if not settings.planar:
+        table["out_of_plane"] *= beam.length
+        table["sideways_stiffness"] *= beam.force_unit / beam.length
     table.insert(0, "foot_x", case.foot_x)
     provenance = {
         **case.provenance(),
@@ -55,9 +58,7 @@ def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Re
         "settings": asdict(settings),
         "obstacle": walk.model.obstacle.label,
         "seconds": round(time.perf_counter() - begun, 3),
-        "events": {
-            "snap_off": None if walk.snap_off is None else walk.snap_off * beam.length,
-        },
+        "events": {name: None if x is None else x * beam.length for name, x in walk.events.items()},
     }
     extra = [name for name in table if name not in COLUMNS]
     return Readings(table[[*COLUMNS, *extra]], beam, f"mujoco {settings.beam}", provenance)
@@ -71,7 +72,10 @@ def set_out(case: Case, settings: Settings) -> "Walk":
     spacing = bead_spacing(settings.segments, case.radius, obstacle.largest_curvature)
     beam = build(settings, spacing)
     model = BeamModel(beam, case.radius, obstacle, settings.contact_stiffness)
-    return Walk(model, float(case.foot_x[0]) / case.beam.length, settings.tolerance)
+    from mujoco_models.space import SpatialWalk  # which is a Walk
+
+    kind = Walk if settings.planar else SpatialWalk
+    return kind(model, float(case.foot_x[0]) / case.beam.length, settings.tolerance)
 
 
 class ClampError(ArithmeticError):
@@ -95,6 +99,11 @@ class Walk:
         self._before: tuple[float, State] | None = None
         self.snap_off: float | None = None
         """Where the last contact was let go [L]."""
+
+    @property
+    def events(self) -> dict[str, float | None]:
+        """Foot positions of what happened on the way [L]."""
+        return {"snap_off": self.snap_off}
 
     def go_to(self, target: float) -> None:
         """Follow the branch of equilibria to `target`, in smaller steps where it takes them.
@@ -142,7 +151,7 @@ class Walk:
 
     def _follows(self, state: State) -> bool:
         """Whether `state` is the neighbour of the last one on the branch."""
-        near = turned(state.angles, self._state.angles) < _LARGEST_TURN
+        near = turned(state.angles, self._state.angles) < LARGEST_TURN
         let_go = sum(self._state.forces.values()) > _HELD and not state.forces
         return state.settled and near and not let_go
 

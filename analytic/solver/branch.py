@@ -51,19 +51,36 @@ class Branch:
         return float(self.t[-1])
 
     @property
+    def sideways_limit(self) -> float | None:
+        """Contour parameter of the last equilibrium that is stable in space; None if all are.
+
+        It is the contour's lowest point, or what a sweep along a polygon visits last before it
+        passes that in a jump; see `analytic.solver.sideways`.
+        """
+        lowest = self.centreline.parameter(np.zeros(1))
+        if lowest[0] <= self.snap_off:
+            return None
+        before = self.t > lowest[0]
+        t = np.append(self.t[before], lowest)
+        foot_x = np.append(self.foot_x[before], equilibria(self.centreline, lowest).foot_x)
+        return float(t[np.argmin(foot_x)])
+
+    @property
     def phase_changes(self) -> Floats:
         """Contour parameters at which Phases A and B take turns, decreasing."""
         return np.asarray(self.t[1:-1][self.tangent[1:] != self.tangent[:-1]])
 
     def events(self) -> dict[str, float | None]:
-        """Foot positions of first contact, limits of Phase B and snap-off [L]."""
+        """Foot positions of first contact, limits of Phase B and of the plane, snap-off [L]."""
         change = np.append(self.tangent[1:] != self.tangent[:-1], False)
         at, into_b = self.foot_x[1:][change], self.tangent[1:][change[:-1]]
         starts, ends = at[into_b], at[~into_b]
         start = self.foot_x[0] if self.tangent[0] else (starts[0] if starts.size else None)
         end = None if self.tangent[-1] or not ends.size else ends[-1]
-        places = (self.foot_x[0], start, end, self.foot_x[-1])
-        names = ("first_contact", "phase_b_start", "phase_b_end", "snap_off")
+        limit = self.sideways_limit
+        out = None if limit is None else equilibria(self.centreline, np.array([limit])).foot_x[0]
+        places = (self.foot_x[0], start, end, out, self.foot_x[-1])
+        names = ("first_contact", "phase_b_start", "phase_b_end", "out_of_plane", "snap_off")
         return {n: None if x is None else float(x) for n, x in zip(names, places, strict=True)}
 
     def cells(self, foot_x: Floats) -> Integers:

@@ -41,13 +41,16 @@ class Events:
     If Phases A and B take turns more than once, as they may on an object that is flat below,
     Phase B is here from its first start to its last end. ``contact_length_minimum`` is that of
     eq. 21 even where it exceeds the vibrissa's length: then there is no Phase B, and only its
-    angle, contact point and arc length have a meaning.
+    angle, contact point and arc length have a meaning. ``out_of_plane`` is where a vibrissa that
+    nothing guides leaves the plane of the sweep (`analytic.solver.sideways`); what is after it
+    happens to one that is guided.
     """
 
     first_contact: Event
     phase_b_start: Event | None
     phase_b_end: Event | None
     contact_length_minimum: Event
+    out_of_plane: Event | None
     snap_off: Event
 
 
@@ -85,6 +88,7 @@ def find_events(profile: Contour, beam: Beam | None = None) -> Events:
         starts,
         ends,
         minimum if minimum.contact_arc_length < beam.length else _imaginary(minimum),
+        None if branch.sideways_limit is None else event(branch.sideways_limit),
         event(branch.snap_off),
     )
 

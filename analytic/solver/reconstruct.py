@@ -55,8 +55,16 @@ def reconstruct(
         ``uncertainty``: the true contact point lies within this distance of the stated one in 95 %
         of all cases [length]; infinite where the noise allows readings that no elastica has.
     """
-    if readings.bends_left:
-        return mirrored_table(reconstruct(readings.mirrored(), noise, seed))
+    found = _bent_right(readings, noise, seed)
+    left = readings.values("moment_z") < 0
+    if left.any():  # all stations of a sweep to the right, or those after a swing to the other side
+        mirrored = mirrored_table(_bent_right(readings.mirrored(), noise, seed))
+        found.loc[left] = mirrored.loc[left]
+    return found
+
+
+def _bent_right(readings: Readings, noise: Mapping[str, float] | None, seed: int) -> pd.DataFrame:
+    """`reconstruct`, where the clamp's moment is positive."""
     beam = readings.beam
     sensed = _dimensionless(readings)
     loaded = np.hypot(sensed[1], sensed[2]) > _threshold(readings, noise)

@@ -1,15 +1,20 @@
 """From settings to a beam."""
 
 from collections.abc import Callable
+from typing import TypeAlias
 
 from mujoco_models.beams.available import require
 from mujoco_models.beams.cable import Cable
 from mujoco_models.beams.chain import Chain
 from mujoco_models.beams.protocol import Beam
 from mujoco_models.beams.rod import Rod
+from mujoco_models.beams.spatial import SpatialChain, SpatialRod
 from mujoco_models.settings import Settings
 
-_KINDS: dict[str, Callable[[Settings, float], Beam]] = {"chain": Chain, "rod": Rod, "cable": Cable}
+_Kinds: TypeAlias = dict[str, Callable[[Settings, float], Beam]]
+
+_PLANAR: _Kinds = {"chain": Chain, "rod": Rod, "cable": Cable}
+_SPATIAL: _Kinds = {"chain": SpatialChain, "rod": SpatialRod, "cable": Cable}
 
 
 def build(settings: Settings, spacing: float) -> Beam:
@@ -21,4 +26,5 @@ def build(settings: Settings, spacing: float) -> Beam:
         If the installed MuJoCo lacks it.
     """
     require(settings.beam)
-    return _KINDS[settings.beam](settings, spacing)
+    kinds = _PLANAR if settings.planar else _SPATIAL
+    return kinds[settings.beam](settings, spacing)

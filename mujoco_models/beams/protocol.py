@@ -13,11 +13,11 @@ FOOT = "foot"
 
 
 class Beam(Protocol):
-    """One of MuJoCo's models of a slender beam, in the plane of the sweep.
+    """One of MuJoCo's models of a slender beam.
 
     Dimensionless: L = EI = 1. Undeformed it stands along y on a fixed body called `FOOT`, and a
-    configuration is stated by the angles of its joints, whatever MuJoCo's own coordinates are. All
-    its links are rigid, so it keeps its length.
+    configuration in the plane of the sweep is stated by the angles of its joints, whatever MuJoCo's
+    own coordinates are. All its links are rigid, so it keeps its length.
     """
 
     layout: Layout

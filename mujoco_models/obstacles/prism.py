@@ -20,7 +20,9 @@ from mujoco_models.obstacles.protocol import GEOM_PREFIX, Obstacle
 _FINE = 32  # vertices at full resolution on either side of a window's centre
 _GRADED = 8  # vertices a level farther out; the spacing doubles from level to level
 _BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
-_HALF_DEPTH = 0.25  # L, of the extrusion: much more than a penetration, or depths come out wrong
+# L, of the extrusion: more than the vibrissa's length, so that it cannot leave over the prism's
+# ends, and much more than a penetration, or depths come out wrong.
+_HALF_DEPTH = 1.5
 
 # Corners +x, -x, +y, -y, +z, -z; every face with its corners counterclockwise from outside.
 _OCTAHEDRON = [
