@@ -9,6 +9,7 @@ import numpy as np
 from analytic import InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.readings import CLAMP_READINGS
+from compare.budget.convergence import convergence
 from compare.budget.plan import REFINED, STIFFER
 from compare.budget.suspects import Suspect, suspects
 from compare.tolerances import Tolerances
@@ -24,7 +25,8 @@ PARTS = (
 )
 _SAFETY = 1.25  # Roache's, for a convergence index from three or more grids
 _ORDERS = (1.0, 2.0)  # what a chain can have: of a naive clamp, and of one at mid-cell
-_UNRESOLVED = 5e-5  # of the largest magnitude; what may stay unexplained in any case
+UNRESOLVED = 5e-5
+"""What may stay unexplained in any case, of a reading's largest magnitude."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,8 @@ class Budget:
         Faults of the physics that would explain what the numerics do not, likeliest first.
     stations : int
         Compared stations.
+    convergence : dict
+        Root mean square of the whole disagreement by number of segments and reading.
     """
 
     parts: dict[str, dict[str, Part]]
@@ -67,6 +71,7 @@ class Budget:
     blame: str
     suspects: tuple[Suspect, ...]
     stations: int
+    convergence: dict[int, dict[str, float]]
 
     def to_dict(self) -> dict[str, Any]:
         """What ``budget.json`` holds."""
@@ -134,7 +139,7 @@ def budget(
     }
     uncertainty["unexplained"] = np.sqrt(np.sum([u**2 for u in uncertainty.values()], axis=0))
     sizes = {name: _rms(part) for name, part in signals.items()}
-    unresolved = np.hypot(uncertainty["unexplained"], _UNRESOLVED)
+    unresolved = np.hypot(uncertainty["unexplained"], UNRESOLVED)
     phase = exact.table["phase"].to_numpy()[kept]
     return Budget(
         {
@@ -161,6 +166,7 @@ def budget(
             float(np.linalg.norm(unresolved)),
         ),
         int(kept.sum()),
+        convergence(exact, [runs[name] for name in ("base", "two", "four")], kept),
     )
 
 

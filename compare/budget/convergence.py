@@ -1,0 +1,57 @@
+"""How the disagreement falls as the beam's segments are refined."""
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from analytic import Readings
+from analytic.problem.arrays import Booleans
+from analytic.problem.readings import CLAMP_READINGS
+
+
+def convergence(
+    exact: Readings, runs: Iterable[Readings], kept: Booleans
+) -> dict[int, dict[str, float]]:
+    """Disagreement with `exact` at each number of segments, which the sources record.
+
+    Parameters
+    ----------
+    exact : Readings
+        The reference.
+    runs : iterable of Readings
+        Sweeps over the same stations that differ in their segments alone; one whose provenance
+        does not tell its segments is left out.
+    kept : array of bool, shape (stations,)
+        Stations that count.
+
+    Returns
+    -------
+    dict
+        By number of segments and reading the root mean square, relative to the reading's largest
+        magnitude.
+    """
+    found = {}
+    for readings in runs:
+        segments = readings.provenance.get("settings", {}).get("segments")
+        if segments is None:
+            continue
+        errors = {}
+        for name in CLAMP_READINGS:
+            scale = np.abs(exact.values(name)[exact.trusted]).max()
+            error = (readings.values(name) - exact.values(name))[kept] / scale
+            errors[name] = float(np.sqrt(np.mean(error**2)))
+        found[int(segments)] = errors
+    return found
+
+
+def fitted_orders(found: Mapping[int, Mapping[str, float]]) -> dict[str, float]:
+    """Order of each reading's disagreement in 1/N: the slope of a line through the logarithms.
+
+    It falls short of the beam's own order where something else than its segments, as the facets of
+    the obstacle, is what is left at the finest ones.
+    """
+    n = np.log(list(found))
+    return {
+        name: -float(np.polyfit(n, np.log([errors[name] for errors in found.values()]), 1)[0])
+        for name in CLAMP_READINGS
+    }
