@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
+from time import perf_counter
 from typing import Annotated, Any, cast
 
 import typer
@@ -29,7 +30,7 @@ from analytic.problem.readings import CLAMP_READINGS
 from compare.animation import write_animation
 from compare.budget import Budget, controlled_changes
 from compare.budget import budget as measure_budget
-from compare.budget.figure import picture
+from compare.budget.figure import headline, picture
 from compare.budget.suspects import variations
 from compare.casefile import Job, load_job
 from compare.comparison import Comparison
@@ -37,13 +38,14 @@ from compare.comparison import compare as compare_readings
 from compare.figures import reconstruction, save_figure
 from compare.measured import read_measured, write_table, write_text
 from compare.paper_figures import paper_figures
-from compare.report import write_report
+from compare.report import Film, write_report
 from compare.study.cli import study, study_report
 from mujoco_models.settings import Settings
 
 # Any wrong word on the command line; typer may bring its own copy of click, whose base this is.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 AGREES, DISAGREES, BAD_INPUT = 0, 1, 2
+_FRAMES = 48  # of a report's animation: smooth enough, and under 2 MB
 
 app = typer.Typer(
     add_completion=False,
@@ -74,6 +76,9 @@ def run(
     stations: Stations = None,
     segments: Segments = None,
     beam: Beam = None,
+    with_budget: Annotated[
+        bool, typer.Option("--budget", help="Split the disagreement into its parts too.")
+    ] = False,
 ) -> int:
     """Sweep in both models, compare, and write the report."""
     job = _job(case, stations, segments, beam)
@@ -81,9 +86,14 @@ def run(
     exact = solve_sweep(job.case)
     simulated = _simulate(job)
     comparison = compare_readings(exact, simulated)
+    found = _measure_budget(job, exact) if with_budget else None
     exact.write(folder / "analytic.parquet")
     simulated.write(folder / f"mujoco-{job.settings.beam}.parquet")
-    return _finish(comparison, folder)
+    if found is not None:
+        _tell_budget(found, job)
+    with _progress("frames", _FRAMES) as advance:
+        gif, *stills = write_animation(exact, simulated, folder, _FRAMES, advance)
+    return _finish(comparison, folder, found, Film(gif, stills[2]))
 
 
 @app.command()
@@ -209,16 +219,9 @@ def budget(
     """Split the disagreement into its parts, each measured by a change of its own."""
     job = _job(case, stations, segments, beam)
     folder = _folder(out, job)
-    found = measure_budget(solve_sweep(job.case), _controlled(job), variations(job.case))
+    found = _measure_budget(job, solve_sweep(job.case))
     drawn = picture(found)
-    _told.print(_budget_table(found, job))
-    verdict = "closes" if found.closes else "does not close: more is unexplained than uncertain"
-    _told.print(f"The budget {verdict}; the largest part is {found.blame}.", soft_wrap=True)
-    for suspect in found.suspects:
-        _told.print(
-            f"  suspect: {suspect.name} differs by {suspect.change:+.2%} "
-            f"(accounts for {suspect.share:.0%} of the unexplained)"
-        )
+    _tell_budget(found, job)
     _wrote(write_text(json.dumps(found.to_dict(), indent=2), folder / "budget.json"))
     _wrote(save_figure(drawn, folder / "budget.png"))
     return AGREES if found.closes else DISAGREES
@@ -287,8 +290,11 @@ def _make(folder: Path) -> None:
 def _simulate(job: Job) -> Readings:
     from mujoco_models import simulate_sweep  # MuJoCo is imported only where it is used
 
+    begun = perf_counter()
     with _progress(f"MuJoCo {job.settings.beam}", job.case.sweep.stations) as advance:
-        return simulate_sweep(job.case, job.settings, advance)
+        readings = simulate_sweep(job.case, job.settings, advance)
+    seconds = round(perf_counter() - begun, 3)
+    return replace(readings, provenance={**readings.provenance, "seconds": seconds})
 
 
 @contextmanager
@@ -323,6 +329,20 @@ def sweep_alone(case: Case, settings: Settings) -> Readings:
     return simulate_sweep(case, settings)
 
 
+def _measure_budget(job: Job, exact: Readings) -> Budget:
+    return measure_budget(exact, _controlled(job), variations(job.case))
+
+
+def _tell_budget(found: Budget, job: Job) -> None:
+    _told.print(_budget_table(found, job))
+    _told.print(f"{headline(found)}.", soft_wrap=True)
+    for suspect in found.suspects:
+        _told.print(
+            f"  suspect: {suspect.name} differs by {suspect.change:+.2%} "
+            f"(accounts for {suspect.share:.0%} of the unexplained)"
+        )
+
+
 def _budget_table(found: Budget, job: Job) -> Table:
     table = Table("part", *CLAMP_READINGS, title=f"Budget of {job.case.name}, rms +- uncertainty")
     for name, readings in found.parts.items():
@@ -333,8 +353,10 @@ def _budget_table(found: Budget, job: Job) -> Table:
     return table
 
 
-def _finish(comparison: Comparison, folder: Path) -> int:
-    report = write_report(comparison, folder)
+def _finish(
+    comparison: Comparison, folder: Path, budget: Budget | None = None, film: Film | None = None
+) -> int:
+    report = write_report(comparison, folder, budget, film)
     _told.print(_summary(comparison))
     for failure in comparison.failures:
         _told.print(f"  {failure}", soft_wrap=True, markup=False)

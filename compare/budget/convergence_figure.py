@@ -27,9 +27,7 @@ def convergence_picture(found: Mapping[int, Mapping[str, float]]) -> Figure:
         colour, marker = _STYLES[name]
         fit = np.exp(np.log(errors).mean()) * (n / np.exp(np.log(n).mean())) ** -order
         ax.plot(n, fit, color=colour, linewidth=1.2)
-        ax.plot(
-            n, errors, marker, color=colour, markersize=6, label=f"{name}: order {order:.2f}"
-        )
+        ax.plot(n, errors, marker, color=colour, markersize=6, label=f"{name}: order {order:.2f}")
     ax.set_xscale("log")
     ax.set_yscale("log")
     ax.set_xlim(n.min() / 1.25, n.max() * 1.25)

@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from analytic.problem.readings import CLAMP_READINGS
 from compare.budget.budget import UNRESOLVED, Budget
+from compare.numbers import short
 
 _BLAMED, _OTHER, _UNEXPLAINED = "#d55e00", "#0072b2", "#000000"
 _GREY, _ZONE = "#555555", "#dddddd"
@@ -16,7 +17,9 @@ _PANEL = (4.3, 3.1)  # inches
 def picture(found: Budget) -> Figure:
     """All readings side by side, under a sentence that says what they show."""
     width, height = _PANEL
-    figure = Figure(figsize=(width * len(CLAMP_READINGS) * 0.85, height + 0.4), layout="constrained")
+    figure = Figure(
+        figsize=(width * len(CLAMP_READINGS) * 0.85, height + 0.4), layout="constrained"
+    )
     axes = figure.subplots(1, len(CLAMP_READINGS))
     for ax, reading in zip(axes, CLAMP_READINGS, strict=True):
         _draw(ax, found, reading)
@@ -43,12 +46,12 @@ def panels(found: Budget) -> dict[str, Figure]:
 
 def headline(found: Budget) -> str:
     """What the picture shows, in one sentence."""
-    rest = max(part.rms for part in found.parts["unexplained"].values())
-    if found.blame == "unexplained":
-        return f"Most of it is unexplained ({_short(rest)})"
-    remains = f"at most {_short(rest)} remains unexplained"
-    doubt = "" if found.closes else ", more than is uncertain"
-    return f"Most of it is {found.blame}; {remains}{doubt}"
+    rest = short(max(part.rms for part in found.parts["unexplained"].values()))
+    if found.closes:
+        remains = f"at most {rest} stays unexplained, and the budget closes"
+    else:
+        remains = f"{rest} stays unexplained, too much for the budget to close"
+    return f"The largest part is {found.blame}; {remains}"
 
 
 def _draw(ax: Axes, found: Budget, reading: str) -> None:
@@ -69,7 +72,7 @@ def _draw(ax: Axes, found: Budget, reading: str) -> None:
     ax.set_yticks(rows, names)
     ax.tick_params(axis="y", length=0)
     ax.yaxis.get_ticklabels()[names.index(found.blame)].set_fontweight("bold")
-    ax.set_title(f"{reading}: {_short(total)} in all", fontsize=11)
+    ax.set_title(f"{reading}: {short(total)} in all", fontsize=11)
     ax.set_xlabel("rms / largest magnitude")
     for side in ("top", "right", "left"):
         ax.spines[side].set_visible(False)
@@ -83,7 +86,7 @@ def _bar(ax: Axes, row: float, rms: float, uncertainty: float, colour: str) -> N
     if high > _LEAST:
         ax.plot([low, high], [row, row], color=_GREY, linewidth=1.2, marker="|", markersize=6)
     ax.annotate(
-        _short(rms), (1, row), (34, 0), xycoords=("axes fraction", "data"),
+        short(rms), (1, row), (34, 0), xycoords=("axes fraction", "data"),
         textcoords="offset points", va="center", ha="right", fontsize=9,
     )  # fmt: skip
 
@@ -99,7 +102,3 @@ def _colour(name: str, blame: str) -> str:
     if name == "unexplained":
         return _UNEXPLAINED
     return _BLAMED if name == blame else _OTHER
-
-
-def _short(x: float) -> str:
-    return f"{x:.1e}".replace("e-0", "e-") if x else "0"
