@@ -36,6 +36,7 @@ from compare.casefile import Job, load_job
 from compare.comparison import Comparison
 from compare.comparison import compare as compare_readings
 from compare.figures import reconstruction, save_figure
+from compare.findings import write_findings
 from compare.measured import read_measured, write_table, write_text
 from compare.paper_figures import paper_figures
 from compare.report import Film, write_report
@@ -225,6 +226,19 @@ def budget(
     _wrote(write_text(json.dumps(found.to_dict(), indent=2), folder / "budget.json"))
     _wrote(save_figure(drawn, folder / "budget.png"))
     return AGREES if found.closes else DISAGREES
+
+
+@app.command()
+def findings(
+    folder: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Folder with the folders of runs in it.")
+    ],
+    out: Out = None,
+) -> int:
+    """Write a page about all runs in a folder, there or elsewhere."""
+    for path in write_findings(folder, out or folder):
+        _wrote(path)
+    return AGREES
 
 
 @app.command()

@@ -38,7 +38,8 @@ PROBE = """<script>addEventListener("load", () => {
   }), "*");
 });</script></body>"""
 # A window cannot be as narrow as a telephone, a frame in it can.
-FRAME = """<body><script>addEventListener("message", e => { document.body.dataset.found = e.data; });
+FRAME = """<body><script>
+addEventListener("message", e => { document.body.dataset.found = e.data; });
 </script><iframe src="probed.html" style="width: {}px; height: 900px; border: 0"></iframe></body>"""
 DARK = "--blink-settings=preferredColorScheme=0"
 ORANGE = {"light": (0xD5, 0x5E, 0x00), "dark": (0xFF, 0x91, 0x47)}  # the blamed part's bar
@@ -82,8 +83,8 @@ def look(browser, tmp_path):
 def measure(look, report, tmp_path):
     """What the probe finds in the page."""
 
-    def run(width: int, *options: str) -> dict:
-        text = report.read_text(encoding="utf-8").replace("</body>", PROBE)
+    def run(width: int, *options: str, planted: str = "") -> dict:
+        text = report.read_text(encoding="utf-8").replace("</body>", planted + PROBE)
         (tmp_path / "probed.html").write_text(text, encoding="utf-8")
         (tmp_path / "frame.html").write_text(FRAME.replace("{}", str(width)))
         seen = look(
@@ -108,6 +109,12 @@ def test_nothing_sticks_out(measure, width):
     assert found["seen"] == []
     assert min(found["pictures"]) > 100
     assert (found["moving"], found["still"]) == (True, False)
+
+
+def test_what_sticks_out_is_seen(measure):
+    found = measure(800, planted='<p class="long" style="width: 60rem">a long line</p>')
+    assert found["scroll"] > found["width"]
+    assert found["seen"] == ["P.long"]
 
 
 def test_those_who_want_nothing_to_move_get_a_still(measure):
