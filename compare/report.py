@@ -68,7 +68,7 @@ def write_report(
     if budget is not None:
         contents["budget.png"] = _png(picture(budget), 100)
         contents["budget.json"] = json.dumps(budget.to_dict(), indent=2).encode()
-    contents["report.html"] = _html(comparison, budget, film).encode()
+    contents["report.html"] = _html(comparison, drawn, budget, film).encode()
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in contents.items():
         unfinished = folder / f".{name}.partial"
@@ -77,7 +77,9 @@ def write_report(
     return folder / "report.html"
 
 
-def _html(comparison: Comparison, budget: Budget | None, film: Film | None) -> str:
+def _html(
+    comparison: Comparison, drawn: Mapping[str, Figure], budget: Budget | None, film: Film | None
+) -> str:
     environment = Environment(
         loader=PackageLoader("compare"),
         autoescape=True,
@@ -101,19 +103,21 @@ def _html(comparison: Comparison, budget: Budget | None, film: Film | None) -> s
         unresolved=UNRESOLVED,
         headline=None if budget is None else headline(budget),
         orders=fitted_orders(budget.convergence) if budget and budget.convergence else {},
-        figures=_figures(comparison, budget),
+        figures=_figures(comparison, drawn, budget),
         film=None
         if film is None
         else {"gif": _data(film.gif, "gif"), "still": _data(film.still, "png")},
     )
 
 
-def _figures(comparison: Comparison, budget: Budget | None) -> dict[str, list[Markup]]:
+def _figures(
+    comparison: Comparison, drawn: Mapping[str, Figure], budget: Budget | None
+) -> dict[str, list[Markup]]:
     """The page's pictures by the section they are in."""
     sections: dict[str, Mapping[str, Figure]] = {
-        "geometry": {"both sweeps": figures.geometry(comparison)},
+        "geometry": {"both sweeps": drawn["geometry"]},
         "readings": figures.reading_panels(comparison),
-        "phases": {"both sweeps": figures.phase_criterion(comparison)},
+        "phases": {"both sweeps": drawn["phases"]},
         "snap-off": figures.snap_off_panels(comparison),
     }
     says = {
@@ -131,9 +135,9 @@ def _figures(comparison: Comparison, budget: Budget | None) -> dict[str, list[Ma
     return {
         section: [
             inline_svg(figure, f"{section}-{i}", says[section].format(name))
-            for i, (name, figure) in enumerate(drawn.items())
+            for i, (name, figure) in enumerate(pictures.items())
         ]
-        for section, drawn in sections.items()
+        for section, pictures in sections.items()
     }
 
 

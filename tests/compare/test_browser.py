@@ -112,9 +112,9 @@ def test_nothing_sticks_out(measure, width):
 
 
 def test_what_sticks_out_is_seen(measure):
-    found = measure(800, planted='<p class="long" style="width: 60rem">a long line</p>')
+    found = measure(800, planted='<div class="long" style="width: 60rem">a long line</div>')
     assert found["scroll"] > found["width"]
-    assert found["seen"] == ["P.long"]
+    assert found["seen"] == ["DIV.long"]
 
 
 def test_those_who_want_nothing_to_move_get_a_still(measure):

@@ -122,17 +122,17 @@ def test_page(folder, tmp_path):
 
 
 def test_phases_through_noise(folder):
-    """Observed: all right at 0 and 0.1 %; at 1 % 92 %, and transitions within 8 stations."""
+    """Observed: 1, 0.99, 0.925; without noise the transitions lie within 0.06 stations."""
     found = list(judgements(collect(folder)))
     assert [(one.case, one.noise) for one in found] == [
         (case, noise) for case in ("catenary", "parabola") for noise in (0.0, 1e-3, 1e-2)
     ]
     for one in found:
-        assert one.right >= {0.0: 1.0, 1e-3: 0.97, 1e-2: 0.9}[one.noise]
+        assert one.right >= {0.0: 1.0, 1e-3: 0.98, 1e-2: 0.91}[one.noise]
         assert one.table.to_numpy().sum() == 200
         if one.noise == 0:
             assert one.apart is not None
-            assert one.apart < 2
+            assert one.apart < 0.5
 
 
 def test_names_are_no_markup(tmp_path):
