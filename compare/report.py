@@ -21,7 +21,6 @@ from compare.budget.convergence import fitted_orders
 from compare.budget.convergence_figure import convergence_picture
 from compare.budget.figure import headline, panels, picture
 from compare.comparison import Comparison
-from compare.figures import PHASE_NAMES
 from compare.numbers import place, short
 from compare.svg import inline_svg
 from compare.verdict import verdict, worst_reading
@@ -33,7 +32,6 @@ FIGURES = {
 }
 """Pictures that are also written as files of their own."""
 
-_UNITS = {"force_x": "EI/L²", "force_y": "EI/L²", "moment_z": "EI/L"}
 _VERSIONS = ("engine", "python")  # of a source's provenance; the rest are its settings
 _BULKY = ("contour", "events")
 
@@ -94,9 +92,7 @@ def _html(
         verdict=verdict(comparison, budget),
         worst=worst_reading(comparison),
         readings=CLAMP_READINGS,
-        units=_UNITS,
-        phases=PHASES,
-        phase_names=PHASE_NAMES,
+        phases=[p for p in PHASES if p in set(comparison.alignment.table["phase"])],
         origins=[_origin(comparison.reference), _origin(comparison.candidate)],
         limits=_limits(comparison),
         budget=budget,
