@@ -4,7 +4,7 @@ import base64
 import io
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -94,7 +94,7 @@ def _html(
         readings=CLAMP_READINGS,
         phases=[p for p in PHASES if p in set(comparison.alignment.table["phase"])],
         origins=[_origin(comparison.reference), _origin(comparison.candidate)],
-        limits=_limits(comparison),
+        limits=comparison.tolerances.limits(),
         budget=budget,
         unresolved=UNRESOLVED,
         headline=None if budget is None else headline(budget),
@@ -157,12 +157,6 @@ def _origin(readings: Readings) -> dict[str, Any]:
 
 def _words(name: str) -> str:
     return name.replace("_", " ").replace("phase b", "Phase B")
-
-
-def _limits(comparison: Comparison) -> list[tuple[str, float, str]]:
-    """Name, value and reason of each tolerance."""
-    limits = comparison.tolerances
-    return [(f.name, getattr(limits, f.name), f.metadata["reason"]) for f in fields(limits)]
 
 
 def _data(file: Path, kind: str) -> str:

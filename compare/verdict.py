@@ -7,19 +7,21 @@ from compare.numbers import short
 
 
 def worst_reading(comparison: Comparison) -> str:
-    """The clamp reading with the largest rms disagreement."""
-    return max(CLAMP_READINGS, key=lambda name: comparison.disagreement[name].rms)
+    """The clamp reading whose rms disagreement is the farthest beyond its limit, or nearest to it."""
+    limit = comparison.tolerances.of_sweep
+    return max(CLAMP_READINGS, key=lambda name: comparison.disagreement[name].rms - limit(name))
 
 
 def verdict(comparison: Comparison, budget: Budget | None = None) -> str:
     """How far the candidate can be used, and what would make it better."""
     name = worst_reading(comparison)
-    found, allowed = comparison.disagreement[name], comparison.tolerances.rms
+    found, allowed = comparison.disagreement[name], comparison.tolerances.of_sweep(name)
     candidate, reference = comparison.candidate.source, comparison.reference.source
     if comparison.agrees:
+        beside = "" if found.rms <= allowed else " beside the noise"
         said = (
             f"Readings of {candidate} can be used in place of {reference} to within "
-            f"{short(found.rms)} rms ({name}, the worst; {short(allowed)} is allowed)"
+            f"{short(found.rms)} rms ({name}, the worst; {short(allowed)} is allowed{beside})"
         )
     elif found.rms > allowed:
         phase = max(found.rms_by_phase, key=lambda phase: found.rms_by_phase[phase])
