@@ -7,7 +7,7 @@ from compare.numbers import short
 
 
 def worst_reading(comparison: Comparison) -> str:
-    """The clamp reading whose rms disagreement is the farthest beyond its limit, or nearest to it."""
+    """The clamp reading whose rms disagreement goes farthest beyond its limit, or nearest to it."""
     limit = comparison.tolerances.of_sweep
     return max(CLAMP_READINGS, key=lambda name: comparison.disagreement[name].rms - limit(name))
 
@@ -40,7 +40,9 @@ def verdict(comparison: Comparison, budget: Budget | None = None) -> str:
         told = budget.closes or budget.blame == "unexplained"
         doubt = "" if told else f", but {rest} stays unexplained"
         return f"{said}; {_advice(comparison, budget)}{doubt}."
-    return f"{said}." if comparison.agrees else f"{said}; a budget would tell why."
+    if comparison.agrees or "settings" not in comparison.candidate.provenance:
+        return f"{said}."
+    return f"{said}; a budget would tell why."
 
 
 def _advice(comparison: Comparison, budget: Budget) -> str:
