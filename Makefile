@@ -9,7 +9,13 @@ BIN_MUJOCO3 := .venv-mujoco3/bin
 STUDIES := resolution contact-stiffness phase-b sweep-step sensor-noise
 CASES := catenary parabola two-circles shallow-catenary tip-only
 
-.PHONY: help install run test test-all lint bench results install-mujoco3 test-mujoco3 clean
+# One folder a run; a run writes its report last. A beam that disagrees is a finding, not a failure.
+BEAMS := chain rod $(if $(wildcard .venv-mujoco3/installed),cable)
+RUNS := $(foreach case,$(CASES),$(foreach beam,$(BEAMS),results/runs/$(case)-$(beam)/report.html))
+FOUND = --budget --beam $(BEAM) --out $(@D) $(ARGS) || test $$? -eq 1; test -f $@
+
+.NOTPARALLEL:
+.PHONY: help install run test test-all lint bench results again studies install-mujoco3 test-mujoco3 clean
 
 help:            ## list the targets
 	@grep -E '^[a-z0-9-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -34,9 +40,15 @@ lint: install    ## format, style, types, import rules
 bench: install   ## speed, side by side in one run
 	$(BIN)/python -m tests.bench $(ARGS)
 
-results: install ## all named cases and all shipped studies at full size, and the README's picture
+results: $(RUNS) | install ## results/README.md: all named cases, all beams there are; goes on where it stopped
 	$(BIN)/python -m compare.overview results/overview.png
-	set -e; for case in $(CASES); do $(BIN)/vibrissa run $$case; done
+	$(BIN)/vibrissa findings results/runs --out results
+
+again: install   ## the same, but forget the runs that are done
+	rm -rf results/runs
+	$(MAKE) results
+
+studies: install ## all shipped studies at full size
 	set -e; for study in $(STUDIES); do \
 	  $(BIN)/vibrissa study $$study; $(BIN)/vibrissa study-report results/$$study; done
 
@@ -47,6 +59,18 @@ test-mujoco3: install-mujoco3    ## the fast tests under MuJoCo 3.17
 
 clean:           ## remove what the targets above made
 	rm -rf .venv .venv-mujoco3 .mypy_cache .ruff_cache .pytest_cache .hypothesis
+
+results/runs/%-chain/report.html: BEAM = chain
+results/runs/%-chain/report.html: | install
+	$(BIN)/vibrissa run $* $(FOUND)
+
+results/runs/%-rod/report.html: BEAM = rod
+results/runs/%-rod/report.html: | install
+	$(BIN)/vibrissa run $* $(FOUND)
+
+results/runs/%-cable/report.html: BEAM = cable
+results/runs/%-cable/report.html: | install-mujoco3
+	$(BIN_MUJOCO3)/vibrissa run $* $(FOUND)
 
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv

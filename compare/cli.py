@@ -26,19 +26,21 @@ from analytic.problem.readings import CLAMP_READINGS
 from compare.animation import write_animation
 from compare.budget import Budget, controlled_changes, measure_budget
 from compare.budget.advice import Followed, follow_advice
-from compare.budget.figure import picture
+from compare.budget.figure import headline, picture
 from compare.casefile import Job, load_job
 from compare.comparison import Comparison
 from compare.comparison import compare as compare_readings
 from compare.figures import reconstruction, save_figure
+from compare.findings import write_findings
 from compare.measured import read_measured, write_table, write_text
 from compare.paper_figures import paper_figures
-from compare.report import write_report
+from compare.report import Film, write_report
 from compare.study.cli import study, study_report
 
 # Any wrong word on the command line; typer may bring its own copy of click, whose base this is.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 AGREES, DISAGREES, BAD_INPUT = 0, 1, 2
+_FRAMES = 48  # of a report's animation: smooth enough, and under 2 MB
 
 app = typer.Typer(
     add_completion=False,
@@ -73,6 +75,9 @@ def run(
     stations: Stations = None,
     segments: Segments = None,
     beam: Beam = None,
+    with_budget: Annotated[
+        bool, typer.Option("--budget", help="Split the disagreement into its parts too.")
+    ] = False,
     obstacle: Obstacle = None,
     spatial: Spatial = False,
 ) -> int:
@@ -80,11 +85,20 @@ def run(
     job = _job(case, stations, segments, beam, obstacle, spatial)
     folder = _folder(out, job)
     exact = solve_sweep(job.case)
-    simulated = _simulate(job)
+    found = None
+    if with_budget:
+        found, runs = _measure_budget(job)
+        simulated = runs["base"]
+    else:
+        simulated = _simulate(job)
     comparison = compare_readings(exact, simulated)
     exact.write(folder / "analytic.parquet")
     simulated.write(folder / f"mujoco-{job.settings.beam}.parquet")
-    return _finish(comparison, folder)
+    if found is not None:
+        _tell_budget(found, job)
+    with _progress("frames", _FRAMES) as advance:
+        gif, *stills = write_animation(exact, simulated, folder, _FRAMES, advance)
+    return _finish(comparison, folder, found, Film(gif, stills[2]))
 
 
 @app.command()
@@ -225,14 +239,7 @@ def budget(
     found, runs = _measure_budget(job)
     advice = None if target is None else follow_advice(job.case, found, runs, target)
     drawn = picture(found)
-    _told.print(_budget_table(found, job))
-    verdict = "closes" if found.closes else "does not close: more is unexplained than uncertain"
-    _told.print(f"The budget {verdict}; the largest part is {found.blame}.", soft_wrap=True)
-    for suspect in found.suspects:
-        _told.print(
-            f"  suspect: {suspect.name} differs by {suspect.change:+.2%} "
-            f"(accounts for {suspect.share:.0%} of the unexplained)"
-        )
+    _tell_budget(found, job)
     content = found.to_dict()
     if advice is not None:
         _tell_advice(advice)
@@ -240,6 +247,19 @@ def budget(
     _wrote(write_text(json.dumps(content, indent=2), folder / "budget.json"))
     _wrote(save_figure(drawn, folder / "budget.png"))
     return AGREES if found.closes and (advice is None or advice.reached) else DISAGREES
+
+
+@app.command()
+def findings(
+    folder: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Folder with the folders of runs in it.")
+    ],
+    out: Out = None,
+) -> int:
+    """Write a page about all runs in a folder, there or elsewhere."""
+    for path in write_findings(folder, out or folder):
+        _wrote(path)
+    return AGREES
 
 
 @app.command()
@@ -330,6 +350,16 @@ def _measure_budget(job: Job) -> tuple[Budget, dict[str, Readings]]:
         return measure_budget(job.case, job.settings, advance)
 
 
+def _tell_budget(found: Budget, job: Job) -> None:
+    _told.print(_budget_table(found, job))
+    _told.print(f"{headline(found)}.", soft_wrap=True)
+    for suspect in found.suspects:
+        _told.print(
+            f"  suspect: {suspect.name} differs by {suspect.change:+.2%} "
+            f"(accounts for {suspect.share:.0%} of the unexplained)"
+        )
+
+
 def _budget_table(found: Budget, job: Job) -> Table:
     table = Table("part", *CLAMP_READINGS, title=f"Budget of {job.case.name}, rms +- uncertainty")
     for name, readings in found.parts.items():
@@ -359,8 +389,10 @@ def _tell_advice(advice: Followed) -> None:
         _told.print("  The target was missed: ask for a little less.")
 
 
-def _finish(comparison: Comparison, folder: Path) -> int:
-    report = write_report(comparison, folder)
+def _finish(
+    comparison: Comparison, folder: Path, budget: Budget | None = None, film: Film | None = None
+) -> int:
+    report = write_report(comparison, folder, budget, film)
     _told.print(_summary(comparison))
     for failure in comparison.failures:
         _told.print(f"  {failure}", soft_wrap=True, markup=False)

@@ -1,14 +1,17 @@
 """The pictures of a comparison, drawn from readings alone."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
+from matplotlib.ticker import MaxNLocator
 
 from analytic import Readings, reconstruct
 from analytic.problem.arrays import Floats, Words
@@ -27,17 +30,19 @@ _SYMBOLS = {
     "moment_z": ("$M_{Az}$", "$EI/L$"),
     "contact_arc_length": ("$s_1$", "$L$"),
 }
+_WIDTH = 9.0  # of a picture across the page, in inches
 _SHAPES = 24  # drawn of each sweep
+_NEAR = 0.03  # of the sweep's length: what is shown on either side of the snap-off
 
 
 def geometry(comparison: Comparison) -> Figure:
     """The object and the deflected vibrissa, coloured by phase, in both models."""
-    figure = Figure(figsize=(9, 6.2), layout="constrained")
+    figure = Figure(layout="constrained")
     axes = figure.subplots(2, 1, sharex=True, sharey=True)
     for ax, readings, which in zip(axes, *_sides(comparison), strict=True):
         phase = comparison.judged[which].phase
         _draw_shapes(ax, readings, phase)
-        _draw_object(ax, readings)
+        _draw_object(ax, readings, phase)
         ax.set_title(f"{which}: {readings.source}", loc="left", fontsize=10)
         ax.set_ylabel("$y$ / $L$")
         ax.set_aspect("equal")
@@ -51,6 +56,9 @@ def geometry(comparison: Comparison) -> Figure:
         Line2D([], [], color="k", marker="o", markersize=3, linestyle="", label="reconstructed"),
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=9, frameon=False)
+    # As high as both axes need, at equal scales, besides their labels and the legend.
+    wide, high = (np.ptp(limits) for limits in (axes[0].get_xlim(), axes[0].get_ylim()))
+    figure.set_size_inches(_WIDTH, 2 * (_WIDTH - 0.8) * high / wide + 1.5)
     return figure
 
 
@@ -60,35 +68,41 @@ def readings(comparison: Comparison) -> Figure:
     upper, lower = figure.subplots(
         2, 4, sharex=True, height_ratios=[2.2, 1], gridspec_kw={"hspace": 0.05}
     )
-    both = (comparison.reference, comparison.candidate)
     for i, name in enumerate(_SYMBOLS):
-        symbol, unit = _SYMBOLS[name]
-        shade_phases(upper[i], *_phases(comparison))
-        shade_phases(lower[i], *_phases(comparison))
-        for one, style in zip(
-            both,
-            ({"color": _REFERENCE, "linewidth": 1.6}, _dots(comparison)),
-            strict=True,
-        ):
-            upper[i].plot(_foot(one), _reading(one, name), label=one.source, **style)
-        upper[i].set_title(f"{symbol} / ({unit})", fontsize=11)
-        lower[i].axhline(0, color=_REFERENCE, linewidth=0.8)
-        lower[i].plot(*_difference(comparison, name), **_dots(comparison))
-        lower[i].set_xlabel("foot $x_0$ / $L$")
-        lower[i].ticklabel_format(axis="y", scilimits=(-2, 2))
+        _draw_reading(upper[i], lower[i], comparison, name)
     lower[0].set_ylabel("difference\n(same unit)")
-    handles, labels = upper[0].get_legend_handles_labels()
-    handles += [
-        Line2D([], [], color=PHASE_COLOURS[p], alpha=0.35, linewidth=7) for p in ("tip", "tangent")
-    ]
-    labels += [PHASE_NAMES["tip"], PHASE_NAMES["tangent"]]
+    handles, labels = _key(upper[0])
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=9, frameon=False)
     return figure
 
 
+def reading_panels(comparison: Comparison) -> dict[str, Figure]:
+    """The same, a picture for each reading."""
+    return {name: _panel(comparison, name) for name in _SYMBOLS}
+
+
+def snap_off_panels(comparison: Comparison) -> dict[str, Figure]:
+    """The clamp readings around the snap-off, a picture each; none if there is no snap-off."""
+    places = [comparison.snap_off.reference, comparison.snap_off.candidate]
+    known = [place / comparison.reference.beam.length for place in places if place is not None]
+    if not known:
+        return {}
+    half = _NEAR * float(np.ptp(_foot(comparison.reference)))
+    figures = {name: _panel(comparison, name) for name in CLAMP_READINGS}
+    for figure in figures.values():
+        for ax in figure.axes:
+            ax.set_xlim(min(known) - half, max(known) + half)
+            ax.xaxis.set_major_locator(MaxNLocator(4))
+            for place, colour in zip(places, (_REFERENCE, _CANDIDATE), strict=True):
+                if place is not None:
+                    where = place / comparison.reference.beam.length
+                    ax.axvline(where, color=colour, linestyle=":", linewidth=1.3)
+    return figures
+
+
 def phase_criterion(comparison: Comparison) -> Figure:
     """What decides the phase: criterion (26), zero in Phase B, and the contact, 1 in Phase A."""
-    figure = Figure(figsize=(9, 5.4), layout="constrained")
+    figure = Figure(figsize=(_WIDTH, 5.4), layout="constrained")
     axes = figure.subplots(2, 1, sharex=True)
     for readings, which in zip(*_sides(comparison), strict=True):
         judged, x = comparison.judged[which], _foot(readings)
@@ -168,6 +182,44 @@ def save_figure(figure: Figure, path: Path) -> Path:
     return unfinished.replace(path)
 
 
+def _panel(comparison: Comparison, name: str) -> Figure:
+    figure = Figure(figsize=(4.8, 4.0), layout="constrained")
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.2, 1])
+    _draw_reading(upper, lower, comparison, name)
+    lower.set_ylabel("difference")
+    figure.align_ylabels()
+    handles, labels = _key(upper)
+    figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=9, frameon=False)
+    return figure
+
+
+def _draw_reading(upper: Axes, lower: Axes, comparison: Comparison, name: str) -> None:
+    """A reading of both sweeps above, their difference below."""
+    symbol, unit = _SYMBOLS[name]
+    for ax in (upper, lower):
+        shade_phases(ax, *_phases(comparison))
+    for one, style in zip(
+        (comparison.reference, comparison.candidate),
+        ({"color": _REFERENCE, "linewidth": 1.6}, _dots(comparison)),
+        strict=True,
+    ):
+        upper.plot(_foot(one), _reading(one, name), label=one.source, **style)
+    upper.set_title(f"{symbol} / ({unit})", fontsize=11)
+    lower.axhline(0, color=_REFERENCE, linewidth=0.8)
+    lower.plot(*_difference(comparison, name), **_dots(comparison))
+    lower.set_xlabel("foot $x_0$ / $L$")
+    lower.ticklabel_format(axis="y", scilimits=(-2, 2))
+
+
+def _key(ax: Axes) -> tuple[list[Artist], list[str]]:
+    """What the lines and the shades of a reading's axes mean."""
+    handles, labels = ax.get_legend_handles_labels()
+    shades: list[Artist] = [
+        Line2D([], [], color=PHASE_COLOURS[p], alpha=0.35, linewidth=7) for p in ("tip", "tangent")
+    ]
+    return [*handles, *shades], [*labels, PHASE_NAMES["tip"], PHASE_NAMES["tangent"]]
+
+
 def _sides(comparison: Comparison) -> tuple[tuple[Readings, Readings], tuple[str, str]]:
     return (comparison.reference, comparison.candidate), ("reference", "candidate")
 
@@ -177,7 +229,7 @@ def _phases(comparison: Comparison) -> tuple[Floats, Words]:
     return _foot(comparison.reference), comparison.judged["reference"].phase
 
 
-def _dots(comparison: Comparison) -> dict[str, object]:
+def _dots(comparison: Comparison) -> dict[str, Any]:
     size = 2.2 if len(comparison.candidate.table) > 100 else 4.0
     return {"color": _CANDIDATE, "marker": "o", "markersize": size, "linestyle": ""}
 
@@ -229,11 +281,11 @@ def _draw_shapes(ax: Axes, readings: Readings, phase: Words) -> None:
     ax.autoscale_view()
 
 
-def _draw_object(ax: Axes, readings: Readings) -> None:
+def _draw_object(ax: Axes, readings: Readings, phase: Words) -> None:
     scale = readings.beam.length
     if "contour" in readings.provenance:
         xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
         ax.fill_between(xi, eta, eta.max(), color="#DDDDDD", linewidth=0, zorder=0)
         ax.plot(xi, eta, color="#555555", linewidth=2.5, zorder=1)
-    found = reconstruct(readings)
+    found = reconstruct(readings)[np.isin(phase, ("tip", "tangent"))]
     ax.plot(found["contact_x"] / scale, found["contact_y"] / scale, "k.", markersize=2)

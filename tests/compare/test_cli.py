@@ -77,14 +77,13 @@ def test_run_writes_what_it_promises(tmp_path):
         "geometry.png",
         "readings.png",
         "phases.png",
+        "animation.gif",
+        *(f"still-{n}.png" for n in (1, 2, 3, 4)),
     }
     found = json.loads((tmp_path / "out" / "comparison.json").read_text())
     assert found["verdict"] == "agrees"
     report = (tmp_path / "out" / "report.html").read_text()
     assert "<b>The two agree.</b>" in report
-    assert "http" not in report.replace("http://www.w3.org", "").replace(
-        "http://purl.org", ""
-    ).replace("http://creativecommons.org", "").replace("https://matplotlib.org", "")
     again = vibrissa("compare", "out/analytic.parquet", "out/mujoco-chain.parquet", cwd=tmp_path)
     assert again.returncode == 0
 
@@ -95,6 +94,22 @@ def test_a_coarse_beam_disagrees(tmp_path):
     assert done.returncode == 1
     assert "allowed" in done.stdout
     assert (tmp_path / "results" / "small object" / "report.html").exists()
+
+
+@pytest.mark.slow
+def test_a_run_with_its_budget(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE)
+    done = vibrissa("run", "case.toml", "--budget", "--out", "runs/it", cwd=tmp_path)
+    assert done.returncode == 1, done.stderr
+    assert "The largest part is discretisation" in done.stdout
+    found = json.loads((tmp_path / "runs" / "it" / "budget.json").read_text())
+    assert found["blame"] == "discretisation"
+    assert list(found["convergence"]) == ["10", "20", "40"]
+    assert 'id="budget"' in (tmp_path / "runs" / "it" / "report.html").read_text()
+    done = vibrissa("findings", "runs", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "| small object | chain | 10 |" in (tmp_path / "runs" / "README.md").read_text()
+    assert vibrissa("findings", "nowhere", cwd=tmp_path).returncode == 2
 
 
 def test_units(tmp_path):

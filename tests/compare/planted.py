@@ -1,0 +1,29 @@
+"""Budgets with planted numbers."""
+
+from analytic.problem.readings import CLAMP_READINGS
+from compare.budget import Budget, Part
+from compare.budget.budget import PARTS
+from compare.budget.suspects import Suspect
+
+
+def planted(
+    blame: str = "discretisation",
+    size: float = 1e-3,
+    unexplained: float = 2e-5,
+    closes: bool = True,
+    suspects: tuple[Suspect, ...] = (),
+) -> Budget:
+    """One part of `size`, the others of next to nothing."""
+    sizes = dict.fromkeys(PARTS, 1e-9) | {"extension": 0.0, "unexplained": unexplained}
+    sizes[blame] = size
+    parts = {
+        name: {reading: Part(rms, rms / 10) for reading in CLAMP_READINGS}
+        for name, rms in sizes.items()
+    }
+    by_phase = {
+        name: {reading: {"tip": rms, "tangent": rms} for reading in CLAMP_READINGS}
+        for name, rms in sizes.items()
+    }
+    convergence = {n: dict.fromkeys(CLAMP_READINGS, 1.6 / n**2) for n in (40, 80, 160)}
+    disagreement = dict.fromkeys(CLAMP_READINGS, size)
+    return Budget(parts, disagreement, by_phase, 2.0, closes, blame, suspects, 190, convergence)
