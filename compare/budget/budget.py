@@ -128,12 +128,12 @@ def budget(
     run = {name: signal(readings) for name, readings in runs.items()}
     signatures = {name: signal(varied) - truth for name, varied in variations.items()}
     base, beam = runs["base"], exact.beam
-    order = _order(run["smooth"] - run["two"], run["two"] - run["four"])
-    limit = _limit(run["smooth"], run["two"], run["four"], order)
+    order = _order(run["stiff"] - run["two"], run["two"] - run["four"])
+    limit = _limit(run["stiff"], run["two"], run["four"], order)
     signals = {
-        "discretisation": run["smooth"] - limit,
+        "discretisation": run["stiff"] - limit,
         "facets": run["calm"] - run["smooth"],
-        "softness": (run["four"] - run["stiff"]) * STIFFER / (STIFFER - 1),
+        "softness": (run["smooth"] - run["stiff"]) * STIFFER / (STIFFER - 1),
         "unrest": run["base"] - run["calm"],
         "sensor": _sensor(base, kept, scale),
         "extension": stretched(signatures, base.values("extension")[kept]),
@@ -179,7 +179,7 @@ def budget(
         max(PARTS, key=lambda name: float(np.linalg.norm(rms[name]))),
         suspects(signals["unexplained"], signatures, float(np.linalg.norm(unresolved))),
         int(kept.sum()),
-        convergence(exact, [runs[name] for name in ("smooth", "two", "four")], kept),
+        convergence(exact, [runs[name] for name in ("stiff", "two", "four")], kept),
         {name: _by_reading(check) for name, check in checks.items()},
     )
 

@@ -15,10 +15,9 @@ def controlled_changes(settings: Settings, smooth: bool = True) -> dict[str, Set
     """The settings of all sweeps by name; ``base`` is the one that the budget is of.
 
     They lead from the base to the exact problem, one thing after the other: ``calm`` is more at
-    rest, ``smooth`` has no facets, ``two`` and ``four`` have more segments, and ``stiff`` has
-    harder contacts too. Facets come first, for without them the beam's order is plain to see, and
-    stiffness last: where beads are few, the load is handed from one to the next otherwise if they
-    are harder.
+    rest, ``smooth`` has no facets, ``stiff`` has harder contacts, and ``two`` and ``four`` have
+    more segments too. Facets come first, for without them the beam's order is plain to see, and
+    segments last, since they bring more beads, which share the load and so harden a loose contact.
 
     Parameters
     ----------
@@ -40,13 +39,14 @@ def controlled_changes(settings: Settings, smooth: bool = True) -> dict[str, Set
             )
     rest = replace(settings, tolerance=min(settings.tolerance, _AT_REST))
     plain = replace(rest, obstacle="primitive") if smooth else rest
+    stiff = replace(plain, contact_stiffness=STIFFER * k)
     return {
         "base": settings,
         "calm": replace(settings, tolerance=min(settings.tolerance / CALMER, _AT_REST)),
         "smooth": plain,
-        "two": replace(plain, segments=2 * n),
-        "four": replace(plain, segments=4 * n),
-        "stiff": replace(plain, segments=4 * n, contact_stiffness=STIFFER * k),
+        "stiff": stiff,
+        "two": replace(stiff, segments=2 * n),
+        "four": replace(stiff, segments=4 * n),
     }
 
 
