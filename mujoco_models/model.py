@@ -10,6 +10,7 @@ from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.obstacle import MESH_PREFIX, Obstacle
 
 _CONTACT_GAP = 0.01  # L; how far ahead the solver sees contacts that carry no force yet
+_NEAR = 1e-6  # L; beads that are nearer to the obstacle must be watched at rest
 _OVERLOOKED = 1e-6  # L; how deep an unloaded bead may be in the obstacle
 _IMPEDANCE = 0.9  # MuJoCo's d; with the stiffness set below it cancels out of the law at rest
 
@@ -129,26 +130,6 @@ class BeamModel:
         """The beam's own moment at each joint, shape (n_joints,) [EI/L]."""
         return self.beam.moments(self.data.qfrc_passive)
 
-    def slide(self, foot_x: float, angles: Floats, far: float, steps: int) -> Floats:
-        """Angles after MuJoCo's own motion without momentum, until it rests or `steps` are over.
-
-        `far` is how far a link must have turned for the steps to become five times longer [rad].
-        """
-        model, data = self.model, self.data
-        model.opt.integrator, model.opt.timestep = mujoco.mjtIntegrator.mjINT_DISCRETE, 1e-3
-        model.body_pos[self._foot, 0] = foot_x
-        self.beam.place(data, angles)
-        for _ in range(steps):
-            before = data.qpos.copy()
-            data.qvel[:] = 0
-            mujoco.mj_step(model, data)
-            if np.abs(data.qpos - before).max() < 1e-10:
-                break
-            if np.abs(np.cumsum(self.beam.angles(data) - angles)).max() > far:
-                model.opt.timestep = 5e-3  # 3.17's cable is explicit: 1e-2 would be too long
-        model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
-        return self.beam.angles(data)
-
     def contacts(self) -> Contacts:
         """All reported contacts of the last evaluated configuration."""
         contact = self.data.contact
@@ -166,20 +147,25 @@ class BeamModel:
         """Shape (n, 2) [L]."""
         return np.asarray(self.data.geom_xpos[self._beads[beads], :2])
 
-    def overlooked(self) -> tuple[int, int] | None:
-        """A bead inside the obstacle that MuJoCo reports no load on, and the vertex it is at.
-
-        The mesh in use is too small away from its window, and most beads are not watched: this is
-        what makes sure, at every state at rest, that neither has let the beam through.
-        """
+    def near_the_obstacle(self) -> frozenset[int]:
+        """Beads that touch the polygon or nearly do, whether or not MuJoCo looks at them."""
         positions = self.data.geom_xpos[self._beads, :2]
+        return frozenset(self.obstacle.near(positions, self._radius + _NEAR).tolist())
+
+    def overlooked(self) -> int | None:
+        """The obstacle's vertex at a watched bead inside it that MuJoCo reports no load on.
+
+        The mesh in use is too small away from its window: this is what makes sure, at every state
+        at rest, that it has not let the beam through.
+        """
         contacts = self.contacts()
+        unloaded = np.setdiff1d(sorted(self.watched), contacts.bead[contacts.distance < 0])
+        positions = self.bead_positions(unloaded)
         inside = self._radius - _OVERLOOKED
-        suspects = self.obstacle.near(positions, inside)
-        for bead in np.setdiff1d(suspects, contacts.bead[contacts.distance < 0]):
-            clearance, vertex = self.obstacle.clearance(positions[bead])
+        for suspect in self.obstacle.near(positions, inside):
+            clearance, vertex = self.obstacle.clearance(positions[suspect])
             if clearance < inside:
-                return int(bead), vertex
+                return vertex
         return None
 
     def clamp(self) -> Clamp:

@@ -99,15 +99,26 @@ class Obstacle:
         )
 
     def near(self, points: Floats, distance: float) -> Integers:
-        """Which of the points, shape (n, 2), may be nearer to the contour than `distance`."""
-        x = self.vertices[:, 0]
-        facet = np.clip(np.searchsorted(x, points[:, 0]) - 1, 0, len(self.facet_angles) - 1)
+        """Which of the points, shape (n, 2), may be nearer to the contour than `distance`.
+
+        The distance from the line of any one facet is not more than that from the polygon. The
+        facet above a point gives a bound, and the one that is nearest by that a better one.
+        """
+        left, right = self.vertices[[0, -1], 0]
+        found = np.flatnonzero((points[:, 0] > left - distance) & (points[:, 0] < right + distance))
+        foot = points[found, 0]
+        for _ in range(2):
+            bound, slope = self._below(points[found], foot)
+            close = bound < distance
+            found, foot = found[close], (points[found, 0] - bound * np.sin(slope))[close]
+        return found
+
+    def _below(self, points: Floats, x: Floats) -> tuple[Floats, Floats]:
+        """How far the points are below the lines of the facets at `x`, and the facets' slopes."""
+        facet = np.clip(np.searchsorted(self.vertices[:, 0], x) - 1, 0, len(self.facet_angles) - 1)
         slope = self.facet_angles[facet]
         offset = points - self.vertices[facet]
-        # The distance from the line of any one facet is not more than that from the polygon.
-        bound = offset[:, 0] * np.sin(slope) - offset[:, 1] * np.cos(slope)
-        beside = np.maximum(x[0] - points[:, 0], points[:, 0] - x[-1])
-        return np.flatnonzero(np.maximum(bound, beside) < distance)
+        return offset[:, 0] * np.sin(slope) - offset[:, 1] * np.cos(slope), slope
 
     def clearance(self, point: Floats) -> tuple[float, int]:
         """Distance of a point from the polygon, negative inside, and the vertex it is at."""

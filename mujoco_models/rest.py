@@ -25,6 +25,8 @@ _MARGIN = 2  # beads beyond the loaded ones that must do so
 _LEFT = 0.35  # rad; a link that has turned farther has left the branch
 _FALL_REACH = 16
 _FALL_STEPS = 5000
+_FALL_INERTIA, _FAR_INERTIA = 100.0, 4.0  # of each joint's stiffness, before it has left and after
+_FALLEN = 1e-10  # rad; a step shorter than this has come to rest
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,11 @@ class State:
         """The unloaded beam."""
         return cls(np.zeros(joints), {})
 
+    @property
+    def loaded_bead(self) -> float:
+        """Mean number of the loaded beads, weighed by their forces."""
+        return sum(i * f for i, f in self.forces.items()) / sum(self.forces.values())
+
 
 def relax(model: BeamModel, foot_x: float, start: State, tolerance: float) -> State:
     """Bring the beam to rest with its foot at `foot_x`, from `start`.
@@ -74,13 +81,9 @@ def relax(model: BeamModel, foot_x: float, start: State, tolerance: float) -> St
         Not settled if Newton's method did not get there; the caller takes smaller steps then.
     """
     state = best = start
-    # One bead a link sees a contact coming long before it is loaded; where a load is, all must.
-    links = model.layout.links
-    lookout = frozenset(np.flatnonzero(np.diff(links, append=links[-1] + 1)).tolist())
-    model.watch(_around(model, state.forces, _AHEAD) or lookout)
+    model.watch(_around(model, state.forces, _AHEAD) or _lookout(model))
     if state.forces:
         model.anticipate_window()
-    whole = False
     last: dict[int, Touch] = {}
     for _ in range(_ITERATIONS):
         residual = float(np.abs(model.imbalance(foot_x, state.angles)).max())
@@ -94,42 +97,46 @@ def relax(model: BeamModel, foot_x: float, start: State, tolerance: float) -> St
             loaded = _vertices(model, normals)
             if _move_window(model, loaded):
                 continue
-            if (missed := model.overlooked()) is not None:
-                bead, vertex = missed
-                model.watch(model.watched | _around(model, {bead: 0.0}, _AHEAD))
-                if not model.obstacle.is_inside(model.window, np.array([vertex])):
-                    model.use_window(model.obstacle.window_of(vertex))
-                whole = False
+            if unwatched := model.near_the_obstacle() - model.watched:
+                model.watch(model.watched | unwatched)
                 continue
-            if whole:
-                if loaded.size:
-                    model.leave_trail(float(loaded.mean()))
-                return replace(state, settled=True)
-            whole = True
-            model.watch(model.watched | lookout)
-            continue
+            if (missed := model.overlooked()) is not None:
+                model.use_window(model.obstacle.window_of(missed))
+                continue
+            if loaded.size:
+                model.leave_trail(float(loaded.mean()))
+            return replace(state, settled=True)
         touches = _touches(model, contacts)
         state = _newton_step(model, state, contacts, _curvatures(model, touches, last))
         last = touches
         if not _around(model, state.forces, _MARGIN) <= model.watched:
             model.watch(model.watched | _around(model, state.forces, _AHEAD))
-            whole = False
     model.imbalance(foot_x, best.angles)  # leaves the readings with the state that is returned
     return best
 
 
 def fall(model: BeamModel, foot_x: float, start: State) -> State:
-    """Where MuJoCo's own overdamped motion ends with the foot at `foot_x`; not yet at rest.
+    """Where the beam ends, without momentum, with the foot at `foot_x`; not yet at rest.
 
     Decides what Newton's method cannot: whether a vibrissa without a neighbouring equilibrium has
-    let go. The motion is gentle, the inertia of a step a hundred times the stiffness, until it has
-    clearly left; ten times coarser, it lets go too early.
+    let go. It goes down MuJoCo's own balance in steps as short as an inertia of a hundred times the
+    stiffness makes them, until it has clearly left; ten times coarser, it lets go too early.
     """
-    links = model.layout.links
-    lookout = frozenset(np.flatnonzero(np.diff(links, append=links[-1] + 1)).tolist())
-    model.watch(_around(model, start.forces, _FALL_REACH) | lookout)
-    angles = model.slide(foot_x, start.angles, _LEFT, _FALL_STEPS)
-    return State(angles, {} if turned(angles, start.angles) > _LEFT else start.forces)
+    model.watch(_around(model, start.forces, _FALL_REACH) | _lookout(model))
+    state, inertia = start, _FALL_INERTIA
+    last: dict[int, Touch] = {}
+    for _ in range(_FALL_STEPS):
+        model.imbalance(foot_x, state.angles)
+        contacts = model.contacts()
+        touches = _touches(model, contacts)
+        after = _newton_step(model, state, contacts, _curvatures(model, touches, last), inertia)
+        if turned(after.angles, state.angles) < _FALLEN:
+            break
+        if turned(after.angles, start.angles) > _LEFT:
+            inertia = _FAR_INERTIA
+        state, last = after, touches
+    left = turned(state.angles, start.angles) > _LEFT
+    return State(state.angles, {} if left else start.forces)
 
 
 def turned(angles: Floats, before: Floats) -> float:
@@ -142,6 +149,12 @@ def _around(model: BeamModel, loaded: dict[int, float], reach: int) -> frozenset
     return frozenset(
         i for bead in loaded for i in range(max(0, bead - reach), min(count, bead + reach + 1))
     )
+
+
+def _lookout(model: BeamModel) -> frozenset[int]:
+    """One bead a link, which see a contact coming long before it is loaded."""
+    links = model.layout.links
+    return frozenset(np.flatnonzero(np.diff(links, append=links[-1] + 1)).tolist())
 
 
 def _move_window(model: BeamModel, loaded: Integers) -> bool:
@@ -201,7 +214,10 @@ def _curvatures(model: BeamModel, now: dict[int, Touch], last: dict[int, Touch])
     return found
 
 
-def _newton_step(model: BeamModel, state: State, contacts: Contacts, curvature: Floats) -> State:
+def _newton_step(
+    model: BeamModel, state: State, contacts: Contacts, curvature: Floats, inertia: float = 0.0
+) -> State:
+    """One step; `inertia`, in units of each joint's stiffness, makes it shorter."""
     layout = model.layout
     count = len(layout.joints)
     bead, normal, distance = contacts
@@ -212,14 +228,12 @@ def _newton_step(model: BeamModel, state: State, contacts: Contacts, curvature: 
     force = np.array([state.forces.get(i, 0.0) for i in bead.tolist()])
     loaded = force > 0
 
-    stiffness = np.diag(model.beam.stiffness(state.angles))
+    stiffness = np.diag((1 + inertia) * model.beam.stiffness(state.angles))
+    # The lever of a force turns with every joint below the outer one of two ...
     outer = np.maximum.outer(np.arange(count), np.arange(count))
-    for i in np.flatnonzero(loaded):
-        n = layout.links[bead[i]] + 1
-        # The lever of a force turns with every joint below the outer one of the two ...
-        stiffness[:n, :n] += (force[i] * across[i, :n])[outer[:n, :n]]
-        # ... and the normal turns as the bead slides along the contour.
-        stiffness -= force[i] * curvature[i] * np.outer(across[i], across[i])
+    stiffness += (force @ across)[outer]
+    # ... and the normal turns as the bead slides along the contour.
+    stiffness -= (force * curvature * across.T) @ across
 
     # The loaded contacts convexify the model; at rest their slack is zero, and so is the effect.
     held, slack = along[loaded], (distance + force / model.contact_stiffness)[loaded]

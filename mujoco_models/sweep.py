@@ -123,13 +123,18 @@ class Walk:
         self._foot_x, self._before = target, None
 
     def _guess(self, foot_x: float) -> State:
-        """The last state, carried on along the branch."""
+        """The last state, carried on along the branch; so is the place of its load."""
         state = self._state
         if self._before is None:
             return State(state.angles, state.forces)
         x, before = self._before
         ahead = (foot_x - self._foot_x) / (self._foot_x - x)
-        return State(state.angles + ahead * (state.angles - before.angles), state.forces)
+        forces = state.forces
+        if state.forces and before.forces:
+            shift = round(ahead * (state.loaded_bead - before.loaded_bead))
+            last = len(self.model.layout.beads) - 1
+            forces = {min(max(i + shift, 0), last): f for i, f in forces.items()}
+        return State(state.angles + ahead * (state.angles - before.angles), forces)
 
     def _follows(self, state: State) -> bool:
         """Whether `state` is the neighbour of the last one on the branch."""
