@@ -21,7 +21,7 @@ PHASE_COLOURS = {"free": "#999999", "tip": "#0072B2", "tangent": "#D55E00"}
 PHASE_NAMES = {"free": "free", "tip": "A: tip contact", "tangent": "B: tangential contact"}
 _REFERENCE, _CANDIDATE = "#000000", "#CC79A7"
 
-_SYMBOLS = {
+READING_SYMBOLS = {
     "force_x": ("$F_{Ax}$", "$EI/L^2$"),
     "force_y": ("$F_{Ay}$", "$EI/L^2$"),
     "moment_z": ("$M_{Az}$", "$EI/L$"),
@@ -61,8 +61,8 @@ def readings(comparison: Comparison) -> Figure:
         2, 4, sharex=True, height_ratios=[2.2, 1], gridspec_kw={"hspace": 0.05}
     )
     both = (comparison.reference, comparison.candidate)
-    for i, name in enumerate(_SYMBOLS):
-        symbol, unit = _SYMBOLS[name]
+    for i, name in enumerate(READING_SYMBOLS):
+        symbol, unit = READING_SYMBOLS[name]
         shade_phases(upper[i], *_phases(comparison))
         shade_phases(lower[i], *_phases(comparison))
         for one, style in zip(

@@ -1,6 +1,7 @@
 """The sweep: station after station at rest, and the snap-off found by smaller and smaller steps."""
 
 import platform
+import time
 from collections.abc import Callable
 from dataclasses import asdict
 from importlib.metadata import version
@@ -28,6 +29,7 @@ _HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below it ju
 
 def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Readings:
     """Sweep the beam to the left; see `mujoco_models.simulate_sweep`."""
+    begin = time.process_time()
     walk = set_out(case, settings)
     obstacle = walk.model.obstacle
     rows = []
@@ -49,6 +51,7 @@ def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Re
         "engine": f"MuJoCo {mujoco.__version__}, vibrissa-testbed {version('vibrissa-testbed')}",
         "python": platform.python_version(),
         "settings": asdict(settings),
+        "seconds": time.process_time() - begin,
         "obstacle": f"{len(obstacle.vertices)} contour points, chord error "
         f"{obstacle.chord_error:.1e} L, normal error {obstacle.normal_error:.1e} rad",
         "events": {
