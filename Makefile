@@ -9,7 +9,7 @@ BIN_MUJOCO3 := .venv-mujoco3/bin
 STUDIES := resolution contact-stiffness phase-b sweep-step sensor-noise
 CASES := catenary parabola two-circles shallow-catenary tip-only
 
-.PHONY: help install run test test-all lint bench results install-mujoco3 test-mujoco3 clean
+.PHONY: help install run test test-all lint bench results install-mujoco3 test-mujoco3 versions clean
 
 help:            ## list the targets
 	@grep -E '^[a-z0-9-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -31,8 +31,8 @@ lint: install    ## format, style, types, import rules
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: install   ## speed, side by side in one run
-	$(BIN)/python -m tests.bench $(ARGS)
+bench: install   ## speed, side by side on one core; ARGS="analytic mujoco stepping exudyn study"
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench $(ARGS)
 
 results: install ## all named cases and all shipped studies at full size, and the README's picture
 	$(BIN)/python -m compare.overview results/overview.png
@@ -44,6 +44,14 @@ install-mujoco3: .venv-mujoco3/installed   ## build .venv-mujoco3 with MuJoCo 3.
 
 test-mujoco3: install-mujoco3    ## the fast tests under MuJoCo 3.17
 	$(BIN_MUJOCO3)/python -m pytest -n auto $(ARGS)
+
+versions: install install-mujoco3    ## the beams of both MuJoCo versions and the closed form side by side
+	set -e; for beam in chain rod; do \
+	  $(BIN)/vibrissa simulate $(CASE) --beam $$beam --out results/versions/4 $(ARGS); done
+	set -e; for beam in chain cable; do \
+	  $(BIN_MUJOCO3)/vibrissa simulate $(CASE) --beam $$beam --out results/versions/3.17 $(ARGS); done
+	cd results/versions && ../../$(BIN)/vibrissa side-by-side $(CASE) 3.17/mujoco-chain.parquet \
+	  3.17/mujoco-cable.parquet 4/mujoco-chain.parquet 4/mujoco-rod.parquet --out .
 
 clean:           ## remove what the targets above made
 	rm -rf .venv .venv-mujoco3 .mypy_cache .ruff_cache .pytest_cache .hypothesis
