@@ -50,8 +50,8 @@ versions: install install-mujoco3    ## the beams of both MuJoCo versions and th
 	  $(BIN)/vibrissa simulate $(CASE) --beam $$beam --out results/versions/4 $(ARGS); done
 	set -e; for beam in chain cable; do \
 	  $(BIN_MUJOCO3)/vibrissa simulate $(CASE) --beam $$beam --out results/versions/3.17 $(ARGS); done
-	cd results/versions && ../../$(BIN)/vibrissa side-by-side $(CASE) 3.17/mujoco-chain.parquet \
-	  3.17/mujoco-cable.parquet 4/mujoco-chain.parquet 4/mujoco-rod.parquet --out .
+	$(BIN)/vibrissa side-by-side $(CASE) --out results/versions \
+	  $(foreach sweep,3.17/mujoco-chain 3.17/mujoco-cable 4/mujoco-chain 4/mujoco-rod,results/versions/$(sweep).parquet)
 
 clean:           ## remove what the targets above made
 	rm -rf .venv .venv-mujoco3 .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -1,6 +1,7 @@
 """The command ``vibrissa``."""
 
 import json
+import os
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
@@ -14,7 +15,7 @@ import numpy as np
 import typer
 from rich.console import Console
 from rich.progress import Progress
-from rich.table import Table
+from rich.table import Column, Table
 
 from analytic import (
     CASE_NAMES,
@@ -213,9 +214,15 @@ def side_by_side(
     """Compare any number of files of readings with one reference and with each other."""
     is_file = Path(reference).suffix in (".parquet", ".csv")
     exact = Readings.read(reference) if is_file else solve_sweep(load_job(reference).case)
-    found = set_side_by_side(
-        exact, {str(path.with_suffix("")): Readings.read(path) for path in files}
-    )
+    candidates = {_short(path, files): Readings.read(path) for path in files}
+    if len(candidates) < len(files):
+        raise InputError(
+            "FILE",
+            ", ".join(map(str, files)),
+            "files of different names",
+            "rename one, or name it once",
+        )
+    found = set_side_by_side(exact, candidates)
     drawn = side_by_side_picture(found)
     folder = out or Path("results") / "side-by-side"
     _make(folder)
@@ -361,10 +368,16 @@ def _budget_table(found: Budget, job: Job) -> Table:
     return table
 
 
+def _short(path: Path, files: list[Path]) -> str:
+    """What tells a file from the others."""
+    common = os.path.commonpath([one.absolute().parent for one in files])
+    return str(path.absolute().with_suffix("").relative_to(common))
+
+
 def _side_by_side_tables(found: SideBySide) -> tuple[Table, Table]:
     """Against the reference, and the largest rms between the candidates."""
     against = Table(
-        "", "candidate", *CLAMP_READINGS, "snap-off", "ms a station",
+        "", Column("candidate", overflow="fold"), *CLAMP_READINGS, "snap-off", "ms a station",
         title=f"Against {found.reference}: rms relative to each reading's largest magnitude",
     )  # fmt: skip
     rows = found.table()

@@ -56,3 +56,6 @@ def test_command(exact, tmp_path):
     done = vibrissa("side-by-side", "parabola", "no.parquet", "--out", "out", cwd=tmp_path)
     assert done.returncode == 2
     assert "no.parquet" in done.stderr
+    twice = vibrissa("side-by-side", "parabola", "near.parquet", "near.parquet", cwd=tmp_path)
+    assert twice.returncode == 2
+    assert "different names" in twice.stderr
