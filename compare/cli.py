@@ -377,7 +377,7 @@ def _short(path: Path, files: list[Path]) -> str:
 def _side_by_side_tables(found: SideBySide) -> tuple[Table, Table]:
     """Against the reference, and the largest rms between the candidates."""
     against = Table(
-        "", Column("candidate", overflow="fold"), *CLAMP_READINGS, "snap-off", "ms a station",
+        "", Column("candidate", overflow="fold"), *CLAMP_READINGS, "snap-off", "ms/station",
         title=f"Against {found.reference}: rms relative to each reading's largest magnitude",
     )  # fmt: skip
     rows = found.table()

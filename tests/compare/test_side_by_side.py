@@ -46,7 +46,7 @@ def test_command(exact, tmp_path):
     )
     assert done.returncode == 1  # far is
     assert "far" in done.stdout
-    assert "100.0" in done.stdout  # ms a station
+    assert "100.0" in done.stdout  # ms/station
     assert (tmp_path / "out/side-by-side.png").stat().st_size > 10_000
     found = json.loads((tmp_path / "out/side-by-side.json").read_text())["comparisons"]
     assert [one["verdict"] for one in found] == ["agrees", "disagrees", "disagrees"]
