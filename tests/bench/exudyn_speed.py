@@ -31,7 +31,10 @@ _STYLES = {
 def main() -> None:
     console = Console()
     if importlib.util.find_spec("exudyn") is None:
-        console.print("exudyn: skipped, not installed; `.venv/bin/pip install '.[exudyn]'` gets it")
+        console.print(
+            "exudyn: skipped, not installed; `.venv/bin/pip install '.[exudyn]'` gets it",
+            markup=False,
+        )
         return
     from tests.bench.exudyn_cable import sweep
 
