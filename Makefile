@@ -15,7 +15,7 @@ RUNS := $(foreach case,$(CASES),$(foreach beam,$(BEAMS),results/runs/$(case)-$(b
 FOUND = --budget --beam $(BEAM) --out $(@D) $(ARGS) || test $$? -eq 1; test -f $@
 
 .NOTPARALLEL:
-.PHONY: help install run test test-all lint bench results again studies install-mujoco3 test-mujoco3 clean
+.PHONY: help install run test test-all lint bench results again studies install-mujoco3 test-mujoco3 versions clean
 
 help:            ## list the targets
 	@grep -E '^[a-z0-9-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -37,8 +37,8 @@ lint: install    ## format, style, types, import rules
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: install   ## speed, side by side in one run
-	$(BIN)/python -m tests.bench $(ARGS)
+bench: install   ## speed, side by side on one core; ARGS="analytic mujoco stepping exudyn study"
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench $(ARGS)
 
 results: $(RUNS) | install ## results/README.md: all named cases, all beams there are; goes on where it stopped
 	$(BIN)/python -m compare.overview results/overview.png
@@ -56,6 +56,14 @@ install-mujoco3: .venv-mujoco3/installed   ## build .venv-mujoco3 with MuJoCo 3.
 
 test-mujoco3: install-mujoco3    ## the fast tests under MuJoCo 3.17
 	$(BIN_MUJOCO3)/python -m pytest -n auto $(ARGS)
+
+versions: install install-mujoco3    ## the beams of both MuJoCo versions and the closed form side by side
+	set -e; for beam in chain rod; do \
+	  $(BIN)/vibrissa simulate $(CASE) --beam $$beam --out results/versions/4 $(ARGS); done
+	set -e; for beam in chain cable; do \
+	  $(BIN_MUJOCO3)/vibrissa simulate $(CASE) --beam $$beam --out results/versions/3.17 $(ARGS); done
+	$(BIN)/vibrissa side-by-side $(CASE) --out results/versions \
+	  $(foreach sweep,3.17/mujoco-chain 3.17/mujoco-cable 4/mujoco-chain 4/mujoco-rod,results/versions/$(sweep).parquet)
 
 clean:           ## remove what the targets above made
 	rm -rf .venv .venv-mujoco3 .mypy_cache .ruff_cache .pytest_cache .hypothesis

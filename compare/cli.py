@@ -1,6 +1,7 @@
 """The command ``vibrissa``."""
 
 import json
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -8,10 +9,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, cast
 
+import numpy as np
 import typer
 from rich.console import Console
 from rich.progress import Progress
-from rich.table import Table
+from rich.table import Column, Table
 
 from analytic import (
     CASE_NAMES,
@@ -35,6 +37,9 @@ from compare.findings import write_findings
 from compare.measured import read_measured, write_table, write_text
 from compare.paper_figures import paper_figures
 from compare.report import Film, write_report
+from compare.side_by_side import SideBySide
+from compare.side_by_side import picture as side_by_side_picture
+from compare.side_by_side import side_by_side as set_side_by_side
 from compare.study.cli import study, study_report
 
 # Any wrong word on the command line; typer may bring its own copy of click, whose base this is.
@@ -221,6 +226,36 @@ def compare(
 
 
 @app.command()
+def side_by_side(
+    reference: Annotated[
+        str, typer.Argument(help="A case, for its closed form, or a file of readings.")
+    ],
+    files: Annotated[list[Path], typer.Argument(help="Readings to hold against it.")],
+    out: Out = None,
+) -> int:
+    """Compare any number of files of readings with one reference and with each other."""
+    is_file = Path(reference).suffix in (".parquet", ".csv")
+    exact = Readings.read(reference) if is_file else solve_sweep(load_job(reference).case)
+    candidates = {_short(path, files): Readings.read(path) for path in files}
+    if len(candidates) < len(files):
+        raise InputError(
+            "FILE",
+            ", ".join(map(str, files)),
+            "files of different names",
+            "rename one, or name it once",
+        )
+    found = set_side_by_side(exact, candidates)
+    drawn = side_by_side_picture(found)
+    folder = out or Path("results") / "side-by-side"
+    _make(folder)
+    for table in _side_by_side_tables(found)[: len(files)]:
+        _told.print(table)
+    _wrote(write_text(json.dumps(found.to_dict(), indent=2), folder / "side-by-side.json"))
+    _wrote(save_figure(drawn, folder / "side-by-side.png"))
+    return AGREES if all(one.agrees for one in found.against.values()) else DISAGREES
+
+
+@app.command()
 def budget(
     case: CaseName,
     out: Out = None,
@@ -387,6 +422,40 @@ def _tell_advice(advice: Followed) -> None:
         _told.print(f"  {told}: {error:.1e} rms, {1e3 * seconds:.1f} ms a station")
     if not advice.reached:
         _told.print("  The target was missed: ask for a little less.")
+
+
+def _short(path: Path, files: list[Path]) -> str:
+    """What tells a file from the others."""
+    common = os.path.commonpath([one.absolute().parent for one in files])
+    return str(path.absolute().with_suffix("").relative_to(common))
+
+
+def _side_by_side_tables(found: SideBySide) -> tuple[Table, Table]:
+    """Against the reference, and the largest rms between the candidates."""
+    against = Table(
+        "", Column("candidate", overflow="fold"), *CLAMP_READINGS, "snap-off", "ms/station",
+        title=f"Against {found.reference}: rms relative to each reading's largest magnitude",
+    )  # fmt: skip
+    rows = found.table()
+    numbers = {name: str(i) for i, name in enumerate(found.against, 1)}
+    for row in rows[rows["reference"] == found.reference].to_dict("records"):
+        took, snap_off = row["seconds_per_station"], row["snap_off"]
+        against.add_row(
+            numbers[row["candidate"]],
+            row["candidate"],
+            *(f"{row[name]:.1e}" for name in CLAMP_READINGS),
+            "none" if np.isnan(snap_off) else f"{snap_off:+.1e}",
+            "" if np.isnan(took) else f"{1e3 * took:.1f}",
+        )
+    between = Table("", *list(numbers.values())[:-1], title="Each other: the largest rms")
+    worst = {
+        (row["reference"], row["candidate"]): max(row[name] for name in CLAMP_READINGS)
+        for row in rows.to_dict("records")
+    }
+    names = list(numbers)
+    for i, name in enumerate(names[1:], 1):
+        between.add_row(numbers[name], *(f"{worst[one, name]:.1e}" for one in names[:i]))
+    return against, between
 
 
 def _finish(

@@ -24,7 +24,7 @@ PHASE_COLOURS = {"free": "#999999", "tip": "#0072B2", "tangent": "#D55E00"}
 PHASE_NAMES = {"free": "free", "tip": "A: tip contact", "tangent": "B: tangential contact"}
 _REFERENCE, _CANDIDATE = "#000000", "#CC79A7"
 
-_SYMBOLS = {
+READING_SYMBOLS = {
     "force_x": ("$F_{Ax}$", "$EI/L^2$"),
     "force_y": ("$F_{Ay}$", "$EI/L^2$"),
     "moment_z": ("$M_{Az}$", "$EI/L$"),
@@ -68,7 +68,7 @@ def readings(comparison: Comparison) -> Figure:
     upper, lower = figure.subplots(
         2, 4, sharex=True, height_ratios=[2.2, 1], gridspec_kw={"hspace": 0.05}
     )
-    for i, name in enumerate(_SYMBOLS):
+    for i, name in enumerate(READING_SYMBOLS):
         _draw_reading(upper[i], lower[i], comparison, name)
     lower[0].set_ylabel("difference\n(same unit)")
     handles, labels = _key(upper[0])
@@ -78,7 +78,7 @@ def readings(comparison: Comparison) -> Figure:
 
 def reading_panels(comparison: Comparison) -> dict[str, Figure]:
     """The same, a picture for each reading."""
-    return {name: _panel(comparison, name) for name in _SYMBOLS}
+    return {name: _panel(comparison, name) for name in READING_SYMBOLS}
 
 
 def snap_off_panels(comparison: Comparison) -> dict[str, Figure]:
@@ -195,7 +195,7 @@ def _panel(comparison: Comparison, name: str) -> Figure:
 
 def _draw_reading(upper: Axes, lower: Axes, comparison: Comparison, name: str) -> None:
     """A reading of both sweeps above, their difference below."""
-    symbol, unit = _SYMBOLS[name]
+    symbol, unit = READING_SYMBOLS[name]
     for ax in (upper, lower):
         shade_phases(ax, *_phases(comparison))
     for one, style in zip(

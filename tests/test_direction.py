@@ -22,6 +22,7 @@ from analytic import (
 from analytic.problem.readings import CLAMP_READINGS, COLUMNS, Readings
 from compare import classify, compare
 from mujoco_models import simulate_sweep
+from tests.conftest import simulated_sweep
 
 RIGHT = Sweep(direction="right")
 
@@ -87,6 +88,22 @@ def test_hysteresis(name):
             np.interp(between, *sorted_by_foot(readings)) > 0 for readings in (one, other)
         )
         assert loaded and not free
+
+
+def test_mujoco_shows_the_hysteresis(simulated_rightward):
+    """Each sweep lets go beyond the place where the other one touches, and goes on, free."""
+    leftward = simulated_sweep("two-circles")
+    for one, other, way in (
+        (leftward, simulated_rightward, -1),
+        (simulated_rightward, leftward, 1),
+    ):
+        touched = other.table.loc[other.table["phase"] != "free", "foot_x"].iloc[0]
+        assert way * (one.snap_off - touched) > 0.1
+        after = one.table[way * (one.table["foot_x"] - one.snap_off) > 0]
+        assert len(after) > 2
+        assert (after["phase"] == "free").all()
+        assert (after["status"] == "ok").all()
+        assert (after[list(CLAMP_READINGS)].abs() < 1e-9).all(axis=None)
 
 
 def sorted_by_foot(readings):

@@ -2,9 +2,15 @@
 
 import sys
 
-from tests.bench import analytic_speed, mujoco_speed, study_speed
+from tests.bench import analytic_speed, exudyn_speed, mujoco_speed, plain_stepping, study_speed
 
-PARTS = {"analytic": analytic_speed.main, "mujoco": mujoco_speed.main, "study": study_speed.main}
+PARTS = {
+    "analytic": analytic_speed.main,
+    "mujoco": mujoco_speed.main,
+    "stepping": plain_stepping.main,
+    "exudyn": exudyn_speed.main,
+    "study": study_speed.main,
+}
 
 if __name__ == "__main__":  # the studies start processes of their own
     for name in sys.argv[1:] or PARTS:

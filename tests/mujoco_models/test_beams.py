@@ -17,7 +17,7 @@ EXACT = pd.read_csv(
     Path(__file__).parents[1] / "data" / "cantilever_tip_load.csv", index_col="PL2_EI"
 )
 # Tip error at N = 40 and P L^2/EI = 10, twice what was measured; the rod bends by tangents.
-TIP_ERROR = {"chain": 3e-4, "cable": 5e-4, "rod": 1.5e-3}
+TIP_ERROR = {"chain": 3e-4, "cable": 5e-4, "rod": 7.5e-4}
 
 
 def tip_errors(beam, clamp, load):
@@ -38,11 +38,13 @@ def test_cantilever_is_of_second_order(beam, load):
     assert errors[2] <= TIP_ERROR[beam]
 
 
+@pytest.mark.parametrize("load", [1, 2, 5, 10])
 @pytest.mark.parametrize("beam", BEAMS)
-def test_naive_clamp_is_of_first_order(beam):
-    errors = tip_errors(beam, "naive", 2)
+def test_naive_clamp_is_of_first_order(beam, load):
+    errors = tip_errors(beam, "naive", load)
     assert 0.9 <= order(errors) <= 1.2
-    assert errors[2] > 50 * tip_errors(beam, "second-order", 2)[2]
+    # Observed 50 (rod under 10, whose law errs most there) and more.
+    assert errors[2] > 40 * tip_errors(beam, "second-order", load)[2]
 
 
 @pytest.mark.slow

@@ -1,0 +1,87 @@
+"""MuJoCo's beams and Exudyn's static ANCF cable past the same circle: error against time."""
+
+import importlib.util
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+from matplotlib.figure import Figure
+from rich.console import Console
+from rich.table import Table
+
+from analytic import Case, Readings, Sweep, circle, solve_sweep
+from compare import compare
+from compare.figures import save_figure
+from mujoco_models import Settings, available_beams, simulate_sweep
+
+PLOT = Path("results/bench-exudyn.png")
+LOWEST, RADIUS = (0.0, 0.4), 1.0
+CASE = Case(profile=circle(RADIUS, LOWEST), sweep=Sweep(200, stop=-1.26))  # the fold is at -1.2705
+SEGMENTS, ELEMENTS = (10, 20, 40, 80, 160), (5, 10, 20, 40)
+# Okabe and Ito's palette, and markers, so that colour is not needed.
+_STYLES = {
+    "chain": {"color": "#0072B2", "marker": "o"},
+    "rod": {"color": "#D55E00", "marker": "s"},
+    "cable": {"color": "#CC79A7", "marker": "D"},
+    "Exudyn": {"color": "#000000", "marker": "^"},
+}
+
+
+def main() -> None:
+    console = Console()
+    if importlib.util.find_spec("exudyn") is None:
+        console.print(
+            "exudyn: skipped, not installed; `.venv/bin/pip install '.[exudyn]'` gets it",
+            markup=False,
+        )
+        return
+    from tests.bench.exudyn_cable import sweep
+
+    exact = solve_sweep(CASE)
+    centre, surface = (LOWEST[0], LOWEST[1] + RADIUS), RADIUS + CASE.beam.radius
+    runs: dict[str, dict[int, tuple[float, float]]] = {}
+    for beam in available_beams():
+        settings = {n: Settings(beam=beam, segments=n) for n in SEGMENTS}
+        runs[beam] = {n: _run(exact, partial(simulate_sweep, CASE, s)) for n, s in settings.items()}
+    runs["Exudyn"] = {n: _run(exact, partial(sweep, n, exact, surface, centre)) for n in ELEMENTS}
+    table = Table(
+        "model", "segments or elements", "CPU ms a station", "largest rms",
+        title="200 stations past a circle; building the model included",
+    )  # fmt: skip
+    for name, sizes in runs.items():
+        for n, (took, error) in sizes.items():
+            table.add_row(name, str(n), f"{took:.1f}", f"{error:.1e}")
+    console.print(table)
+    PLOT.parent.mkdir(exist_ok=True)
+    console.print(f"wrote {save_figure(plot(runs), PLOT)}")
+
+
+def _run(exact: Readings, produce: Callable[[], Readings]) -> tuple[float, float]:
+    """CPU time a station [ms], and the largest relative rms of the clamp readings."""
+    begin = time.process_time()
+    readings = produce()
+    took = time.process_time() - begin
+    missing = len(exact.table) - int(readings.trusted.sum())
+    if missing:
+        raise RuntimeError(f"{readings.source}: {missing} stations did not come to rest")
+    worst = max(d.rms for d in compare(exact, readings).disagreement.values())
+    return 1e3 * took / len(exact.table), worst
+
+
+def plot(runs: dict[str, dict[int, tuple[float, float]]]) -> Figure:
+    """Error against time, a line a model."""
+    figure = Figure(figsize=(7, 4.6), layout="constrained")
+    ax = figure.subplots()
+    for name, sizes in runs.items():
+        took, error = zip(*sizes.values(), strict=True)
+        label = "Exudyn, static ANCF cable" if name == "Exudyn" else f"MuJoCo {name}, mesh"
+        ax.loglog(took, error, label=label, **_STYLES[name])
+        for n, x, y in zip(sizes, took, error, strict=True):
+            ax.annotate(str(n), (x, y), (5, 4), textcoords="offset points", fontsize=8)
+    ax.set_title("Vibrissa past a circle: error against time on one core", fontsize=11)
+    ax.set_xlabel("CPU time a station [ms]   (numbers: segments or elements)")
+    ax.set_ylabel("largest rms of $F_{Ax}$, $F_{Ay}$, $M_{Az}$\nrelative to its largest magnitude")
+    ax.grid(which="both", alpha=0.25)
+    ax.legend(frameon=False, fontsize=9)
+    return figure

@@ -1,0 +1,110 @@
+"""Plain time stepping to the same balance: what one would write without `mujoco_models.rest`.
+
+The very same model, tuned as well as it can be: the discrete integrator, implicit in springs and
+contacts; every joint a critically damped oscillator with one and the same frequency; and, where
+that is said, only the beads near the contact take part in collisions.
+"""
+
+import time
+from collections.abc import Callable
+
+import mujoco
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from analytic import Case, Sweep, named_case
+from mujoco_models import Settings
+from mujoco_models.model import BeamModel
+from mujoco_models.sweep import Walk, set_out
+
+STATIONS = 100
+CAP = 2_000  # steps a station
+_STEP = 1e-3
+_CHECK = 10  # steps
+_SPACING = 4  # of the beads that look out while none is near
+
+
+def main() -> None:
+    """Both ways through the same stations, the last of them 2e-2 L before the catenary's fold."""
+    case = named_case("catenary")
+    case = Case(case.beam, case.profile, Sweep(STATIONS, stop=-2.55))
+    table = Table(
+        "way", "CPU ms a station", "slower by", "at rest", "largest residual",
+        title=f"Chain of 40 to {Settings().tolerance:g} EI/L, {STATIONS} stations of the catenary",
+        caption=f"w: frequency times step; near: far beads do not collide; at most {CAP:,} steps",
+    )  # fmt: skip
+    ways: dict[str, Callable[[Walk], np.ndarray]] = {
+        "Newton": lambda walk: by_newton(walk, case),
+        "stepping, w = 0.5": lambda walk: by_stepping(walk.model, case, 0.5, False),
+        "near, w = 0.3": lambda walk: by_stepping(walk.model, case, 0.3, True),
+        "near, w = 0.5": lambda walk: by_stepping(walk.model, case, 0.5, True),
+        "near, w = 0.8": lambda walk: by_stepping(walk.model, case, 0.8, True),
+    }
+    least = None
+    for way, go in ways.items():
+        walk = set_out(case, Settings())
+        begin = time.process_time()
+        residuals = go(walk)
+        took = time.process_time() - begin
+        least = took if least is None else least
+        table.add_row(
+            way,
+            f"{1e3 * took / STATIONS:.1f}",
+            f"{took / least:.0f}",
+            f"{int((residuals < Settings().tolerance).sum())} of {STATIONS}",
+            f"{residuals.max():.1e}",
+        )
+    Console().print(table)
+
+
+def by_newton(walk: Walk, case: Case) -> np.ndarray:
+    """Residual at each station."""
+    residuals = []
+    for foot_x in case.foot_x:
+        walk.go_to(float(foot_x))
+        residuals.append(walk.row()["residual"])
+    return np.array(residuals)
+
+
+def by_stepping(model: BeamModel, case: Case, w: float, near: bool) -> np.ndarray:
+    """Residual at each station; frequency times step is `w`."""
+    compiled, data = model.model, model.data
+    stiffness = compiled.jnt_stiffness
+    stiffness = (stiffness if stiffness.ndim == 1 else stiffness[:, 0]).copy()
+    compiled.dof_armature[:] = stiffness * (_STEP / w) ** 2
+    compiled.dof_damping[:] = 2 * stiffness * _STEP / w
+    compiled.opt.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
+    compiled.opt.timestep = _STEP
+    foot = compiled.body("foot").id
+    angles = np.zeros(len(model.layout.joints))
+    residuals = []
+    for foot_x in case.foot_x:
+        for step in range(CAP):
+            if step % _CHECK == 0:
+                velocity = data.qvel.copy()
+                residual = float(np.abs(model.imbalance(float(foot_x), angles)).max())
+                if residual < Settings().tolerance:
+                    break
+                data.qvel[:] = velocity
+                look(model, near)
+            compiled.body_pos[foot, 0] = foot_x
+            mujoco.mj_step(compiled, data)
+            angles = data.qpos.copy()
+        residuals.append(residual)
+    return np.array(residuals)
+
+
+def look(model: BeamModel, near: bool) -> None:
+    """Use the mesh that is fine at the contact; let only beads `near` the obstacle collide."""
+    if near:
+        positions = model.bead_positions(np.arange(len(model.layout.beads)))
+        close = model.obstacle.near(positions, 0.005 + 1e-3)
+        far = range(0, len(positions), _SPACING)
+        model.watch(frozenset(close.tolist()) or frozenset(far))
+    loaded = model.contacts()
+    if (loaded.distance < 0).any():
+        normal = loaded.normal[loaded.distance < 0].mean(axis=0)
+        slope = np.arctan2(normal[:1], -normal[1:])
+        vertex = float(model.obstacle.nearest_vertex(slope)[0])
+        model.use_window(model.obstacle.window_of(vertex))
