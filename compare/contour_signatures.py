@@ -65,10 +65,12 @@ def contour_signatures(reference: Readings, foot_x: Floats) -> dict[str, Floats]
 
 
 def _extended(points: Floats, beyond: float) -> Floats:
-    """A contour, shape (points, 2), with one point more at either end, by extrapolation."""
+    """A contour, shape (points, 2), extrapolated at either end, unless it is vertical there."""
     way = np.append(0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
-    ends = CubicSpline(way, points)([-beyond, way[-1] + beyond])
-    return np.vstack([ends[:1], points, ends[1:]])
+    first, last = CubicSpline(way, points)([-beyond, way[-1] + beyond])
+    before = [first] if first[0] < points[0, 0] else []
+    after = [last] if last[0] > points[-1, 0] else []
+    return np.vstack([*before, points, *after])
 
 
 def _at(sweep: Readings, foot_x: Floats) -> Floats:
