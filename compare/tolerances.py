@@ -70,8 +70,7 @@ class Tolerances:
 
     rms: float = Limit(
         2e-3,
-        "a second-order beam of N segments is off by about 3/N^2 where the contact bends half of "
-        "it, 1.9e-3 for N = 40, and a fine mesh's facets add less than that",
+        "a chain of 40 segments is off by about 3/N^2 = 1.9e-3, a fine mesh's facets by less",
     )
     max: float = Limit(
         2e-2,
