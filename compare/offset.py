@@ -19,7 +19,7 @@ _HUBER = 2.5  # standard deviations; stations that are farther off count by thei
 _ROUND_OFF = 1e-13  # of the largest magnitude
 _USELESS = 0.05  # L; a less certain offset blurs whole phases
 _DISTINCT = 0.8  # a second minimum is worse than the best if its residual times this still is
-_ITERATIONS = 30
+_PLAIN, _ITERATIONS = 10, 30  # at most, of least squares and of Huber's estimator
 
 
 @dataclass(frozen=True)
@@ -215,28 +215,32 @@ def _scan(
 
 
 def _fit(curve: _Curve, x: Floats, seen: Floats, start: float, scale: Floats) -> _Fit | None:
-    """Gauss and Newton's method from `start`; None where it leads out of the reference."""
+    """Gauss and Newton's method from `start`; None where it leads out of the reference.
+
+    Plain least squares first, each reading over its largest magnitude: the scatter that the
+    readings are then weighed by can be told only near the best offset.
+    """
     value, inside = start, curve.inside(x - start)
-    for iteration in range(_ITERATIONS):
-        if iteration < _ITERATIONS // 3:  # later on the same stations, lest they come and go
-            inside = curve.inside(x - value)
-        else:
-            inside = inside & curve.inside(x - value)
+    for iteration in range(_PLAIN + _ITERATIONS):
+        plain = iteration < _PLAIN
+        # Towards the end the same stations, lest they come and go.
+        settled = iteration >= _PLAIN + _ITERATIONS // 2
+        inside = curve.inside(x - value) & (inside if settled else True)
         if inside.sum() < _FEWEST:
             return None
         miss = seen[:, inside] - curve.smooth(x[inside] - value) / scale[:, None]
         slope = curve.smooth(x[inside] - value, 1) / scale[:, None]
         scatter = np.median(np.abs(miss), axis=1, keepdims=True) / 0.6745 + _ROUND_OFF
+        scatter = np.ones_like(scatter) if plain else scatter
         robust = np.clip(miss / scatter, -_HUBER, _HUBER)
         linear = np.abs(miss / scatter) < _HUBER
         information = float(np.sum(linear * (slope / scatter) ** 2))
         score = np.sum(-slope / scatter * robust, axis=0)
         if information == 0:
             return None
-        step = float(score.sum()) / information
-        step = float(np.clip(step, -curve.spacing, curve.spacing))
+        step = float(np.clip(score.sum() / information, -curve.spacing, curve.spacing))
         value += step
-        if abs(step) < 1e-12 * (abs(value) + curve.spacing):
+        if not plain and abs(step) < 1e-12 * (abs(value) + curve.spacing):
             break
     misfit = float(np.sqrt(np.mean((robust * scatter) ** 2)))
     return _Fit(value, _half_width(score, information), misfit)
