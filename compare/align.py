@@ -21,7 +21,8 @@ class Alignment:
     Attributes
     ----------
     table : pandas.DataFrame
-        A row a compared station of the candidate: ``foot_x``, ``phase`` (the reference's) and for
+        A row a compared station of the candidate: ``foot_x``, ``phase`` (the reference's),
+        ``contact_arc_length`` (the reference's at its nearest station, told from the clamp) and for
         each clamp reading ``<name>_reference`` and ``<name>_candidate``.
     counts : dict
         Every station of the candidate in one of: ``compared``; ``free`` (in both); ``one_free``
@@ -90,7 +91,11 @@ def align(
         "compared",
     )
     compared = reasons == "compared"
-    columns = {"foot_x": x[compared], "phase": state[compared]}
+    columns = {
+        "foot_x": x[compared],
+        "phase": state[compared],
+        "contact_arc_length": length * (1 - reference_phase.shortfall[nearest][compared]),
+    }
     for name in CLAMP_READINGS:
         values = reference.values(name)
         there = values[nearest]

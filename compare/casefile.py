@@ -1,10 +1,10 @@
 """Cases from names and TOML files, with units and with errors that a person can act on."""
 
 import difflib
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeAlias, TypeVar, cast
+from typing import Annotated, Any, Literal, TypeVar, cast
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
@@ -28,12 +28,11 @@ from analytic import (
 )
 from analytic.problem.case import Direction
 from analytic.problem.contour import Contour
-from compare.tomlfile import TomlFile
+from compare.tolerance_file import tolerances_of
+from compare.tolerances import Tolerances
+from compare.tomlfile import Place, TomlFile
 from compare.units import in_si
 from mujoco_models.settings import Settings
-
-Place: TypeAlias = Callable[[Sequence[str]], str]
-"""What an error calls a key: where it is, and its name."""
 
 
 def _quantity(dimension: str) -> Callable[[Any, ValidationInfo], float]:
@@ -181,6 +180,8 @@ class CaseFile(_Table):
         The physics.
     mujoco : Settings
         The numerics of the simulation.
+    tolerances : table
+        How far two sweeps of the case may disagree (`compare.tolerance_file`).
     """
 
     name: str | None = None
@@ -191,6 +192,7 @@ class CaseFile(_Table):
     ]
     sweep: _SweepTable = _SweepTable()
     mujoco: Annotated[Settings, Field(default_factory=Settings)]
+    tolerances: dict[str, Any] = {}
 
     def physics(self, folder: Path) -> tuple[Beam, Contour]:
         """The vibrissa and the object, without a sweep; file paths are relative to `folder`."""
@@ -210,10 +212,11 @@ _Schema = TypeVar("_Schema", bound=_Table)
 
 @dataclass(frozen=True)
 class Job:
-    """A case and how MuJoCo is to simulate it."""
+    """A case, how MuJoCo is to simulate it, and how far the two models may disagree."""
 
     case: Case
     settings: Settings
+    tolerances: Tolerances = field(default_factory=Tolerances)
 
 
 def load_job(name_or_path: str) -> Job:
@@ -238,7 +241,11 @@ def load_job(name_or_path: str) -> Job:
         )
     file = TomlFile.read(path, "case file")
     case_file = validate(file.tables, file.place)
-    return Job(case_file.case(path.parent, path.stem), case_file.mujoco)
+    return Job(
+        case_file.case(path.parent, path.stem),
+        case_file.mujoco,
+        tolerances_of(case_file.tolerances, file.place),
+    )
 
 
 def validate(tables: dict[str, Any], place: Place) -> CaseFile:

@@ -1,13 +1,14 @@
 """The command ``vibrissa``."""
 
 import json
+import math
 import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, cast
+from typing import Annotated, Any, Literal, cast
 
 import numpy as np
 import typer
@@ -41,6 +42,7 @@ from compare.side_by_side import SideBySide
 from compare.side_by_side import picture as side_by_side_picture
 from compare.side_by_side import side_by_side as set_side_by_side
 from compare.study.cli import study, study_report
+from compare.tolerance_file import read_tolerances
 
 # Any wrong word on the command line; typer may bring its own copy of click, whose base this is.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
@@ -71,6 +73,14 @@ Obstacle = Annotated[str | None, typer.Option(help="MuJoCo's obstacle, mesh or p
 Spatial = Annotated[
     bool, typer.Option("--spatial", help="Let MuJoCo's beam leave the plane of the sweep.")
 ]
+BeamFile = Annotated[
+    Path | None,
+    typer.Option(help="TOML file whose [beam] table tells the vibrissa of measured data."),
+]
+Columns = Annotated[
+    list[str] | None,
+    typer.Option(help="NAME=COLUMN or NAME=COLUMN:UNIT, for a rig's own columns; repeat it."),
+]
 
 
 @app.command()
@@ -96,7 +106,7 @@ def run(
         simulated = runs["base"]
     else:
         simulated = _simulate(job)
-    comparison = compare_readings(exact, simulated)
+    comparison = compare_readings(exact, simulated, job.tolerances)
     exact.write(folder / "analytic.parquet")
     simulated.write(folder / f"mujoco-{job.settings.beam}.parquet")
     if found is not None:
@@ -133,14 +143,8 @@ def analytic(
 def reconstruct(
     file: Annotated[Path, typer.Argument(help="Readings, Parquet or CSV.")],
     out: Out = None,
-    beam: Annotated[
-        Path | None,
-        typer.Option(help="TOML file whose [beam] table tells the vibrissa of measured data."),
-    ] = None,
-    column: Annotated[
-        list[str] | None,
-        typer.Option(help="NAME=COLUMN or NAME=COLUMN:UNIT, for a rig's own columns; repeat it."),
-    ] = None,
+    beam: BeamFile = None,
+    column: Columns = None,
     noise: Annotated[
         float | None,
         typer.Option(help="Noise of the clamp readings over their largest magnitude, as 0.01."),
@@ -217,9 +221,43 @@ def compare(
     reference: Annotated[Path, typer.Argument(help="Readings, Parquet or CSV.")],
     candidate: Annotated[Path, typer.Argument(help="Readings to hold against them.")],
     out: Out = None,
+    column: Columns = None,
+    beam: BeamFile = None,
+    reference_column: Annotated[
+        list[str] | None, typer.Option(help="As --column, for the reference.")
+    ] = None,
+    reference_beam: Annotated[
+        Path | None, typer.Option(help="As --beam, for the reference.")
+    ] = None,
+    offset: Annotated[
+        str,
+        typer.Option(
+            metavar="NUMBER|auto",
+            help="By how much the candidate's foot_x exceeds the reference's; auto: estimate it.",
+        ),
+    ] = "0",
+    noise: Annotated[
+        str,
+        typer.Option(
+            metavar="NUMBER|auto",
+            help="Noise of the clamp readings over their largest magnitude, as 0.01, by which the "
+            "limits are widened; auto: estimate it.",
+        ),
+    ] = "0",
+    tolerances: Annotated[
+        Path | None, typer.Option(help="TOML file whose [tolerances] table has the limits.")
+    ] = None,
 ) -> int:
-    """Compare two files of readings."""
-    comparison = compare_readings(Readings.read(reference), Readings.read(candidate))
+    """Compare two files of readings: of two beams, engines or versions, or of a rig."""
+    told = read_measured(reference, reference_beam, tuple(reference_column or ()))
+    measured = read_measured(candidate, beam, tuple(column or ()), told.beam)
+    comparison = compare_readings(
+        told,
+        measured,
+        None if tolerances is None else read_tolerances(tolerances),
+        offset=_number_or_auto("--offset", offset),
+        noise=_number_or_auto("--noise", noise),
+    )
     folder = out or Path("results") / f"{reference.stem}-{candidate.stem}"
     _make(folder)
     return _finish(comparison, folder)
@@ -348,7 +386,19 @@ def _job(
     changes = {name: value for name, value in given.items() if value is not None}
     if spatial:
         changes["planar"] = False
-    return Job(case, replace(job.settings, **changes))
+    return replace(job, case=case, settings=replace(job.settings, **changes))
+
+
+def _number_or_auto(option: str, text: str) -> float | Literal["auto"]:
+    if text == "auto":
+        return "auto"
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise InputError(option, repr(text), "a number or auto", "write it with a decimal point")
+    return number
 
 
 def _folder(out: Path | None, job: Job) -> Path:
@@ -465,6 +515,8 @@ def _finish(
     _told.print(_summary(comparison))
     for failure in comparison.failures:
         _told.print(f"  {failure}", soft_wrap=True, markup=False)
+    if comparison.likely is not None:
+        _told.print(f"  likely: {comparison.likely}", soft_wrap=True, markup=False)
     _wrote(report)
     return AGREES if comparison.agrees else DISAGREES
 
@@ -485,6 +537,11 @@ def _summary(comparison: Comparison) -> Table:
     table.add_row("snap-off", "", "none" if shift is None else f"{shift:+.1e}", "", "")
     if agreement:
         table.add_row("phases", "", f"{min(agreement.values()):.1%} right", "", "")
+    offset = comparison.offset
+    if offset.value or offset.uncertainty:
+        table.add_row("offset", "", f"{offset.value:+.4g}", f"+- {offset.uncertainty:.1g}", "")
+    if any(comparison.noise.level.values()):
+        table.add_row("noise", "", f"{max(comparison.noise.level.values()):.1e}", "", "")
     return table
 
 

@@ -1,6 +1,7 @@
 """Readings from a rig: other column names, units, and the vibrissa told apart."""
 
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 
 import pandas as pd
@@ -11,7 +12,12 @@ from compare.casefile import read_beam
 from compare.units import DIMENSIONS, in_si
 
 
-def read_measured(path: Path, beam_file: Path | None, columns: tuple[str, ...]) -> Readings:
+def read_measured(
+    path: Path,
+    beam_file: Path | None = None,
+    columns: Sequence[str] = (),
+    otherwise: Beam = Beam(),  # noqa: B008  # frozen
+) -> Readings:
     """A file of readings, its columns renamed and converted, for a vibrissa from a TOML file.
 
     Parameters
@@ -19,10 +25,12 @@ def read_measured(path: Path, beam_file: Path | None, columns: tuple[str, ...]) 
     path : Path
         Parquet or CSV.
     beam_file : Path, optional
-        TOML file with a ``[beam]`` table; by default the file's own metadata, or ``Beam()``.
-    columns : tuple of str
+        TOML file with a ``[beam]`` table; by default the file's own metadata, or `otherwise`.
+    columns : sequence of str
         ``NAME=COLUMN`` or ``NAME=COLUMN:UNIT``: which of the file's columns is the sensed quantity
         NAME, and in which unit. With units everything becomes SI, so the beam must be in units too.
+    otherwise : Beam
+        The vibrissa, if nothing tells of another one.
 
     Raises
     ------
@@ -30,7 +38,7 @@ def read_measured(path: Path, beam_file: Path | None, columns: tuple[str, ...]) 
         If the file, the beam, a column or a unit cannot be used.
     """
     if not columns and beam_file is None:
-        return Readings.read(path)
+        return Readings.read(path, otherwise)
     table = Readings.read_table(path)
     for text in columns:
         name, _, rest = text.partition("=")
@@ -53,7 +61,7 @@ def read_measured(path: Path, beam_file: Path | None, columns: tuple[str, ...]) 
         if unit:
             values = values * in_si(f"1 {unit}", DIMENSIONS[name])
         table[name] = values
-    beam = Beam() if beam_file is None else _beam(beam_file)
+    beam = otherwise if beam_file is None else _beam(beam_file)
     return Readings(table, beam, f"measured, {path.name}")
 
 

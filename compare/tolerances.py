@@ -1,10 +1,29 @@
 """How far two sweeps may disagree, with the reason for every limit."""
 
-from dataclasses import dataclass, fields
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Literal, TypeAlias
+
+from analytic import InputError
+from analytic.problem.readings import CLAMP_READINGS, PHASES
+
+Kind: TypeAlias = Literal["rms", "max"]
+
+CONTACT_PHASES = PHASES[1:]
+_KINDS = ("rms", "max")
 
 
 class Limit(float):
-    """A number that carries the reason for its size."""
+    """A number that carries the reason for its size.
+
+    Parameters
+    ----------
+    value : float
+        The limit.
+    reason : str
+        Why it is as large as it is, for whoever exceeds it.
+    """
 
     reason: str
 
@@ -14,52 +33,119 @@ class Limit(float):
         limit.reason = reason
         return limit
 
+    def __getnewargs__(self) -> tuple[float, str]:  # type: ignore[override]  # float has one
+        return float(self), self.reason
+
 
 @dataclass(frozen=True)
 class Tolerances:
     """Limits of agreement; the defaults are for a chain of 40 segments against the closed form.
 
-    A second-order beam of N segments is off by about 3/N^2 where the contact bends half of it, and
-    a fine mesh's facets add less than that. Each carries its reason.
+    Plain numbers become `Limit` whose reason is that the caller asked for them.
+
+    Parameters
+    ----------
+    rms : float
+        Of each clamp reading over all compared stations, relative to its largest magnitude.
+    max : float
+        The same at any one station.
+    snap_off_window : float
+        Stretch before snap-off, of the sweep's length, where `max` is not asked.
+    phase_agreement : float
+        Share of stations whose phase, judged from the clamp, is the true contact's.
+    transition, snap_off : float
+        Of each place [L].
+    untrusted : float
+        Share of the candidate's stations that may have failed to settle.
+    special : mapping
+        Limits for one reading, one phase, or one reading in one phase, by dotted name:
+        ``"force_x.rms"``, ``"tangent.max"``, ``"moment_z.tip.rms"``. An ``rms`` of a phase is asked
+        beside the overall one; all others take the place of the general limit.
+
+    Raises
+    ------
+    InputError
+        If a limit is no finite number of zero or more, or a special name is unknown.
     """
 
     rms: float = Limit(
         2e-3,
-        "Of each clamp reading over all compared stations, relative to its largest magnitude: "
-        "a beam of 40 segments is off by about 3/N^2.",
+        "a chain of 40 segments is off by about 3/N^2 = 1.9e-3, a fine mesh's facets by less",
     )
     max: float = Limit(
         2e-2,
-        "The same at any one station: ten times the rms, for the stations where the contact passes "
-        "from segment to segment and where a transition falls between two stations.",
+        "ten times the rms, for the stations where the contact passes from segment to segment and "
+        "where a transition falls between two stations",
     )
     snap_off_window: float = Limit(
         5e-3,
-        "Stretch before snap-off, of the sweep's length, where max is not asked: the readings grow "
-        "like a square root there, so an error of the fold's place turns into any error of theirs.",
+        "the readings grow like a square root before the snap-off, so an error of its place turns "
+        "into any error of theirs",
     )
     phase_agreement: float = Limit(
-        0.99,
-        "Share of stations whose phase, judged from the clamp, is the true contact's: two of 200 "
-        "may fall between the two models' transitions.",
+        0.99, "two stations of 200 may fall between the two models' transitions"
     )
-    transition: float = Limit(
-        1e-2,
-        "Of each transition's place, in L: less than half a station of the default sweep.",
-    )
-    snap_off: float = Limit(
-        3e-3,
-        "Of the snap-off's place, in L: the rms limit times the foot's travel in the last phase.",
-    )
-    untrusted: float = Limit(
-        5e-3, "Share of the candidate's stations that may have failed to settle."
-    )
+    transition: float = Limit(1e-2, "less than half a station of the default sweep")
+    snap_off: float = Limit(3e-3, "the rms limit times the foot's travel in the last phase")
+    untrusted: float = Limit(5e-3, "one station of 200 may fail to settle")
+    special: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name in GENERAL:
+            object.__setattr__(self, name, _limit(name, getattr(self, name)))
+        for name in self.special:
+            if not _is_special(name):
+                raise InputError(
+                    f"tolerances.{name}",
+                    "unknown",
+                    f"READING.KIND, PHASE.KIND or READING.PHASE.KIND, a reading of "
+                    f"{', '.join(CLAMP_READINGS)}, a phase of {', '.join(CONTACT_PHASES)}, a kind "
+                    f"of {', '.join(_KINDS)}",
+                    "mend the name",
+                )
+        special = {name: _limit(name, value) for name, value in self.special.items()}
+        object.__setattr__(self, "special", special)
+
+    def of_reading(self, kind: Kind, reading: str, phase: str) -> Limit:
+        """The limit at one station: the most special that there is."""
+        for name in (f"{reading}.{phase}.{kind}", f"{reading}.{kind}", f"{phase}.{kind}"):
+            if name in self.special:
+                return _limit(name, self.special[name])
+        return _limit(kind, getattr(self, kind))
 
     def of_sweep(self, reading: str) -> Limit:
         """The limit of a reading's rms over all phases."""
-        return self.limits()["rms"]
+        return _limit("rms", self.special.get(f"{reading}.rms", self.rms))
+
+    def of_phase(self, reading: str, phase: str) -> Limit | None:
+        """The limit of a reading's rms in one phase; None if none was asked for."""
+        for name in (f"{reading}.{phase}.rms", f"{phase}.rms"):
+            if name in self.special:
+                return _limit(name, self.special[name])
+        return None
 
     def limits(self) -> dict[str, Limit]:
-        """All limits by name."""
-        named = {f.name: getattr(self, f.name) for f in fields(self)}
-        return {name: x if isinstance(x, Limit) else Limit(x) for name, x in named.items()}
+        """All limits by name, the special ones by their dotted names."""
+        named = {name: getattr(self, name) for name in GENERAL} | dict(self.special)
+        return {name: _limit(name, value) for name, value in named.items()}
+
+
+GENERAL = tuple(f.name for f in fields(Tolerances) if f.name != "special")
+"""Names of the limits that hold for every reading and phase."""
+
+
+def _is_special(name: str) -> bool:
+    *where, kind = name.split(".")
+    allowed = [[r] for r in CLAMP_READINGS] + [[p] for p in CONTACT_PHASES]
+    allowed += [[r, p] for r in CLAMP_READINGS for p in CONTACT_PHASES]
+    return kind in _KINDS and where in allowed
+
+
+def _limit(name: str, value: float) -> Limit:
+    if isinstance(value, Limit):
+        return value
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f"tolerances.{name}", repr(value), "a number", "mend it")
+    if not (math.isfinite(value) and value >= 0):
+        raise InputError(f"tolerances.{name}", value, "finite, 0 or more", "mend it")
+    return Limit(value)

@@ -1,13 +1,16 @@
 """A TOML file whose errors can be told with the line they are on."""
 
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from analytic import InputError
+
+Place: TypeAlias = Callable[[Sequence[str]], str]
+"""What an error calls a key: where it is, and its name."""
 
 
 @dataclass(frozen=True)

@@ -171,8 +171,15 @@ class Readings:
         return _read(Path(path))[1]
 
     @classmethod
-    def read(cls, path: str | Path) -> "Readings":
-        """Read what `write` wrote; a CSV without the metadata line is measured data, beam unknown.
+    def read(cls, path: str | Path, otherwise: Beam = Beam()) -> "Readings":  # noqa: B008
+        """Read what `write` wrote; a file without metadata is measured data.
+
+        Parameters
+        ----------
+        path : str or Path
+            Parquet or CSV.
+        otherwise : Beam
+            The vibrissa, if the file does not tell.
 
         Raises
         ------
@@ -182,7 +189,7 @@ class Readings:
         path = Path(path)
         metadata, table = _read(path)
         try:
-            beam = Beam(**metadata["beam"]) if "beam" in metadata else Beam()
+            beam = Beam(**metadata["beam"]) if "beam" in metadata else otherwise
             return cls(
                 table,
                 beam,

@@ -1,12 +1,10 @@
 """Sensor noise, added to the clamp readings of a sweep."""
 
-from dataclasses import replace
-
-import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from analytic import Readings
 from analytic.problem.readings import CLAMP_READINGS
+from compare.noise import with_noise
 
 
 class Noise(BaseModel):
@@ -29,10 +27,4 @@ class Noise(BaseModel):
         """`readings` as a sensor with this noise gives them; the contact truth is kept."""
         if self.relative == 0:
             return readings
-        generator = np.random.default_rng(self.seed)
-        noisy = {}
-        for name in CLAMP_READINGS:
-            values = readings.values(name)
-            deviation = self.relative * np.nanmax(np.abs(values))
-            noisy[name] = values + deviation * generator.standard_normal(len(values))
-        return replace(readings, table=readings.table.assign(**noisy))
+        return with_noise(readings, dict.fromkeys(CLAMP_READINGS, self.relative), self.seed)

@@ -231,6 +231,103 @@ def test_reconstruction_of_a_rigs_file(tmp_path):
         assert done.stderr.count("\n") == 1
 
 
+RIG = ("foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm")
+RIG_COLUMNS = tuple(word for column in RIG for word in ("--column", column))
+
+
+@pytest.fixture
+def rig(tmp_path) -> Path:
+    """A folder with a sweep in SI units and the same from a rig: mm, mN, 2 mm off, 0.3 % noise."""
+    from analytic import Readings
+
+    (tmp_path / "case.toml").write_text(UNITS.replace("stations = 30", "stations = 120"))
+    vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
+    sweep = Readings.read(tmp_path / "analytic.parquet")
+    rng = np.random.default_rng(1)
+    columns = {"stage": sweep.values("foot_x") * 1e3 + 2.0}
+    for column, name, unit in (
+        ("Fx", "force_x", 1e3),
+        ("Fy", "force_y", 1e3),
+        ("Mz", "moment_z", 1e6),
+    ):
+        values = sweep.values(name) * unit
+        noise = 3e-3 * np.abs(values).max() * rng.standard_normal(len(values))
+        columns[column] = values + noise
+    import pandas as pd
+
+    pd.DataFrame(columns).to_csv(tmp_path / "rig.csv", index=False)
+    return tmp_path
+
+
+@pytest.mark.slow
+def test_compare_with_a_rig(rig):
+    """Own columns, units, an unknown offset, noise; without telling of the last two it fails."""
+    words = ("compare", "analytic.parquet", "rig.csv", *RIG_COLUMNS, "--out", "out")
+    done = vibrissa(*words, "--offset", "auto", "--noise", "0.003", cwd=rig)
+    assert done.returncode == 0, done.stdout + done.stderr
+    found = json.loads((rig / "out" / "comparison.json").read_text())
+    assert found["offset"]["value"] == pytest.approx(2e-3, abs=found["offset"]["uncertainty"])
+    assert found["offset"]["uncertainty"] < 1e-4
+    assert "offset" in done.stdout
+    assert "noise" in done.stdout
+    estimated = vibrissa(*words, "--offset", "auto", "--noise", "auto", cwd=rig)
+    assert estimated.returncode == 0, estimated.stdout
+    assert vibrissa(*words, "--offset", "0.002", "--noise", "0.003", cwd=rig).returncode == 0
+    assert vibrissa(*words, "--noise", "0.003", cwd=rig).returncode == 1
+    # The other way round: the rig as the reference, whose vibrissa a file tells.
+    columns = [word.replace("--column", "--reference-column") for word in RIG_COLUMNS]
+    beam = ("--reference-beam", "case.toml")
+    words = ("compare", "rig.csv", "analytic.parquet", *columns, *beam, "--out", "back")
+    vibrissa(*words, "--offset", "auto", "--noise", "auto", cwd=rig)
+    found = json.loads((rig / "back" / "comparison.json").read_text())
+    assert found["offset"]["value"] == pytest.approx(-2e-3, abs=2e-4)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--offset", "some"), "--offset = 'some'"),
+        (("--offset", "nan"), "--offset = 'nan'"),
+        (("--noise", "2"), "noise = 2.0"),
+        (("--tolerances", "none.toml"), "none.toml"),
+        (("--tolerances", "case.toml"), "[tolerances]"),
+        (("--beam", "rig.csv"), "rig.csv"),
+    ],
+)
+def test_compare_refuses(rig, words, said):
+    given = ("compare", "analytic.parquet", "rig.csv", *RIG_COLUMNS, "--out", "out", *words)
+    done = vibrissa(*given, cwd=rig)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not (rig / "out").exists()
+
+
+def test_an_offset_that_nothing_tells_is_one_line(rig):
+    lines = (rig / "rig.csv").read_text().splitlines()
+    (rig / "rig.csv").write_text("\n".join(lines[:6]))
+    words = ("compare", "analytic.parquet", "rig.csv", *RIG_COLUMNS, "--offset", "auto")
+    done = vibrissa(*words, cwd=rig)
+    assert done.returncode == 2
+    assert "offset = ambiguous" in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_tolerances_from_files(tmp_path):
+    """A case file's are those of its runs, a file's those of a comparison."""
+    limits = '[tolerances]\nrms = { limit = 1e-9, reason = "to see it fail" }\n'
+    (tmp_path / "case.toml").write_text(CASE + limits)
+    done = vibrissa("run", "case.toml", "--out", "out", "--segments", 40, cwd=tmp_path)
+    assert done.returncode == 1
+    assert "allowed 1.00e-09 (to see it fail)" in done.stdout
+    assert "to see it fail" in (tmp_path / "out" / "report.html").read_text()
+    (tmp_path / "limits.toml").write_text(limits)
+    both = ("out/analytic.parquet", "out/mujoco-chain.parquet")
+    assert vibrissa("compare", *both, "--out", "again", cwd=tmp_path).returncode == 0
+    words = ("--tolerances", "limits.toml", "--out", "again")
+    assert vibrissa("compare", *both, *words, cwd=tmp_path).returncode == 1
+
+
 def test_the_papers_figures(tmp_path):
     done = vibrissa(
         "analytic", "shallow-catenary", "--figures", "--certified", "--out", ".", cwd=tmp_path
@@ -265,10 +362,11 @@ def test_other_contours(tmp_path, profile, said):
         assert done.stderr.count("\n") == 1
 
 
-def test_readme_example_runs(tmp_path):
-    """The README's Python block is executed as it stands."""
+@pytest.mark.parametrize("heading", ["From Python", "Gates in your own tests"])
+def test_readme_example_runs(tmp_path, heading):
+    """The README's Python blocks are executed as they stand."""
     readme = (Path(__file__).parents[2] / "README.md").read_text()
-    code = readme.split("```python\n")[1].split("```")[0]
+    code = readme.split(f"## {heading}\n")[1].split("```python\n")[1].split("```")[0]
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
     )
