@@ -105,7 +105,7 @@ def run(
         found, runs = _measure_budget(job)
         simulated = runs["base"]
     else:
-        simulated = _simulate(job)
+        simulated = _simulate(job, folder)
     comparison = compare_readings(exact, simulated, job.tolerances)
     exact.write(folder / "analytic.parquet")
     simulated.write(folder / f"mujoco-{job.settings.beam}.parquet")
@@ -176,7 +176,7 @@ def simulate(
     """Sweep in MuJoCo."""
     job = _job(case, stations, segments, beam, obstacle, spatial)
     folder = _folder(out, job)
-    _wrote(_simulate(job).write(folder / f"mujoco-{job.settings.beam}.parquet"))
+    _wrote(_simulate(job, folder).write(folder / f"mujoco-{job.settings.beam}.parquet"))
     return AGREES
 
 
@@ -208,8 +208,8 @@ def animate(
 ) -> int:
     """Sweep in both models, and show it in motion: a GIF and stills."""
     job = _job(case, stations, segments, beam, obstacle)
-    exact, simulated = solve_sweep(job.case), _simulate(job)
     folder = _folder(out, job)
+    exact, simulated = solve_sweep(job.case), _simulate(job, folder)
     with _progress("frames", frames) as advance:
         for path in write_animation(exact, simulated, folder, frames, advance):
             _wrote(path)
@@ -358,6 +358,8 @@ def main() -> None:
         code = _refuse(f"{told.rstrip('.')}; see `vibrissa --help`")
     except ArithmeticError as error:
         code = _refuse(str(error))
+    except MemoryError as error:
+        code = _refuse(f"out of memory ({error}); take fewer segments or contour points")
     except (typer.Abort, KeyboardInterrupt):
         code = _refuse("interrupted")
     except OSError as error:
@@ -414,11 +416,17 @@ def _make(folder: Path) -> None:
         raise InputError("--out", folder, "a folder that can be made", str(error)) from error
 
 
-def _simulate(job: Job) -> Readings:
+def _simulate(job: Job, folder: Path) -> Readings:
+    """The sweep in MuJoCo; if it ends early, the stations that there are go into `folder`."""
     from mujoco_models import simulate_sweep  # MuJoCo is imported only where it is used
 
+    def keep(partial: Readings) -> None:
+        path = partial.write(folder / f"mujoco-{job.settings.beam}.partial.parquet")
+        stations = f"{len(partial.table)} of {job.case.sweep.stations} stations"
+        _noted.print(f"vibrissa: kept {stations} in {path}", soft_wrap=True, markup=False)
+
     with _progress(f"MuJoCo {job.settings.beam}", job.case.sweep.stations) as advance:
-        return simulate_sweep(job.case, job.settings, advance)
+        return simulate_sweep(job.case, job.settings, advance, keep)
 
 
 @contextmanager

@@ -6,16 +6,27 @@ MuJoCo itself is imported when a sweep starts, not before.
 from collections.abc import Callable
 
 from analytic.problem.case import Case
-from analytic.problem.mirror import solve_either_way
+from analytic.problem.mirror import facing, solve_either_way
 from analytic.problem.readings import Readings
 from mujoco_models.beams.available import available_beams
+from mujoco_models.errors import DivergedError
 from mujoco_models.settings import Settings
 
-__all__ = ["Settings", "available_beams", "load_tip", "simulate_sweep", "view_sweep"]
+__all__ = [
+    "DivergedError",
+    "Settings",
+    "available_beams",
+    "load_tip",
+    "simulate_sweep",
+    "view_sweep",
+]
 
 
 def simulate_sweep(
-    case: Case, settings: Settings | None = None, advance: Callable[[], None] = lambda: None
+    case: Case,
+    settings: Settings | None = None,
+    advance: Callable[[], None] = lambda: None,
+    keep: Callable[[Readings], None] = lambda _: None,
 ) -> Readings:
     """Sweep `case` in MuJoCo.
 
@@ -27,6 +38,10 @@ def simulate_sweep(
         The numerics.
     advance : callable, optional
         Called after every station, for progress bars.
+    keep : callable, optional
+        Given the readings of all stations so far (if two or more) when the sweep ends early,
+        whatever ends it: a divergence, whose station is the last row then, an interrupt, an
+        exception in `advance`. The exception then goes on its way.
 
     Returns
     -------
@@ -49,14 +64,24 @@ def simulate_sweep(
     ------
     InputError
         If the case's beam has no radius: MuJoCo cannot collide a line. If the installed MuJoCo
-        lacks the beam that the settings ask for.
+        lacks the beam that the settings ask for, or has no such obstacle for the contour.
+    DivergedError
+        If the simulation is not a number any more; it names the station.
+    MemoryError
+        If there are more segments or contacts than MuJoCo or the machine has room for.
     ClampError
         If that discrepancy is more than the station's residual can explain.
     """
     from mujoco_models.sweep import run_sweep
 
     chosen = settings or Settings()
-    return solve_either_way(case, lambda leftward: run_sweep(leftward, chosen, advance))
+
+    def keep_facing(found: Readings) -> None:
+        keep(facing(case, found))
+
+    return solve_either_way(
+        case, lambda leftward: run_sweep(leftward, chosen, advance, keep_facing)
+    )
 
 
 def load_tip(load: float, settings: Settings | None = None) -> tuple[float, float]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from mujoco_models.beams.protocol import FOOT, Beam
+from mujoco_models.errors import DivergedError
 from mujoco_models.obstacles.protocol import GEOM_PREFIX, Obstacle
 
 _CONTACT_GAP = 0.01  # L; how far ahead the solver sees contacts that carry no force yet
@@ -15,6 +16,8 @@ _OVERLOOKED = 1e-6  # L; how deep an unloaded bead may be in the obstacle
 STEP = 1e-3  # of MuJoCo's own motion
 LONG_STEP = 5e-3  # of it, where nothing can be mistaken; 1e-2 would be too long for 3.17's cable
 AT_REST = 1e-10  # of a coordinate, in a step: the motion has come to its end
+_BAD_STATES = [getattr(mujoco.mjtWarning, f"mjWARN_BADQ{name}") for name in ("POS", "VEL", "ACC")]
+_FULL = [getattr(mujoco.mjtWarning, f"mjWARN_{name}FULL") for name in ("CONTACT", "CNSTR")]
 _IMPEDANCE = 0.9  # MuJoCo's d; with the stiffness set below it cancels out of the law at rest
 
 
@@ -133,12 +136,24 @@ class BeamModel:
 
         Elasticity and contacts only: with zero velocity nothing else acts. Contacts and clamp
         readings are then those of this configuration.
+
+        Raises
+        ------
+        DivergedError
+            If a moment is not finite.
+        MemoryError
+            If MuJoCo has no room for all contacts: it leaves some out and only warns.
         """
         self.move_foot(foot_x)
         self.beam.place(self.data, angles)
         self.evaluate()
         self.evaluations += 1
-        return self.beam.moments(self.moments())
+        if any(self.data.warning[full].number for full in _FULL):
+            raise MemoryError(f"MuJoCo's own memory does not hold all of {self.data.ncon} contacts")
+        moments = self.beam.moments(self.moments())
+        if not np.isfinite(moments).all():
+            raise DivergedError("MuJoCo's moments at the joints are not finite")
+        return moments
 
     def move_foot(self, foot_x: float) -> None:
         """Put the foot there [L]."""
@@ -165,12 +180,20 @@ class BeamModel:
         return self.beam.moments(self.data.qfrc_passive)
 
     def creep(self, timestep: float) -> float:
-        """One step of MuJoCo's own motion without momentum; the largest change of a coordinate."""
+        """One step of MuJoCo's own motion without momentum; the largest change of a coordinate.
+
+        Raises
+        ------
+        DivergedError
+            If MuJoCo warns of a bad state, which it then sets back to the straight beam.
+        """
         model, data = self.model, self.data
         model.opt.integrator, model.opt.timestep = mujoco.mjtIntegrator.mjINT_DISCRETE, timestep
         before = data.qpos.copy()
         data.qvel[:] = 0
         mujoco.mj_step(model, data)
+        if any(data.warning[bad].number for bad in _BAD_STATES):
+            raise DivergedError("MuJoCo's own motion does not stay finite")
         model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
         return float(np.abs(data.qpos - before).max())
 

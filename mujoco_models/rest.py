@@ -14,6 +14,7 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 from scipy.optimize import nnls
 
 from analytic.problem.arrays import Floats
+from mujoco_models.errors import DivergedError
 from mujoco_models.model import BeamModel, Contacts
 
 _ITERATIONS = 25
@@ -251,6 +252,8 @@ def _newton_step(
 
 def _cholesky(stiffness: Floats, scale: float) -> Floats:
     """Factor of the stiffness, or of the least shifted one that is positive definite."""
+    if not np.isfinite(stiffness).all():
+        raise DivergedError("the stiffness is not finite")
     shift = 0.0
     while True:
         factor, info = dpotrf(stiffness + shift * np.eye(len(stiffness)), lower=1)

@@ -17,6 +17,7 @@ from analytic.problem.errors import InputError
 from analytic.problem.readings import COLUMNS, Readings
 from mujoco_models.beams.kinds import build
 from mujoco_models.beams.layout import bead_spacing
+from mujoco_models.errors import DivergedError
 from mujoco_models.model import BeamModel
 from mujoco_models.obstacles.kinds import place
 from mujoco_models.rest import State, fall, relax, turned
@@ -25,20 +26,43 @@ from mujoco_models.settings import Settings
 _SMALLEST_STEP = 1e-5  # L; a jump that a step this small does not prevent is a snap-off
 LARGEST_TURN = 0.35  # rad; a link that turns farther in one step has left the branch
 _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
+_DIVERGED = {"phase": "free", "status": "diverged"}  # the row of a station without numbers
 _HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below it just faded
 
 
-def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Readings:
+def run_sweep(
+    case: Case,
+    settings: Settings,
+    advance: Callable[[], None],
+    keep: Callable[[Readings], None],
+) -> Readings:
     """Sweep the beam to the left; see `mujoco_models.simulate_sweep`."""
     begun = time.process_time()
     walk = set_out(case, settings)
-    rows = []
-    # The matrices are small: more threads only wait for each other, on a busy machine for long.
-    with threadpool_limits(1):
-        for target in case.foot_x / case.beam.length:
-            walk.go_to(float(target))
-            rows.append(walk.row())
-            advance()
+    rows: list[dict[str, Any]] = []
+    try:
+        # The matrices are small: more threads only wait for each other, on a busy machine for long.
+        with threadpool_limits(1):
+            for target in case.foot_x / case.beam.length:
+                walk.go_to(float(target))
+                rows.append(walk.row())
+                advance()
+    except BaseException as error:  # whatever it is, what there is must not be lost
+        if isinstance(error, DivergedError):
+            rows.append(_DIVERGED)
+        if len(rows) > 1:
+            keep(_readings(case, settings, walk, rows, begun))
+        if isinstance(error, DivergedError):
+            place = f"station {len(rows)} of {len(case.foot_x)}, foot_x = {target:.6g} L"
+            raise DivergedError(f"diverged at {place}: {error}") from error
+        raise
+    return _readings(case, settings, walk, rows, begun)
+
+
+def _readings(
+    case: Case, settings: Settings, walk: "Walk", rows: list[dict[str, Any]], begun: float
+) -> Readings:
+    """In the units of the case's beam."""
     table = pd.DataFrame(rows)
     beam = case.beam
     for name in ("force_x", "force_y"):
@@ -50,7 +74,7 @@ def run_sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Re
     if not settings.planar:
         table["out_of_plane"] *= beam.length
         table["sideways_stiffness"] *= beam.force_unit / beam.length
-    table.insert(0, "foot_x", case.foot_x)
+    table.insert(0, "foot_x", case.foot_x[: len(rows)])
     provenance = {
         **case.provenance(),
         "engine": f"MuJoCo {mujoco.__version__}, vibrissa-testbed {version('vibrissa-testbed')}",
@@ -174,8 +198,6 @@ class Walk:
             "penetration": 0.0,
             "extension": model.extension(),
         }
-        if not np.isfinite(state.imbalance):
-            row["status"] = "diverged"
         if state.settled and row["discrepancy"] > _DISCREPANCY:
             raise ClampError(self._foot_x, row["discrepancy"])
         if loaded.any():

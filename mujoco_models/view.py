@@ -40,7 +40,7 @@ def show(case: Case, settings: Settings) -> None:
     ) as viewer:
         with viewer.lock():
             stage.light(viewer.opt)
-            _aim(viewer.cam, float(foot_x.mean()), to_right)
+            _aim(viewer.cam, model, float(foot_x.mean()), to_right)
         for target in foot_x:
             with viewer.lock():
                 walk.go_to(float(target))
@@ -84,13 +84,13 @@ class _Stage:
         model.geom_rgba[self._obstacle] = np.where(collides[:, None], _BODY, _HIDDEN)
 
 
-def _aim(camera: mujoco.MjvCamera, centre: float, behind: bool) -> None:
+def _aim(camera: mujoco.MjvCamera, model: mujoco.MjModel, centre: float, behind: bool) -> None:
     """Look along z, x to the right and y upwards; from behind, x to the left."""
     camera.type = mujoco.mjtCamera.mjCAMERA_FREE
     camera.orthographic = 1
     camera.lookat = np.array([centre, 0.5, 0.0])
     camera.azimuth, camera.elevation = (-90, 90) if behind else (90, -90)
-    camera.distance = 3.0
+    camera.distance = model.stat.extent  # outside of the obstacle, however long it is
 
 
 def _ask_for_display() -> None:

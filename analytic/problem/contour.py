@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from typing import NamedTuple
 
 from analytic.problem.arrays import Floats
-from analytic.problem.solid import EllipticCylinder
+from analytic.problem.solid import ConvexMesh
 
 
 class ContourPoint(NamedTuple):
@@ -31,8 +31,8 @@ class Contour(ABC):
     """
 
     label: str
-    solid: EllipticCylinder | None
-    """What the contour is the lower side of, where that is known."""
+    solid: ConvexMesh | None = None
+    """The mesh that the contour is a section of, if it is one."""
 
     @property
     @abstractmethod

@@ -8,7 +8,6 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 from analytic.problem.profile import Profile
-from analytic.problem.solid import EllipticCylinder
 
 _STEEPEST = math.pi / 2 - 1e-3  # the graph of a function of x never stands upright
 
@@ -123,7 +122,6 @@ def _ellipse(across: float, upward: float, lowest: tuple[float, float], label: s
         alpha_range=(-math.pi / 2, math.pi / 2),
         radius_of_curvature=partial(_ellipse_radius, across, upward),
         label=f"{label}, lowest point ({x:g}, {y:g})",
-        solid=EllipticCylinder((x, y + upward), (across, upward)),
     )
 
 

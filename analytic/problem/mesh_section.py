@@ -1,5 +1,6 @@
 """The section of a convex mesh file by the plane of the sweep."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,11 +10,13 @@ from scipy.spatial import ConvexHull
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 from analytic.problem.polygon import Polygon, polygon
+from analytic.problem.solid import ConvexMesh
 
 if TYPE_CHECKING:
     from trimesh import Trimesh
 
 _ROUNDING = 1e-5  # of the volume: files hold single precision
+_IN_PLANE = 1e-6  # of the mesh's extent: likewise
 
 
 def mesh_section(
@@ -24,6 +27,10 @@ def mesh_section(
     axes: str = "xy",
 ) -> Polygon:
     """The polygon in which the plane of the sweep cuts a convex mesh.
+
+    It knows the mesh that it is cut from (``solid``), and how far the mesh's normals leave the
+    plane there (``solid.tilt``): a bead of radius r touches a face that is tilted by t at the
+    distance r/cos(t) from the section, and is pushed out of the plane.
 
     Parameters
     ----------
@@ -63,7 +70,33 @@ def mesh_section(
     cut: Floats = mesh_plane(mesh, normal, origin)  # type: ignore[no-untyped-call]
     section = cut.reshape(-1, 3)[:, across[:2]]
     hull = section[ConvexHull(section).vertices]
-    return polygon(hull * scale + np.asarray(offset), f"section of {Path(file).name}")
+    outline = polygon(hull * scale + np.asarray(offset), f"section of {Path(file).name}")
+    placed = (mesh.vertices - origin)[:, across] * [1, 1, _handedness(across)]
+    solid = ConvexMesh(placed * scale + [*offset, 0], _tilt(mesh, across, height), Path(file).name)
+    return replace(outline, solid=solid)
+
+
+def _handedness(across: list[int]) -> int:
+    """1 if these axes are right-handed, -1 if not: the body must not become its mirror image."""
+    return round(float(np.linalg.det(np.eye(3)[across])))
+
+
+def _tilt(mesh: "Trimesh", across: list[int], height: float) -> float:
+    """Largest component of the normals across the plane, along the lower side of the section.
+
+    An edge in the plane has all normals between those of its two faces; the least tilted counts.
+    """
+    _, up, third = across
+    above = mesh.vertices[:, third] - height
+    above[np.abs(above) < _IN_PLANE * mesh.scale] = 0
+    sides = above[mesh.faces]
+    normals = mesh.face_normals
+    cut = (sides.min(axis=1) < 0) & (sides.max(axis=1) > 0) & (normals[:, up] < 0)
+    rim = normals[mesh.face_adjacency[(above[mesh.face_adjacency_edges] == 0).all(axis=1)]]
+    rim = rim[rim[:, :, up].sum(axis=1) < 0][:, :, third]
+    one_way = rim.prod(axis=1) > 0
+    tilts = [*np.abs(normals[cut, third]), *np.abs(rim[one_way]).min(axis=1)]
+    return float(max(tilts, default=0.0))
 
 
 def _load(file: Path) -> "Trimesh":

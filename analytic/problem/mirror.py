@@ -22,5 +22,12 @@ def solve_either_way(case: Case, solve: Callable[[Case], Readings]) -> Readings:
     """
     if case.sweep.direction == "left":
         return solve(case)
-    found = solve(case.mirrored()).mirrored()
-    return replace(found, provenance={**found.provenance, **case.provenance()})
+    return facing(case, solve(case.mirrored()))
+
+
+def facing(case: Case, found: Readings) -> Readings:
+    """The readings of the sweep to the left that was solved for `case`, as readings of `case`."""
+    if case.sweep.direction == "left":
+        return found
+    mirrored = found.mirrored()
+    return replace(mirrored, provenance={**mirrored.provenance, **case.provenance()})

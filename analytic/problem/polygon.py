@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from analytic.problem.arrays import Floats
 from analytic.problem.contour import Contour, ContourPoint
 from analytic.problem.errors import InputError
+from analytic.problem.solid import ConvexMesh
 
 _STRAIGHT = 1e-12  # rad; vertices that turn less are dropped: they are on an edge
 
@@ -29,12 +30,14 @@ class Polygon(Contour):
         Of the parallel curve from the polygon [length].
     label : str
         What reports call the contour.
+    solid : ConvexMesh, optional
+        What it is the section of.
     """
 
     vertices: Floats
     distance: float = 0.0
     label: str = "polygon"
-    solid: None = None
+    solid: ConvexMesh | None = None
 
     @property
     def t_range(self) -> tuple[float, float]:
@@ -77,16 +80,26 @@ class Polygon(Contour):
 
     def offset(self, radius: float) -> "Polygon":
         """The parallel curve: the edges moved out, joined by arcs about the vertices."""
-        return replace(self, distance=self.distance + radius)
+        return replace(self, distance=self.distance + radius, solid=None)
 
     def scaled(self, factor: float) -> "Polygon":
         """The polygon enlarged by `factor` about the origin."""
-        return replace(self, vertices=factor * self.vertices, distance=factor * self.distance)
+        return replace(
+            self,
+            vertices=factor * self.vertices,
+            distance=factor * self.distance,
+            solid=self.solid and self.solid.scaled(factor),
+        )
 
     def mirrored(self) -> "Polygon":
         """The mirror image: x becomes -x; the vertices still run from left to right."""
         vertices = self.vertices[::-1] * [-1, 1]
-        return replace(self, vertices=vertices, label=f"{self.label}, mirrored")
+        return replace(
+            self,
+            vertices=vertices,
+            label=f"{self.label}, mirrored",
+            solid=self.solid and self.solid.mirrored(),
+        )
 
     @cached_property
     def _angles(self) -> Floats:

@@ -10,7 +10,6 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.contour import Contour, ContourPoint
 from analytic.problem.errors import InputError
-from analytic.problem.solid import EllipticCylinder
 
 Curve: TypeAlias = Callable[[Floats], Floats]
 
@@ -35,8 +34,6 @@ class Profile(Contour):
         d(arc length)/d(alpha) [length]; by sixth-order differences of `xi` and `eta` if not given.
     label : str
         What reports call the profile.
-    solid : EllipticCylinder, optional
-        What the contour is the lower side of, if it is such a cylinder.
 
     Raises
     ------
@@ -50,7 +47,6 @@ class Profile(Contour):
     alpha_range: tuple[float, float]
     radius_of_curvature: Curve | None = field(default=None, repr=False)
     label: str = "custom profile"
-    solid: EllipticCylinder | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         lowest, highest = self.alpha_range
@@ -99,7 +95,6 @@ class Profile(Contour):
             eta=partial(_offset_eta, self, radius),
             alpha_range=self.t_range,
             radius_of_curvature=partial(_offset_stretch, self, radius),
-            solid=None,
         )
 
     def scaled(self, factor: float) -> "Profile":
@@ -111,7 +106,6 @@ class Profile(Contour):
             xi=partial(_scaled, self.xi, factor),
             eta=partial(_scaled, self.eta, factor),
             radius_of_curvature=partial(_scaled, self._stretch, factor),
-            solid=self.solid and self.solid.scaled(factor),
         )
 
     def mirrored(self) -> "Profile":
@@ -124,7 +118,6 @@ class Profile(Contour):
             alpha_range=(-high, -low),
             radius_of_curvature=partial(_mirrored, self._stretch, 1),
             label=f"{self.label}, mirrored",
-            solid=self.solid and self.solid.mirrored(),
         )
 
     def _on(self, alpha: Floats) -> Floats:

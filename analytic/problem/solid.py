@@ -1,28 +1,33 @@
 """What a contour may be the lower side of, beyond the plane of the sweep."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+from analytic.problem.arrays import Floats
 
 
-@dataclass(frozen=True)
-class EllipticCylinder:
-    """A cylinder along z whose section is an ellipse with axes along x and y, or a circle.
+@dataclass(frozen=True, eq=False)
+class ConvexMesh:
+    """The hull of points, cut by the plane of the sweep at z = 0.
 
     Parameters
     ----------
-    centre : tuple of float
-        Of the section [length].
-    semi_axes : tuple of float
-        Along x, along y [length].
+    vertices : array, shape (n, 3)
+        In the case's frame [length].
+    tilt : float
+        The largest z component of its unit normals along the lower side of the section: 0 where
+        the mesh is a prism there, or symmetric about the plane.
+    name : str
+        Of the file.
     """
 
-    centre: tuple[float, float]
-    semi_axes: tuple[float, float]
+    vertices: Floats
+    tilt: float
+    name: str
 
-    def scaled(self, factor: float) -> "EllipticCylinder":
+    def scaled(self, factor: float) -> "ConvexMesh":
         """Enlarged by `factor` about the origin."""
-        (x, y), (across, upward) = self.centre, self.semi_axes
-        return EllipticCylinder((factor * x, factor * y), (factor * across, factor * upward))
+        return replace(self, vertices=factor * self.vertices)
 
-    def mirrored(self) -> "EllipticCylinder":
+    def mirrored(self) -> "ConvexMesh":
         """The mirror image, x to -x."""
-        return EllipticCylinder((-self.centre[0], self.centre[1]), self.semi_axes)
+        return replace(self, vertices=self.vertices * [-1, 1, 1])

@@ -18,6 +18,7 @@ from compare.study.axes import Value
 from compare.study.plan import Run
 from compare.study.studyfile import Record, Study, case_file
 from compare.tolerances import Tolerances
+from mujoco_models import DivergedError
 
 Outcome: TypeAlias = Literal["done", "diverged", "unsettled", "timeout", "failed", "bad-input"]
 Row: TypeAlias = dict[str, Any]
@@ -85,6 +86,8 @@ def perform(recipe: Recipe, run: Run) -> Result:
         row |= {"outcome": "timeout", "reason": f"not finished after {recipe.timeout:g} s"}
     except InputError as error:
         row |= {"outcome": "bad-input", "reason": str(error)}
+    except DivergedError as error:
+        row |= {"outcome": "diverged", "reason": str(error)}
     except Exception as error:
         row |= {"outcome": "failed", "reason": _one_line(error)}
     row["seconds"] = time.perf_counter() - begin

@@ -63,7 +63,8 @@ def bead_spacing(segments: int, radius: float, curvature: float) -> float:
     radius : float
         Of the vibrissa [L].
     curvature : float
-        Largest curvature of the contour [1/L].
+        Largest curvature of the contour, may be 0 [1/L].
     """
-    dense = min(_OF_RADIUS * radius, _OF_CURVATURE / curvature, _OF_CELLS / segments**2)
+    turning = _OF_CURVATURE / max(curvature, _OF_CURVATURE)
+    dense = min(_OF_RADIUS * radius, turning, _OF_CELLS / segments**2)
     return max(dense, _LEAST)

@@ -1,6 +1,8 @@
 """From a case and settings to an obstacle."""
 
 from analytic.problem.case import Case
+from analytic.problem.solid import ConvexMesh
+from mujoco_models.obstacles.file_mesh import FileMesh
 from mujoco_models.obstacles.primitive import Primitive
 from mujoco_models.obstacles.prism import Prism
 from mujoco_models.obstacles.protocol import Obstacle
@@ -17,4 +19,7 @@ def place(case: Case, settings: Settings) -> Obstacle:
     """
     if settings.obstacle == "primitive":
         return Primitive.of(case)
+    solid = case.profile.scaled(1 / case.beam.length).solid
+    if isinstance(solid, ConvexMesh):
+        return FileMesh(case, solid)
     return Prism.of(case, settings.contour_points)

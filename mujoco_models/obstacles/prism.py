@@ -1,4 +1,4 @@
-"""The object as MuJoCo knows it: a convex mesh, extruded along z from points of its contour.
+"""The object as a convex mesh, extruded along z from points of its contour.
 
 MuJoCo's search for the nearest point of a mesh climbs from vertex to vertex, so its cost grows with
 the mesh. The obstacle is therefore given as many meshes of one and the same polygon, each with all
@@ -7,7 +7,7 @@ holds the contact takes part in collisions. A subset of the vertices of a convex
 polygon inside it, so a mesh can only be too small, and only where nothing touches.
 """
 
-from dataclasses import dataclass
+import math
 from functools import cached_property
 
 import mujoco
@@ -15,40 +15,48 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
-from mujoco_models.obstacles.protocol import GEOM_PREFIX, Obstacle
+from analytic.problem.polygon import Polygon
+from mujoco_models.obstacles.faceted import Faceted, add_hull, touchable
 
-_FINE = 32  # vertices at full resolution on either side of a window's centre
+_FINE = 32  # vertices at full resolution on either side of a window's centre, at least
+_SPAN = 4.0  # radii of the vibrissa that they span, at least: a link may rest on several beads
 _GRADED = 8  # vertices a level farther out; the spacing doubles from level to level
 _BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
 # L, of the extrusion: more than the vibrissa's length, so that it cannot leave over the prism's
 # ends, and much more than a penetration, or depths come out wrong.
 _HALF_DEPTH = 1.5
-
-# Corners +x, -x, +y, -y, +z, -z; every face with its corners counterclockwise from outside.
-_OCTAHEDRON = [
-    [x, y, z] if (x + y + z) % 2 else [x, z, y] for x in (0, 1) for y in (2, 3) for z in (4, 5)
-]
+_SPECK = 1e-4  # L
 
 
-@dataclass(frozen=True, eq=False)
-class Prism(Obstacle):
-    """A convex polygon's lower side, and the meshes that stand for it.
-
-    Where the contour goes on beyond the reach of the vibrissa, so does the polygon, along its
-    tangent: a tip that presses on the very end must not be pushed out through the top.
+class Prism(Faceted):
+    """The meshes that stand for an extruded polygon.
 
     Parameters
     ----------
-    vertices : array, shape (n, 2)
-        From left to right, in units of the vibrissa's length.
+    vertices, slopes
+        See `Faceted`.
+    exact : bool
+        Whether the contour is that polygon; else the polygon is inscribed in it.
+    radius : float
+        Of the vibrissa [L].
     """
 
-    vertices: Floats
-    faceted = True
+    def __init__(
+        self, vertices: Floats, slopes: tuple[float, float], exact: bool, radius: float
+    ) -> None:
+        super().__init__(vertices, slopes)
+        self._exact = exact
+        facet = float(np.median(np.hypot(*np.diff(vertices, axis=0).T)))
+        self._fine = max(_FINE, math.ceil(_SPAN * radius / facet))
 
     @classmethod
     def of(cls, case: Case, points: int) -> "Prism":
-        """The part of the case's object that the vibrissa can reach, with `points` vertices."""
+        """The part of the case's object that the vibrissa can reach.
+
+        It has `points` vertices if the contour is curved, or else those of the contour. Where the
+        contour goes on beyond reach, so does the polygon, along its tangent: a tip that presses on
+        the very end must not be pushed out through the top.
+        """
         last, first = case.reach
         body = case.profile.scaled(1 / case.beam.length)
         inscribed = body.outline(last, first, points)
@@ -56,14 +64,8 @@ class Prism(Obstacle):
         cut = ends.eta > 1 - 1e-9  # by the reach of the tip; else the object ends there itself
         heading = np.column_stack([np.cos(ends.alpha), np.sin(ends.alpha)])
         beyond = inscribed[[0, -1]] + _BEYOND * heading * [[-1], [1]]
-        return cls(np.concatenate([beyond[:1][cut[:1]], inscribed, beyond[1:][cut[1:]]]))
-
-    @cached_property
-    def facet_angles(self) -> Floats:
-        """Slope angle of each facet, shape (n - 1,), ascending [rad]."""
-        run, rise = np.diff(self.vertices, axis=0).T
-        angles: Floats = np.arctan2(rise, run)
-        return angles
+        vertices = np.concatenate([beyond[:1][cut[:1]], inscribed, beyond[1:][cut[1:]]])
+        return cls(vertices, touchable(case), isinstance(body, Polygon), case.radius)
 
     @property
     def label(self) -> str:
@@ -74,88 +76,27 @@ class Prism(Obstacle):
         )
 
     @property
-    def geoms(self) -> int:  # type: ignore[override]
-        """One a window."""
-        return len(self._centres)
-
-    @property
-    def largest_curvature(self) -> float:
-        """The largest mean curvature [1/L]."""
-        return float(self._curvature.max())
-
-    def curvature(self, slope: Floats) -> Floats:
-        """Mean curvature near the vertex at which the slope angle is passed."""
-        return self._curvature[self._vertex(slope)]
-
-    @cached_property
-    def _curvature(self) -> Floats:
-        """Mean curvature near each vertex, shape (n,) [1/L]."""
-        length = np.hypot(*np.diff(self.vertices, axis=0).T)
-        inner = 2 * np.diff(self.facet_angles) / (length[1:] + length[:-1])
-        return np.concatenate([inner[:1], inner, inner[-1:]])
-
-    @property
     def normal_error(self) -> float:
-        """Largest angle between a facet's normal and the smooth contour's [rad]."""
-        return float(np.diff(self.facet_angles).max()) / 2
+        """Largest angle between a facet's normal and the contour's [rad]."""
+        return 0.0 if self._exact else float(np.diff(self.facet_angles).max()) / 2
 
     @property
     def chord_error(self) -> float:
-        """Largest distance of a facet from the smooth contour that its ends lie on [L]."""
+        """Largest distance of a facet from the contour that its ends lie on [L]."""
+        if self._exact:
+            return 0.0
         length = np.hypot(*np.diff(self.vertices, axis=0).T)
         turn = np.diff(self.facet_angles)
         return float((np.minimum(length[1:], length[:-1]) * turn).max()) / 8
 
-    @cached_property
-    def _centres(self) -> Integers:
-        """Vertices at which the windows are centred; neighbouring windows overlap by half."""
-        n = len(self.vertices)
-        return np.append(np.arange(0, n - 1, _FINE), n - 1)
+    @property
+    def geoms(self) -> int:  # type: ignore[override]
+        """One a window."""
+        return len(self._centres)
 
     def place(self, slope: Floats) -> Floats:
         """The number of the vertex at which the slope angle is passed."""
-        return self._vertex(slope).astype(float)
-
-    def _vertex(self, slope: Floats) -> Integers:
-        return np.searchsorted(self.facet_angles, slope)
-
-    def faces(self, slope: Floats) -> bool:
-        """Whether contacts with these slope angles are with the contour, not with its far side."""
-        slack = 2 * self.normal_error + 1e-9
-        return bool(
-            ((slope > self.facet_angles[0] - slack) & (slope < self.facet_angles[-1] + slack)).all()
-        )
-
-    def near(self, points: Floats, distance: float) -> Integers:
-        """Which of the points, shape (n, 2), may be nearer to the contour than `distance`.
-
-        The distance from the line of any one facet is not more than that from the polygon. The
-        facet above a point gives a bound, and the one that is nearest by that a better one.
-        """
-        left, right = self.vertices[[0, -1], 0]
-        found = np.flatnonzero((points[:, 0] > left - distance) & (points[:, 0] < right + distance))
-        foot = points[found, 0]
-        for _ in range(2):
-            bound, slope = self._below(points[found], foot)
-            close = bound < distance
-            found, foot = found[close], (points[found, 0] - bound * np.sin(slope))[close]
-        return found
-
-    def _below(self, points: Floats, x: Floats) -> tuple[Floats, Floats]:
-        """How far the points are below the lines of the facets at `x`, and the facets' slopes."""
-        facet = np.clip(np.searchsorted(self.vertices[:, 0], x) - 1, 0, len(self.facet_angles) - 1)
-        slope = self.facet_angles[facet]
-        offset = points - self.vertices[facet]
-        return offset[:, 0] * np.sin(slope) - offset[:, 1] * np.cos(slope), slope
-
-    def clearance(self, point: Floats) -> tuple[float, float]:
-        """Distance of a point from the polygon, negative inside, and the vertex it is at."""
-        offset = point - self.vertices[:-1]
-        distance = offset[:, 0] * np.sin(self.facet_angles) - offset[:, 1] * np.cos(
-            self.facet_angles
-        )
-        facet = int(np.argmax(distance))
-        return float(distance[facet]), float(facet)
+        return self.vertex(slope).astype(float)
 
     def window_of(self, place: float) -> int:
         """The window whose centre is nearest to a vertex."""
@@ -163,57 +104,31 @@ class Prism(Obstacle):
 
     def is_inside(self, window: int, places: Floats) -> bool:
         """Whether `window` has all of the contour around these vertices."""
-        return bool((np.abs(places - self._centres[window]) <= _FINE - 2).all())
+        return bool((np.abs(places - self._centres[window]) <= self._fine - 2).all())
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
-        """Add one mesh geom a window to the world body, named `GEOM_PREFIX` and its number."""
-        for i, centre in enumerate(self._centres):
-            mesh = spec.add_mesh(name=f"{GEOM_PREFIX}{i}")
-            mesh.uservert, mesh.userface = self._prism(int(centre))
-            spec.worldbody.add_geom(
-                name=mesh.name,
-                type=mujoco.mjtGeom.mjGEOM_MESH,
-                meshname=mesh.name,
-                contype=1,
-                conaffinity=0,
-                condim=1,
-            )
+        """Add one mesh a window."""
+        middle = self.vertices.mean(axis=0)
+        for i, centre in enumerate(self._centres.tolist()):
+            polygon = np.vstack([self.vertices[self._kept(centre)], self.outline[-1]])
+            ends = [np.insert(polygon, 2, z, axis=1) for z in (-_HALF_DEPTH, _HALF_DEPTH)]
+            here = self.vertices[centre]
+            inner = here + 1e-2 * (middle - here)
+            add_hull(spec, i, np.concatenate(ends), np.append(inner, 0), _SPECK)
 
-    def show(self, model: mujoco.MjModel, geoms: Integers, window: int) -> None:
-        """Let the window's mesh collide."""
-        model.geom_contype[geoms] = 0
-        model.geom_contype[geoms[window]] = 1
+    @cached_property
+    def _centres(self) -> Integers:
+        """Vertices at which the windows are centred; neighbouring windows overlap by half."""
+        n = len(self.vertices)
+        return np.append(np.arange(0, n - 1, self._fine), n - 1)
 
     def _kept(self, centre: int) -> Integers:
         n = len(self.vertices)
-        kept = {0, n - 1, *range(max(0, centre - _FINE), min(n, centre + _FINE + 1))}
+        kept = {0, n - 1, *range(max(0, centre - self._fine), min(n, centre + self._fine + 1))}
         for side in (-1, 1):
-            at, stride = centre + side * _FINE, 2
+            at, stride = centre + side * self._fine, 2
             while 0 <= at < n:
                 level = at + side * stride * np.arange(1, _GRADED + 1)
                 kept.update(int(j) for j in level if 0 <= j < n)
                 at, stride = int(level[-1]), 2 * stride
         return np.array(sorted(kept))
-
-    def _prism(self, centre: int) -> tuple[Floats, Integers]:
-        """Vertices and faces of one window's mesh.
-
-        Vertices are stored in single precision relative to the centroid of the *faces*, while
-        collisions use the hull of all vertices. So the only faces are those of a speck just inside
-        the obstacle at the window's centre: rounding there is 1e-9 instead of 1e-7. The speck is an
-        octahedron whose axes of inertia are those of the world, so that both ends of the prism
-        round alike and its sides stay flat.
-        """
-        polygon = self.vertices[self._kept(centre)]
-        prism = np.concatenate(
-            [
-                np.column_stack([polygon, np.full(len(polygon), z)])
-                for z in (-_HALF_DEPTH, _HALF_DEPTH)
-            ]
-        )
-        here = self.vertices[centre]
-        inward = 1e-2 * (self.vertices.mean(axis=0) - here)
-        corners = 1e-4 * np.kron(np.diag([1, 2, 3]), [[1], [-1]])
-        speck = np.append(here + inward, 0) + corners
-        faces = len(prism) + np.array(_OCTAHEDRON, dtype=np.int32)
-        return np.concatenate([prism, speck]).ravel(), faces.ravel()

@@ -3,10 +3,12 @@
 from abc import ABC, abstractmethod
 
 import mujoco
+import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 
 GEOM_PREFIX = "obstacle"
+TOP = 0.75 * np.pi  # rad; the lower side ends at pi/2, but a bead may touch a little above that
 
 
 class Obstacle(ABC):

@@ -1,0 +1,148 @@
+"""What an obstacle of flat facets knows of its section by the plane of the sweep: a polygon."""
+
+from functools import cached_property
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats, Integers
+from analytic.problem.case import Case
+from mujoco_models.obstacles.protocol import GEOM_PREFIX, TOP, Obstacle
+
+# Corners +x, -x, +y, -y, +z, -z; every face with its corners counterclockwise from outside.
+_OCTAHEDRON = [
+    [x, y, z] if (x + y + z) % 2 else [x, z, y] for x in (0, 1) for y in (2, 3) for z in (4, 5)
+]
+
+
+class Faceted(Obstacle):
+    """An obstacle of flat facets.
+
+    Parameters
+    ----------
+    vertices : array, shape (n, 2)
+        Lower side of its section, a convex polygon, from left to right, in units of the vibrissa's
+        length.
+    slopes : tuple of float
+        Smallest and largest slope angle at which it can be touched [rad].
+    """
+
+    faceted = True
+
+    def __init__(self, vertices: Floats, slopes: tuple[float, float]) -> None:
+        self.vertices = vertices
+        self._slopes = slopes
+
+    @cached_property
+    def facet_angles(self) -> Floats:
+        """Slope angle of each facet, shape (n - 1,), ascending [rad]."""
+        run, rise = np.diff(self.vertices, axis=0).T
+        angles: Floats = np.arctan2(rise, run)
+        return angles
+
+    @property
+    def largest_curvature(self) -> float:
+        """The largest mean curvature [1/L]."""
+        return float(self._curvature.max())
+
+    def curvature(self, slope: Floats) -> Floats:
+        """Mean curvature near the vertex at which the slope angle is passed."""
+        return np.asarray(self._curvature[self.vertex(slope)])
+
+    def vertex(self, slope: Floats) -> Integers:
+        """Number of the vertex at which each slope angle is passed, shape (n,)."""
+        return np.searchsorted(self.facet_angles, slope)
+
+    def faces(self, slope: Floats) -> bool:
+        """Whether these slope angles are among those at which it can be touched."""
+        slack = np.diff(self.facet_angles, append=self.facet_angles[-1]).max() + 1e-9
+        low, high = self._slopes
+        return bool(((slope > low - slack) & (slope < high + slack)).all())
+
+    def near(self, points: Floats, distance: float) -> Integers:
+        """Which of the points, shape (n, 2), may be nearer to the contour than `distance`.
+
+        The distance from the line of any one facet is not more than that from the polygon. The
+        facet above a point gives a bound, and the one that is nearest by that a better one.
+        """
+        left, right = self.vertices[[0, -1], 0]
+        found = np.flatnonzero((points[:, 0] > left - distance) & (points[:, 0] < right + distance))
+        foot = points[found, 0]
+        for _ in range(2):
+            bound, slope = self._below(points[found], foot)
+            close = bound < distance
+            found, foot = found[close], (points[found, 0] - bound * np.sin(slope))[close]
+        return found
+
+    def _below(self, points: Floats, x: Floats) -> tuple[Floats, Floats]:
+        """How far the points are below the lines of the facets at `x`, and the facets' slopes."""
+        facet = np.clip(np.searchsorted(self.vertices[:, 0], x) - 1, 0, len(self.facet_angles) - 1)
+        slope = self.facet_angles[facet]
+        offset = points - self.vertices[facet]
+        return offset[:, 0] * np.sin(slope) - offset[:, 1] * np.cos(slope), slope
+
+    def clearance(self, point: Floats) -> tuple[float, float]:
+        """From the nearest edge of the lower side, or of the roof over it; the facet's number."""
+        edge = np.roll(self.outline, -1, axis=0) - self.outline
+        offset = point - self.outline
+        along = np.clip((edge * offset).sum(axis=1) / (edge**2).sum(axis=1), 0, 1)
+        distance = np.hypot(*(offset - along[:, None] * edge).T)
+        nearest = int(np.argmin(distance))
+        inside = (edge[:, 0] * offset[:, 1] > edge[:, 1] * offset[:, 0]).all()
+        facet = min(nearest, len(self.facet_angles) - 1)
+        return float(-distance[nearest] if inside else distance[nearest]), float(facet)
+
+    def show(self, model: mujoco.MjModel, geoms: Integers, window: int) -> None:
+        """Let the window's mesh collide."""
+        model.geom_contype[geoms] = 0
+        model.geom_contype[geoms[window]] = 1
+
+    @cached_property
+    def outline(self) -> Floats:
+        """The lower side, closed by a vertex above its middle: a flat underside is a solid too."""
+        left, right = self.vertices[[0, -1]]
+        width = right[0] - left[0]
+        roof = [left[0] + width / 2, max(left[1], right[1]) + width / 2]
+        return np.vstack([self.vertices, roof])
+
+    @cached_property
+    def _curvature(self) -> Floats:
+        """Mean curvature near each vertex, shape (n,) [1/L]; the ends are like their neighbours."""
+        length = np.hypot(*np.diff(self.vertices, axis=0).T)
+        inner = 2 * np.diff(self.facet_angles) / (length[1:] + length[:-1])
+        return np.pad(inner, 1, mode="edge") if len(inner) else np.zeros(2)
+
+
+def touchable(case: Case) -> tuple[float, float]:
+    """Slope angles between which a case's object can be touched [rad].
+
+    An end of the object is a corner; there a bead may touch a little above the widest place.
+    """
+    low, high = case.centreline.at(np.array(case.reach)).alpha
+    upright = np.pi / 2 - 1e-9
+    return (-TOP if low < -upright else float(low), TOP if high > upright else float(high))
+
+
+def add_hull(
+    spec: mujoco.MjSpec, number: int, vertices: Floats, inner: Floats, size: float
+) -> None:
+    """Add the hull of `vertices`, shape (n, 3), as the geom of that number to the world body.
+
+    MuJoCo stores vertices in single precision relative to the centroid of the *faces*, while
+    collisions use the hull of all vertices. So the only faces are those of a speck of that size
+    round the place `inner`: there, rounding is 1e-9 instead of 1e-7. The speck is an octahedron
+    whose axes of inertia are those of the world, so that both ends of a prism round alike and its
+    sides stay flat.
+    """
+    speck = inner + size * np.kron(np.diag([1, 2, 3]), [[1], [-1]])
+    faces = len(vertices) + np.array(_OCTAHEDRON, dtype=np.int32)
+    mesh = spec.add_mesh(name=f"{GEOM_PREFIX}{number}")
+    mesh.uservert, mesh.userface = np.concatenate([vertices, speck]).ravel(), faces.ravel()
+    spec.worldbody.add_geom(
+        name=mesh.name,
+        type=mujoco.mjtGeom.mjGEOM_MESH,
+        meshname=mesh.name,
+        contype=1,
+        conaffinity=0,
+        condim=1,
+    )

@@ -1,0 +1,194 @@
+"""Meshes: those of files as they are, exact polygons, and how near everything is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import trimesh
+
+from analytic import (
+    Beam,
+    Case,
+    InputError,
+    Profile,
+    Sweep,
+    circle,
+    ellipse,
+    find_events,
+    mesh_section,
+    named_case,
+    polygon,
+    solve_sweep,
+)
+from analytic.problem.readings import CLAMP_READINGS
+from compare import compare
+from mujoco_models import Settings, simulate_sweep
+from mujoco_models.obstacles.file_mesh import FileMesh
+from mujoco_models.obstacles.kinds import place
+from mujoco_models.obstacles.prism import Prism
+
+ROUND = 2 * np.pi * np.arange(200) / 200
+RING = np.column_stack([np.cos(ROUND), 0.5 * np.sin(ROUND)])
+
+
+def prism():
+    body = trimesh.creation.cylinder(radius=1, height=1, sections=200)
+    body.vertices *= [1, 0.5, 1]
+    return body
+
+
+def bicone():
+    """Nowhere a prism, but symmetric about the plane z = 0, in which its rim lies."""
+    rim = np.column_stack([RING, np.zeros(200)])
+    return trimesh.convex.convex_hull(np.vstack([rim, [[0, 0, 0.4], [0, 0, -0.4]]]))
+
+
+def section(body, tmp_path, height=0.0, **placed):
+    body.export(tmp_path / "body.stl")
+    return mesh_section(tmp_path / "body.stl", offset=(0.0, 0.9), height=height, **placed)
+
+
+def swept(profile, segments=20, **settings):
+    case = Case(profile=profile, sweep=Sweep(stations=20))
+    return simulate_sweep(case, Settings(segments=segments, **settings))
+
+
+def rms(reference, candidate):
+    found = compare(reference, candidate)
+    return max(found.disagreement[name].rms for name in CLAMP_READINGS)
+
+
+@pytest.mark.parametrize("make", [prism, bicone])
+def test_a_files_mesh_is_its_section_to_the_vibrissa(make, tmp_path):
+    profile = section(make(), tmp_path)
+    assert profile.solid.tilt < 1e-9
+    assert isinstance(place(Case(profile=profile), Settings()), FileMesh)
+    on_file = swept(profile)
+    assert on_file.provenance["obstacle"].startswith("mesh body.stl with ")
+    assert (on_file.table["status"] == "ok").all()
+    # Single precision of the vertices; observed 2e-7.
+    assert rms(swept(replace(profile, solid=None)), on_file) < 2e-6
+    # Between two beads a corner of 200 is held anywhere within half its turn, 1.6e-2 rad.
+    # Observed 8e-3, in force_x.
+    assert rms(solve_sweep(Case(profile=profile, sweep=Sweep(stations=20))), on_file) < 1.6e-2
+
+
+def test_a_files_mesh_goes_where_it_is_put(tmp_path):
+    """Other axes, unit and place in the file, and the object's mirror image: the same sweep."""
+    upright = section(prism(), tmp_path)
+    body = prism()
+    body.vertices = 30 * (body.vertices[:, [2, 1, 0]] + [0.1, 0, 0])
+    body.invert()
+    turned = section(body, tmp_path, height=3.0, scale=1 / 30, axes="zy")
+    table = swept(turned).table
+    np.testing.assert_allclose(table["force_y"], swept(upright).table["force_y"], atol=1e-3)
+    assert turned.solid.vertices[:, 2].max() == pytest.approx(0.5, abs=1e-6)
+    volume = trimesh.convex.convex_hull(turned.solid.vertices).volume
+    assert volume == pytest.approx(prism().volume, rel=1e-6)
+
+    to_right = Case(profile=turned.mirrored(), sweep=Sweep(stations=20, direction="right"))
+    mirrored = simulate_sweep(to_right, Settings(segments=20)).table
+    np.testing.assert_allclose(mirrored["force_y"], table["force_y"], atol=1e-6)
+
+
+def test_a_tilted_side_is_touched_earlier(tmp_path):
+    """A cone: a bead of radius r touches sides tilted by 45 degrees at r sqrt(2)."""
+    cone = trimesh.creation.cone(1.0, 1.0, sections=400)
+    profile = mesh_section(_file(cone, tmp_path), offset=(0, 1.2), height=0.2)
+    assert profile.solid.tilt == pytest.approx(np.sqrt(0.5), abs=1e-4)
+    found = swept(profile)
+    assert "by up to 7.1e-01" in found.provenance["obstacle"]
+    thicker = Beam(radius=Beam().radius * np.sqrt(2))
+    as_planned, as_found = (
+        find_events(profile, beam).snap_off.foot_x for beam in (Beam(), thicker)
+    )
+    assert abs(as_found - as_planned) > 1.5e-3
+    # The chain's own shift at N = 20 is 2e-4.
+    assert found.snap_off == pytest.approx(as_found, abs=4e-4)
+
+
+def _file(body, tmp_path):
+    body.export(tmp_path / "body.stl")
+    return tmp_path / "body.stl"
+
+
+def test_tilt_of_edges_in_the_plane(tmp_path):
+    """Two halves of different slope meet in the plane: the less tilted one counts, if both lean."""
+    rims = [(1.0, 0.0), (0.9, 0.5), (1.05, -0.5)]
+    layers = [np.column_stack([r * RING, np.full(200, z)]) for r, z in rims]
+    body = trimesh.convex.convex_hull(np.vstack(layers))
+    tilt = mesh_section(_file(body, tmp_path)).solid.tilt
+    assert tilt == pytest.approx(0.1, abs=0.02)
+
+
+def test_meshes_that_cannot_be_simulated(tmp_path, monkeypatch):
+    monkeypatch.setattr("mujoco_models.obstacles.file_mesh._MOST_VERTICES", 100)
+    with pytest.raises(
+        InputError, match=r"mesh body.stl = of 402 vertices: must be of at most 100"
+    ):
+        swept(section(prism(), tmp_path))
+    with pytest.raises(InputError, match=r"section of body.stl.* must be below 1 L"):
+        Case(profile=mesh_section(_file(prism(), tmp_path), offset=(0, 5)))
+    with pytest.raises(InputError, match=r"section of body\.stl: must be 'mesh'"):
+        swept(section(prism(), tmp_path), obstacle="primitive")
+
+
+def test_a_polygon_is_exact():
+    hexagon = np.column_stack([np.cos(ROUND[::33]), 1.4 + np.sin(ROUND[::33])])[:6]
+    case = Case(profile=polygon(hexagon))
+    obstacle = Prism.of(case, 3200)
+    inside = [any(np.allclose(v, w) for w in hexagon) for v in obstacle.vertices]
+    assert sum(inside) == len(case.profile.vertices[case.profile.vertices[:, 1] < 1])
+    assert obstacle.normal_error == obstacle.chord_error == 0
+
+
+def test_a_fine_polygon_agrees():
+    corners = np.column_stack([np.cos(4 * ROUND / 4), 1.4 + np.sin(ROUND)])
+    profile = polygon(corners)
+    exact = solve_sweep(Case(profile=profile, sweep=Sweep(stations=20)))
+    assert rms(exact, swept(profile)) < 2e-2  # half a corner's turn; observed 1.6e-2
+
+
+def test_a_flat_underside_is_a_solid_too():
+    """One facet, and a corner at either end, round which it is touched at angles up to pi/2."""
+    box = polygon([(-0.5, 0.4), (0.5, 0.4), (0.5, 1.4), (-0.5, 1.4)])
+    table = swept(box, segments=10).table
+    assert (table["status"] == "ok").all()
+    exact = solve_sweep(Case(profile=box, sweep=Sweep(stations=20))).table
+    assert (table["phase"] == exact["phase"]).all()
+    loaded = exact["phase"] != "free"
+    assert np.abs(table["contact_arc_length"] - exact["contact_arc_length"])[loaded].max() < 5e-3
+
+
+def test_the_end_of_an_open_object_is_touched_at_any_angle():
+    short = Profile(
+        xi=np.sin, eta=lambda a: 1.4 - np.cos(a), alpha_range=(-0.3, 0.3), label="short arc"
+    )
+    found = swept(short, segments=10)
+    assert (found.table["status"] == "ok").all()
+    assert found.table["contact_angle"].max() > 1
+
+
+def test_distance_from_a_corner_is_that_of_the_vertex():
+    box = Prism.of(Case(profile=polygon([(0, 0.4), (1, 0.4), (1, 1.4), (0, 1.4)])), 0)
+    assert box.clearance(np.array([1.3, 0.0]))[0] == pytest.approx(0.5)
+    assert box.clearance(np.array([0.5, 0.41]))[0] == pytest.approx(-0.01)
+    assert box.near(np.array([[0.5, 0.396], [1.3, 0.4], [0.5, 0.39]]), 0.005).tolist() == [0]
+
+
+@pytest.mark.parametrize(
+    "profile",
+    [circle(1.0, (0.0, 0.4)), ellipse((1.0, 0.5), (0.0, 0.4)), named_case("catenary").profile],
+)
+def test_errors_of_the_polygon_are_as_stated(profile):
+    """Distance and angle between the polygon and the contour, by brute force."""
+    case = Case(profile=profile)
+    obstacle = Prism.of(case, 100)
+    last, first = case.reach
+    alpha = np.linspace(last, first, 5000)
+    at = profile.at(alpha)
+    points = np.column_stack([at.xi, at.eta])
+    farthest = max(abs(obstacle.clearance(point)[0]) for point in points)
+    assert farthest == pytest.approx(obstacle.chord_error, rel=0.1)
+    turn = np.diff(obstacle.facet_angles)
+    assert obstacle.normal_error == pytest.approx(turn.max() / 2)
