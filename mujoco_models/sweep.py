@@ -198,7 +198,8 @@ class Walk:
             "penetration": 0.0,
             "extension": model.extension(),
         }
-        if state.settled and row["discrepancy"] > _DISCREPANCY:
+        out_of_balance = len(state.angles) * state.imbalance  # of which the sensors feel the sum
+        if state.settled and row["discrepancy"] > _DISCREPANCY + out_of_balance:
             raise ClampError(self._foot_x, row["discrepancy"])
         if loaded.any():
             weight = -contacts.distance[loaded] / -contacts.distance[loaded].sum()

@@ -61,7 +61,8 @@ class Primitive(Obstacle):
         begin, end = case.centreline.at(np.array(case.reach)).alpha
         slope = np.linspace(begin, end, 2 + int((end - begin) / _STEP))
         point = body.at(body.parameter(slope))
-        radius = point.stretch / point.turning
+        with np.errstate(divide="ignore"):
+            radius = point.stretch / point.turning
         if not (np.isfinite(radius).all() and (radius > 0).all()):
             raise InputError(
                 "mujoco.obstacle",

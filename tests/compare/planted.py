@@ -25,5 +25,8 @@ def planted(
         for name, rms in sizes.items()
     }
     convergence = {n: dict.fromkeys(CLAMP_READINGS, 1.6 / n**2) for n in (40, 80, 160)}
+    checks = {"softness": dict.fromkeys(CLAMP_READINGS, 1e-9)}
     disagreement = dict.fromkeys(CLAMP_READINGS, size)
-    return Budget(parts, disagreement, by_phase, 2.0, closes, blame, suspects, 190, convergence)
+    return Budget(
+        parts, disagreement, by_phase, 2.0, closes, blame, suspects, 190, convergence, checks
+    )

@@ -95,6 +95,7 @@ def test_the_parts_are_signals_that_add_up(sound):
             assert set(phases) == {"tip", "tangent"}
 
 
+@pytest.mark.slow
 def test_the_closed_form_foretells_softness(sound):
     """Where the load rests on one bead. Observed: within 12 %, with as much uncertainty."""
     case = named_case("tip-only")
@@ -105,6 +106,7 @@ def test_the_closed_form_foretells_softness(sound):
         assert found.checks["softness"][reading] == pytest.approx(softness, rel=0.25)
 
 
+@pytest.mark.slow
 def test_a_naive_clamp_is_discretisation_of_first_order():
     case = replace(CASE, sweep=GRID)
     found = measured(case, case, Settings(segments=20, clamp="naive"))
@@ -113,6 +115,7 @@ def test_a_naive_clamp_is_discretisation_of_first_order():
     assert total(found, "discretisation") > 1e-2
 
 
+@pytest.mark.slow
 def test_a_coarse_mesh_is_facets(sound):
     case = replace(CASE, sweep=GRID)
     found = measured(case, case, Settings(segments=40, contour_points=60))
@@ -121,6 +124,7 @@ def test_a_coarse_mesh_is_facets(sound):
     assert total(found, "facets") > 10 * total(sound, "facets")
 
 
+@pytest.mark.slow
 def test_a_loose_contact_is_softness(sound):
     case = replace(CASE, sweep=GRID)
     found = measured(case, case, Settings(segments=40, contact_stiffness=1e4))
@@ -128,6 +132,7 @@ def test_a_loose_contact_is_softness(sound):
     assert total(found, "softness") > 100 * total(sound, "softness")
 
 
+@pytest.mark.slow
 def test_unrest_is_unrest():
     case = replace(CASE, sweep=GRID)
     found = measured(case, case, Settings(segments=40, tolerance=1e-2))
@@ -142,6 +147,7 @@ WRONG_BEAMS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WRONG_BEAMS)
 def test_wrong_physics_is_unexplained_and_suspected(name):
     beam, change = WRONG_BEAMS[name]
@@ -153,6 +159,7 @@ def test_wrong_physics_is_unexplained_and_suspected(name):
     assert found.suspects[0].change == pytest.approx(change, rel=0.2)
 
 
+@pytest.mark.slow
 def test_a_shifted_stage_is_suspected():
     case = replace(CASE, sweep=GRID)
     wrong = replace(case, sweep=Sweep(80, GRID.start + 0.005, GRID.stop + 0.005))
@@ -172,43 +179,41 @@ def test_a_shifted_stage_is_suspected():
 FRICTION = 0.02
 
 
-def rub(model, foot_x, angles):
-    """MuJoCo's balance with a dry contact: each bead's load drags it along the contour."""
-    data = model.data
-    data.xfrc_applied[:] = 0
-    model.plain_imbalance(foot_x, angles)
-    for bead, normal, distance in zip(*model.contacts(), strict=True):
-        if distance < 0:
-            load = -distance * model.contact_stiffness
-            drag = FRICTION * load * np.array([-normal[1], normal[0], 0])  # to the right
-            geom = model._beads[bead]
-            body = model.model.geom_bodyid[geom]
-            at = data.geom_xpos[geom] - [*(model._radius * normal), 0]
-            arm = at - data.xipos[body]
-            data.xfrc_applied[body] += [*drag, *np.cross(arm, drag)]
-    mujoco.mj_forward(model.model, data)
-    pulled = np.zeros(model.model.nv)
-    for body in np.flatnonzero(np.any(data.xfrc_applied, axis=1)):
-        force, torque = np.split(data.xfrc_applied[body], 2)
-        mujoco.mj_applyFT(model.model, data, force, torque, data.xipos[body], body, pulled)
-    return model.plain_imbalance_of(pulled)
-
-
-def test_friction_left_on_is_suspected(monkeypatch):
+@pytest.fixture
+def rubbing(monkeypatch):
+    """MuJoCo's beam with a dry contact: each bead's load drags it along the contour."""
     from mujoco_models.model import BeamModel
 
-    plain = BeamModel.imbalance
-    monkeypatch.setattr(BeamModel, "plain_imbalance", plain, raising=False)
-    monkeypatch.setattr(
-        BeamModel,
-        "plain_imbalance_of",
-        lambda self, pulled: self.beam.moments(self.moments() + pulled),
-        raising=False,
-    )
+    imbalance, elastic_moments = BeamModel.imbalance, BeamModel.elastic_moments
+
+    def rub(self, foot_x, angles):
+        self.data.xfrc_applied[:] = 0
+        imbalance(self, foot_x, angles)
+        pulled = np.zeros(self.model.nv)
+        for bead, normal, distance in zip(*self.contacts(), strict=True):
+            if distance < 0:
+                load = -distance * self.contact_stiffness
+                drag = FRICTION * load * np.array([-normal[1], normal[0], 0])  # to the right
+                geom = self._beads[bead]
+                body = self.model.geom_bodyid[geom]
+                at = self.data.geom_xpos[geom] - self._radius * np.array([*normal, 0])
+                arm = at - self.data.xipos[body]
+                self.data.xfrc_applied[body] += [*drag, *np.cross(arm, drag)]
+                mujoco.mj_applyFT(self.model, self.data, drag, np.zeros(3), at, body, pulled)
+        mujoco.mj_forward(self.model, self.data)  # for the clamp's sensors
+        self.pulled = self.beam.moments(pulled)
+        return self.beam.moments(self.moments()) + self.pulled
+
     monkeypatch.setattr(BeamModel, "imbalance", rub)
-    monkeypatch.setattr(BeamModel, "discrepancy", lambda self: 0.0)  # of contacts alone
-    case = replace(CASE, sweep=GRID)
-    found = measured(case, case, Settings(segments=20, tolerance=1e-6))
+    monkeypatch.setattr(BeamModel, "elastic_moments", lambda m: elastic_moments(m) + m.pulled)
+    monkeypatch.setattr(BeamModel, "discrepancy", lambda m: 0.0)  # it knows of contacts only
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("rubbing")
+def test_friction_left_on_is_suspected():
+    case = replace(CASE, sweep=replace(GRID, stations=24))
+    found = measured(case, case, Settings(segments=10, tolerance=1e-6))
     assert found.blame == "unexplained"
     assert found.suspects[0].name == "friction"
     assert found.suspects[0].change == pytest.approx(FRICTION, rel=0.2)
@@ -227,7 +232,8 @@ def test_friction_holds_back_and_is_the_mirror_image_to_the_right():
     inside = CASE.foot_x > solve_sweep(CASE).snap_off + 0.2
     touching = inside & (with_it.table["phase"] != "free").to_numpy()
     # The object pulls the vibrissa on to the right, so the clamp pulls it more to the left.
-    assert (with_it.values("force_x") <= solve_sweep(CASE).values("force_x"))[touching].all()
+    change = with_it.values("force_x") - solve_sweep(CASE).values("force_x")
+    assert (change[touching] < 1e-8).all()  # where it has just touched there is no load yet
     other_way = with_friction(CASE.mirrored(), 0.1)
     np.testing.assert_allclose(
         other_way.values("force_x"), -with_it.values("force_x"), rtol=0, atol=1e-9
@@ -236,6 +242,7 @@ def test_friction_holds_back_and_is_the_mirror_image_to_the_right():
         with_friction(CASE, 2.0)
 
 
+@pytest.mark.slow
 def test_a_polygon_has_no_facet_error():
     case = Case(
         profile=polygon([(-1.4, 1.0), (-0.6, 0.5), (0.2, 0.4), (1.0, 0.8), (1.6, 1.4)]),
@@ -243,12 +250,12 @@ def test_a_polygon_has_no_facet_error():
     )
     assert not has_primitive(case)
     found, _ = measure_budget(case, Settings(segments=20))
-    assert total(found, "facets") < 1e-9
+    assert total(found, "facets") < 1e-8  # two states at rest
     assert found.blame == "discretisation"
 
 
 def test_no_room_to_refine():
-    with pytest.raises(InputError, match="segments of a budget: 500; allowed: at most 250"):
+    with pytest.raises(InputError, match="segments of a budget = 500: must be at most 250"):
         controlled_changes(Settings(segments=500))
 
 
