@@ -233,7 +233,7 @@ def test_friction_holds_back_and_is_the_mirror_image_to_the_right():
     touching = inside & (with_it.table["phase"] != "free").to_numpy()
     # The object pulls the vibrissa on to the right, so the clamp pulls it more to the left.
     change = with_it.values("force_x") - solve_sweep(CASE).values("force_x")
-    assert (change[touching] < 1e-8).all()  # where it has just touched there is no load yet
+    assert (change[touching][1:] < 0).all()  # where it has just touched it is still straight
     other_way = with_friction(CASE.mirrored(), 0.1)
     np.testing.assert_allclose(
         other_way.values("force_x"), -with_it.values("force_x"), rtol=0, atol=1e-9

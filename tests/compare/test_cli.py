@@ -313,6 +313,7 @@ def test_an_offset_that_nothing_tells_is_one_line(rig):
     assert done.stderr.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_tolerances_from_files(tmp_path):
     """A case file's are those of its runs, a file's those of a comparison."""
     limits = '[tolerances]\nrms = { limit = 1e-9, reason = "to see it fail" }\n'
