@@ -4,16 +4,20 @@ import io
 import re
 from itertools import groupby
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from PIL import Image
 
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import Readings
+from analytic.problem.readings import CLAMP_READINGS, PHASES
 from compare.budget.budget import UNRESOLVED
 from compare.findings.collect import Run, collect
-from compare.findings.phases import Judgement, judgements
 from compare.findings.sentences import overview, sentences
 from compare.numbers import short
+from compare.phase_study import phase_table
+from compare.transitions import TRANSITIONS
 
 _COLOURS = 48  # that a picture keeps, which makes it a third as large
 
@@ -34,7 +38,7 @@ def write_findings(folder: Path, out: Path) -> list[Path]:
         If there is no run, or what one has left cannot be read.
     """
     runs = collect(folder)
-    judged = list(judgements(runs))
+    judged = phase_table(_recorded(runs)).to_dict("records")
     pictures = {
         f"budget-{run.folder.name}.png": _smaller(run.folder / "budget.png")
         for run in runs
@@ -52,7 +56,7 @@ def write_findings(folder: Path, out: Path) -> list[Path]:
     return [out / name for name in contents]
 
 
-def page(runs: list[Run], judged: list[Judgement]) -> str:
+def page(runs: list[Run], judged: list[dict[Any, Any]]) -> str:
     """The findings in Markdown."""
     environment = Environment(
         loader=PackageLoader("compare"),
@@ -67,10 +71,27 @@ def page(runs: list[Run], judged: list[Judgement]) -> str:
         cases={case: list(group) for case, group in groupby(runs, key=lambda run: run.case)},
         judged=judged,
         readings=CLAMP_READINGS,
+        phases=PHASES,
+        worst=_worst_transition,
         unresolved=UNRESOLVED,
         overview=overview(runs),
         sentences=sentences,
     )
+
+
+def _recorded(runs: list[Run]) -> dict[str, list[Readings]]:
+    """By case, the readings of its first run that has left them."""
+    found: dict[str, list[Readings]] = {}
+    for run in runs:
+        file = run.folder / f"mujoco-{run.beam}.parquet"
+        if run.case not in found and file.exists():
+            found[run.case] = [Readings.read(file)]
+    return found
+
+
+def _worst_transition(row: dict[str, Any]) -> float:
+    """How many stations the worst transition of a row of the phase table lies off."""
+    return float(np.nanmax([row[name] for name in TRANSITIONS]))
 
 
 def _plain(text: str) -> str:

@@ -9,7 +9,6 @@ from analytic import CASE_NAMES, InputError
 from compare import compare
 from compare.findings import write_findings
 from compare.findings.collect import Run, collect
-from compare.findings.phases import judgements
 from compare.findings.sentences import overview, sentences
 from compare.report import write_report
 from tests.compare.planted import planted
@@ -118,21 +117,7 @@ def test_page(folder, tmp_path):
     assert told.index("## catenary") < told.index("## parabola")
     assert "](budget-parabola-chain.png)" in told
     tables = [line.count("|") for line in told.splitlines() if line.startswith("|")]
-    assert set(tables) == {12, 8}  # every row has all its cells
-
-
-def test_phases_through_noise(folder):
-    """Observed: 1, 0.99, 0.925; without noise the transitions lie within 0.06 stations."""
-    found = list(judgements(collect(folder)))
-    assert [(one.case, one.noise) for one in found] == [
-        (case, noise) for case in ("catenary", "parabola") for noise in (0.0, 1e-3, 1e-2)
-    ]
-    for one in found:
-        assert one.right >= {0.0: 1.0, 1e-3: 0.98, 1e-2: 0.91}[one.noise]
-        assert one.table.to_numpy().sum() == 200
-        if one.noise == 0:
-            assert one.apart is not None
-            assert one.apart < 0.5
+    assert set(tables) == {12, 9}  # every row has all its cells
 
 
 def test_names_are_no_markup(tmp_path):
