@@ -3,6 +3,7 @@
 import importlib.util
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -21,10 +22,11 @@ CASE = Case(profile=circle(RADIUS, LOWEST), sweep=Sweep(200, stop=-1.26))  # the
 SEGMENTS, ELEMENTS = (10, 20, 40, 80, 160), (5, 10, 20, 40)
 # Okabe and Ito's palette, and markers, so that colour is not needed.
 _STYLES = {
-    "chain": {"color": "#0072B2", "marker": "o"},
-    "rod": {"color": "#D55E00", "marker": "s"},
-    "cable": {"color": "#CC79A7", "marker": "D"},
-    "Exudyn": {"color": "#000000", "marker": "^"},
+    "MuJoCo chain, mesh": {"color": "#0072B2", "marker": "o"},
+    "MuJoCo rod, mesh": {"color": "#D55E00", "marker": "s"},
+    "MuJoCo cable, mesh": {"color": "#CC79A7", "marker": "D"},
+    "MuJoCo chain, primitive": {"color": "#0072B2", "marker": "o", "linestyle": "--"},
+    "Exudyn, static ANCF cable": {"color": "#000000", "marker": "^"},
 }
 
 
@@ -41,10 +43,15 @@ def main() -> None:
     exact = solve_sweep(CASE)
     centre, surface = (LOWEST[0], LOWEST[1] + RADIUS), RADIUS + CASE.beam.radius
     runs: dict[str, dict[int, tuple[float, float]]] = {}
-    for beam in available_beams():
-        settings = {n: Settings(beam=beam, segments=n) for n in SEGMENTS}
-        runs[beam] = {n: _run(exact, partial(simulate_sweep, CASE, s)) for n, s in settings.items()}
-    runs["Exudyn"] = {n: _run(exact, partial(sweep, n, exact, surface, centre)) for n in ELEMENTS}
+    models = [Settings(beam=beam) for beam in available_beams()] + [Settings(obstacle="primitive")]
+    for model in models:
+        runs[f"MuJoCo {model.beam}, {model.obstacle}"] = {
+            n: _run(exact, partial(simulate_sweep, CASE, replace(model, segments=n)))
+            for n in SEGMENTS
+        }
+    runs["Exudyn, static ANCF cable"] = {
+        n: _run(exact, partial(sweep, n, exact, surface, centre)) for n in ELEMENTS
+    }
     table = Table(
         "model", "segments or elements", "CPU ms a station", "largest rms",
         title="200 stations past a circle; building the model included",
@@ -75,8 +82,7 @@ def plot(runs: dict[str, dict[int, tuple[float, float]]]) -> Figure:
     ax = figure.subplots()
     for name, sizes in runs.items():
         took, error = zip(*sizes.values(), strict=True)
-        label = "Exudyn, static ANCF cable" if name == "Exudyn" else f"MuJoCo {name}, mesh"
-        ax.loglog(took, error, label=label, **_STYLES[name])
+        ax.loglog(took, error, label=name, **_STYLES[name])
         for n, x, y in zip(sizes, took, error, strict=True):
             ax.annotate(str(n), (x, y), (5, 4), textcoords="offset points", fontsize=8)
     ax.set_title("Vibrissa past a circle: error against time on one core", fontsize=11)
