@@ -32,6 +32,7 @@ READING_SYMBOLS = {
 }
 _WIDTH = 9.0  # of a picture across the page, in inches
 _SHAPES = 24  # drawn of each sweep
+_BEYOND_TIP = 1.1  # L; as far as a noisy contact is drawn
 _NEAR = 0.03  # of the sweep's length: what is shown on either side of the snap-off
 
 
@@ -241,7 +242,9 @@ def _foot(readings: Readings) -> np.ndarray:
 def _reading(readings: Readings, name: str) -> np.ndarray:
     beam = readings.beam
     if name == "contact_arc_length":
-        return reconstruct(readings)[name].to_numpy(dtype=float) / beam.length
+        s = reconstruct(readings)[name].to_numpy(dtype=float) / beam.length
+        # Without a load the noise of a rig puts it anywhere; with one, a little beyond the tip.
+        return np.where((s > 0) & (s < _BEYOND_TIP), s, np.nan)
     unit = beam.moment_unit if name == "moment_z" else beam.force_unit
     return np.where(readings.trusted, readings.values(name) / unit, np.nan)
 
