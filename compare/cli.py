@@ -4,17 +4,12 @@ import json
 import math
 import os
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, cast
 
-import numpy as np
 import typer
-from rich.console import Console
-from rich.progress import Progress
-from rich.table import Column, Table
+from rich.table import Table
 
 from analytic import (
     CASE_NAMES,
@@ -25,11 +20,10 @@ from analytic import (
     solve_sweep,
 )
 from analytic import reconstruct as reconstruct_contour
-from analytic.problem.readings import CLAMP_READINGS
 from compare.animation import write_animation
 from compare.budget import Budget, controlled_changes, measure_budget
-from compare.budget.advice import Followed, follow_advice
-from compare.budget.figure import headline, picture
+from compare.budget.advice import follow_advice
+from compare.budget.figure import picture
 from compare.casefile import Job, load_job
 from compare.comparison import Comparison
 from compare.comparison import compare as compare_readings
@@ -38,10 +32,19 @@ from compare.findings import write_findings
 from compare.measured import read_measured, write_table, write_text
 from compare.paper_figures import paper_figures
 from compare.report import Film, write_report
-from compare.side_by_side import SideBySide
 from compare.side_by_side import picture as side_by_side_picture
 from compare.side_by_side import side_by_side as set_side_by_side
 from compare.study.cli import study, study_report
+from compare.terminal import (
+    NOTED,
+    TOLD,
+    progress,
+    side_by_side_tables,
+    tell_advice,
+    tell_budget,
+    tell_comparison,
+    tell_written,
+)
 from compare.tolerance_file import read_tolerances
 
 # Any wrong word on the command line; typer may bring its own copy of click, whose base this is.
@@ -57,8 +60,6 @@ app = typer.Typer(
 )
 app.command()(study)
 app.command()(study_report)
-_told = Console(highlight=False)
-_noted = Console(stderr=True, highlight=False)
 
 CaseName = Annotated[
     str, typer.Argument(metavar="CASE", help="A named case (see `vibrissa cases`) or a TOML file.")
@@ -110,8 +111,8 @@ def run(
     exact.write(folder / "analytic.parquet")
     simulated.write(folder / f"mujoco-{job.settings.beam}.parquet")
     if found is not None:
-        _tell_budget(found, job)
-    with _progress("frames", _FRAMES) as advance:
+        tell_budget(found, job.case.name)
+    with progress("frames", _FRAMES) as advance:
         gif, *stills = write_animation(exact, simulated, folder, _FRAMES, advance)
     return _finish(comparison, folder, found, Film(gif, stills[2]))
 
@@ -133,9 +134,9 @@ def analytic(
     folder = _folder(out, job)
     readings = solve_sweep(job.case, certified)
     drawn = paper_figures(job.case, readings) if figures else {}
-    _wrote(readings.write(folder / "analytic.parquet"))
+    tell_written(readings.write(folder / "analytic.parquet"))
     for name, figure in drawn.items():
-        _wrote(save_figure(figure, folder / f"{name}.png"))
+        tell_written(save_figure(figure, folder / f"{name}.png"))
     return AGREES if readings.trusted.all() else DISAGREES
 
 
@@ -158,8 +159,8 @@ def reconstruct(
     picture = reconstruction(readings, found)
     folder = out or Path("results") / f"{file.stem}-reconstructed"
     _make(folder)
-    _wrote(write_table(found.assign(foot_x=readings.values("foot_x")), folder / "points.csv"))
-    _wrote(save_figure(picture, folder / "reconstruction.png"))
+    tell_written(write_table(found.assign(foot_x=readings.values("foot_x")), folder / "points.csv"))
+    tell_written(save_figure(picture, folder / "reconstruction.png"))
     return AGREES
 
 
@@ -176,7 +177,7 @@ def simulate(
     """Sweep in MuJoCo."""
     job = _job(case, stations, segments, beam, obstacle, spatial)
     folder = _folder(out, job)
-    _wrote(_simulate(job, folder).write(folder / f"mujoco-{job.settings.beam}.parquet"))
+    tell_written(_simulate(job, folder).write(folder / f"mujoco-{job.settings.beam}.parquet"))
     return AGREES
 
 
@@ -210,9 +211,9 @@ def animate(
     job = _job(case, stations, segments, beam, obstacle)
     folder = _folder(out, job)
     exact, simulated = solve_sweep(job.case), _simulate(job, folder)
-    with _progress("frames", frames) as advance:
+    with progress("frames", frames) as advance:
         for path in write_animation(exact, simulated, folder, frames, advance):
-            _wrote(path)
+            tell_written(path)
     return AGREES
 
 
@@ -286,10 +287,10 @@ def side_by_side(
     drawn = side_by_side_picture(found)
     folder = out or Path("results") / "side-by-side"
     _make(folder)
-    for table in _side_by_side_tables(found)[: len(files)]:
-        _told.print(table)
-    _wrote(write_text(json.dumps(found.to_dict(), indent=2), folder / "side-by-side.json"))
-    _wrote(save_figure(drawn, folder / "side-by-side.png"))
+    for table in side_by_side_tables(found)[: len(files)]:
+        TOLD.print(table)
+    tell_written(write_text(json.dumps(found.to_dict(), indent=2), folder / "side-by-side.json"))
+    tell_written(save_figure(drawn, folder / "side-by-side.png"))
     return AGREES if all(one.agrees for one in found.against.values()) else DISAGREES
 
 
@@ -312,13 +313,13 @@ def budget(
     found, runs = _measure_budget(job)
     advice = None if target is None else follow_advice(job.case, found, runs, target)
     drawn = picture(found)
-    _tell_budget(found, job)
+    tell_budget(found, job.case.name)
     content = found.to_dict()
     if advice is not None:
-        _tell_advice(advice)
+        tell_advice(advice)
         content["advice"] = advice.to_dict()
-    _wrote(write_text(json.dumps(content, indent=2), folder / "budget.json"))
-    _wrote(save_figure(drawn, folder / "budget.png"))
+    tell_written(write_text(json.dumps(content, indent=2), folder / "budget.json"))
+    tell_written(save_figure(drawn, folder / "budget.png"))
     return AGREES if found.closes and (advice is None or advice.reached) else DISAGREES
 
 
@@ -331,7 +332,7 @@ def findings(
 ) -> int:
     """Write a page about all runs in a folder, there or elsewhere."""
     for path in write_findings(folder, out or folder):
-        _wrote(path)
+        tell_written(path)
     return AGREES
 
 
@@ -343,7 +344,7 @@ def cases() -> int:
         case = named_case(name)
         first, last = case.foot_x[[0, -1]]
         table.add_row(name, case.profile.label, f"{first:.3f} L", f"{last:.3f} L")
-    _told.print(table)
+    TOLD.print(table)
     return AGREES
 
 
@@ -368,7 +369,7 @@ def main() -> None:
 
 
 def _refuse(message: str) -> int:
-    _noted.print(f"vibrissa: {message}", soft_wrap=True, markup=False)
+    NOTED.print(f"vibrissa: {message}", soft_wrap=True, markup=False)
     return BAD_INPUT
 
 
@@ -423,63 +424,16 @@ def _simulate(job: Job, folder: Path) -> Readings:
     def keep(partial: Readings) -> None:
         path = partial.write(folder / f"mujoco-{job.settings.beam}.partial.parquet")
         stations = f"{len(partial.table)} of {job.case.sweep.stations} stations"
-        _noted.print(f"vibrissa: kept {stations} in {path}", soft_wrap=True, markup=False)
+        NOTED.print(f"vibrissa: kept {stations} in {path}", soft_wrap=True, markup=False)
 
-    with _progress(f"MuJoCo {job.settings.beam}", job.case.sweep.stations) as advance:
+    with progress(f"MuJoCo {job.settings.beam}", job.case.sweep.stations) as advance:
         return simulate_sweep(job.case, job.settings, advance, keep)
-
-
-@contextmanager
-def _progress(what: str, total: int) -> Iterator[Callable[[], None]]:
-    """A bar on a terminal, nothing elsewhere."""
-    with Progress(console=_noted, disable=not _noted.is_terminal, transient=True) as bar:
-        task = bar.add_task(what, total=total)
-        yield lambda: bar.advance(task)
 
 
 def _measure_budget(job: Job) -> tuple[Budget, dict[str, Readings]]:
     changes = len(set(controlled_changes(job.settings).values()))
-    with _progress("controlled changes", changes) as advance:
+    with progress("controlled changes", changes) as advance:
         return measure_budget(job.case, job.settings, advance)
-
-
-def _tell_budget(found: Budget, job: Job) -> None:
-    _told.print(_budget_table(found, job))
-    _told.print(f"{headline(found)}.", soft_wrap=True)
-    for suspect in found.suspects:
-        _told.print(
-            f"  suspect: {suspect.name} differs by {suspect.change:+.2%} "
-            f"(accounts for {suspect.share:.0%} of the unexplained)"
-        )
-
-
-def _budget_table(found: Budget, job: Job) -> Table:
-    table = Table("part", *CLAMP_READINGS, title=f"Budget of {job.case.name}, rms +- uncertainty")
-    for name, readings in found.parts.items():
-        cells = [f"{p.rms:.1e} +- {p.uncertainty:.0e}" for p in readings.values()]
-        table.add_row(name, *cells)
-    table.add_section()
-    table.add_row("disagreement", *(f"{x:.1e}" for x in found.disagreement.values()))
-    table.add_section()
-    for name, sizes in found.checks.items():
-        table.add_row(f"{name}, closed form alone", *(f"{x:.1e}" for x in sizes.values()))
-    return table
-
-
-def _tell_advice(advice: Followed) -> None:
-    settings = advice.foretold.settings
-    mesh = f" of {settings.contour_points} points" if settings.obstacle == "mesh" else ""
-    _told.print(
-        f"Cheapest for {advice.target:g}: {settings.beam} of {settings.segments} segments, "
-        f"{settings.obstacle}{mesh}, contact stiffness {settings.contact_stiffness:.1e}."
-    )
-    for told, error, seconds in (
-        ("foretold", advice.foretold.error, advice.foretold.seconds_a_station),
-        ("measured", advice.error, advice.seconds_a_station),
-    ):
-        _told.print(f"  {told}: {error:.1e} rms, {1e3 * seconds:.1f} ms a station")
-    if not advice.reached:
-        _told.print("  The target was missed: ask for a little less.")
 
 
 def _short(path: Path, files: list[Path]) -> str:
@@ -488,70 +442,10 @@ def _short(path: Path, files: list[Path]) -> str:
     return str(path.absolute().with_suffix("").relative_to(common))
 
 
-def _side_by_side_tables(found: SideBySide) -> tuple[Table, Table]:
-    """Against the reference, and the largest rms between the candidates."""
-    against = Table(
-        "", Column("candidate", overflow="fold"), *CLAMP_READINGS, "snap-off", "ms/station",
-        title=f"Against {found.reference}: rms relative to each reading's largest magnitude",
-    )  # fmt: skip
-    rows = found.table()
-    numbers = {name: str(i) for i, name in enumerate(found.against, 1)}
-    for row in rows[rows["reference"] == found.reference].to_dict("records"):
-        took, snap_off = row["seconds_per_station"], row["snap_off"]
-        against.add_row(
-            numbers[row["candidate"]],
-            row["candidate"],
-            *(f"{row[name]:.1e}" for name in CLAMP_READINGS),
-            "none" if np.isnan(snap_off) else f"{snap_off:+.1e}",
-            "" if np.isnan(took) else f"{1e3 * took:.1f}",
-        )
-    between = Table("", *list(numbers.values())[:-1], title="Each other: the largest rms")
-    worst = {
-        (row["reference"], row["candidate"]): max(row[name] for name in CLAMP_READINGS)
-        for row in rows.to_dict("records")
-    }
-    names = list(numbers)
-    for i, name in enumerate(names[1:], 1):
-        between.add_row(numbers[name], *(f"{worst[one, name]:.1e}" for one in names[:i]))
-    return against, between
-
-
 def _finish(
     comparison: Comparison, folder: Path, budget: Budget | None = None, film: Film | None = None
 ) -> int:
     report = write_report(comparison, folder, budget, film)
-    _told.print(_summary(comparison))
-    for failure in comparison.failures:
-        _told.print(f"  {failure}", soft_wrap=True, markup=False)
-    if comparison.likely is not None:
-        _told.print(f"  likely: {comparison.likely}", soft_wrap=True, markup=False)
-    _wrote(report)
+    tell_comparison(comparison)
+    tell_written(report)
     return AGREES if comparison.agrees else DISAGREES
-
-
-def _summary(comparison: Comparison) -> Table:
-    verdict = "[green]agrees[/]" if comparison.agrees else "[red]disagrees[/]"
-    table = Table(
-        "reading", "rms", "max", "at foot_x", "phase",
-        title=f"{comparison.candidate.source} {verdict} with {comparison.reference.source}",
-        caption="relative to each reading's largest magnitude",
-    )  # fmt: skip
-    for name in CLAMP_READINGS:
-        d = comparison.disagreement[name]
-        table.add_row(name, f"{d.rms:.1e}", f"{d.max:.1e}", f"{d.at:.4g}", d.phase)
-    table.add_section()
-    shift = comparison.snap_off.difference
-    agreement = comparison.phase_agreement()
-    table.add_row("snap-off", "", "none" if shift is None else f"{shift:+.1e}", "", "")
-    if agreement:
-        table.add_row("phases", "", f"{min(agreement.values()):.1%} right", "", "")
-    offset = comparison.offset
-    if offset.value or offset.uncertainty:
-        table.add_row("offset", "", f"{offset.value:+.4g}", f"+- {offset.uncertainty:.1g}", "")
-    if any(comparison.noise.level.values()):
-        table.add_row("noise", "", f"{max(comparison.noise.level.values()):.1e}", "", "")
-    return table
-
-
-def _wrote(path: Path) -> None:
-    _told.print(f"wrote {path}", soft_wrap=True, markup=False)
