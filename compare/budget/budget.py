@@ -24,7 +24,9 @@ PARTS = (
     "extension",
     "unexplained",
 )
-_SAFETY = 1.25  # Roache's, for a convergence index from three or more grids
+# Roache's, for a convergence index from three or more grids: how far the limit is from the finest
+# grid, and from what the two finest alone would make of it.
+_SAFETY = 1.25
 _ORDERS = (1.0, 2.0)  # what a chain can have: of a naive clamp, and of one at mid-cell
 UNRESOLVED = 5e-5
 """What may stay unexplained in any case, of a reading's largest magnitude."""
@@ -130,6 +132,7 @@ def budget(
     base, beam = runs["base"], exact.beam
     order = _order(run["stiff"] - run["two"], run["two"] - run["four"])
     limit = _limit(run["stiff"], run["two"], run["four"], order)
+    from_two = run["four"] + (run["four"] - run["two"]) / (2**order - 1)
     signals = {
         "discretisation": run["stiff"] - limit,
         "facets": run["calm"] - run["smooth"],
@@ -142,7 +145,7 @@ def budget(
     signals["unexplained"] = total - np.sum(list(signals.values()), axis=0)
     rms = {name: _rms(part) for name, part in signals.items()}
     uncertainty = {
-        "discretisation": _SAFETY * _rms(run["four"] - limit),
+        "discretisation": _SAFETY * (_rms(run["four"] - limit) + _rms(limit - from_two)),
         "facets": rms["unrest"],
         "softness": _SAFETY * rms["softness"] / (STIFFER - 1),
         "unrest": rms["unrest"],
