@@ -22,7 +22,7 @@ from analytic import (
 from analytic import reconstruct as reconstruct_contour
 from compare.animation import write_animation
 from compare.budget import Budget, controlled_changes, measure_budget
-from compare.budget.advice import follow_advice
+from compare.budget.advice import check_target, follow_advice
 from compare.budget.figure import picture
 from compare.casefile import Job, load_job
 from compare.comparison import Comparison
@@ -308,6 +308,8 @@ def budget(
     obstacle: Obstacle = None,
 ) -> int:
     """Split the disagreement into its parts, each measured by a change of its own."""
+    if target is not None:
+        check_target(target)
     job = _job(case, stations, segments, beam, obstacle)
     folder = _folder(out, job)
     found, runs = _measure_budget(job)

@@ -152,13 +152,17 @@ def follow_advice(
     InputError
         If no settings reach the target.
     """
-    if not 0 < target < 1:
-        raise InputError("--target", target, "between 0 and 1", "1e-3 is usual")
     base = Settings(**runs["base"].provenance["settings"])
     coarser = sweep_alone(case, coarser_mesh(base))
     foretold = advise(found, runs, coarser, target)
     made = sweep_alone(case, foretold.settings)
     return Followed(target, foretold, largest_rms(solve_sweep(case), made), _seconds(made))
+
+
+def check_target(target: float) -> None:
+    """Raise InputError unless `target` can be an error relative to a reading's magnitude."""
+    if not 0 < target < 1:
+        raise InputError("--target", target, "between 0 and 1", "1e-3 is usual")
 
 
 def _facets(mesh: Readings, smooth: Readings) -> np.ndarray:
