@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 from rich.console import Console
 from rich.table import Table
 
@@ -20,6 +21,7 @@ PLOT = Path("results/bench-exudyn.png")
 LOWEST, RADIUS = (0.0, 0.4), 1.0
 CASE = Case(profile=circle(RADIUS, LOWEST), sweep=Sweep(200, stop=-1.26))  # the fold is at -1.2705
 SEGMENTS, ELEMENTS = (10, 20, 40, 80, 160), (5, 10, 20, 40)
+_TICKS = (0.2, 0.5, 1, 2, 5, 10)  # ms
 # Okabe and Ito's palette, and markers, so that colour is not needed.
 _STYLES = {
     "MuJoCo chain, mesh": {"color": "#0072B2", "marker": "o"},
@@ -88,6 +90,8 @@ def plot(runs: dict[str, dict[int, tuple[float, float]]]) -> Figure:
     ax.set_title("Vibrissa past a circle: error against time on one core", fontsize=11)
     ax.set_xlabel("CPU time a station [ms]   (numbers: segments or elements)")
     ax.set_ylabel("largest rms of $F_{Ax}$, $F_{Ay}$, $M_{Az}$\nrelative to its largest magnitude")
+    ax.set_xticks(_TICKS, [f"{tick:g}" for tick in _TICKS])
+    ax.xaxis.set_minor_formatter(NullFormatter())
     ax.grid(which="both", alpha=0.25)
     ax.legend(frameon=False, fontsize=9)
     return figure
