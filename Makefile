@@ -41,7 +41,7 @@ bench: install   ## speed, side by side on one core; ARGS="analytic mujoco stepp
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench $(ARGS)
 
 results: $(RUNS) | install ## results/README.md: all named cases, all beams there are; goes on where it stopped
-	$(BIN)/python -m compare.overview results/overview.png
+	$(BIN)/python -m compare.simulate.overview results/overview.png
 	$(BIN)/vibrissa findings results/runs --out results
 
 again: install   ## the same, but forget the runs that are done

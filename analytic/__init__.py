@@ -3,20 +3,21 @@
 `analytic.problem` states the problem (beam, profile, case, readings); `analytic.solver` solves it.
 """
 
+from analytic.checks.certificate import certify
+from analytic.from_clamp.reconstruct import reconstruct, reconstruct_by_decision, relative_noise
+from analytic.from_clamp.sideways import sideways_stiffness
 from analytic.problem.beam import Beam
-from analytic.problem.case import CASE_NAMES, Case, Sweep, named_case
+from analytic.problem.case import Case, Sweep
+from analytic.problem.contours.families import catenary, circle, ellipse, parabola, two_circles
+from analytic.problem.contours.mesh_section import mesh_section
+from analytic.problem.contours.polygon import polygon
+from analytic.problem.contours.profile import Profile
+from analytic.problem.contours.through_points import through_points
 from analytic.problem.errors import InputError
-from analytic.problem.families import catenary, circle, ellipse, parabola, two_circles
-from analytic.problem.mesh_section import mesh_section
-from analytic.problem.polygon import polygon
-from analytic.problem.profile import Profile
+from analytic.problem.named import CASE_NAMES, named_case
 from analytic.problem.readings import Readings
-from analytic.problem.through_points import through_points
-from analytic.solver.certificate import certify
 from analytic.solver.contact import solve_contact
 from analytic.solver.events import Event, Events, find_events
-from analytic.solver.reconstruct import reconstruct, reconstruct_by_decision, relative_noise
-from analytic.solver.sideways import sideways_stiffness
 from analytic.solver.sweep import solve_sweep
 from analytic.solver.tilt import slip_off
 

@@ -7,12 +7,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from compare.align.offset import Offset, separate_lag
     from compare.comparison import Comparison, compare
-    from compare.gates import assert_agreement
-    from compare.measured import read_measured
-    from compare.offset import Offset, separate_lag
-    from compare.phases import Classification, classify
-    from compare.tolerances import Limit, Tolerances
+    from compare.judge.tolerances import Limit, Tolerances
+    from compare.read.rig import read_measured
+    from compare.sense.phases import Classification, classify
+    from compare.testing.gates import assert_agreement
 
 __all__ = [
     "Classification",
@@ -29,16 +29,16 @@ __all__ = [
 
 # Imported when first used: every run of pytest imports this package, for the plugin in it.
 _HOMES = {
-    "Classification": "phases",
+    "Classification": "sense.phases",
     "Comparison": "comparison",
-    "Limit": "tolerances",
-    "Offset": "offset",
-    "Tolerances": "tolerances",
-    "assert_agreement": "gates",
-    "classify": "phases",
+    "Limit": "judge.tolerances",
+    "Offset": "align.offset",
+    "Tolerances": "judge.tolerances",
+    "assert_agreement": "testing.gates",
+    "classify": "sense.phases",
     "compare": "comparison",
-    "read_measured": "measured",
-    "separate_lag": "offset",
+    "read_measured": "read.rig",
+    "separate_lag": "align.offset",
 }
 
 

@@ -1,86 +1,50 @@
-"""The comparison of two sweeps: how far apart, where, in which phase, and is that too far?"""
+"""The comparison of two sweeps: measured, judged by limits, and explained."""
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
-import pandas as pd
 
 from analytic import Readings
 from analytic.problem.readings import PHASES
-from compare.align import Alignment, align
-from compare.allowance import NoiseAllowance, noise_allowance
-from compare.causes import likely_cause
-from compare.disagreement import Disagreement, Place, disagreements
-from compare.failures import failures
-from compare.noise import checked_level, noise_level
-from compare.offset import Offset, estimate_offset, without_offset
-from compare.phases import Classification, classify, confusion
-from compare.tolerances import Tolerances
-from compare.transitions import TRANSITIONS, locate_transitions, snap_off
+from compare.explain.causes import likely_cause
+from compare.judge.allowance import NoiseAllowance, noise_allowance
+from compare.judge.failures import failures
+from compare.judge.tolerances import Tolerances
+from compare.measure.measurement import Measurement, measure
+from compare.sense.noise import checked_level, noise_level
 
 
 @dataclass(frozen=True)
-class Comparison:
-    """Two sweeps set side by side.
+class Comparison(Measurement):
+    """A measurement with its limits: what exceeds them, and what that looks like.
 
     Attributes
     ----------
-    disagreement : dict of Disagreement
-        By clamp reading.
-    alignment : Alignment
-        The compared stations, and why the others are not.
-    judged : dict of Classification
-        The phases that the clamp readings tell, of ``"reference"`` and ``"candidate"``.
-    confusion : dict of pandas.DataFrame
-        Those against the contact truth, where the source recorded it.
-    transitions : dict of Place
-        ``first_contact``, ``phase_b_start``, ``phase_b_end``.
-    snap_off : Place
-        The end of contact.
     tolerances : Tolerances
         Limits for the verdict.
-    offset : Offset
-        What was taken from the candidate's ``foot_x`` before anything else.
     noise : NoiseAllowance
         What noise adds to the limits.
     """
 
-    reference: Readings
-    candidate: Readings
-    alignment: Alignment
-    disagreement: dict[str, Disagreement]
-    judged: dict[str, Classification]
-    confusion: dict[str, pd.DataFrame]
-    transitions: dict[str, Place]
-    snap_off: Place
     tolerances: Tolerances
-    offset: Offset
     noise: NoiseAllowance
 
     @cached_property
     def failures(self) -> tuple[str, ...]:
         """Every limit that is exceeded, in a sentence each."""
-        return tuple(failures(self))
+        return tuple(failures(self, self.tolerances, self.noise))
 
     @cached_property
     def likely(self) -> str | None:
-        """What the disagreement looks like; None if it agrees, or like nothing known."""
-        return None if self.agrees else likely_cause(self)
+        """What the disagreement looks like; None if it agrees, or matches no known cause."""
+        return None if self.agrees else likely_cause(self, self.tolerances.snap_off_window)
 
     @property
     def agrees(self) -> bool:
         """Whether no tolerance is exceeded."""
         return not self.failures
-
-    def phase_agreement(self) -> dict[str, float]:
-        """Share of stations whose judged phase is the true one, by sweep."""
-        return {
-            which: float(np.trace(table) / table.to_numpy().sum())
-            for which, table in self.confusion.items()
-        }
 
     def to_dict(self) -> dict[str, Any]:
         """What ``comparison.json`` holds; lengths in the beam's unit, the rest relative."""
@@ -128,11 +92,16 @@ def compare(
         Limits for the verdict.
     offset : float or "auto"
         By how much the candidate's ``foot_x`` exceeds the reference's for one and the same place
-        [length]; ``"auto"`` has it estimated from the readings.
+        [length]; ``"auto"`` estimates it from the readings.
     noise : float or "auto"
         Standard deviation of the clamp readings' noise over their largest magnitude. The limits are
-        widened by what such noise does. ``"auto"`` has it estimated from both sweeps, which takes
+        widened by what such noise does. ``"auto"`` estimates it from both sweeps, and takes
         everything for noise that jumps from station to station.
+
+    Returns
+    -------
+    Comparison
+        The measurement, its verdict and its likely cause.
 
     Raises
     ------
@@ -141,43 +110,15 @@ def compare(
         the noise is no share of the largest magnitude.
     """
     tolerances = Tolerances() if tolerances is None else tolerances
-    judged = {"reference": classify(reference), "candidate": classify(candidate)}
-    shift = (
-        estimate_offset(reference, candidate, judged["reference"], judged["candidate"])
-        if offset == "auto"
-        else Offset(offset)
-    )
-    candidate = without_offset(candidate, shift.value)
-    alignment = align(reference, candidate, judged["reference"], judged["candidate"])
-    level = noise_level(reference, candidate) if noise == "auto" else checked_level(noise)
+    found = measure(reference, candidate, tolerances.snap_off_window, offset)
+    level = noise_level(reference, found.candidate) if noise == "auto" else checked_level(noise)
     allowance = noise_allowance(reference, level)
-    ends = snap_off(reference, judged["reference"]), snap_off(candidate, judged["candidate"])
-    snap = Place(ends[0][0], ends[1][0], ends[0][1] + ends[1][1] + shift.uncertainty)
-    sweeps: Mapping[str, Readings] = {"reference": reference, "candidate": candidate}
-    places = {which: locate_transitions(sweep, judged[which]) for which, sweep in sweeps.items()}
+    widened = {
+        name: replace(place, uncertainty=place.uncertainty + allowance.transitions.get(name, 0.0))
+        for name, place in found.transitions.items()
+    }
     return Comparison(
-        reference,
-        candidate,
-        alignment,
-        disagreements(reference, alignment.table, snap, tolerances),
-        judged,
-        {
-            which: confusion(judged[which], sweep)
-            for which, sweep in sweeps.items()
-            if "phase" in sweep.table
-        },
-        {
-            name: Place(
-                places["reference"][name],
-                places["candidate"][name],
-                shift.uncertainty + allowance.transitions.get(name, 0.0),
-            )
-            for name in TRANSITIONS
-        },
-        snap,
-        tolerances,
-        shift,
-        allowance,
+        **(vars(found) | {"transitions": widened}), tolerances=tolerances, noise=allowance
     )
 
 

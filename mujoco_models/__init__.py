@@ -72,7 +72,7 @@ def simulate_sweep(
     ClampError
         If that discrepancy is more than the station's residual can explain.
     """
-    from mujoco_models.sweep import run_sweep
+    from mujoco_models.sweep.sweep import run_sweep
 
     chosen = settings or Settings()
 
@@ -85,8 +85,8 @@ def simulate_sweep(
 
 
 def load_tip(load: float, settings: Settings | None = None) -> tuple[float, float]:
-    """Tip of a cantilever under a dead load; see `mujoco_models.cantilever.load_tip`."""
-    from mujoco_models import cantilever
+    """Tip of a cantilever under a dead load; see `mujoco_models.sweep.cantilever.load_tip`."""
+    from mujoco_models.sweep import cantilever
 
     return cantilever.load_tip(load, settings or Settings())
 

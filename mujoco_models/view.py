@@ -10,10 +10,10 @@ import numpy as np
 
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
-from mujoco_models.model import BeamModel
+from mujoco_models.model.model import BeamModel
 from mujoco_models.obstacles.protocol import GEOM_PREFIX
 from mujoco_models.settings import Settings
-from mujoco_models.sweep import set_out
+from mujoco_models.sweep.sweep import set_out
 
 _PAUSE = 0.04  # s, after every station
 _BODY, _VIBRISSA = (0.7, 0.72, 0.76, 0.5), (0.95, 0.65, 0.0, 1.0)

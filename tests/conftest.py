@@ -7,7 +7,7 @@ import pytest
 from analytic import CASE_NAMES, Case, Readings, named_case, solve_sweep
 from mujoco_models import Settings, simulate_sweep
 
-collect_ignore = ["examples"]  # for users; run as they would by compare/test_plugin.py
+collect_ignore = ["examples"]  # for users; run as they would by compare/testing/test_plugin.py
 
 
 @cache

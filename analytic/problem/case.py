@@ -10,9 +10,9 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
-from analytic.problem.contour import Contour
+from analytic.problem.contours.contour import Contour
+from analytic.problem.contours.families import catenary
 from analytic.problem.errors import InputError
-from analytic.problem.families import catenary, parabola, two_circles
 from analytic.problem.reach import contact_range, out_of_reach
 
 Direction: TypeAlias = Literal["left", "right"]
@@ -197,32 +197,3 @@ class Case:
             mirrored = self.centreline.mirrored()
             return (_MARGIN - out_of_reach(mirrored, *contact_range(mirrored))) * self.beam.length
         return (out_of_reach(self.centreline, *self.reach) - _MARGIN) * self.beam.length
-
-
-_NAMED_PROFILES = {
-    "catenary": catenary(0.5, -0.8),  # the paper's g1
-    "parabola": parabola(0.5, 0.5),  # g2
-    "two-circles": two_circles(),  # g3
-    "shallow-catenary": catenary(0.25, -0.8),  # the profile of fig. 12
-    "tip-only": catenary(0.5, -0.2),  # g1 raised by 0.6: no Phase B
-}
-
-CASE_NAMES = tuple(_NAMED_PROFILES)
-
-
-def named_case(name: str) -> Case:
-    """One of the five named cases, with the default beam and sweep.
-
-    Raises
-    ------
-    InputError
-        If there is no case of that name.
-    """
-    if name not in _NAMED_PROFILES:
-        raise InputError(
-            "case",
-            repr(name),
-            f"one of {', '.join(CASE_NAMES)}, or a TOML file",
-            "see `vibrissa cases`",
-        )
-    return replace(Case(profile=_NAMED_PROFILES[name]), name=name)

@@ -7,7 +7,7 @@ vibrissa's centreline feels (`Contour.offset`).
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from analytic.problem.contour import Contour
+from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
 
 

@@ -1,7 +1,6 @@
 """One sweep's readings: the table that every engine, rig and comparison speaks."""
 
 import json
-import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -15,6 +14,7 @@ import pyarrow.parquet as pq
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError
+from analytic.problem.files import whole_file
 
 CLAMP_READINGS = ("force_x", "force_y", "moment_z")
 SENSED = ("foot_x", *CLAMP_READINGS)
@@ -140,23 +140,19 @@ class Readings:
         The file appears whole or not at all.
         """
         path = Path(path)
-        partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
         metadata = json.dumps(
             {"beam": asdict(self.beam), "source": self.source, "provenance": dict(self.provenance)}
         )
-        try:
+        with whole_file(path) as unfinished:
             if _is_csv(path):
-                with partial.open("w", encoding="utf-8") as file:
+                with unfinished.open("w", encoding="utf-8") as file:
                     file.write(_CSV_PREFIX + metadata + "\n")
                     self.table.to_csv(file, index=False)
             else:
                 columns = pa.Table.from_pandas(self.table, preserve_index=False)
                 kept = columns.schema.metadata or {}
                 columns = columns.replace_schema_metadata({**kept, _METADATA_KEY: metadata})
-                pq.write_table(columns, partial)
-            partial.replace(path)
-        finally:
-            partial.unlink(missing_ok=True)
+                pq.write_table(columns, unfinished)
         return path
 
     @staticmethod

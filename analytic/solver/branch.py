@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from analytic.problem.arrays import Booleans, Floats, Integers
-from analytic.problem.contour import Contour
+from analytic.problem.contours.contour import Contour
 from analytic.solver.equilibria import equilibria, tangent_contact
 
 _COARSE = 301  # samples of the whole contour to find the snap-off between; the fold is then exact
@@ -55,7 +55,7 @@ class Branch:
         """Contour parameter of the last equilibrium that is stable in space; None if all are.
 
         It is the contour's lowest point, or what a sweep along a polygon visits last before it
-        passes that in a jump; see `analytic.solver.sideways`.
+        passes that in a jump; see `analytic.from_clamp.sideways`.
         """
         lowest = self.centreline.parameter(np.zeros(1))
         if lowest[0] <= self.snap_off:

@@ -5,7 +5,7 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from analytic.problem.beam import Beam
-from analytic.problem.contour import Contour
+from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
 from analytic.solver.equilibria import equilibria, to_columns
 

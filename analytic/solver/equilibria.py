@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.beam import Beam
-from analytic.problem.contour import Contour, ContourPoint
+from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.solver.elastica import (
     Frame,
     Span,

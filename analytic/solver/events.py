@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
-from analytic.problem.contour import Contour
+from analytic.problem.contours.contour import Contour
 from analytic.problem.reach import contact_range
 from analytic.solver.branch import surplus, trace
 from analytic.solver.elastica import frame
@@ -42,7 +42,7 @@ class Events:
     Phase B is here from its first start to its last end. ``contact_length_minimum`` is that of
     eq. 21 even where it exceeds the vibrissa's length: then there is no Phase B, and only its
     angle, contact point and arc length have a meaning. ``out_of_plane`` is where a vibrissa that
-    nothing guides leaves the plane of the sweep (`analytic.solver.sideways`); what is after it
+    nothing guides leaves the plane of the sweep (`analytic.from_clamp.sideways`); what is after it
     happens to one that is guided.
     """
 

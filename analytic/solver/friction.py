@@ -12,7 +12,7 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.case import Case
-from analytic.problem.contour import Contour
+from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
 from analytic.problem.mirror import solve_either_way
 from analytic.problem.readings import CLAMP_READINGS, Readings

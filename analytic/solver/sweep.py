@@ -7,12 +7,12 @@ from importlib.metadata import version
 import numpy as np
 import pandas as pd
 
+from analytic.checks.certificate import certify
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.mirror import solve_either_way
 from analytic.problem.readings import CLAMP_READINGS, COLUMNS, Readings
 from analytic.solver.branch import Branch, trace
-from analytic.solver.certificate import certify
 from analytic.solver.equilibria import (
     Column,
     Equilibria,

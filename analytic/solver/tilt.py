@@ -2,8 +2,8 @@
 
 Untwisted and with a moment everywhere normal to the force, the vibrissa lies in the plane of the
 force F = f (sin alpha, -cos alpha, 0) and of the tangent c = (0, cos tilt, sin tilt) at its clamp
-(`analytic.solver.sideways`). In that plane it is the planar vibrissa of slope angle lean, the angle
-between c and -F: cos(lean) = cos(alpha) cos(tilt). Its end, `up` along c and `across` along
+(`analytic.from_clamp.sideways`). In that plane it is the planar vibrissa of slope angle lean, the
+angle between c and -F: cos(lean) = cos(alpha) cos(tilt). Its end, `up` along c and `across` along
 e = (F/f + cos(lean) c)/sin(lean), is at
 
     eta = up cos(tilt) - across cos(alpha) sin(tilt)^2/sin(lean)
@@ -22,7 +22,7 @@ from scipy.optimize import minimize_scalar
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
-from analytic.problem.contour import Contour
+from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
 from analytic.problem.reach import contact_range
 from analytic.solver.elastica import Span, frame, span

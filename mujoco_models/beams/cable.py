@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from mujoco_models.beams.balls import Balls
+from mujoco_models.beams.coordinates import Balls
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.protocol import FOOT
 from mujoco_models.beams.strip import vertices

@@ -11,8 +11,8 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from mujoco_models.beams import links
-from mujoco_models.beams.balls import Balls
 from mujoco_models.beams.chain import Chain
+from mujoco_models.beams.coordinates import Balls
 from mujoco_models.beams.rod import Rod
 
 

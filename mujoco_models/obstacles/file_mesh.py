@@ -8,8 +8,8 @@ from scipy.spatial import ConvexHull
 
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
+from analytic.problem.contours.solid import ConvexMesh
 from analytic.problem.errors import InputError
-from analytic.problem.solid import ConvexMesh
 from mujoco_models.obstacles.faceted import Faceted, add_hull, touchable
 
 _MOST_VERTICES = 50_000  # the hull of a round body takes MuJoCo half a second then

@@ -15,7 +15,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
-from analytic.problem.polygon import Polygon
+from analytic.problem.contours.polygon import Polygon
 from mujoco_models.obstacles.faceted import Faceted, add_hull, touchable
 
 _FINE = 32  # vertices at full resolution on either side of a window's centre, at least

@@ -7,7 +7,7 @@ from rich.console import Console
 from rich.table import Table
 
 from analytic import Beam, catenary, find_events, named_case, solve_contact, solve_sweep
-from analytic.independent import boundary_value_problem, tip_angle_by_shooting
+from analytic.checks import boundary_value_problem, tip_angle_by_shooting
 from tests.bench.timing import seconds
 
 THIN = Beam(radius=0.0)

@@ -1,4 +1,4 @@
-"""Plain time stepping to the same balance: what one would write without `mujoco_models.rest`.
+"""Plain time stepping to the same balance: what one would write without `mujoco_models.sweep.rest`.
 
 The very same model, tuned as well as it can be: the discrete integrator, implicit in springs and
 contacts; every joint a critically damped oscillator with one and the same frequency; and, where
@@ -15,8 +15,8 @@ from rich.table import Table
 
 from analytic import Case, Sweep, named_case
 from mujoco_models import Settings
-from mujoco_models.model import BeamModel
-from mujoco_models.sweep import Walk, set_out
+from mujoco_models.model.model import BeamModel
+from mujoco_models.sweep.sweep import Walk, set_out
 
 STATIONS = 100
 CAP = 2_000  # steps a station

@@ -8,12 +8,12 @@ from pathlib import Path
 
 from rich.console import Console
 
-from compare.study.crews import local_crew
-from compare.study.execute import carry_out
-from compare.study.plan import Plan, Run
-from compare.study.run import Recipe, Result
-from compare.study.studyfile import load_study
-from tests.study.conftest import EVENTS_ONLY, vibrissa
+from compare.study.grid.file import load_study
+from compare.study.grid.plan import Plan, Run
+from compare.study.work.crews import local_crew
+from compare.study.work.execute import carry_out
+from compare.study.work.run import Recipe, Result
+from tests.compare.study.conftest import EVENTS_ONLY, vibrissa
 
 _RUNS = 2_000
 

@@ -1,9 +1,8 @@
 """Budgets with planted numbers."""
 
 from analytic.problem.readings import CLAMP_READINGS
-from compare.budget import Budget, Part
-from compare.budget.budget import PARTS
-from compare.budget.suspects import Suspect
+from compare.explain.budget import PARTS, Budget, Part
+from compare.explain.suspects import Suspect
 
 
 def planted(

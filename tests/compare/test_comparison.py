@@ -8,9 +8,9 @@ import pytest
 from analytic import Beam, Case, Readings, Sweep, find_events, named_case, solve_sweep
 from analytic.problem.readings import CLAMP_READINGS
 from compare import Tolerances, assert_agreement, classify, compare
-from compare.noise import reading_noise
-from compare.phases import confusion
-from compare.transitions import locate_transitions
+from compare.sense.noise import reading_noise
+from compare.sense.phases import confusion
+from compare.sense.transitions import locate_transitions
 
 
 def changed(sweep: Readings, **columns) -> Readings:

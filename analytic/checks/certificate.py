@@ -1,0 +1,62 @@
+"""A certificate for every station: its conditions, checked by a route of their own."""
+
+import numpy as np
+import pandas as pd
+
+from analytic.checks.integration import integrate_span
+from analytic.problem.readings import Readings
+
+
+def certify(readings: Readings) -> pd.DataFrame:
+    """How well each station meets its boundary conditions and the balance of moments.
+
+    The clamp's force and moment are marched along the elastica by a Runge-Kutta method up to the
+    contact that the readings state; no elliptic integral takes part.
+
+    Parameters
+    ----------
+    readings : Readings
+        A sweep with its contact columns.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a station, dimensionless. ``residual_boundary`` is the largest of the misses of the
+        contact's position, of zero curvature there, of the slope there (the contour's in Phase B,
+        the tip's in Phase A) and of the force's direction, normal to the contour;
+        ``residual_moment`` is that of M = F_y (xi - x0) - F_x eta. Zero where the vibrissa is free,
+        NaN where the readings have no contact to check.
+    """
+    if readings.bends_left:
+        return certify(readings.mirrored())
+    beam = readings.beam
+    length = beam.length
+    force_x = readings.values("force_x") / beam.force_unit
+    force_y = readings.values("force_y") / beam.force_unit
+    moment = readings.values("moment_z") / beam.moment_unit
+    alpha = readings.values("contact_angle")
+    x = (
+        readings.values("contact_x") + beam.radius * np.sin(alpha) - readings.values("foot_x")
+    ) / length
+    y = (readings.values("contact_y") - beam.radius * np.cos(alpha)) / length
+    arc_length = readings.values("contact_arc_length") / length
+    phase = readings.table["phase"].to_numpy()
+    slope = np.where(phase == "tangent", alpha, readings.values("tip_angle"))
+
+    touching = np.isfinite(arc_length)
+    boundary = np.where(phase == "free", 0.0, np.nan)
+    balance = np.where(phase == "free", np.abs(moment), np.nan)
+    if touching.any():
+        end = integrate_span(
+            force_x[touching], force_y[touching], moment[touching], arc_length[touching]
+        )
+        misses = [
+            end.x - x[touching],
+            end.y - y[touching],
+            end.phi - slope[touching],
+            end.kappa,
+            (np.arctan2(-force_x, force_y) - alpha)[touching],
+        ]
+        boundary[touching] = np.abs(misses).max(axis=0)
+        balance[touching] = np.abs(moment - (force_y * x - force_x * y))[touching]
+    return pd.DataFrame({"residual_boundary": boundary, "residual_moment": balance})

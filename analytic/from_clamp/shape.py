@@ -1,0 +1,78 @@
+"""The deflected vibrissa, drawn from what its clamp feels."""
+
+import numpy as np
+
+from analytic.from_clamp.reconstruct import reconstruct
+from analytic.problem.arrays import Floats
+from analytic.problem.readings import SENSED, Readings
+
+_STEPS = 64  # of a fourth-order method: far below the width of a line
+
+
+def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
+    """Centrelines of the vibrissa at every station, from foot position, clamp force and moment.
+
+    Integrates kappa(s) = -M_Az + F_Ay (x - x0) - F_Ax y from the clamp to the contact, beyond which
+    the vibrissa is straight (paper, eqs. 4 and 14).
+
+    Parameters
+    ----------
+    readings : Readings
+        Only the four sensed columns are used.
+
+    Returns
+    -------
+    x, y : array, shape (stations, 66)
+        Coordinates [length].
+    """
+    beam = readings.beam
+    foot_x = readings.values("foot_x") / beam.length
+    force_x = readings.values("force_x") / beam.force_unit
+    force_y = readings.values("force_y") / beam.force_unit
+    moment = readings.values("moment_z") / beam.moment_unit
+    loaded = reconstruct(readings)["contact_arc_length"].to_numpy(dtype=float) / beam.length
+    loaded = np.minimum(np.nan_to_num(loaded, nan=1.0), 1.0)
+
+    def rate(state: Floats) -> Floats:
+        x, y, phi = state
+        kappa = -moment + force_y * x - force_x * y
+        return np.stack([np.cos(phi), np.sin(phi), kappa])
+
+    step = loaded / _STEPS
+    states = [
+        np.stack([np.zeros_like(foot_x), np.zeros_like(foot_x), np.full_like(foot_x, np.pi / 2)])
+    ]
+    for _ in range(_STEPS):
+        state = states[-1]
+        k1 = rate(state)
+        k2 = rate(state + step / 2 * k1)
+        k3 = rate(state + step / 2 * k2)
+        k4 = rate(state + step * k3)
+        states.append(state + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
+    x, y, phi = states[-1]
+    rest = 1 - loaded
+    states.append(np.stack([x + rest * np.cos(phi), y + rest * np.sin(phi), phi]))
+    path = np.stack(states, axis=-1)
+    return (path[0] + foot_x[:, None]) * beam.length, path[1] * beam.length
+
+
+def curvatures(readings: Readings, x: Floats, y: Floats) -> Floats:
+    """Curvature along the centrelines that `deflected_shapes` drew of these readings.
+
+    Parameters
+    ----------
+    readings : Readings
+        Only the four sensed columns are used.
+    x, y : array, shape (stations, points)
+        Coordinates [length]; the last point is the tip, which carries no moment.
+
+    Returns
+    -------
+    array, shape (stations, points)
+        kappa [1/length], positive where the vibrissa bends to the left of its way from clamp to
+        tip.
+    """
+    foot_x, force_x, force_y, moment = (readings.values(name)[:, None] for name in SENSED)
+    kappa = (force_y * (x - foot_x) - force_x * y - moment) / readings.beam.flexural_rigidity
+    kappa[:, -1] = 0.0
+    return kappa

@@ -1,0 +1,187 @@
+"""The lower side of a convex polygon: what the section of a mesh is, with nothing left out."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from analytic.problem.arrays import Floats
+from analytic.problem.contours.contour import Contour, ContourPoint
+from analytic.problem.contours.solid import ConvexMesh
+from analytic.problem.errors import InputError
+
+_STRAIGHT = 1e-12  # rad; vertices that turn less are dropped: they are on an edge
+
+
+@dataclass(frozen=True, eq=False)
+class Polygon(Contour):
+    """The lower chain of a convex polygon, or its parallel curve; made by `polygon`.
+
+    Along an edge the slope angle stays and the point moves; round a vertex the point stays, or
+    moves on an arc about it on the parallel curve, and the angle moves. The parameter t counts arc
+    length along the edges and angle round the vertices, from the left end.
+
+    Parameters
+    ----------
+    vertices : array, shape (n, 2)
+        From the leftmost to the rightmost vertex along the lower side [length].
+    distance : float
+        Of the parallel curve from the polygon [length].
+    label : str
+        What reports call the contour.
+    solid : ConvexMesh, optional
+        What it is the section of.
+    """
+
+    vertices: Floats
+    distance: float = 0.0
+    label: str = "polygon"
+    solid: ConvexMesh | None = None
+
+    @property
+    def t_range(self) -> tuple[float, float]:
+        """From the left end, turned to the vertical, to the right one."""
+        return 0.0, float(self._starts[-1])
+
+    def at(self, t: Floats) -> ContourPoint:
+        """Points at parameters `t`, shape (n,)."""
+        t = np.asarray(t, dtype=float)
+        piece = np.clip(np.searchsorted(self._starts, t, side="right") - 1, 0, self._last)
+        along = t - self._starts[piece]
+        on_edge = piece % 2 == 1  # pieces take turns: vertex, edge, vertex, ...
+        vertex = piece // 2
+        before, after = self._angles[vertex], self._angles[vertex + 1]
+        alpha = np.where(on_edge, after, np.minimum(before + along, after))
+        shift = np.where(on_edge, along, 0.0)
+        xi = self.vertices[vertex, 0] + shift * np.cos(alpha) + self.distance * np.sin(alpha)
+        eta = self.vertices[vertex, 1] + shift * np.sin(alpha) - self.distance * np.cos(alpha)
+        turning = np.where(on_edge, 0.0, 1.0)
+        return ContourPoint(alpha, xi, eta, turning, np.where(on_edge, 1.0, self.distance))
+
+    def parameter(self, alpha: Floats) -> Floats:
+        """Parameter of the leftmost point with slope angle `alpha`; on an edge, its left end."""
+        vertex = np.searchsorted(self._angles[1:-1], alpha)
+        return np.asarray(self._starts[2 * vertex] + alpha - self._angles[vertex])
+
+    def breaks(self) -> Floats:
+        """The ends of all edges."""
+        return self._starts[1:-1]
+
+    def outline(self, begin: float, end: float, points: int) -> Floats:
+        """The polygon's own vertices between the two parameters, and the points there."""
+        ends = replace(self, distance=0.0).at(np.array([begin, end]))
+        inside = (self._starts[::2] > begin) & (self._starts[1::2] < end)
+        chain = np.vstack(
+            [[ends.xi[0], ends.eta[0]], self.vertices[inside], [ends.xi[1], ends.eta[1]]]
+        )
+        apart = np.append(True, np.hypot(*np.diff(chain, axis=0).T) > 0)
+        return np.asarray(chain[apart])
+
+    def offset(self, radius: float) -> "Polygon":
+        """The parallel curve: the edges moved out, joined by arcs about the vertices."""
+        return replace(self, distance=self.distance + radius, solid=None)
+
+    def scaled(self, factor: float) -> "Polygon":
+        """The polygon enlarged by `factor` about the origin."""
+        return replace(
+            self,
+            vertices=factor * self.vertices,
+            distance=factor * self.distance,
+            solid=self.solid and self.solid.scaled(factor),
+        )
+
+    def mirrored(self) -> "Polygon":
+        """The mirror image: x becomes -x; the vertices still run from left to right."""
+        vertices = self.vertices[::-1] * [-1, 1]
+        return replace(
+            self,
+            vertices=vertices,
+            label=f"{self.label}, mirrored",
+            solid=self.solid and self.solid.mirrored(),
+        )
+
+    @cached_property
+    def _angles(self) -> Floats:
+        """Slope angles of the edges, between those of the upright sides."""
+        run, rise = np.diff(self.vertices, axis=0).T
+        return np.concatenate([[-np.pi / 2], np.arctan2(rise, run), [np.pi / 2]])
+
+    @cached_property
+    def _starts(self) -> Floats:
+        """Parameter at which each piece starts, and at which the last one ends."""
+        lengths = np.empty(2 * len(self.vertices) - 1)
+        lengths[0::2] = np.diff(self._angles)
+        lengths[1::2] = np.hypot(*np.diff(self.vertices, axis=0).T)
+        return np.concatenate([[0.0], np.cumsum(lengths)])
+
+    @property
+    def _last(self) -> int:
+        return len(self._starts) - 2
+
+
+def polygon(points: ArrayLike, label: str = "polygon") -> Polygon:
+    """The lower side of a convex polygon, exact to the last vertex.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        The vertices in order, either way round [length]. Only the lower side, from the leftmost to
+        the rightmost vertex, can be touched.
+    label : str
+        What reports call the contour.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than 3 points, one is not finite, two neighbours coincide, all lie on a
+        line, the contour intersects itself, or a vertex is a dent.
+    """
+    vertices = np.asarray(points, dtype=float)
+    if vertices.ndim != 2 or vertices.shape[1] != 2 or len(vertices) < 3:
+        raise InputError(
+            "polygon", f"of shape {vertices.shape}", "three or more points (x, y)", "add vertices"
+        )
+    if not np.isfinite(vertices).all():
+        i = int(np.argmin(np.isfinite(vertices).all(axis=1)))
+        raise InputError(f"polygon vertex {i}", vertices[i], "finite", "mend or drop it")
+    if (vertices[0] == vertices[-1]).all():
+        vertices = vertices[:-1]  # closed explicitly
+    edges = np.roll(vertices, -1, axis=0) - vertices
+    short = np.hypot(*edges.T) == 0
+    if short.any():
+        i = int(np.argmax(short))
+        raise InputError(
+            f"polygon vertex {i}", vertices[i], "apart from the next one", "drop one of the two"
+        )
+    before = np.roll(edges, 1, axis=0)
+    cross = before[:, 0] * edges[:, 1] - before[:, 1] * edges[:, 0]
+    turn = np.arctan2(cross, (before * edges).sum(axis=1))
+    if turn.sum() < 0:
+        return polygon(vertices[::-1], label)
+    if np.abs(turn).max() > np.pi - 1e-9 or turn.sum() < np.pi:
+        raise InputError(
+            "polygon", f"with a total turn of {np.rad2deg(turn.sum()):.4g} deg", "convex, 360 deg",
+            "it folds back or crosses itself: give the vertices in order",
+        )  # fmt: skip
+    if turn.min() < -_STRAIGHT:
+        i = int(np.argmin(turn))
+        raise InputError(
+            f"polygon vertex {i}, ({vertices[i, 0]:.6g}, {vertices[i, 1]:.6g}),",
+            f"a dent of {np.rad2deg(-turn[i]):.4g} deg",
+            "convex",
+            "drop it or take the convex hull",
+        )
+    if turn.sum() > 3 * np.pi:
+        raise InputError(
+            "polygon", f"winding {turn.sum() / 2 / np.pi:.0f} times", "simple", "it crosses itself"
+        )
+    return Polygon(_lower_side(vertices[turn > _STRAIGHT]), label=label)
+
+
+def _lower_side(vertices: Floats) -> Floats:
+    """From the leftmost to the rightmost vertex of a counterclockwise polygon, lower ones first."""
+    first = np.lexsort((vertices[:, 1], vertices[:, 0]))[0]
+    ordered = np.roll(vertices, -first, axis=0)
+    last = np.lexsort((ordered[:, 1], -ordered[:, 0]))[0]
+    return np.asarray(ordered[: last + 1])

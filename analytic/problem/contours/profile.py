@@ -1,0 +1,197 @@
+"""A strictly convex contour, as triples (alpha, xi, eta) by slope angle."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import TypeAlias
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.problem.contours.contour import Contour, ContourPoint
+from analytic.problem.errors import InputError
+
+Curve: TypeAlias = Callable[[Floats], Floats]
+
+_DIFFERENCE_STEP = 5e-3  # rad: round-off eps/h and truncation h^6 are both about 1e-13 here
+
+
+@dataclass(frozen=True)
+class Profile(Contour):
+    """A strictly convex C1 contour seen from below, parametrised by its slope angle alpha.
+
+    Beyond its range of slope angles the contour is a corner: the body ends there, and the vibrissa
+    turns about the end point before it slides off.
+
+    Parameters
+    ----------
+    xi, eta : callable
+        Coordinates of the contour point with slope angle ``alpha`` [length]; each maps an array of
+        angles [rad] to an array of the same shape.
+    alpha_range : tuple of float
+        Smallest and largest slope angle of the contour [rad], within [-pi/2, pi/2].
+    radius_of_curvature : callable, optional
+        d(arc length)/d(alpha) [length]; by sixth-order differences of `xi` and `eta` if not given.
+    label : str
+        What reports call the profile.
+
+    Raises
+    ------
+    InputError
+        If the range is empty or the triples do not describe a convex contour: the chord between
+        two contour points must have a slope angle between the tangents there.
+    """
+
+    xi: Curve
+    eta: Curve
+    alpha_range: tuple[float, float]
+    radius_of_curvature: Curve | None = field(default=None, repr=False)
+    label: str = "custom profile"
+
+    def __post_init__(self) -> None:
+        lowest, highest = self.alpha_range
+        if not -np.pi / 2 <= lowest < highest <= np.pi / 2:
+            raise InputError(
+                "profile.alpha_range",
+                self.alpha_range,
+                "two angles, the smaller first, within [-pi/2, pi/2] rad",
+                "angles are in rad and grow with x along the lower side of a convex body",
+            )
+        self._check_convex()
+
+    @property
+    def t_range(self) -> tuple[float, float]:
+        """The full turn of the lower side of a convex body; the parameter is the slope angle."""
+        return (-np.pi / 2, np.pi / 2)
+
+    def at(self, t: Floats) -> ContourPoint:
+        """Points at slope angles `t`, shape (n,)."""
+        t = np.asarray(t, dtype=float)
+        on = self._on(t)
+        stretch = np.where(t == on, self._stretch(on), 0.0)
+        return ContourPoint(t, self.xi(on), self.eta(on), np.ones_like(t), stretch)
+
+    def parameter(self, alpha: Floats) -> Floats:
+        """The slope angle itself."""
+        return alpha
+
+    def breaks(self) -> Floats:
+        """The ends of the range of slope angles, where they are corners."""
+        return np.array([end for end in self.alpha_range if abs(end) < np.pi / 2])
+
+    def outline(self, begin: float, end: float, points: int) -> Floats:
+        """Vertices at equal steps of slope angle: equal steps of the facets' normals."""
+        low, high = self.alpha_range
+        on = np.linspace(max(begin, low), min(end, high), points)
+        return np.column_stack([self.xi(on), self.eta(on)])
+
+    def offset(self, radius: float) -> "Profile":
+        """The parallel curve at distance `radius` below, round the corners at the ends too."""
+        if radius == 0:
+            return self
+        return replace(
+            self,
+            xi=partial(_offset_xi, self, radius),
+            eta=partial(_offset_eta, self, radius),
+            alpha_range=self.t_range,
+            radius_of_curvature=partial(_offset_stretch, self, radius),
+        )
+
+    def scaled(self, factor: float) -> "Profile":
+        """The contour enlarged by `factor` about the origin, to change its unit of length."""
+        if factor == 1:
+            return self
+        return replace(
+            self,
+            xi=partial(_scaled, self.xi, factor),
+            eta=partial(_scaled, self.eta, factor),
+            radius_of_curvature=partial(_scaled, self._stretch, factor),
+        )
+
+    def mirrored(self) -> "Profile":
+        """The mirror image: x becomes -x and alpha becomes -alpha."""
+        low, high = self.alpha_range
+        return replace(
+            self,
+            xi=partial(_mirrored, self.xi, -1),
+            eta=partial(_mirrored, self.eta, 1),
+            alpha_range=(-high, -low),
+            radius_of_curvature=partial(_mirrored, self._stretch, 1),
+            label=f"{self.label}, mirrored",
+        )
+
+    def _on(self, alpha: Floats) -> Floats:
+        """The nearest slope angles within the range."""
+        low, high = self.alpha_range
+        return np.minimum(np.maximum(alpha, low), high)
+
+    def _stretch(self, alpha: Floats) -> Floats:
+        if self.radius_of_curvature is not None:
+            return self.radius_of_curvature(alpha)
+        lowest, highest = self.alpha_range
+        h = min(_DIFFERENCE_STEP, (highest - lowest) / 12)
+        centre = np.clip(alpha, lowest + 3 * h, highest - 3 * h)
+        return np.cos(centre) * _slope(self.xi, centre, h) + np.sin(centre) * _slope(
+            self.eta, centre, h
+        )
+
+    def _check_convex(self) -> None:
+        lowest, highest = self.alpha_range
+        inset = 1e-6 * (highest - lowest)  # open families have their poles at +-pi/2
+        alpha = np.linspace(lowest + inset, highest - inset, 129)
+        with np.errstate(all="ignore"):  # what is not finite is told below
+            xi, eta = self.xi(alpha), self.eta(alpha)
+        if np.shape(xi) != alpha.shape or np.shape(eta) != alpha.shape:
+            raise InputError(
+                "profile",
+                self.label,
+                "two callables that map an array of angles to an array of the same shape",
+                "write xi and eta with NumPy functions",
+            )
+        finite = np.isfinite(xi) & np.isfinite(eta)
+        if not finite.all():
+            raise InputError(
+                "profile",
+                f"{self.label}, not finite at alpha = {alpha[~finite][0]:.6g} rad",
+                "finite over its whole alpha_range",
+                "narrow alpha_range or mend xi and eta",
+            )
+        chord = np.arctan2(np.diff(eta), np.diff(xi))
+        slack = 1e-9
+        wrong = (chord < alpha[:-1] - slack) | (chord > alpha[1:] + slack)
+        if wrong.any():
+            i = int(np.argmax(wrong))
+            raise InputError(
+                "profile",
+                f"{self.label}, whose chord between alpha = {alpha[i]:.6g} and {alpha[i + 1]:.6g} "
+                f"rad has slope angle {chord[i]:.6g} rad",
+                "strictly convex, each chord's slope between those of the tangents at its ends",
+                "check that (xi, eta) is the point where the slope angle is alpha",
+            )
+
+
+def _slope(curve: Curve, centre: Floats, h: float) -> Floats:
+    """Sixth-order central difference of `curve`."""
+    near, middle, far = (curve(centre + i * h) - curve(centre - i * h) for i in (1, 2, 3))
+    return (45 * near - 9 * middle + far) / (60 * h)
+
+
+def _scaled(curve: Curve, factor: float, alpha: Floats) -> Floats:
+    return factor * curve(alpha)
+
+
+def _mirrored(curve: Curve, sign: int, alpha: Floats) -> Floats:
+    return sign * curve(-alpha)
+
+
+def _offset_xi(profile: Profile, radius: float, alpha: Floats) -> Floats:
+    return profile.xi(profile._on(alpha)) + radius * np.sin(alpha)
+
+
+def _offset_eta(profile: Profile, radius: float, alpha: Floats) -> Floats:
+    return profile.eta(profile._on(alpha)) - radius * np.cos(alpha)
+
+
+def _offset_stretch(profile: Profile, radius: float, alpha: Floats) -> Floats:
+    on = profile._on(alpha)
+    return np.where(alpha == on, profile._stretch(on), 0.0) + radius

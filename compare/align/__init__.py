@@ -1,0 +1,1 @@
+"""Two sweeps brought to the same origin and to the same stations."""

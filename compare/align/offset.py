@@ -1,0 +1,273 @@
+"""How far apart the origins of two sweeps' foot positions are."""
+
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from analytic import InputError, Readings
+from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.readings import CLAMP_READINGS
+from compare.sense.phases import Classification
+from compare.sense.transitions import locate_transitions
+
+_FEWEST = 8  # stations that a fit is worth something with
+_FOLD = 2  # last stations before a snap-off: the readings' slope grows without bound there
+_SCAN = 4  # trial offsets a station of the reference
+_HUBER = 2.5  # standard deviations; stations that are farther off count by their sign only
+_ROUND_OFF = 1e-13  # of the largest magnitude
+_USELESS = 0.05  # L; a less certain offset blurs whole phases
+_DISTINCT = 0.8  # a second minimum is worse than the best if its residual times this still is
+_PLAIN, _ITERATIONS = 10, 30  # at most, of least squares and of Huber's estimator
+
+
+@dataclass(frozen=True)
+class Offset:
+    """By how much the candidate's ``foot_x`` exceeds the reference's for one and the same place.
+
+    Attributes
+    ----------
+    value : float
+        The offset [length].
+    uncertainty : float
+        The true one lies within `value` +- `uncertainty` in 95 % of all cases [length]; 0 where
+        the offset was given. From the residual of the fit and its correlation between stations, so
+        that a model's smooth deviation widens it; what of that deviation looks exactly like an
+        offset cannot be told from one.
+    """
+
+    value: float
+    uncertainty: float = 0.0
+
+
+def separate_lag(left: Offset, right: Offset) -> tuple[Offset, Offset]:
+    """Offset of the stage and lag of the readings, from a sweep in each direction.
+
+    Readings that lag behind a stage of constant speed seem displaced along the motion: to the left
+    in a sweep to the left. One sweep cannot tell that from an offset, two can.
+
+    Parameters
+    ----------
+    left, right : Offset
+        Of a sweep to the left and of one to the right, at the same speed.
+
+    Returns
+    -------
+    offset, lag : Offset
+        Half the sum, and half the difference: the lag as the way that the stage goes meanwhile
+        [length]; over its speed that is a time.
+    """
+    uncertainty = float(np.hypot(left.uncertainty, right.uncertainty)) / 2
+    return (
+        Offset((left.value + right.value) / 2, uncertainty),
+        Offset((right.value - left.value) / 2, uncertainty),
+    )
+
+
+def without_offset(readings: Readings, offset: float) -> Readings:
+    """The readings with `offset` taken from every place along x that they and their events name."""
+    table = readings.table
+    moved = {name: table[name] - offset for name in ("foot_x", "contact_x") if name in table}
+    provenance: dict[str, Any] = dict(readings.provenance)
+    if "events" in provenance:
+        events = provenance["events"]
+        provenance["events"] = {n: None if x is None else x - offset for n, x in events.items()}
+    if "contour" in provenance:
+        xi, eta = provenance["contour"]
+        provenance["contour"] = [[x - offset for x in xi], eta]
+    return replace(readings, table=table.assign(**moved), provenance=provenance)
+
+
+def estimate_offset(
+    reference: Readings,
+    candidate: Readings,
+    reference_phase: Classification,
+    candidate_phase: Classification,
+) -> Offset:
+    """The offset that lays the candidate's clamp readings over the reference's.
+
+    All offsets that leave half of the contact in common are tried, the snap-off included. From the
+    best one on, the sum of squares of the three readings' differences, each in units of its own
+    scatter, is minimised (Huber's estimator) over the trusted stations that lie within one phase of
+    the reference, the last two before its snap-off left out. The variance is Newey and West's with
+    Andrews' lag window, the interval Kiefer and Vogelsang's, who account for the window's width.
+
+    Raises
+    ------
+    InputError
+        If there are too few stations in contact, or the offset is ambiguous: another one fits as
+        well, or the readings hardly depend on it.
+    """
+    curve = _Curve.of(reference, reference_phase)
+    loaded = np.isin(candidate_phase.phase, ("tip", "tangent"))
+    for name, number in (("reference", curve.stations), ("candidate", int(loaded.sum()))):
+        if number < _FEWEST:
+            raise _ambiguous(f"{number} trusted stations of the {name} in contact")
+    scale = np.array(
+        [np.abs(reference.values(name)[reference.trusted]).max() for name in CLAMP_READINGS]
+    )
+    seen = np.stack([candidate.values(name) for name in CLAMP_READINGS]) / scale[:, None]
+    x, length = candidate.values("foot_x"), reference.beam.length
+    starts = _scan(curve, x, seen, loaded, candidate.trusted, scale)
+    tried = (_fit(curve, x[loaded], seen[:, loaded], start, scale) for start in starts)
+    fits = [fit for fit in tried if fit is not None]
+    if not fits:
+        raise _ambiguous(f"fewer than {_FEWEST} stations in a phase of the reference")
+    best, *others = sorted(fits, key=lambda fit: fit.misfit)
+    for other in others:
+        apart = abs(other.value - best.value) > _USELESS * length
+        if apart and other.misfit * _DISTINCT < best.misfit:
+            raise _ambiguous(f"{best.value:.4g} and {other.value:.4g} fit alike")
+    if not best.uncertainty < _USELESS * length:
+        raise _ambiguous(f"{best.value:.4g} +- {best.uncertainty:.2g}, a flat minimum")
+    return Offset(best.value, best.uncertainty)
+
+
+class _Fit(NamedTuple):
+    value: float
+    uncertainty: float
+    misfit: float
+    """Root mean square of the robust residual, relative to the readings' largest magnitudes."""
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """The reference's clamp readings over the foot position, smooth pieces and the whole."""
+
+    pieces: list[tuple[float, float, CubicSpline]]
+    x: Floats
+    values: Floats
+    """Shape (3, stations), by ascending `x`; zero where free."""
+    stations: int
+    spacing: float
+    ends: tuple[float, float]
+    """Of the contact."""
+
+    @classmethod
+    def of(cls, reference: Readings, judged: Classification) -> "_Curve":
+        x = reference.values("foot_x")
+        values = np.stack([reference.values(name) for name in CLAMP_READINGS])
+        touching = np.isin(judged.phase, ("tip", "tangent"))
+        places = locate_transitions(reference, judged)
+        cuts = [c for c in (places["phase_b_start"], places["phase_b_end"]) if c is not None]
+        piece = np.searchsorted(np.sort(cuts), x)
+        last = np.flatnonzero(touching)[-1] if touching.any() else 0
+        lets_go = last + 1 < len(x)
+        pieces = []
+        for one in np.unique(piece[touching]):
+            here = np.flatnonzero(touching & (piece == one))
+            kept = here[:-_FOLD] if lets_go and last in here else here
+            if len(here) < 4 or len(kept) < 2:
+                continue
+            order = here[np.argsort(x[here])]
+            spline = CubicSpline(x[order], values[:, order], axis=1)
+            pieces.append((float(x[kept].min()), float(x[kept].max()), spline))
+        order = np.argsort(x)
+        ends = (x[touching].min(), x[touching].max()) if touching.any() else (0.0, 0.0)
+        return cls(
+            pieces,
+            x[order],
+            np.where(touching, values, 0.0)[:, order],
+            int(touching.sum()),
+            float(np.median(np.abs(np.diff(x)))),
+            (float(ends[0]), float(ends[1])),
+        )
+
+    def inside(self, x: Floats) -> Booleans:
+        """Whether each `x` lies within a piece."""
+        found = np.zeros(len(x), dtype=bool)
+        for low, high, _ in self.pieces:
+            found |= (x >= low) & (x <= high)
+        return found
+
+    def smooth(self, x: Floats, order: int = 0) -> Floats:
+        """Readings, or their derivatives, shape (3, len(x)); every `x` within a piece."""
+        found = np.full((len(CLAMP_READINGS), len(x)), np.nan)
+        for low, high, spline in self.pieces:
+            here = (x >= low) & (x <= high)
+            found[:, here] = spline(x[here], order)
+        return found
+
+
+def _scan(
+    curve: _Curve, x: Floats, seen: Floats, loaded: Booleans, trusted: Booleans, scale: Floats
+) -> list[float]:
+    """The offsets at the lowest minima of a coarse scan, the lowest first."""
+    low, high = x[loaded].min(), x[loaded].max()
+    first, last = curve.ends
+    half = min(high - low, last - first) / 2
+    count = int(_SCAN * (high - low + last - first - 2 * half) / curve.spacing) + 2
+    trials = np.linspace(low - last + half, high - first - half, count)
+    felt = np.where(loaded, seen, 0.0)[:, trusted]
+    misfit = np.full(count, np.inf)
+    for i, trial in enumerate(trials):
+        there = x[trusted] - trial
+        known = (there >= curve.x[0]) & (there <= curve.x[-1])
+        common = known & (there >= first) & (there <= last) & loaded[trusted]
+        if common.sum() < min(loaded.sum(), curve.stations) / 2:
+            continue
+        told = np.stack([np.interp(there[known], curve.x, row) for row in curve.values])
+        misfit[i] = np.mean((felt[:, known] - told / scale[:, None]) ** 2)
+    padded = np.concatenate([[np.inf], misfit, [np.inf]])
+    minima = np.flatnonzero(np.isfinite(misfit) & (misfit <= padded[:-2]) & (misfit <= padded[2:]))
+    return [float(trials[i]) for i in minima[np.argsort(misfit[minima])][:3]]
+
+
+def _fit(curve: _Curve, x: Floats, seen: Floats, start: float, scale: Floats) -> _Fit | None:
+    """Gauss and Newton's method from `start`; None where it leads out of the reference.
+
+    Plain least squares first, each reading over its largest magnitude: the scatter that the
+    readings are then weighed by can be told only near the best offset.
+    """
+    value, inside = start, curve.inside(x - start)
+    for iteration in range(_PLAIN + _ITERATIONS):
+        plain = iteration < _PLAIN
+        # Towards the end the same stations, lest they come and go.
+        settled = iteration >= _PLAIN + _ITERATIONS // 2
+        inside = curve.inside(x - value) & (inside if settled else True)
+        if inside.sum() < _FEWEST:
+            return None
+        miss = seen[:, inside] - curve.smooth(x[inside] - value) / scale[:, None]
+        slope = curve.smooth(x[inside] - value, 1) / scale[:, None]
+        scatter = np.median(np.abs(miss), axis=1, keepdims=True) / 0.6745 + _ROUND_OFF
+        scatter = np.ones_like(scatter) if plain else scatter
+        robust = np.clip(miss / scatter, -_HUBER, _HUBER)
+        linear = np.abs(miss / scatter) < _HUBER
+        information = float(np.sum(linear * (slope / scatter) ** 2))
+        score = np.sum(-slope / scatter * robust, axis=0)
+        if information == 0:
+            return None
+        step = float(np.clip(score.sum() / information, -curve.spacing, curve.spacing))
+        value += step
+        if not plain and abs(step) < 1e-12 * (abs(value) + curve.spacing):
+            break
+    misfit = float(np.sqrt(np.mean((robust * scatter) ** 2)))
+    return _Fit(value, _half_width(score, information), misfit)
+
+
+def _half_width(score: Floats, information: float) -> float:
+    """Half a 95 % interval of an estimate with those scores (their sum is zero)."""
+    n = len(score)
+    centred = score - score.mean()
+    if not centred.any():
+        return 0.0
+    rho = float(np.clip(centred[1:] @ centred[:-1] / (centred @ centred), -0.97, 0.97))
+    # Andrews 1991, eq. 6.4, for Bartlett's window and a first-order autoregression.
+    alpha = 4 * rho**2 / ((1 - rho) * (1 + rho)) ** 2
+    window = min(1.1447 * (alpha * n) ** (1 / 3), n - 1.0)
+    lags = np.arange(1, int(window) + 1)
+    autocovariance = np.array([centred[k:] @ centred[:-k] for k in lags])
+    variance = centred @ centred + 2 * np.sum((1 - lags / (window + 1)) * autocovariance)
+    variance = max(float(variance), float(centred @ centred))
+    b = window / n
+    # Kiefer and Vogelsang 2005, table 1: 97.5 % point for Bartlett's window of width b n.
+    critical = 1.9600 + 2.9694 * b + 0.4160 * b**2 - 0.5324 * b**3
+    return float(critical * np.sqrt(variance) / information)
+
+
+def _ambiguous(found: str) -> InputError:
+    return InputError(
+        "offset", f"ambiguous ({found})", "told by the readings", "sweep more of the contact, or "
+        "give the offset as a number",
+    )  # fmt: skip

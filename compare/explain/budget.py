@@ -1,0 +1,248 @@
+"""The budget of a disagreement, from readings alone."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from analytic import InputError, Readings
+from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.readings import CLAMP_READINGS
+from compare.explain.changes import STIFFER
+from compare.explain.convergence import convergence
+from compare.explain.suspects import Suspect, suspects
+from compare.explain.variations import shifted_inward, stretched
+from compare.judge.tolerances import Tolerances
+from compare.measure.disagreement import Place, before_snap_off
+
+PARTS = (
+    "discretisation",
+    "facets",
+    "softness",
+    "unrest",
+    "sensor",
+    "extension",
+    "unexplained",
+)
+# Roache's, for a convergence index from three or more grids: how far the limit is from the finest
+# grid, and from what the two finest alone would make of it.
+_SAFETY = 1.25
+_ORDERS = (1.0, 2.0)  # what a chain can have: of a naive clamp, and of one at mid-cell
+UNRESOLVED = 5e-5
+"""What may stay unexplained in any case, of a reading's largest magnitude."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """One part of the disagreement of one reading, relative to its largest magnitude."""
+
+    rms: float
+    uncertainty: float
+
+
+@dataclass(frozen=True)
+class Budget:
+    """What the disagreement of two sweeps is made of.
+
+    Attributes
+    ----------
+    parts : dict
+        `Part` by name and reading.
+    disagreement : dict
+        Root mean square by reading.
+    by_phase : dict
+        Root mean square by part, reading and phase.
+    order : float
+        Observed order of convergence in the number of segments.
+    closes : bool
+        Whether what is unexplained lies within the uncertainty of the parts.
+    blame : str
+        The part that dominates.
+    suspects : tuple of Suspect
+        Faults of the physics that would explain what the numerics do not, likeliest first.
+    stations : int
+        Compared stations.
+    convergence : dict
+        Root mean square of the disagreement, without facets, by number of segments and reading.
+    checks : dict
+        What the closed form says of two parts, with no simulator in it, as root mean square by
+        reading: ``facets``, of a contact that is hard, and ``softness``.
+    """
+
+    parts: dict[str, dict[str, Part]]
+    disagreement: dict[str, float]
+    by_phase: dict[str, dict[str, dict[str, float]]]
+    order: float
+    closes: bool
+    blame: str
+    suspects: tuple[Suspect, ...]
+    stations: int
+    convergence: dict[int, dict[str, float]]
+    checks: dict[str, dict[str, float]]
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``budget.json`` holds."""
+        return asdict(self)
+
+
+def budget(
+    exact: Readings,
+    runs: Mapping[str, Readings],
+    variations: Mapping[str, Readings],
+    faceted: Readings | None = None,
+    tolerances: Tolerances | None = None,
+) -> Budget:
+    """Split the disagreement of ``runs["base"]`` with `exact` into its parts.
+
+    Parameters
+    ----------
+    exact : Readings
+        The reference.
+    runs : mapping
+        Sweeps of the candidate by the names of `controlled_changes`, over the same stations.
+    variations : mapping
+        The reference with one thing of the physics changed; see `compare.explain.variations`.
+    faceted : Readings, optional
+        The reference on the very polygon that the candidate's mesh is, for a check.
+    tolerances : Tolerances, optional
+        Only its window before the snap-off is used, where readings grow without bound.
+
+    Raises
+    ------
+    InputError
+        If no station is in contact and trusted in all sweeps.
+    """
+    tolerances = Tolerances() if tolerances is None else tolerances
+    others = [*runs.values()] if faceted is None else [*runs.values(), faceted]
+    kept = _common(exact, others, tolerances.snap_off_window)
+    if not kept.any():
+        raise InputError(
+            "stations common to all sweeps of the budget", 0, "some", "see their status"
+        )
+    scale = {
+        name: float(np.abs(exact.values(name)[exact.trusted]).max()) for name in CLAMP_READINGS
+    }
+
+    def signal(readings: Readings) -> Floats:
+        return np.stack([readings.values(name)[kept] / scale[name] for name in CLAMP_READINGS])
+
+    truth = signal(exact)
+    run = {name: signal(readings) for name, readings in runs.items()}
+    signatures = {name: signal(varied) - truth for name, varied in variations.items()}
+    base, beam = runs["base"], exact.beam
+    order = _order(run["stiff"] - run["two"], run["two"] - run["four"])
+    limit = _limit(run["stiff"], run["two"], run["four"], order)
+    from_two = run["four"] + (run["four"] - run["two"]) / (2**order - 1)
+    signals = {
+        "discretisation": run["stiff"] - limit,
+        "facets": run["calm"] - run["smooth"],
+        "softness": (run["smooth"] - run["stiff"]) * STIFFER / (STIFFER - 1),
+        "unrest": run["base"] - run["calm"],
+        "sensor": _sensor(base, kept, scale),
+        "extension": stretched(signatures, base.values("extension")[kept]),
+    }
+    total = run["base"] - truth
+    signals["unexplained"] = total - np.sum(list(signals.values()), axis=0)
+    rms = {name: _rms(part) for name, part in signals.items()}
+    uncertainty = {
+        "discretisation": _SAFETY * (_rms(run["four"] - limit) + _rms(limit - from_two)),
+        "facets": rms["unrest"],
+        "softness": _SAFETY * rms["softness"] / (STIFFER - 1),
+        "unrest": rms["unrest"],
+        "sensor": rms["sensor"],
+        "extension": rms["extension"],
+    }
+    uncertainty["unexplained"] = np.sqrt(np.sum([u**2 for u in uncertainty.values()], axis=0))
+    unresolved = np.hypot(uncertainty["unexplained"], UNRESOLVED)
+    phase = exact.table["phase"].to_numpy()[kept]
+    shifted = shifted_inward(
+        signatures, base.values("penetration")[kept] / beam.length, beam.radius / beam.length
+    )
+    checks = {"softness": shifted}
+    if faceted is not None:
+        checks["facets"] = signal(faceted) - truth
+    return Budget(
+        {
+            name: {
+                reading: Part(float(rms[name][i]), float(uncertainty[name][i]))
+                for i, reading in enumerate(CLAMP_READINGS)
+            }
+            for name in PARTS
+        },
+        _by_reading(total),
+        {
+            name: {
+                reading: {str(p): float(_rms(part[i, phase == p])) for p in np.unique(phase)}
+                for i, reading in enumerate(CLAMP_READINGS)
+            }
+            for name, part in signals.items()
+        },
+        order,
+        bool((rms["unexplained"] <= unresolved).all()),
+        max(PARTS, key=lambda name: float(np.linalg.norm(rms[name]))),
+        suspects(signals["unexplained"], signatures, float(np.linalg.norm(unresolved))),
+        int(kept.sum()),
+        convergence(exact, [runs[name] for name in ("stiff", "two", "four")], kept),
+        {name: _by_reading(check) for name, check in checks.items()},
+    )
+
+
+def largest_rms(
+    exact: Readings, candidate: Readings, tolerances: Tolerances | None = None
+) -> float:
+    """The largest of the three readings' disagreements, as a budget counts it."""
+    window = (Tolerances() if tolerances is None else tolerances).snap_off_window
+    kept = _common(exact, [candidate], window)
+    (errors,) = convergence(exact, [candidate], kept).values()
+    return max(errors.values())
+
+
+def _common(exact: Readings, runs: list[Readings], window: float) -> Booleans:
+    """Stations in contact and trusted in every sweep, outside the window before the snap-off."""
+    foot_x = exact.values("foot_x")
+    kept = np.ones(len(foot_x), dtype=bool)
+    for readings in (exact, *runs):
+        kept &= readings.trusted & (readings.table["phase"] != "free").to_numpy()
+    if exact.snap_off is not None:
+        kept &= ~before_snap_off(exact, foot_x, Place(exact.snap_off, None), window)
+    return kept
+
+
+def _order(coarse: Floats, fine: Floats) -> float:
+    """Observed order of convergence, within what it can be."""
+    with np.errstate(divide="ignore"):
+        observed = np.log2(np.linalg.norm(coarse) / np.linalg.norm(fine))
+    return float(np.clip(observed, *_ORDERS))
+
+
+def _limit(coarse: Floats, middle: Floats, fine: Floats, order: float) -> Floats:
+    """What the sweeps tend to as segments are refined: Richardson's extrapolation, from all three.
+
+    As the contact passes from segment to segment each sweep's error swings about its power of h,
+    and no less fast than that falls. So a line in that power is fitted, each sweep weighed by it:
+    the limit has three quarters of the swing that the two finest sweeps alone leave it.
+    """
+    power = 2.0 ** (-order * np.arange(3))
+    design = np.column_stack([np.ones(3), power]) / power[:, None]
+    weights = np.linalg.pinv(design)[0] / power
+    return np.asarray(np.tensordot(weights, np.stack([coarse, middle, fine]), axes=1))
+
+
+def _sensor(base: Readings, kept: Booleans, scale: Mapping[str, float]) -> Floats:
+    """The sensors' discrepancy from the sum of the contacts, the worst of the three readings."""
+    discrepancy = base.values("discrepancy")[kept]
+    beam = base.beam
+    units = (beam.force_unit, beam.force_unit, beam.moment_unit)
+    return np.stack(
+        [discrepancy * u / scale[name] for name, u in zip(CLAMP_READINGS, units, strict=True)]
+    )
+
+
+def _by_reading(signals: Floats) -> dict[str, float]:
+    return dict(zip(CLAMP_READINGS, _rms(signals).tolist(), strict=True))
+
+
+def _rms(signals: Floats) -> Floats:
+    """Over the stations, the last axis."""
+    return np.asarray(np.sqrt(np.mean(signals**2, axis=-1)))

@@ -1,0 +1,52 @@
+"""Faults of the physics that leave a signature which no numerical part has."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from compare.explain.variations import STEP
+
+_CONVINCING = 0.8  # share of the unexplained that a suspect must account for
+
+
+@dataclass(frozen=True)
+class Suspect:
+    """A quantity of the physics that seems to differ between the two sweeps.
+
+    `change` is by how much in the candidate, relative to its value (``foot_x``: to the length;
+    ``friction``: the coefficient itself); `share` is how much of the unexplained disagreement's
+    square it accounts for.
+    """
+
+    name: str
+    change: float
+    share: float
+
+
+def suspects(
+    unexplained: Floats, signatures: Mapping[str, Floats], unresolved: float
+) -> tuple[Suspect, ...]:
+    """Which signatures account for the unexplained disagreement, the best first.
+
+    Parameters
+    ----------
+    unexplained : array, shape (3, stations)
+        Relative to each reading's largest magnitude.
+    signatures : mapping
+        What each quantity does to the readings, of the same shape, for a change of `STEP`.
+    unresolved : float
+        Norm of what may stay unexplained; below, nobody is suspected.
+    """
+    if np.linalg.norm(np.sqrt(np.mean(unexplained**2, axis=-1))) <= unresolved:
+        return ()
+    found = []
+    for name, signature in signatures.items():
+        known = np.isfinite(signature).all(axis=0)
+        s, u = signature[:, known].ravel(), unexplained[:, known].ravel()
+        size = float(s @ u / (s @ s))
+        share = float(1 - np.sum((u - size * s) ** 2) / np.sum(u**2))
+        if share >= _CONVINCING:
+            found.append(Suspect(name, size * STEP, share))
+    return tuple(sorted(found, key=lambda suspect: -suspect.share))

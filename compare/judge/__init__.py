@@ -1,0 +1,1 @@
+"""Limits, each with its reason, and which of them a measured disagreement exceeds."""

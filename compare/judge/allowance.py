@@ -1,0 +1,79 @@
+"""What noise of the readings adds to the limits of agreement."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.stats import norm
+
+from analytic import Readings
+from analytic.problem.readings import CLAMP_READINGS
+from compare.sense.noise import with_noise
+from compare.sense.phases import classify, confusion
+from compare.sense.transitions import TRANSITIONS, locate_transitions
+
+_RISK = 1e-3  # of calling a sweep off that is not, for each limit that noise widens
+_REPLICAS = 24  # of the reference, each with noise of its own
+_SIGMAS = 3
+
+
+@dataclass(frozen=True)
+class NoiseAllowance:
+    """What noise of the readings adds to the limits of agreement.
+
+    Attributes
+    ----------
+    level : mapping
+        Standard deviation of each clamp reading's noise, relative to its largest magnitude.
+    transitions : mapping
+        How far noise may move each transition that is located from the clamp [length].
+    phase_agreement : float
+        Share of stations whose phase can still be told; 1 without noise.
+    """
+
+    level: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(CLAMP_READINGS, 0.0))
+    transitions: Mapping[str, float] = field(default_factory=dict)
+    phase_agreement: float = 1.0
+
+    def rms(self, limit: float, reading: str, stations: int) -> float:
+        """The rms that a sweep at the limit still shows with noise, but for one case in 1000."""
+        square = self.level[reading] ** 2
+        spread = np.sqrt((2 * square**2 + 4 * square * limit**2) / max(stations, 1))
+        return float(np.sqrt(limit**2 + square + norm.isf(_RISK) * spread))
+
+    def max(self, limit: float, reading: str, stations: int) -> float:
+        """The same for the largest difference of so many stations."""
+        return float(limit + norm.isf(_RISK / 2 / max(stations, 1)) * self.level[reading])
+
+
+def noise_allowance(reference: Readings, level: Mapping[str, float]) -> NoiseAllowance:
+    """What noise of that `level` does to the reference, from replicas of it.
+
+    Parameters
+    ----------
+    reference : Readings
+        The sweep without it.
+    level : mapping
+        As in `NoiseAllowance`.
+    """
+    if not any(level.values()):
+        return NoiseAllowance()
+    calm = locate_transitions(reference, classify(reference))
+    moved: dict[str, list[float]] = {name: [] for name in TRANSITIONS}
+    shares = []
+    for seed in range(_REPLICAS):
+        noisy = with_noise(reference, level, seed)
+        judged = classify(noisy)
+        for name, place in locate_transitions(noisy, judged).items():
+            expected = calm[name]
+            if place is not None and expected is not None:
+                moved[name].append(place - expected)
+        if "phase" in noisy.table:
+            table = confusion(judged, noisy).to_numpy()
+            shares.append(np.trace(table) / table.sum())
+    share = float(np.mean(shares) - _SIGMAS * np.std(shares)) if shares else 1.0
+    return NoiseAllowance(
+        level,
+        {n: _SIGMAS * float(np.sqrt(np.mean(np.square(m)))) for n, m in moved.items() if m},
+        max(share, 0.0),
+    )

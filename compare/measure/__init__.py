@@ -1,0 +1,1 @@
+"""How far apart two aligned sweeps are; no limit is known here."""

@@ -1,0 +1,1 @@
+"""What one sweep's clamp readings say by themselves: noise, contact phases, transitions."""

@@ -1,0 +1,104 @@
+"""Contact phases from the clamp readings alone, and where one phase gives way to the next."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from analytic import Readings, reconstruct
+from analytic.problem.arrays import Floats, Words
+from analytic.problem.readings import PHASES
+from compare.sense.noise import reading_noise
+
+_SIGMAS = 5  # a force below so many standard deviations of its noise is none
+_UNLOADED = 1e-9  # of EI/L^2: the same for noise-free readings
+
+
+@dataclass(frozen=True)
+class Classification:
+    """Phases of one sweep, judged from foot position, clamp force and clamp moment.
+
+    Attributes
+    ----------
+    phase : array of str, shape (stations,)
+        ``"free"``, ``"tip"``, ``"tangent"``; empty where the station is not trusted.
+    criterion : array
+        (2 F_y - M^2)/(2 f) = sin(phi_1 - alpha) of eq. 26: zero in Phase B.
+    criterion_tolerance : array
+        Its standard deviation, from the noise of the readings.
+    shortfall : array
+        1 - s1/L of the reconstructed contact: zero in Phase A.
+    shortfall_tolerance : array
+        Its standard deviation.
+    """
+
+    phase: Words
+    criterion: Floats
+    criterion_tolerance: Floats
+    shortfall: Floats
+    shortfall_tolerance: Floats
+
+
+def classify(readings: Readings) -> Classification:
+    """Decide each station's phase by which phase's own condition its readings meet better.
+
+    In Phase B the criterion (26) vanishes and the contact lies short of the tip; in Phase A it is
+    the other way round. Each deviation is measured in standard deviations, which the noise of the
+    readings gives; the smaller one wins. So no tolerance has to be chosen, and readings that are
+    all a little off, as a coarse beam's are, still fall on the right side.
+    """
+    beam = readings.beam
+    force_x = readings.values("force_x") / beam.force_unit
+    force_y = readings.values("force_y") / beam.force_unit
+    moment = readings.values("moment_z") / beam.moment_unit
+    noise = reading_noise(readings)
+    noise_x, noise_y = noise["force_x"] / beam.force_unit, noise["force_y"] / beam.force_unit
+    noise_m = noise["moment_z"] / beam.moment_unit
+    f = np.hypot(force_x, force_y)
+    loaded = f > max(_SIGMAS * np.hypot(noise_x, noise_y), _UNLOADED)
+
+    with np.errstate(divide="ignore", invalid="ignore"):
+        criterion = np.where(loaded, (2 * force_y - moment**2) / (2 * f), np.nan)
+        by_x = criterion * force_x / f**2
+        by_y = 1 / f - criterion * force_y / f**2
+        by_m = moment / f
+    criterion_tolerance = np.sqrt(
+        (by_x * noise_x) ** 2 + (by_y * noise_y) ** 2 + (by_m * noise_m) ** 2
+    )
+    shortfall = np.where(loaded, _shortfall(readings), np.nan)
+    shortfall_tolerance = _propagated(readings, shortfall, noise)
+
+    with np.errstate(divide="ignore", invalid="ignore"):
+        tangent = np.abs(criterion) / criterion_tolerance < np.abs(shortfall) / shortfall_tolerance
+    # A negative deviation belongs to neither phase: it is noise about zero, evidence for its own.
+    tangent = np.where(shortfall <= 0, False, np.where(criterion <= 0, True, tangent))
+    phase = np.where(loaded, np.where(tangent, "tangent", "tip"), "free")
+    phase = np.where(readings.trusted, phase, "")
+    return Classification(phase, criterion, criterion_tolerance, shortfall, shortfall_tolerance)
+
+
+def confusion(judged: Classification, truth: Readings) -> pd.DataFrame:
+    """Stations counted by judged phase (columns) and contact truth (rows)."""
+    known = (judged.phase != "") & truth.trusted
+    return pd.crosstab(
+        pd.Categorical(truth.table["phase"][known], categories=list(PHASES)),
+        pd.Categorical(judged.phase[known], categories=list(PHASES)),
+        rownames=["truth"],
+        colnames=["judged"],
+        dropna=False,
+    )
+
+
+def _shortfall(readings: Readings) -> Floats:
+    arc_length = reconstruct(readings)["contact_arc_length"].to_numpy(dtype=float)
+    return 1 - arc_length / readings.beam.length
+
+
+def _propagated(readings: Readings, shortfall: Floats, noise: dict[str, float]) -> Floats:
+    """Standard deviation of the shortfall: each reading is moved by its noise."""
+    variance = np.zeros_like(shortfall)
+    for name, deviation in noise.items():
+        moved = readings.table.assign(**{name: readings.table[name] + deviation})
+        there = Readings(moved, readings.beam, readings.source)
+        variance += np.nan_to_num(_shortfall(there) - shortfall) ** 2
+    return np.sqrt(variance)

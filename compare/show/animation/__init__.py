@@ -1,0 +1,67 @@
+"""A sweep in motion: both models' vibrissa, its curvature, its contact, and its clamp readings.
+
+Drawn from readings alone, and without a display.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from analytic import InputError, Readings
+from compare.show.animation.gif import save_gif
+from compare.show.animation.motion import Motion
+from compare.show.animation.scene import Scene
+
+__all__ = ["write_animation"]
+
+_STILLS = (0.1, 0.4, 0.7, 1.0)  # of the stations in contact; the last is the eve of snap-off
+
+
+def write_animation(
+    reference: Readings,
+    candidate: Readings,
+    folder: Path,
+    frames: int = 60,
+    advance: Callable[[], None] = lambda: None,
+) -> list[Path]:
+    """Draw the sweep in motion, from the sensed readings of both models alone.
+
+    Parameters
+    ----------
+    reference, candidate : Readings
+        Two sweeps of the same beam; a frame shows a station of the first and the nearest one of
+        the second.
+    folder : Path
+        Where ``animation.gif`` and the stills, ``still-1.png`` and so on, are written.
+    frames : int
+        Number of frames, at least 2; no more than there are stations.
+    advance : callable, optional
+        Called after every frame, for progress bars.
+
+    Returns
+    -------
+    list of Path
+        The files, each of which appears whole.
+
+    Raises
+    ------
+    InputError
+        If there are too few frames, or nothing is touched.
+    """
+    if frames < 2:
+        raise InputError("--frames", frames, "2 or more", "60 is usual")
+    moving = Motion.of(reference), Motion.of(candidate)
+    touching = np.flatnonzero(np.isin(moving[0].phase, ("tip", "tangent")))
+    if not touching.size:
+        raise InputError(
+            f"stations in contact ({reference.source})", 0, "one or more", "sweep farther"
+        )
+    scene = Scene(*moving)
+    chosen = np.linspace(0, len(reference.table) - 1, frames).astype(int)
+    images = list(scene.images(np.unique(chosen), advance))
+    written = [save_gif(images, folder / "animation.gif")]
+    for number, share in enumerate(_STILLS, start=1):
+        station = touching[round(share * (len(touching) - 1))]
+        written.append(scene.save_still(int(station), folder / f"still-{number}.png"))
+    return written

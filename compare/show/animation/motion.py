@@ -1,0 +1,72 @@
+"""One sweep as it is drawn."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic import Readings, reconstruct
+from analytic.from_clamp.shape import curvatures, deflected_shapes
+from analytic.problem.arrays import Floats, Words
+from analytic.problem.readings import CLAMP_READINGS
+from compare.sense.phases import classify
+
+_DOTS = 10  # of a dotted vibrissa, at equal steps of arc length
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One sweep as it is drawn: lengths in L, forces in EI/L^2, moments in EI/L.
+
+    Attributes
+    ----------
+    readings : Readings
+        The sweep.
+    foot_x : array, shape (stations,)
+        Foot positions.
+    x, y, curvature : array, shape (stations, points)
+        The centreline from clamp to tip, and the magnitude of its curvature.
+    contact : array, shape (stations, 2)
+        Where the body is touched; NaN where it is not.
+    clamp : dict of array, shape (stations,)
+        The clamp readings.
+    phase : array of str, shape (stations,)
+        As judged from the clamp.
+    """
+
+    readings: Readings
+    foot_x: Floats
+    x: Floats
+    y: Floats
+    curvature: Floats
+    contact: Floats
+    clamp: dict[str, Floats]
+    phase: Words
+
+    @property
+    def force(self) -> Floats:
+        """Magnitude of the contact force, shape (stations,)."""
+        return np.asarray(np.hypot(self.clamp["force_x"], self.clamp["force_y"]))
+
+    @classmethod
+    def of(cls, readings: Readings) -> "Motion":
+        """The sweep that these readings tell, in units of their beam."""
+        beam = readings.beam
+        x, y = deflected_shapes(readings)
+        units = (beam.force_unit, beam.force_unit, beam.moment_unit)
+        return cls(
+            readings,
+            readings.values("foot_x") / beam.length,
+            x / beam.length,
+            y / beam.length,
+            np.abs(curvatures(readings, x, y)) * beam.length,
+            reconstruct(readings)[["contact_x", "contact_y"]].to_numpy() / beam.length,
+            {n: readings.values(n) / u for n, u in zip(CLAMP_READINGS, units, strict=True)},
+            classify(readings).phase,
+        )
+
+    def beads(self, station: int) -> tuple[Floats, Floats]:
+        """Points on the centreline at equal steps of arc length."""
+        x, y = self.x[station], self.y[station]
+        along = np.append(0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y))))
+        at = np.linspace(0, along[-1], _DOTS + 1)[1:]
+        return np.interp(at, along, x), np.interp(at, along, y)

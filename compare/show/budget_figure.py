@@ -1,0 +1,104 @@
+"""The budget as a picture: what dominates, what remains, and whether that matters."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from analytic.problem.readings import CLAMP_READINGS
+from compare.explain.budget import UNRESOLVED, Budget
+from compare.show.page import short
+
+_BLAMED, _OTHER, _UNEXPLAINED = "#d55e00", "#0072b2", "#000000"
+_GREY, _ZONE = "#555555", "#dddddd"
+_LEAST = UNRESOLVED / 50  # of the largest magnitude; less has a number, but no bar
+_PANEL = (4.3, 3.1)  # inches
+
+
+def picture(found: Budget) -> Figure:
+    """All readings side by side, under a sentence that says what they show."""
+    width, height = _PANEL
+    figure = Figure(
+        figsize=(width * len(CLAMP_READINGS) * 0.85, height + 0.4), layout="constrained"
+    )
+    axes = figure.subplots(1, len(CLAMP_READINGS))
+    for ax, reading in zip(axes, CLAMP_READINGS, strict=True):
+        _draw(ax, found, reading)
+    for ax in axes:
+        ax.tick_params(labelleft=ax is axes[0])
+        ax.set_xlabel("")
+    figure.supxlabel(
+        "rms / largest magnitude, with its uncertainty; "
+        "dashed: all of it; grey: may stay unexplained",
+        fontsize=9,
+    )
+    figure.suptitle(headline(found), fontsize=12)
+    return figure
+
+
+def panels(found: Budget) -> dict[str, Figure]:
+    """A picture for each reading."""
+    figures = {}
+    for reading in CLAMP_READINGS:
+        figures[reading] = figure = Figure(figsize=_PANEL, layout="constrained")
+        _draw(figure.subplots(), found, reading)
+    return figures
+
+
+def headline(found: Budget) -> str:
+    """What the picture shows, in one sentence."""
+    rest = short(max(part.rms for part in found.parts["unexplained"].values()))
+    if found.closes:
+        remains = f"at most {rest} stays unexplained, and the budget closes"
+    else:
+        remains = f"{rest} stays unexplained, too much for the budget to close"
+    return f"The largest part is {found.blame}; {remains}"
+
+
+def _draw(ax: Axes, found: Budget, reading: str) -> None:
+    names = _order(found)
+    rows = np.arange(len(names))[::-1] + 0.0
+    rows[:-1] += 0.35  # what is unexplained stands apart
+    parts = [found.parts[name][reading] for name in names]
+    total = found.disagreement[reading]
+    largest = max(total, *(part.rms + part.uncertainty for part in parts), UNRESOLVED)
+    ax.set_xscale("log")
+    ax.set_xlim(_LEAST, 1.5 * largest)
+    ax.axvspan(_LEAST, UNRESOLVED, color=_ZONE, alpha=0.6, linewidth=0, zorder=0)
+    for name, row, part in zip(names, rows, parts, strict=True):
+        _bar(ax, row, part.rms, part.uncertainty, _colour(name, found.blame))
+    ax.axvline(total, color=_GREY, linestyle="--", linewidth=1.3, zorder=3)
+    ax.axhline(0.65, color=_GREY, linewidth=0.6)
+    ax.set_ylim(-0.6, rows[0] + 0.6)
+    ax.set_yticks(rows, names)
+    ax.tick_params(axis="y", length=0)
+    ax.yaxis.get_ticklabels()[names.index(found.blame)].set_fontweight("bold")
+    ax.set_title(f"{reading}: {short(total)} in all", fontsize=11)
+    ax.set_xlabel("rms / largest magnitude")
+    for side in ("top", "right", "left"):
+        ax.spines[side].set_visible(False)
+
+
+def _bar(ax: Axes, row: float, rms: float, uncertainty: float, colour: str) -> None:
+    """A part, its uncertainty as a whisker, and its size in digits."""
+    low, high = max(rms - uncertainty, _LEAST), rms + uncertainty
+    if rms > _LEAST:
+        ax.barh(row, rms - _LEAST, left=_LEAST, height=0.62, color=colour)
+    if high > _LEAST:
+        ax.plot([low, high], [row, row], color=_GREY, linewidth=1.2, marker="|", markersize=6)
+    ax.annotate(
+        short(rms), (1, row), (34, 0), xycoords=("axes fraction", "data"),
+        textcoords="offset points", va="center", ha="right", fontsize=9,
+    )  # fmt: skip
+
+
+def _order(found: Budget) -> list[str]:
+    """The parts by size, the unexplained last."""
+    explained = [name for name in found.parts if name != "unexplained"]
+    explained.sort(key=lambda name: -max(part.rms for part in found.parts[name].values()))
+    return [*explained, "unexplained"]
+
+
+def _colour(name: str, blame: str) -> str:
+    if name == "unexplained":
+        return _UNEXPLAINED
+    return _BLAMED if name == blame else _OTHER

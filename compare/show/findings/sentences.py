@@ -1,0 +1,140 @@
+"""What was found, in words: every sentence follows from the numbers by a rule."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from compare.explain.budget import UNRESOLVED
+from compare.show.findings.collect import Run
+from compare.show.page import short
+
+
+def overview(runs: Sequence[Run]) -> str:
+    """All runs in a paragraph."""
+    worst = max(runs, key=lambda run: run.rms[run.worst])
+    said = [
+        f"{_agreeing(runs, _case_and_beam)} The largest rms is "
+        f"{short(worst.rms[worst.worst])} of the largest magnitude "
+        f"({worst.worst}, {_case_and_beam(worst)})."
+    ]
+    with_budget = [run for run in runs if run.budget is not None]
+    if with_budget:
+        said.append(_closure(with_budget, _case_and_beam))
+        said.append(_allowance(with_budget))
+    return " ".join(said)
+
+
+def sentences(runs: Sequence[Run]) -> str:
+    """The runs of one case, in two to four sentences."""
+    said = [f"{_agreeing(runs, _beam)} {_ranking(runs)}"]
+    with_budget = [run for run in runs if run.budget is not None]
+    if with_budget:
+        said += [_blame(with_budget), _closure(with_budget, _beam)]
+    said.append(_events(runs))
+    return " ".join(said)
+
+
+def _agreeing(runs: Sequence[Run], named: Callable[[Run], str]) -> str:
+    failing = [run for run in runs if not run.agrees]
+    n, fulfilled = len(runs), "with the closed form within the tolerances"
+    if n == 1:
+        how = "does not agree" if failing else "agrees"
+        return f"The {runs[0].beam} {how} {fulfilled}."
+    if not failing:
+        return f"{'Both' if n == 2 else f'All {n}'} sweeps agree {fulfilled}."
+    if len(failing) == n:
+        return f"{'Neither' if n == 2 else f'None of the {n} sweeps'} agrees {fulfilled}."
+    exceptions = "; ".join(named(run) for run in failing)
+    return f"{n - len(failing)} of {n} sweeps agree {fulfilled}, all but: {exceptions}."
+
+
+def _ranking(runs: Sequence[Run]) -> str:
+    ordered = sorted(runs, key=lambda run: run.rms[run.worst])
+    best, last = ordered[0], ordered[-1]
+    told = f"{short(best.rms[best.worst])} rms in {best.worst}"
+    if len(runs) == 1:
+        return f"Its worst reading is off by {told}."
+    return (
+        f"The {best.beam} is the closest ({told}, its worst reading), "
+        f"the {last.beam} the farthest ({short(last.rms[last.worst])} in {last.worst})."
+    )
+
+
+def _blame(runs: Sequence[Run]) -> str:
+    parts: dict[str, list[Run]] = {}
+    for run in runs:
+        parts.setdefault(_budget(run)["blame"], []).append(run)
+    told = [
+        f"{part} for {_list([f'the {run.beam}' for run in group])} "
+        f"({_span([run.part(part) or 0.0 for run in group], short)}{_order(group, part)})"
+        for part, group in parts.items()
+    ]
+    suspects = [
+        f"in the {run.beam} {first['name']} seems {100 * first['change']:+.2f} % off"
+        for run in runs
+        for first in _budget(run)["suspects"][:1]
+    ]
+    doubt = f"; {_list(suspects)}" if suspects else ""
+    return f"The largest part of the disagreement is {_list(told)}{doubt}."
+
+
+def _order(runs: Sequence[Run], part: str) -> str:
+    if part != "discretisation":
+        return ""
+    return f", of observed order {_span([_budget(run)['order'] for run in runs], '{:.2f}'.format)}"
+
+
+def _closure(runs: Sequence[Run], named: Callable[[Run], str]) -> str:
+    rest = short(max(run.part("unexplained") or 0.0 for run in runs))
+    still_open = [run for run in runs if not _budget(run)["closes"]]
+    if not still_open:
+        subject = "The budget closes" if len(runs) == 1 else "Every budget closes"
+        return f"{subject}: at most {rest} is unexplained."
+    if len(runs) == 1:
+        return f"The budget does not close: {rest} is unexplained."
+    which = "; ".join(named(run) for run in still_open)
+    count = f"{len(still_open)} of {len(runs)} budgets do not close ({which})"
+    return f"{count}: up to {rest} is unexplained."
+
+
+def _allowance(runs: Sequence[Run]) -> str:
+    kept = sum((run.part("unexplained") or 0.0) <= UNRESOLVED for run in runs)
+    return f"No more than {short(UNRESOLVED)} is unexplained in {kept} of {len(runs)}."
+
+
+def _events(runs: Sequence[Run]) -> str:
+    shifts = [run.snap_off for run in runs]
+    known = [abs(shift) for shift in shifts if shift is not None]
+    if len(known) == len(runs):
+        said = f"The snap-off is found within {short(max(known))} L"
+    elif known:
+        said = f"The snap-off is missing in {len(runs) - len(known)} of {len(runs)} comparisons"
+    else:
+        said = "No snap-off is found in both sweeps"
+    right = [run.phases_right for run in runs if run.phases_right is not None]
+    if not right:
+        return f"{said}."
+    if min(right) == 1:
+        return f"{said}, and the clamp tells every station's phase rightly."
+    return f"{said}, and the clamp tells the phase of at least {100 * min(right):.1f} % rightly."
+
+
+def _budget(run: Run) -> dict[str, Any]:
+    assert run.budget is not None
+    return run.budget
+
+
+def _case_and_beam(run: Run) -> str:
+    return f"{run.case}, {run.beam}"
+
+
+def _beam(run: Run) -> str:
+    return run.beam
+
+
+def _span(values: Sequence[float], write: Callable[[float], str]) -> str:
+    low, high = write(min(values)), write(max(values))
+    return low if low == high else f"{low} to {high}"
+
+
+def _list(words: Sequence[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

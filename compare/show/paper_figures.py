@@ -1,0 +1,122 @@
+"""The paper's figures 12, 14, 15 and 16, redrawn from the solver for any case."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from analytic import Case, Readings, find_events, reconstruct, reconstruct_by_decision
+from analytic.solver.branch import surplus
+from compare.show.figures import PHASE_COLOURS
+
+_A, _B = PHASE_COLOURS["tip"], PHASE_COLOURS["tangent"]
+
+
+def paper_figures(case: Case, readings: Readings) -> dict[str, Figure]:
+    """Figures by name: ``figure-12``, ``figure-14``, ``figure-15``, ``figure-16``."""
+    return {
+        "figure-12": contact_length(case),
+        "figure-14": profile(readings),
+        "figure-15": observables(readings),
+        "figure-16": reconstruction_error(readings),
+    }
+
+
+def contact_length(case: Case) -> Figure:
+    """Fig. 12: s1 of eq. 21 over the contour, with the limits of Phase B."""
+    figure = Figure(figsize=(6.5, 4), layout="constrained")
+    ax = figure.subplots()
+    events = find_events(case.profile, case.beam)
+    centreline, length = case.centreline, case.beam.length
+    first = events.first_contact.contact_angle
+    lowest = events.contact_length_minimum.contact_angle
+    angle = np.linspace(first, min(events.snap_off.contact_angle, 2 * lowest - first), 801)[1:]
+    shortened = surplus(centreline, centreline.parameter(angle))
+    s1 = 1 / (1 - shortened)
+    ax.plot(np.rad2deg(angle), np.where(shortened < 1, s1, np.nan), color="k")
+    ax.axhline(1, color="#999999", linestyle="--", linewidth=0.9)
+    for name, event, colour in (
+        ("start of Phase B", events.phase_b_start, _B),
+        ("end of Phase B", events.phase_b_end, _A),
+        ("least $s_1$", events.contact_length_minimum, "#009E73"),
+    ):
+        if event is not None:
+            ax.plot(
+                np.rad2deg(event.contact_angle),
+                event.contact_arc_length / length,
+                "o",
+                color=colour,
+                label=f"{name}: {np.rad2deg(event.contact_angle):.4g}°, "
+                f"{event.contact_arc_length / length:.4g} L",
+            )
+    ax.set_xlabel(r"slope angle $\alpha$ of the contour / °")
+    ax.set_ylabel("$s_1$ / $L$  (eq. 21)")
+    ax.set_ylim(0, 2)
+    ax.legend(fontsize=9, frameon=False)
+    return figure
+
+
+def profile(readings: Readings) -> Figure:
+    """Fig. 14: the contour, with the contacts of the sweep by phase."""
+    figure = Figure(figsize=(6.5, 3.4), layout="constrained")
+    ax = figure.subplots()
+    scale = readings.beam.length
+    xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
+    ax.plot(xi, eta, color="k", linewidth=1)
+    for phase, name, colour in (("tip", "Phase A", _A), ("tangent", "Phase B", _B)):
+        here = (readings.table["phase"] == phase).to_numpy()
+        x, y = readings.values("contact_x")[here], readings.values("contact_y")[here]
+        ax.plot(x / scale, y / scale, ".", color=colour, label=name)
+    ax.set_xlabel(r"$\xi$ / $L$")
+    ax.set_ylabel(r"$\eta$ / $L$")
+    ax.set_title(str(readings.provenance["profile"]), fontsize=10)
+    ax.set_aspect("equal")
+    figure.legend(loc="outside lower center", ncols=2, frameon=False)
+    return figure
+
+
+def observables(readings: Readings) -> Figure:
+    """Fig. 15: clamp force, clamp moment and the error of the reconstruction over x0."""
+    figure = Figure(figsize=(9, 6), layout="constrained")
+    axes = figure.subplots(2, 2).ravel()
+    beam = readings.beam
+    x = readings.values("foot_x") / beam.length
+    for ax, name, symbol, unit in (
+        (axes[0], "force_x", "$F_{Ax}$ / ($EI/L^2$)", beam.force_unit),
+        (axes[1], "force_y", "$F_{Ay}$ / ($EI/L^2$)", beam.force_unit),
+        (axes[2], "moment_z", "$M_{Az}$ / ($EI/L$)", beam.moment_unit),
+    ):
+        for phase, colour in PHASE_COLOURS.items():
+            here = (readings.table["phase"] == phase).to_numpy()
+            ax.plot(x[here], readings.values(name)[here] / unit, ".", color=colour, markersize=3)
+        ax.set_ylabel(symbol)
+    _error(axes[3], readings)
+    for ax in axes:
+        ax.set_xlabel("$x_0$ / $L$")
+    return figure
+
+
+def reconstruction_error(readings: Readings) -> Figure:
+    """Fig. 16: the error of the reconstruction, by the paper's integration and in closed form."""
+    figure = Figure(figsize=(6.5, 4), layout="constrained")
+    ax = figure.subplots()
+    _error(ax, readings)
+    ax.set_xlabel("$x_0$ / $L$")
+    return figure
+
+
+def _error(ax: Axes, readings: Readings) -> None:
+    """Distance of the reconstructed from the true contact, over the foot position."""
+    scale = readings.beam.length
+    for method, found, colour in (
+        ("(26) and integration", reconstruct_by_decision(readings), "#E69F00"),
+        ("closed form", reconstruct(readings), "k"),
+    ):
+        error = np.hypot(
+            found["contact_x"] - readings.values("contact_x"),
+            found["contact_y"] - readings.values("contact_y"),
+        )
+        x = readings.values("foot_x") / scale
+        shown = np.maximum(error / scale, 1e-17)  # zero has no place on a logarithmic axis
+        ax.semilogy(x, shown, ".", markersize=3, color=colour, label=method)
+    ax.set_ylabel("error of the contact point / $L$")
+    ax.legend(fontsize=9, frameon=False)

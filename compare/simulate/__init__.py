@@ -1,0 +1,1 @@
+"""The callers of MuJoCo: the sweeps that a budget needs, and the overview picture."""

@@ -1,0 +1,77 @@
+"""The budget of a case: all the sweeps that it takes, on all cores."""
+
+from collections.abc import Callable, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+
+from analytic import Case, InputError, Readings, solve_sweep
+from compare.explain.budget import Budget, budget
+from compare.explain.changes import controlled_changes
+from compare.explain.variations import on_polygon, variations
+from mujoco_models.settings import Settings
+
+
+def measure_budget(
+    case: Case, settings: Settings, advance: Callable[[], None] = lambda: None
+) -> tuple[Budget, dict[str, Readings]]:
+    """Measure what the disagreement of MuJoCo's sweep of `case` with the exact one is made of.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+    settings : Settings
+        Of the sweep in question.
+    advance : callable, optional
+        Called after every sweep, for progress bars.
+
+    Returns
+    -------
+    Budget
+        The parts.
+    dict of Readings
+        The sweeps, by the names of `controlled_changes`.
+
+    Raises
+    ------
+    InputError
+        If the settings leave no room to refine, or no station is in contact in all sweeps.
+    """
+    smooth = has_primitive(case)
+    runs = simulate_all(case, controlled_changes(settings, smooth), advance)
+    faceted = None
+    if smooth and settings.obstacle == "mesh":
+        faceted = on_polygon(case, settings.contour_points)
+    return budget(solve_sweep(case), runs, variations(case), faceted), runs
+
+
+def simulate_all(
+    case: Case, changes: Mapping[str, Settings], advance: Callable[[], None] = lambda: None
+) -> dict[str, Readings]:
+    """Sweeps of one case by name, a process each; equal settings are swept once."""
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
+        # The longest first, so that no core waits for it at the end.
+        longest_first = sorted(set(changes.values()), key=lambda s: -s.segments)
+        sweeps = {settings: pool.submit(sweep_alone, case, settings) for settings in longest_first}
+        for sweep in sweeps.values():
+            sweep.add_done_callback(lambda _: advance())
+        return {name: sweeps[settings].result() for name, settings in changes.items()}
+
+
+def sweep_alone(case: Case, settings: Settings) -> Readings:
+    """One MuJoCo sweep, in a process of its own."""
+    from mujoco_models import simulate_sweep  # MuJoCo is imported only where it is used
+
+    return simulate_sweep(case, settings)
+
+
+def has_primitive(case: Case) -> bool:
+    """Whether MuJoCo's smooth primitive can stand for the case's contour."""
+    from mujoco_models.obstacles.primitive import Primitive
+
+    leftward = case.mirrored() if case.sweep.direction == "right" else case
+    try:
+        Primitive.of(leftward)
+    except InputError:
+        return False
+    return True

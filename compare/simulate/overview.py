@@ -1,0 +1,112 @@
+"""The README's picture: the sweep, the signs, and both models' readings.
+
+Run as ``python -m compare.simulate.overview FILE``.
+"""
+
+import sys
+from dataclasses import replace
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Arc
+
+from analytic import Case, Readings, Sweep, named_case, solve_sweep
+from analytic.from_clamp.shape import deflected_shapes
+from compare.show.figures import PHASE_COLOURS, PHASE_NAMES
+from mujoco_models import simulate_sweep
+
+_INK, _FORCE = "#222222", "#009E73"
+_ARROW = {"arrowstyle": "-|>", "color": _FORCE, "linewidth": 1.8}
+
+
+def overview(case: Case) -> Figure:
+    """The sweep with the paper's sign convention, and the readings over the foot position."""
+    exact = solve_sweep(case)
+    simulated = simulate_sweep(replace(case, sweep=Sweep(stations=60)))
+    figure = Figure(figsize=(11, 6.4), layout="constrained")
+    grid = figure.add_gridspec(2, 3, height_ratios=[1.15, 1])
+    _sketch(figure.add_subplot(grid[0, :]), exact)
+    _plots([figure.add_subplot(grid[1, i]) for i in range(3)], exact, simulated)
+    return figure
+
+
+def _sketch(ax: Axes, exact: Readings) -> None:
+    x, y = deflected_shapes(exact)
+    phase = exact.table["phase"].to_numpy()
+    named = set()
+    for i in np.linspace(3, len(phase) - 1, 17).astype(int):
+        name = str(phase[i])
+        label = None if name in named else PHASE_NAMES[name]
+        ax.plot(x[i], y[i], color=PHASE_COLOURS[name], linewidth=1.2, label=label)
+        named.add(name)
+    xi, eta = (np.asarray(c) for c in exact.provenance["contour"])
+    ax.fill_between(xi, eta, eta.max(), color="#DDDDDD", linewidth=0)
+    ax.plot(xi, eta, color="#555555", linewidth=2)
+    ax.text(0, 0.75, "rigid, strictly convex object", ha="center", color="#555555")
+    ax.axhline(0, color="#999999", linewidth=0.8)
+    ax.annotate("", (-3.05, -0.22), (-2.25, -0.22), arrowprops={"arrowstyle": "-|>", "color": _INK})
+    ax.text(-2.2, -0.22, "the foot $x_0$ is swept this way", va="center", color=_INK)
+    ax.set_aspect("equal")
+    ax.set_xlim(-3.1, 4.35)
+    ax.set_ylim(-0.35, 1.12)
+    ax.axis("off")
+    ax.legend(loc="upper left", fontsize=8.5, frameon=False, bbox_to_anchor=(0.42, 0.13), ncols=3)
+    _signs(ax, x0=3.3)
+
+
+def _signs(ax: Axes, x0: float) -> None:
+    """One vibrissa apart, with everything that the paper measures and names."""
+    case = Case(profile=named_case("catenary").profile, sweep=Sweep(stations=120))
+    sweep = solve_sweep(case)
+    i = int(np.argmin(np.abs(sweep.values("foot_x") - 1.9)))
+    row = sweep.table.iloc[i]
+    x, y = (path[i] for path in deflected_shapes(sweep))
+    x = x - row["foot_x"] + x0
+    cx, cy, alpha = row["contact_x"] - row["foot_x"] + x0, row["contact_y"], row["contact_angle"]
+    ax.plot(x, y, color=_INK, linewidth=2)
+    ax.plot([x0 - 0.12, x0 + 0.12], [0, 0], color=_INK, linewidth=3)
+    span = np.linspace(-0.45, 0.45, 2)
+    ax.plot(cx + span * np.cos(alpha), cy + span * np.sin(alpha), color="#555555", linewidth=1.2)
+    ax.plot([cx, cx + 0.45], [cy, cy], color="#555555", linewidth=0.8, linestyle=":")
+    ax.add_patch(Arc((cx, cy), 0.6, 0.6, theta1=0, theta2=np.rad2deg(alpha), color="#555555"))
+    ax.text(cx + 0.33, cy + 0.05, r"$\alpha$")
+    ax.text(cx - 0.02, cy + 0.12, r"$(\xi, \eta)$", ha="right")
+    ax.text(x[30] + 0.05, y[30] - 0.08, "$s$")
+    push = 0.32 * np.array([np.sin(alpha), -np.cos(alpha)])
+    ax.annotate("", (cx + push[0], cy + push[1]), (cx, cy), arrowprops=_ARROW)
+    ax.text(cx + push[0] + 0.04, cy + push[1] - 0.02, "$f$", color=_FORCE)
+    ax.annotate("", (x0 - 0.06, 0), (x0 - 0.42, 0), arrowprops=_ARROW)
+    ax.text(x0 - 0.44, 0.0, "$F_{Ax}$", color=_FORCE, ha="right", va="center")
+    ax.annotate("", (x0, 0.42), (x0, 0.02), arrowprops=_ARROW)
+    ax.text(x0 - 0.05, 0.36, "$F_{Ay}$", color=_FORCE, ha="right")
+    ax.annotate(
+        "",
+        (x0 + 0.02, 0.17),
+        (x0 + 0.17, -0.06),
+        arrowprops={**_ARROW, "connectionstyle": "arc3,rad=0.5"},
+    )
+    ax.text(x0 + 0.22, -0.06, "$M_{Az}$", color=_FORCE)
+    ax.text(x0 - 0.62, -0.22, "clamp on vibrissa, counted positive", color=_FORCE, fontsize=9)
+
+
+def _plots(axes: list[Axes], exact: Readings, simulated: Readings) -> None:
+    symbols = {"force_x": "$F_{Ax}$ / ($EI/L^2$)", "force_y": "$F_{Ay}$ / ($EI/L^2$)"}
+    symbols["moment_z"] = "$M_{Az}$ / ($EI/L$)"
+    for ax, (name, title) in zip(axes, symbols.items(), strict=True):
+        ax.plot(exact.values("foot_x"), exact.values(name), color=_INK, label="closed form")
+        ax.plot(
+            simulated.values("foot_x"),
+            simulated.values(name),
+            "o",
+            color="#CC79A7",
+            markersize=3,
+            label="MuJoCo chain, 40 segments",
+        )
+        ax.set_title(title, fontsize=10)
+        ax.set_xlabel("foot $x_0$ / $L$")
+    axes[1].legend(fontsize=8.5, frameon=False)
+
+
+if __name__ == "__main__":
+    overview(named_case("catenary")).savefig(sys.argv[1], dpi=110)

@@ -1,0 +1,69 @@
+"""Advice put to the test: the advised sweep, and what came of it."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from analytic import Case, Readings, solve_sweep
+from compare.explain.advice import Advice, advise, seconds_a_station
+from compare.explain.budget import Budget, largest_rms
+from compare.explain.changes import coarser_mesh
+from compare.simulate.controlled import sweep_alone
+from mujoco_models.settings import Settings
+
+
+@dataclass(frozen=True)
+class Followed:
+    """Advice, and what came of it.
+
+    Attributes
+    ----------
+    target : float
+        The wanted error.
+    foretold : Advice
+        The settings, and what was expected.
+    error, seconds_a_station : float
+        What was measured with them.
+    reached : bool
+        Whether that is enough.
+    """
+
+    target: float
+    foretold: Advice
+    error: float
+    seconds_a_station: float
+
+    @property
+    def reached(self) -> bool:
+        """Whether the measured error is at most the target."""
+        return self.error <= self.target
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``budget.json`` holds."""
+        return {**asdict(self), "reached": self.reached}
+
+
+def follow_advice(
+    case: Case, found: Budget, runs: Mapping[str, Readings], target: float
+) -> Followed:
+    """Ask for advice, sweep with the advised settings, and measure.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+    found, runs
+        What `compare.simulate.controlled.measure_budget` returns of it.
+    target : float
+        Wanted error; see `advise`.
+
+    Raises
+    ------
+    InputError
+        If no settings reach the target.
+    """
+    base = Settings(**runs["base"].provenance["settings"])
+    coarser = sweep_alone(case, coarser_mesh(base))
+    foretold = advise(found, runs, coarser, target)
+    made = sweep_alone(case, foretold.settings)
+    return Followed(target, foretold, largest_rms(solve_sweep(case), made), seconds_a_station(made))

@@ -1,0 +1,1 @@
+"""What a study varies: its file, its axes, its runs."""

@@ -1,0 +1,30 @@
+"""Sensor noise, added to the clamp readings of a sweep."""
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from analytic import Readings
+from analytic.problem.readings import CLAMP_READINGS
+from compare.sense.noise import with_noise
+
+
+class Noise(BaseModel):
+    """Gaussian noise of the sensor at the clamp.
+
+    Parameters
+    ----------
+    relative : float
+        Standard deviation, relative to each reading's largest magnitude.
+    seed : int
+        The same seed draws the same noise, whatever the case.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    relative: float = Field(default=0.0, ge=0, lt=1)
+    seed: int = Field(default=0, ge=0)
+
+    def add_to(self, readings: Readings) -> Readings:
+        """`readings` as a sensor with this noise gives them; the contact truth is kept."""
+        if self.relative == 0:
+            return readings
+        return with_noise(readings, dict.fromkeys(CLAMP_READINGS, self.relative), self.seed)

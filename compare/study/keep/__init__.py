@@ -1,0 +1,1 @@
+"""Where rows go and how they survive whatever kills the study."""

@@ -1,0 +1,89 @@
+"""The report of a study: tables, figures and one offline page, from what is stored alone."""
+
+import io
+from pathlib import Path
+
+import pandas as pd
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from analytic import InputError
+from analytic.problem.files import write_whole
+from compare.study.grid.plan import Plan
+from compare.study.keep.store import PLAN_FILE, Tell, read_rows
+from compare.study.show import pictures, tables
+from compare.study.show.tables import Findings
+
+
+def write_report(folder: Path, tell: Tell) -> Path:
+    """Write ``report.html``, ``report/*.png`` and ``report/*.csv`` into the folder of a study.
+
+    Returns
+    -------
+    Path
+        Of ``report.html``.
+
+    Raises
+    ------
+    InputError
+        If there is no study in `folder`, or none of its runs is done.
+    """
+    rows = read_rows(folder, tell)
+    plan = Plan.from_json((folder / PLAN_FILE).read_bytes())
+    found = Findings.of(plan, rows)
+    if found.done.empty:
+        raise InputError(
+            "DIR", folder, "a study with a run that is done", "see the reasons in DIR/runs"
+        )
+    drawn = {
+        name: figure
+        for draw in (pictures.axis_curves, pictures.heat_maps, pictures.error_against_time)
+        for name, figure in draw(found)
+    }
+    metrics = [column for columns in pictures.panels(found).values() for column in columns]
+    numbers = {
+        "outcomes": tables.outcomes(found),
+        "orders": tables.orders(found),
+        "phase-b-vanishes": tables.vanishing(found),
+        "curves": tables.curves(found, metrics),
+    }
+    (folder / "report").mkdir(exist_ok=True)
+    for name, figure in drawn.items():
+        write_whole(folder / "report" / f"{name}.png", _image(figure, "png"))
+    for name, table in numbers.items():
+        if not table.empty:
+            write_whole(folder / "report" / f"{name}.csv", table.to_csv(index=False).encode())
+    write_whole(folder / "report.html", _page(found, numbers, drawn).encode())
+    return folder / "report.html"
+
+
+def _page(found: Findings, numbers: dict[str, pd.DataFrame], drawn: dict[str, Figure]) -> str:
+    environment = Environment(
+        loader=PackageLoader("compare.study.show"), autoescape=True, undefined=StrictUndefined
+    )
+    environment.filters["number"] = lambda x: f"{x:.4g}" if isinstance(x, float) else str(x)
+    titles = {
+        "outcomes": "What became of the runs",
+        "orders": "Observed orders",
+        "phase-b-vanishes": "Where Phase B vanishes",
+    }
+    return environment.get_template("study.html.j2").render(
+        study=found.plan.study,
+        versions=found.plan.versions,
+        done=len(found.done),
+        planned=len(found.plan),
+        tables={titles[name]: numbers[name] for name in titles if not numbers[name].empty},
+        figures={name: Markup(_svg(figure)) for name, figure in drawn.items()},
+    )
+
+
+def _svg(figure: Figure) -> str:
+    text = _image(figure, "svg").decode()
+    return text[text.index("<svg") :]
+
+
+def _image(figure: Figure, kind: str) -> bytes:
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format=kind, dpi=150)
+    return buffer.getvalue()

@@ -1,0 +1,33 @@
+"""What a study will take, before it is started."""
+
+from itertools import islice
+from statistics import mean
+
+from compare.study.grid.plan import Plan
+from compare.study.work.run import Recipe, perform
+
+_PROBES = 3  # runs that are done to see how long one takes
+_BYTES_A_ROW = 250  # in a Parquet part of thousands of rows
+_BYTES_A_STATION = 100  # of kept readings, in either engine
+
+
+def estimate(plan: Plan, workers: int) -> str:
+    """Number of runs, time and disk, in a line; a few runs, spread over the plan, are timed."""
+    recipe = Recipe.of(plan.study)
+    probes = islice(plan, 0, None, max(1, (len(plan) - 1) // (_PROBES - 1)))
+    rows = [perform(recipe, run).row for run in probes]
+    seconds = mean(row["seconds"] for row in rows) * len(plan) / workers
+    stations = plan.study.base["sweep.stations"] if plan.study.keep_readings else 0
+    size = len(plan) * (_BYTES_A_ROW + 2 * stations * _BYTES_A_STATION)
+    trouble = sum(row["outcome"] != "done" for row in rows)
+    return (
+        f"{len(plan)} runs, about {_time(seconds)} on {workers} workers and {size / 1e6:.3g} MB; "
+        f"{len(rows)} runs tried, {trouble} of them not done"
+        + next((f" ({row['reason']})" for row in rows if row["reason"]), "")
+    )
+
+
+def _time(seconds: float) -> str:
+    if seconds < 120:
+        return f"{seconds:.2g} s"
+    return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"

@@ -1,0 +1,97 @@
+"""Runs done by any executor, a few ahead of those that are collected."""
+
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from dataclasses import dataclass
+from time import perf_counter
+from typing import TypeAlias
+
+from compare.study.grid.plan import Run
+from compare.study.work.run import Recipe, Result, lost
+
+Perform: TypeAlias = Callable[[Recipe, Run], Result]
+
+
+@dataclass(frozen=True)
+class Crew:
+    """Who does the runs.
+
+    Parameters
+    ----------
+    hire : callable
+        Makes an executor; called again if its workers died.
+    perform : callable
+        What a worker does with a run.
+    ahead : int
+        How many runs are handed out at once. Memory is that of so many.
+    failure : callable
+        What to make of an exception that is not the run's own: the row's reason, or it raises.
+    """
+
+    hire: Callable[[], Executor]
+    perform: Perform
+    ahead: int
+    failure: Callable[[BaseException], str]
+
+
+def carry_out(runs: Iterable[Run], recipe: Recipe, crew: Crew) -> Iterator[Result]:
+    """The results of `runs`, in the order in which they are done.
+
+    If a worker dies, the runs that were handed out are done once more, one by one, each in an
+    executor of its own: the one that kills its worker again is known then, and only that one is
+    given up.
+    """
+    waiting = iter(runs)
+    executor = crew.hire()
+    under_way: dict[Future[Result], Run] = {}
+    try:
+        while True:
+            suspects: list[Run] = []
+            try:
+                while len(under_way) < crew.ahead and (run := next(waiting, None)) is not None:
+                    suspects = [run]
+                    under_way[executor.submit(crew.perform, recipe, run)] = run
+                    suspects = []
+                if not under_way:
+                    return
+                yield from _collect(under_way, crew)
+            except BrokenExecutor:
+                suspects += under_way.values()
+                under_way.clear()
+                executor.shutdown()
+                for run in suspects:
+                    yield _alone(run, recipe, crew)
+                executor = crew.hire()
+    finally:
+        for future in under_way:
+            future.cancel()
+        executor.shutdown(wait=False)
+
+
+def _collect(under_way: dict[Future[Result], Run], crew: Crew) -> Iterator[Result]:
+    """The results that are there, at least one; they leave `under_way`."""
+    finished, _ = wait(under_way, return_when=FIRST_COMPLETED)
+    broken: BrokenExecutor | None = None
+    for future in finished:
+        try:
+            result = future.result()
+        except BrokenExecutor as error:
+            broken = error  # but others may have finished before
+            continue
+        except BaseException as error:
+            result = lost(under_way[future], "failed", crew.failure(error))
+        del under_way[future]
+        yield result
+    if broken is not None:
+        raise broken
+
+
+def _alone(run: Run, recipe: Recipe, crew: Crew) -> Result:
+    begin = perf_counter()
+    with crew.hire() as executor:
+        try:
+            return executor.submit(crew.perform, recipe, run).result()
+        except BrokenExecutor:
+            if perf_counter() - begin > recipe.timeout:
+                return lost(run, "timeout", f"stuck for {recipe.timeout:g} s; its worker was ended")
+            return lost(run, "failed", "its worker process died, twice")

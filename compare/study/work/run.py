@@ -1,0 +1,185 @@
+"""One run of a study: from its parameters to one flat row, whatever happens."""
+
+import os
+import platform
+import signal
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Literal, TypeAlias
+
+from analytic import InputError, Readings, solve_sweep
+from compare.judge.tolerances import Tolerances
+from compare.study.grid.axes import Value
+from compare.study.grid.file import Record, Study, case_file
+from compare.study.grid.plan import Run
+from compare.study.work import metrics
+from mujoco_models import DivergedError
+
+Outcome: TypeAlias = Literal["done", "diverged", "unsettled", "timeout", "failed", "bad-input"]
+Row: TypeAlias = dict[str, Any]
+
+_VERSIONS = ("vibrissa-testbed", "mujoco", "numpy", "scipy")
+_ABOUT = {
+    "seconds": "double",
+    "seconds_candidate": "double",
+    **{f"version_{name.replace('-', '_')}": "string" for name in _VERSIONS},
+    "version_python": "string",
+    "system": "string",
+    "host": "string",
+}
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """What all runs of a study have in common; small, it travels with every run."""
+
+    base: dict[str, Any]
+    simulate: bool
+    record: tuple[Record, ...]
+    keep_readings: bool
+    timeout: float
+
+    @classmethod
+    def of(cls, study: Study) -> "Recipe":
+        """The recipe of `study`."""
+        return cls(study.base, bool(study.beams), study.record, study.keep_readings, study.timeout)
+
+
+@dataclass(frozen=True)
+class Result:
+    """A run's row, and its readings if they are to be kept."""
+
+    row: Row
+    readings: dict[str, Readings] = field(default_factory=dict)
+
+
+class _TimeIsUp(Exception):  # noqa: N818  # not an error: an outcome
+    """The run has used up its time."""
+
+
+def columns(study: Study) -> dict[str, str]:
+    """Arrow types of a row's columns, in order."""
+    types = {int: "int64", float: "double", str: "string"}
+    found = {"run": "string", "outcome": "string", "reason": "string"}
+    for axis in study.crossed:
+        for key, values in zip(axis.keys, zip(*axis.points, strict=True), strict=True):
+            kinds = {types[type(value)] for value in values}
+            found[key] = kinds.pop() if len(kinds) == 1 else "double"
+    for record in study.record:
+        found |= metrics.COLUMNS[record]
+    return found | {"seed": "int64"} | _ABOUT
+
+
+def perform(recipe: Recipe, run: Run) -> Result:
+    """Do one run. Whatever goes wrong becomes its outcome; nothing is raised."""
+    begin = time.perf_counter()
+    row: Row = {"run": run.id, "outcome": "done", "reason": "", **run.parameters, **_system()}
+    readings: dict[str, Readings] = {}
+    try:
+        row |= _measure(recipe, run.parameters, readings)
+    except _TimeIsUp:
+        row |= {"outcome": "timeout", "reason": f"not finished after {recipe.timeout:g} s"}
+    except InputError as error:
+        row |= {"outcome": "bad-input", "reason": str(error)}
+    except DivergedError as error:
+        row |= {"outcome": "diverged", "reason": str(error)}
+    except Exception as error:
+        row |= {"outcome": "failed", "reason": _one_line(error)}
+    row["seconds"] = time.perf_counter() - begin
+    return Result(row, readings if recipe.keep_readings else {})
+
+
+def perform_alone(recipe: Recipe, run: Run) -> Result:
+    """`perform` for a process that does nothing else: a run that hangs takes the process with it.
+
+    `perform` asks the time between stations, which ends a slow run but not a stuck one.
+    """
+    with _end_of_process(1.1 * recipe.timeout + 1):
+        return perform(recipe, run)
+
+
+def lost(run: Run, outcome: Outcome, reason: str) -> Result:
+    """The row of a run that left none itself."""
+    return Result({"run": run.id, "outcome": outcome, "reason": reason, **run.parameters})
+
+
+def _measure(recipe: Recipe, parameters: dict[str, Value], readings: dict[str, Readings]) -> Row:
+    file, noise = case_file({**recipe.base, **parameters})
+    row: Row = {"seed": noise.seed}
+    if "events" in recipe.record:
+        row |= metrics.events(*file.physics(Path()))
+    if set(recipe.record) == {"events"} and not recipe.simulate:
+        return row
+    case = file.case(Path(), "run")
+    reference = solve_sweep(case)
+    simulated = reference
+    if recipe.simulate:
+        from mujoco_models import simulate_sweep  # MuJoCo is imported only where it is used
+
+        begin = time.perf_counter()
+        simulated = simulate_sweep(case, file.mujoco, _deadline(begin + recipe.timeout))
+        row["seconds_candidate"] = time.perf_counter() - begin
+        row |= _trust(simulated)
+    candidate = noise.add_to(simulated)
+    readings["analytic"] = reference
+    if candidate is not reference:
+        readings["candidate"] = candidate
+    if row.get("outcome") == "diverged":
+        return row
+    if "disagreement" in recipe.record:
+        row |= metrics.disagreement(reference, candidate)
+    if "reconstruction" in recipe.record:
+        row |= metrics.reconstruction(candidate)
+    return row
+
+
+def _trust(simulated: Readings) -> Row:
+    """The outcome, if the simulation itself speaks against too many of its stations."""
+    status = simulated.table["status"].to_numpy()
+    for outcome in ("diverged", "unsettled"):
+        count = int((status == outcome).sum())
+        if count > Tolerances().untrusted * len(status):
+            return {"outcome": outcome, "reason": f"{count} of {len(status)} stations {outcome}"}
+    return {}
+
+
+def _deadline(end: float) -> Callable[[], None]:
+    """To be called between stations: raises when the time is up."""
+
+    def check() -> None:
+        if time.perf_counter() > end:
+            raise _TimeIsUp
+
+    return check
+
+
+@contextmanager
+def _end_of_process(seconds: float) -> Iterator[None]:
+    """After so many seconds the operating system ends the process, whatever it is doing.
+
+    An alarm that nobody handles kills; no Python code has to run for it.
+    """
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+
+
+@cache
+def _system() -> Row:
+    return {
+        **{f"version_{name.replace('-', '_')}": version(name) for name in _VERSIONS},
+        "version_python": platform.python_version(),
+        "system": f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
+        "host": platform.node(),
+    }
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(f"{type(error).__name__}: {error}".split())

@@ -1,0 +1,1 @@
+"""Agreement as an assertion, and the pytest plugin around it."""

@@ -1,0 +1,1 @@
+"""The compiled model: what MuJoCo says of a configuration at rest."""

@@ -1,0 +1,1 @@
+"""From station to station: coming to rest, snapping off, leaving the plane."""

@@ -1,0 +1,374 @@
+"""The command line as a user meets it."""
+
+import contextlib
+import io
+import json
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from compare.commands.main import main
+
+CASE = """
+name = "small object"
+[beam]
+length = 1.0
+[profile]
+kind = "circle"
+radius = 1.0
+lowest = [0.0, 0.4]
+[sweep]
+stations = 30
+[mujoco]
+segments = 10
+"""
+
+UNITS = """
+[beam]
+length = "50 mm"
+flexural_rigidity = "2e-6 N m^2"
+radius = "0.25 mm"
+[profile]
+kind = "catenary"
+a = 0.5
+c = -0.8
+scale = "5 cm"
+[sweep]
+stations = 30
+"""
+
+
+@dataclass
+class Done:
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+def vibrissa(*arguments, cwd) -> Done:
+    """The command in this process: a fresh one would take longer to import than to run."""
+    out, err = io.StringIO(), io.StringIO()
+    words = ["vibrissa", *map(str, arguments)]
+    with (
+        pytest.MonkeyPatch.context() as patch,
+        contextlib.redirect_stdout(out),
+        contextlib.redirect_stderr(err),
+    ):
+        patch.setattr(sys, "argv", words)
+        patch.chdir(cwd)
+        with pytest.raises(SystemExit) as ended:
+            main()
+    return Done(ended.value.code, out.getvalue(), err.getvalue())
+
+
+def test_run_writes_what_it_promises(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE)
+    done = vibrissa("run", "case.toml", "--out", "out", "--segments", 40, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        "analytic.parquet",
+        "mujoco-chain.parquet",
+        "comparison.json",
+        "report.html",
+        "geometry.png",
+        "readings.png",
+        "phases.png",
+        "animation.gif",
+        *(f"still-{n}.png" for n in (1, 2, 3, 4)),
+    }
+    found = json.loads((tmp_path / "out" / "comparison.json").read_text())
+    assert found["verdict"] == "agrees"
+    report = (tmp_path / "out" / "report.html").read_text()
+    assert "<b>The two agree.</b>" in report
+    again = vibrissa("compare", "out/analytic.parquet", "out/mujoco-chain.parquet", cwd=tmp_path)
+    assert again.returncode == 0
+
+
+def test_a_coarse_beam_disagrees(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE)
+    done = vibrissa("run", "case.toml", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "allowed" in done.stdout
+    assert (tmp_path / "results" / "small object" / "report.html").exists()
+
+
+@pytest.mark.slow
+def test_a_run_with_its_budget(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE)
+    done = vibrissa("run", "case.toml", "--budget", "--out", "runs/it", cwd=tmp_path)
+    assert done.returncode == 1, done.stderr
+    assert "The largest part is discretisation" in done.stdout
+    found = json.loads((tmp_path / "runs" / "it" / "budget.json").read_text())
+    assert found["blame"] == "discretisation"
+    assert list(found["convergence"]) == ["10", "20", "40"]
+    assert 'id="budget"' in (tmp_path / "runs" / "it" / "report.html").read_text()
+    done = vibrissa("findings", "runs", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "| small object | chain | 10 |" in (tmp_path / "runs" / "README.md").read_text()
+    assert vibrissa("findings", "nowhere", cwd=tmp_path).returncode == 2
+
+
+def test_units(tmp_path):
+    (tmp_path / "case.toml").write_text(UNITS)
+    done = vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    from analytic import Readings, named_case, solve_sweep
+
+    sweep = Readings.read(tmp_path / "analytic.parquet")
+    assert sweep.beam.length == pytest.approx(0.05)
+    from dataclasses import replace
+
+    from analytic import Sweep
+
+    dimensionless = solve_sweep(replace(named_case("catenary"), sweep=Sweep(stations=30)))
+    ratio = sweep.values("force_y").max() / dimensionless.values("force_y").max()
+    assert ratio == pytest.approx(2e-6 / 0.05**2, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("length = 1.0", "length = -1.0"), "beam.length = -1.0"),
+        (("length = 1.0", 'length = "1 parsnip"'), "'1 parsnip'"),
+        (("length = 1.0", 'length = "1 kg"'), "'1 kg'"),
+        (("length = 1.0", 'length = "1 m"'), "without a unit"),
+        (("length = 1.0", "lenght = 1.0"), "did you mean length?"),
+        (("radius = 1.0", "radius = 1.0\na = 3"), "profile.a"),
+        (("radius = 1.0", ""), "profile.radius = missing"),
+        (('kind = "circle"', 'kind = "square"'), "profile.kind = 'square'"),
+        (('kind = "circle"', ""), "profile.kind = missing"),
+        (("segments = 10", "segments = 1"), "mujoco.segments"),
+        (("segments = 10", "segmens = 10"), "did you mean segments?"),
+        (("segments = 10", 'beam = "rope"'), "mujoco.beam = 'rope'"),
+        (("stations = 30", "stations = 1"), "sweep.stations = 1"),
+        (("[sweep]", '[sweep]\ndirection = "up"'), "sweep.direction = 'up': must be one of 'left'"),
+        (("[sweep]", "[sweeep]"), "did you mean sweep?"),
+        (("0.4]", "1.4]"), "below 1 L"),
+        (("0.4]", "0.001]"), "above the foot line"),
+        (("[beam]", "[beam"), "TOML"),
+    ],
+)
+def test_bad_case_files(tmp_path, change, said):
+    (tmp_path / "case.toml").write_text(CASE.replace(*change))
+    done = vibrissa("run", "case.toml", "--out", "out", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1, done.stderr
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["run", "catenry"], "did you mean catenary?"),
+        (["run", "nowhere.toml"], "nowhere.toml"),
+        (["run", "catenary", "--beam", "rope"], "rope"),
+        (["run", "catenary", "--segments", "0"], "segments = 0"),
+        (["run", "catenary", "--stations", "x"], "stations"),
+        (["compare", "a.parquet", "b.parquet"], "a.parquet"),
+        (["fly"], "fly"),
+        (["run"], "CASE"),
+    ],
+)
+def test_bad_commands(tmp_path, arguments, said):
+    done = vibrissa(*arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1, done.stderr
+    assert said in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_output_folder_that_cannot_be(tmp_path):
+    (tmp_path / "file").write_text("")
+    done = vibrissa("analytic", "parabola", "--out", "file", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+
+
+def test_cases_are_listed(tmp_path):
+    done = vibrissa("cases", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "two-circles" in done.stdout
+
+
+def test_reconstruction_of_a_rigs_file(tmp_path):
+    """Own column names, millimetres and millinewtons, and the vibrissa told apart."""
+    from analytic import Readings
+
+    (tmp_path / "case.toml").write_text(UNITS)
+    vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
+    sweep = Readings.read(tmp_path / "analytic.parquet")
+    rig = sweep.table[["foot_x"]] * 1e3
+    rig.columns = ["stage"]
+    rig["Fx"], rig["Fy"] = sweep.values("force_x") * 1e3, sweep.values("force_y") * 1e3
+    rig["Mz"] = sweep.values("moment_z") * 1e6
+    rig.to_csv(tmp_path / "rig.csv", index=False)
+    columns = ["foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm"]
+    words = [word for column in columns for word in ("--column", column)]
+    done = vibrissa(
+        "reconstruct", "rig.csv", "--beam", "case.toml", *words, "--out", "out", cwd=tmp_path
+    )
+    assert done.returncode == 0, done.stderr
+    import pandas as pd
+
+    points = pd.read_csv(tmp_path / "out" / "points.csv")
+    np.testing.assert_allclose(points["contact_x"], sweep.values("contact_x"), atol=1e-12)
+    assert (tmp_path / "out" / "reconstruction.png").exists()
+    for words, said in (
+        (["--column", "foot_x"], "NAME=COLUMN"),
+        (["--column", "foot_x=stagee"], "stagee"),
+        (["--column", "foot_x=stage:parsec s"], "parsec s"),
+        (["--beam", "rig.csv"], "rig.csv"),
+    ):
+        done = vibrissa("reconstruct", "rig.csv", *words, cwd=tmp_path)
+        assert done.returncode == 2
+        assert said in done.stderr
+        assert done.stderr.count("\n") == 1
+
+
+RIG = ("foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm")
+RIG_COLUMNS = tuple(word for column in RIG for word in ("--column", column))
+
+
+@pytest.fixture
+def rig(tmp_path) -> Path:
+    """A folder with a sweep in SI units and the same from a rig: mm, mN, 2 mm off, 0.3 % noise."""
+    from analytic import Readings
+
+    (tmp_path / "case.toml").write_text(UNITS.replace("stations = 30", "stations = 120"))
+    vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
+    sweep = Readings.read(tmp_path / "analytic.parquet")
+    rng = np.random.default_rng(1)
+    columns = {"stage": sweep.values("foot_x") * 1e3 + 2.0}
+    for column, name, unit in (
+        ("Fx", "force_x", 1e3),
+        ("Fy", "force_y", 1e3),
+        ("Mz", "moment_z", 1e6),
+    ):
+        values = sweep.values(name) * unit
+        noise = 3e-3 * np.abs(values).max() * rng.standard_normal(len(values))
+        columns[column] = values + noise
+    import pandas as pd
+
+    pd.DataFrame(columns).to_csv(tmp_path / "rig.csv", index=False)
+    return tmp_path
+
+
+@pytest.mark.slow
+def test_compare_with_a_rig(rig):
+    """Own columns, units, an unknown offset, noise; without telling of the last two it fails."""
+    words = ("compare", "analytic.parquet", "rig.csv", *RIG_COLUMNS, "--out", "out")
+    done = vibrissa(*words, "--offset", "auto", "--noise", "0.003", cwd=rig)
+    assert done.returncode == 0, done.stdout + done.stderr
+    found = json.loads((rig / "out" / "comparison.json").read_text())
+    assert found["offset"]["value"] == pytest.approx(2e-3, abs=found["offset"]["uncertainty"])
+    assert found["offset"]["uncertainty"] < 1e-4
+    assert "offset" in done.stdout
+    assert "noise" in done.stdout
+    estimated = vibrissa(*words, "--offset", "auto", "--noise", "auto", cwd=rig)
+    assert estimated.returncode == 0, estimated.stdout
+    assert vibrissa(*words, "--offset", "0.002", "--noise", "0.003", cwd=rig).returncode == 0
+    assert vibrissa(*words, "--noise", "0.003", cwd=rig).returncode == 1
+    # The other way round: the rig as the reference, whose vibrissa a file tells.
+    columns = [word.replace("--column", "--reference-column") for word in RIG_COLUMNS]
+    beam = ("--reference-beam", "case.toml")
+    words = ("compare", "rig.csv", "analytic.parquet", *columns, *beam, "--out", "back")
+    vibrissa(*words, "--offset", "auto", "--noise", "auto", cwd=rig)
+    found = json.loads((rig / "back" / "comparison.json").read_text())
+    assert found["offset"]["value"] == pytest.approx(-2e-3, abs=2e-4)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--offset", "some"), "--offset = 'some'"),
+        (("--offset", "nan"), "--offset = 'nan'"),
+        (("--noise", "2"), "noise = 2.0"),
+        (("--tolerances", "none.toml"), "none.toml"),
+        (("--tolerances", "case.toml"), "[tolerances]"),
+        (("--beam", "rig.csv"), "rig.csv"),
+    ],
+)
+def test_compare_refuses(rig, words, said):
+    given = ("compare", "analytic.parquet", "rig.csv", *RIG_COLUMNS, "--out", "out", *words)
+    done = vibrissa(*given, cwd=rig)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not (rig / "out").exists()
+
+
+def test_an_offset_that_nothing_tells_is_one_line(rig):
+    lines = (rig / "rig.csv").read_text().splitlines()
+    (rig / "rig.csv").write_text("\n".join(lines[:6]))
+    words = ("compare", "analytic.parquet", "rig.csv", *RIG_COLUMNS, "--offset", "auto")
+    done = vibrissa(*words, cwd=rig)
+    assert done.returncode == 2
+    assert "offset = ambiguous" in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.slow
+def test_tolerances_from_files(tmp_path):
+    """A case file's are those of its runs, a file's those of a comparison."""
+    limits = '[tolerances]\nrms = { limit = 1e-9, reason = "to see it fail" }\n'
+    (tmp_path / "case.toml").write_text(CASE + limits)
+    done = vibrissa("run", "case.toml", "--out", "out", "--segments", 40, cwd=tmp_path)
+    assert done.returncode == 1
+    assert "allowed 1.00e-09 (to see it fail)" in done.stdout
+    assert "to see it fail" in (tmp_path / "out" / "report.html").read_text()
+    (tmp_path / "limits.toml").write_text(limits)
+    both = ("out/analytic.parquet", "out/mujoco-chain.parquet")
+    assert vibrissa("compare", *both, "--out", "again", cwd=tmp_path).returncode == 0
+    words = ("--tolerances", "limits.toml", "--out", "again")
+    assert vibrissa("compare", *both, *words, cwd=tmp_path).returncode == 1
+
+
+def test_the_papers_figures(tmp_path):
+    done = vibrissa(
+        "analytic", "shallow-catenary", "--figures", "--certified", "--out", ".", cwd=tmp_path
+    )
+    assert done.returncode == 0, done.stderr
+    drawn = {path.name for path in tmp_path.glob("*.png")}
+    assert drawn == {f"figure-{n}.png" for n in (12, 14, 15, 16)}
+
+
+@pytest.mark.parametrize(
+    ("profile", "said"),
+    [
+        ('kind = "polygon"\npoints = [[-1, 1.2], [0, 0.4], [1, 1.2]]', None),
+        ('kind = "points"\npoints = [[-1, 1.2], [-0.5, 0.5], [0, 0.4], [1, 1.2]]', None),
+        ('kind = "mesh"\nfile = "ball.stl"\noffset = [0, 1.3]', None),
+        ('kind = "mesh"\nfile = "none.stl"', "none.stl"),
+        ('kind = "polygon"\npoints = [[-1, 1.2], [0, 0.4]]', "three or more"),
+        ('kind = "points"\npoints = [[0, 1], [1, 0], [2, 0.5], [3, 0.8]]', "point 2"),
+    ],
+)
+def test_other_contours(tmp_path, profile, said):
+    import trimesh
+
+    trimesh.creation.icosphere(subdivisions=3).export(tmp_path / "ball.stl")
+    (tmp_path / "case.toml").write_text(f"[profile]\n{profile}\n[sweep]\nstations = 20\n")
+    done = vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
+    if said is None:
+        assert done.returncode == 0, done.stderr
+    else:
+        assert done.returncode == 2
+        assert said in done.stderr
+        assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("heading", ["From Python", "Gates in your own tests"])
+def test_readme_example_runs(tmp_path, heading):
+    """The README's Python blocks are executed as they stand."""
+    readme = (Path(__file__).parents[3] / "README.md").read_text()
+    code = readme.split(f"## {heading}\n")[1].split("```python\n")[1].split("```")[0]
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr

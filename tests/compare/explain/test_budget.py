@@ -1,0 +1,275 @@
+"""The budget puts every planted fault under its right name, and blames nobody without one."""
+
+import json
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+
+from analytic import Beam, Case, InputError, Readings, Sweep, named_case, polygon, solve_sweep
+from analytic.problem.readings import CLAMP_READINGS
+from analytic.solver.friction import with_friction
+from compare.explain.budget import Budget, budget
+from compare.explain.changes import controlled_changes
+from compare.explain.variations import on_polygon, variations
+from compare.simulate.controlled import has_primitive, measure_budget, simulate_all
+from mujoco_models import Settings, simulate_sweep
+
+CASE = named_case("parabola")
+GRID = Sweep(80, float(CASE.foot_x[0]), float(CASE.foot_x[-1]))
+
+
+def measured(claimed: Case, made: Case, settings: Settings) -> Budget:
+    """The budget of sweeps of the case `made`, which claim to be of the case `claimed`."""
+    runs = {
+        name: replace(simulate_sweep(made, changed), beam=claimed.beam)
+        for name, changed in controlled_changes(settings).items()
+    }
+    return budget(solve_sweep(claimed), runs, variations(claimed))
+
+
+def total(found: Budget, part: str) -> float:
+    return max(found.parts[part][reading].rms for reading in CLAMP_READINGS)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("segments", [40, 80])
+def test_named_cases_are_explained(case, segments):
+    """Observed at most 3.8e-5, in the catenary's force_y at N = 40.
+
+    From N = 110 on beads are no closer than L/4000, and cease to follow the segments.
+    """
+    found, _ = measure_budget(case, Settings(segments=segments))
+    assert found.closes
+    assert found.suspects == ()
+    assert found.blame in ("discretisation", "facets")
+    assert (1.8 if segments == 40 else 1.6) < found.order <= 2  # observed 1.98, 1.69
+    for reading in CLAMP_READINGS:
+        unexplained = found.parts["unexplained"][reading]
+        assert unexplained.rms <= 5e-5, reading
+        assert unexplained.rms <= unexplained.uncertainty, reading
+
+
+@pytest.mark.slow
+def test_the_limit_is_the_exact_solution_on_the_same_polygon(case):
+    """With 12,800 facets; observed at most 8.3e-5, and 1.05e-4 in the force_x of two-circles.
+
+    With 3,200 the load sinks in by 2e-6 L where a facet is 7e-8 L high, and spreads over several:
+    MuJoCo is then nearer to the smooth contour than to its own polygon, by up to 3e-4 in force_x.
+    Beyond 12,800 nothing is gained: a polygon has several equilibria at one station, a facet apart,
+    and MuJoCo may rest on another one than the exact sweep has come to. On the flat circle of
+    two-circles, where the tip slides farthest, that is most of what is left.
+    """
+    points = 12_800
+    sweeps = {n: Settings(segments=n, contour_points=points) for n in (80, 160)}
+    allowed = 1.2e-4 if case.name == "two-circles" else 1e-4
+    runs = simulate_all(case, {str(n): settings for n, settings in sweeps.items()})
+    exact = on_polygon(case, points)
+    kept = exact.trusted & (exact.table["phase"] != "free").to_numpy()
+    kept &= case.foot_x - exact.snap_off > 5e-3 * np.ptp(case.foot_x)
+    for name in CLAMP_READINGS:
+        middle, fine = (runs[str(n)].values(name) for n in sweeps)
+        limit = fine + (fine - middle) / 3
+        error = (limit - exact.values(name))[kept] / np.abs(exact.values(name)).max()
+        assert np.sqrt(np.mean(error**2)) < allowed, name
+
+
+@pytest.fixture(scope="module")
+def sound() -> Budget:
+    case = replace(CASE, sweep=GRID)
+    return measured(case, case, Settings(segments=20))
+
+
+def test_a_sound_run_is_explained(sound):
+    assert sound.closes
+    assert sound.suspects == ()
+    assert sound.blame == "discretisation"
+    assert sound.order > 1.8
+    assert total(sound, "unrest") < 1e-7
+    assert total(sound, "sensor") < 1e-6
+    assert total(sound, "extension") < 1e-12
+
+
+def test_the_parts_are_signals_that_add_up(sound):
+    """In every phase, what is unexplained is no more than all the others and the whole."""
+    for reading in CLAMP_READINGS:
+        parts = {name: by_reading[reading].rms for name, by_reading in sound.parts.items()}
+        rest = parts.pop("unexplained")
+        whole = sound.disagreement[reading]
+        assert abs(whole - sum(parts.values())) <= rest + 2 * sum(sorted(parts.values())[:-1])
+        for phases in (sound.by_phase[name][reading] for name in sound.by_phase):
+            assert set(phases) == {"tip", "tangent"}
+
+
+@pytest.mark.slow
+def test_the_closed_form_foretells_softness(sound):
+    """Where the load rests on one bead. Observed: within 12 %, with as much uncertainty."""
+    case = named_case("tip-only")
+    case = replace(case, sweep=replace(case.sweep, stations=40))
+    found = measured(case, case, Settings(segments=20))
+    for reading in CLAMP_READINGS:
+        softness = found.parts["softness"][reading].rms
+        assert found.checks["softness"][reading] == pytest.approx(softness, rel=0.25)
+
+
+@pytest.mark.slow
+def test_a_naive_clamp_is_discretisation_of_first_order():
+    case = replace(CASE, sweep=GRID)
+    found = measured(case, case, Settings(segments=20, clamp="naive"))
+    assert found.blame == "discretisation"
+    assert found.order < 1.3
+    assert total(found, "discretisation") > 1e-2
+
+
+@pytest.mark.slow
+def test_a_coarse_mesh_is_facets(sound):
+    case = replace(CASE, sweep=GRID)
+    found = measured(case, case, Settings(segments=40, contour_points=60))
+    assert found.blame == "facets"
+    assert found.closes
+    assert total(found, "facets") > 10 * total(sound, "facets")
+
+
+@pytest.mark.slow
+def test_a_loose_contact_is_softness(sound):
+    case = replace(CASE, sweep=GRID)
+    found = measured(case, case, Settings(segments=40, contact_stiffness=1e4))
+    assert found.blame == "softness"
+    # The sound run's 3e-5 is how harder beads hand on the load, which the closed form leaves out.
+    assert total(found, "softness") > 10 * total(sound, "softness")
+    assert max(found.checks["softness"].values()) > 100 * max(sound.checks["softness"].values())
+
+
+@pytest.mark.slow
+def test_unrest_is_unrest():
+    case = replace(CASE, sweep=GRID)
+    found = measured(case, case, Settings(segments=40, tolerance=1e-2))
+    assert found.blame == "unrest"
+    assert found.closes
+
+
+WRONG_BEAMS = {
+    "flexural_rigidity": (Beam(flexural_rigidity=1.01), 0.01),
+    "radius": (Beam(radius=0.0025), -0.5),
+    "length": (Beam(length=1.004), 0.004),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", WRONG_BEAMS)
+def test_wrong_physics_is_unexplained_and_suspected(name):
+    beam, change = WRONG_BEAMS[name]
+    claimed = replace(CASE, sweep=replace(GRID, start=GRID.start + 0.01))
+    found = measured(claimed, replace(claimed, beam=beam), Settings(segments=20))
+    assert found.blame == "unexplained"
+    assert not found.closes
+    assert found.suspects[0].name == name
+    assert found.suspects[0].change == pytest.approx(change, rel=0.2)
+
+
+@pytest.mark.slow
+def test_a_shifted_stage_is_suspected():
+    case = replace(CASE, sweep=GRID)
+    wrong = replace(case, sweep=Sweep(80, GRID.start + 0.005, GRID.stop + 0.005))
+    shifted = {
+        name: Readings(
+            simulate_sweep(wrong, changed).table.assign(foot_x=case.foot_x),
+            case.beam,
+            provenance={"settings": {"segments": changed.segments}},
+        )
+        for name, changed in controlled_changes(Settings(segments=20)).items()
+    }
+    found = budget(solve_sweep(case), shifted, variations(case))
+    assert found.suspects[0].name == "foot_x"
+    assert found.suspects[0].change == pytest.approx(0.005, rel=0.1)
+
+
+FRICTION = 0.005
+
+
+@pytest.fixture
+def rubbing(monkeypatch):
+    """MuJoCo's beam with a dry contact: each bead's load drags it along the contour."""
+    from mujoco_models.model.model import BeamModel
+
+    imbalance, elastic_moments = BeamModel.imbalance, BeamModel.elastic_moments
+
+    def rub(self, foot_x, angles):
+        self.data.xfrc_applied[:] = 0
+        imbalance(self, foot_x, angles)
+        pulled = np.zeros(self.model.nv)
+        for bead, normal, distance in zip(*self.contacts(), strict=True):
+            if distance < 0:
+                load = -distance * self.contact_stiffness
+                drag = FRICTION * load * np.array([-normal[1], normal[0], 0])  # to the right
+                geom = self._beads[bead]
+                body = self.model.geom_bodyid[geom]
+                at = self.data.geom_xpos[geom] - self._radius * np.array([*normal, 0])
+                arm = at - self.data.xipos[body]
+                self.data.xfrc_applied[body] += [*drag, *np.cross(arm, drag)]
+                mujoco.mj_applyFT(self.model, self.data, drag, np.zeros(3), at, body, pulled)
+        mujoco.mj_forward(self.model, self.data)  # for the clamp's sensors
+        self.pulled = self.beam.moments(pulled)
+        return self.beam.moments(self.moments()) + self.pulled
+
+    monkeypatch.setattr(BeamModel, "imbalance", rub)
+    monkeypatch.setattr(BeamModel, "elastic_moments", lambda m: elastic_moments(m) + m.pulled)
+    monkeypatch.setattr(BeamModel, "discrepancy", lambda m: 0.0)  # it knows of contacts only
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("rubbing")
+def test_friction_left_on_is_suspected():
+    case = replace(CASE, sweep=replace(GRID, stations=24))
+    found = measured(case, case, Settings(segments=10, tolerance=1e-6))
+    assert found.blame == "unexplained"
+    assert found.suspects[0].name == "friction"
+    assert found.suspects[0].change == pytest.approx(FRICTION, rel=0.2)
+
+
+def test_friction_of_nothing_is_the_closed_form(case):
+    """Runge and Kutta's method against elliptic integrals. Observed: at most 1.2e-9."""
+    exact, found = solve_sweep(case), with_friction(case, 0.0)
+    for name in CLAMP_READINGS:
+        scale = np.abs(exact.values(name)).max()
+        assert np.abs(found.values(name) - exact.values(name)).max() < 5e-9 * scale, name
+
+
+def test_friction_holds_back_and_is_the_mirror_image_to_the_right():
+    with_it = with_friction(CASE, 0.1)
+    inside = CASE.foot_x > solve_sweep(CASE).snap_off + 0.2
+    touching = inside & (with_it.table["phase"] != "free").to_numpy()
+    # The object pulls the vibrissa on to the right, so the clamp pulls it more to the left.
+    change = with_it.values("force_x") - solve_sweep(CASE).values("force_x")
+    assert (change[touching][1:] < 0).all()  # where it has just touched it is still straight
+    other_way = with_friction(CASE.mirrored(), 0.1)
+    np.testing.assert_allclose(
+        other_way.values("force_x"), -with_it.values("force_x"), rtol=0, atol=1e-9
+    )
+    with pytest.raises(InputError, match=r"from -0\.5 to 0\.5"):
+        with_friction(CASE, 2.0)
+
+
+@pytest.mark.slow
+def test_a_polygon_has_no_facet_error():
+    case = Case(
+        profile=polygon([(-1.4, 1.0), (-0.6, 0.5), (0.2, 0.4), (1.0, 0.8), (1.6, 1.4)]),
+        sweep=Sweep(stations=40),
+    )
+    assert not has_primitive(case)
+    found, _ = measure_budget(case, Settings(segments=20))
+    assert total(found, "facets") < 1e-8  # two states at rest
+    assert found.blame == "discretisation"
+
+
+def test_no_room_to_refine():
+    with pytest.raises(InputError, match="segments of a budget = 500: must be at most 250"):
+        controlled_changes(Settings(segments=500))
+
+
+def test_as_json(sound):
+    found = json.loads(json.dumps(sound.to_dict(), allow_nan=False))
+    assert {"parts", "disagreement", "closes", "blame"} <= set(found)
+    assert set(found["parts"]["facets"]["force_x"]) == {"rms", "uncertainty"}
+    assert np.isfinite(found["disagreement"]["force_y"])

@@ -1,0 +1,110 @@
+"""Limits are data, each with its reason, and noise widens them by what it does."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import InputError
+from analytic.problem.readings import CLAMP_READINGS
+from compare import Limit, Tolerances, assert_agreement, compare
+from compare.read.case import load_job
+from compare.read.limits import read_tolerances
+from compare.sense.noise import with_noise
+from tests.conftest import exact_sweep, simulated_sweep
+
+FILE = """
+[tolerances]
+rms = { limit = 4e-3, reason = "half as many segments" }
+
+[tolerances.force_x]
+rms = { limit = 1e-4, reason = "the force that is used" }
+
+[tolerances.moment_z.tangent]
+max = { limit = 1e-5, reason = "a strict one" }
+"""
+
+
+def test_every_limit_has_a_reason():
+    for name, limit in Tolerances().limits().items():
+        assert len(limit.reason) > 20, name
+    assert Tolerances(rms=1e-3).limits()["rms"].reason == "asked for by the caller"
+
+
+def test_limits_from_a_file(tmp_path):
+    (tmp_path / "limits.toml").write_text(FILE)
+    limits = read_tolerances(tmp_path / "limits.toml")
+    assert limits.rms == 4e-3
+    assert limits.max == Tolerances().max
+    assert limits.of_sweep("force_x").reason == "the force that is used"
+    assert limits.of_sweep("force_y") == 4e-3
+    assert limits.of_reading("max", "moment_z", "tangent") == 1e-5
+    assert limits.of_reading("max", "moment_z", "tip") == Tolerances().max
+    found = compare(exact_sweep("catenary"), simulated_sweep("catenary"), limits)
+    assert [line.split(":")[0] for line in found.failures] == ["force_x", "moment_z"]
+    assert "(the force that is used)" in found.failures[0]
+    assert "in phase tangent, the contact at arc length 0." in found.failures[1]
+    assert found.to_dict()["tolerances"]["moment_z.tangent.max"] == 1e-5
+    assert found.to_dict()["tolerance_reasons"]["moment_z.tangent.max"] == "a strict one"
+
+
+def test_limits_in_a_case_file(tmp_path):
+    case = '[profile]\nkind = "circle"\nradius = 1.0\nlowest = [0.0, 0.4]\n'
+    (tmp_path / "case.toml").write_text(case + FILE)
+    assert load_job(str(tmp_path / "case.toml")).tolerances.rms == 4e-3
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("rms = 1e-3", "line 2: tolerances.rms = 0.001: must be a limit with its reason"),
+        ("rms = { limit = 1e-3 }", "say why"),
+        ('rms = { limit = 1e-3, reason = " " }', "say why"),
+        ('rms = { limit = -1e-3, reason = "x" }', "0 or more"),
+        ('rms = { limit = "1e-3", reason = "x" }', "0 or more"),
+        ('rsm = { limit = 1e-3, reason = "x" }', "did you mean rms"),
+        ('forcex.rms = { limit = 1e-3, reason = "x" }', "tolerances.forcex.rms"),
+        ('force_x.snap_off = { limit = 1e-3, reason = "x" }', "tolerances.force_x.snap_off"),
+    ],
+)
+def test_limits_that_cannot_be_used(tmp_path, text, said):
+    (tmp_path / "limits.toml").write_text(f"[tolerances]\n{text}\n")
+    with pytest.raises(InputError, match=said):
+        read_tolerances(tmp_path / "limits.toml")
+
+
+def test_a_phase_has_a_limit_of_its_own():
+    exact, simulated = exact_sweep("catenary"), simulated_sweep("catenary")
+    strict = Tolerances(special={"tip.rms": Limit(1e-6, "as an example")})
+    with pytest.raises(AssertionError, match=r"force_y: rms .* in phase tip; allowed 1.00e-06"):
+        assert_agreement(exact, simulated, strict)
+
+
+@pytest.mark.parametrize("level", [1e-3, 1e-2])
+def test_noise_is_no_disagreement(case_name, exact, level):
+    """A sweep that is right but for its noise fails without saying so, and passes with it."""
+    noisy = with_noise(exact, dict.fromkeys(CLAMP_READINGS, level), seed=5)
+    noisy = replace(noisy, table=noisy.table.drop(columns=["phase"]))
+    if level > Tolerances().rms:
+        assert not compare(exact, noisy).agrees
+    for noise in (level, "auto"):
+        found = compare(exact, noisy, noise=noise)
+        assert found.agrees, found.failures
+    assert found.noise.level["force_y"] == pytest.approx(level, rel=0.25)
+
+
+def test_noise_excuses_nothing_but_noise():
+    """A gain 3 % off under 1 % of noise."""
+    exact = exact_sweep("catenary")
+    noisy = with_noise(exact, dict.fromkeys(CLAMP_READINGS, 1e-2), seed=1)
+    wrong = replace(noisy, table=noisy.table.assign(force_y=1.03 * noisy.table["force_y"]))
+    found = compare(exact, wrong, noise=1e-2)
+    assert [line.split(":")[0] for line in found.failures if "rms" in line] == ["force_y"]
+    assert "beside noise of 1.0e-02" in found.failures[0]
+
+
+def test_noise_that_cannot_be():
+    exact = exact_sweep("catenary")
+    for level in (-0.1, 1.0, np.nan):
+        with pytest.raises(InputError, match="noise"):
+            compare(exact, exact, noise=level)

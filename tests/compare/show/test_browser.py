@@ -1,0 +1,155 @@
+"""The report as a real browser shows it: light, dark, on a telephone, and on paper.
+
+Needs Chromium. Where ``VIBRISSA_BROWSER`` names one it must be there; else its absence is a reason
+to skip.
+"""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+from html import unescape
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from compare import compare
+from compare.show.animation import write_animation
+from compare.show.report import Film, write_report
+from tests.compare.planted import planted
+from tests.conftest import exact_sweep, simulated_sweep
+
+pytestmark = pytest.mark.slow
+
+# What is wider than the window, and in no container that scrolls; which of the film's two is shown.
+PROBE = """<script>addEventListener("load", () => {
+  const width = document.documentElement.clientWidth, seen = [];
+  for (const e of document.querySelectorAll("body *"))
+    if (e.getBoundingClientRect().right > width + 1 && !e.parentElement.closest(".scroll, svg"))
+      seen.push(e.tagName + "." + e.className);
+  const shown = name => getComputedStyle(document.querySelector(name)).display !== "none";
+  parent.postMessage(JSON.stringify({
+    width, scroll: document.documentElement.scrollWidth, height: document.body.scrollHeight, seen,
+    moving: shown(".film .moving"), still: shown(".film .still"),
+    pictures: [...document.querySelectorAll("svg")].map(e => e.getBoundingClientRect().height),
+  }), "*");
+});</script></body>"""
+# A window cannot be as narrow as a telephone, a frame in it can.
+FRAME = """<body><script>
+addEventListener("message", e => { document.body.dataset.found = e.data; });
+</script><iframe src="probed.html" style="width: {}px; height: 900px; border: 0"></iframe></body>"""
+DARK = "--blink-settings=preferredColorScheme=0"
+ORANGE = {"light": (0xD5, 0x5E, 0x00), "dark": (0xFF, 0x91, 0x47)}  # the blamed part's bar
+
+
+@pytest.fixture(scope="module")
+def browser() -> str:
+    asked = os.environ.get("VIBRISSA_BROWSER")
+    found = shutil.which(asked or "chromium") or (shutil.which("google-chrome") if not asked else 0)
+    if not found and asked:
+        pytest.fail(f"VIBRISSA_BROWSER names {asked}, which is not installed")
+    if not found:
+        pytest.skip("no Chromium to look at the report with: install chromium")
+    return found
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory) -> Path:
+    exact, simulated = exact_sweep("catenary"), simulated_sweep("catenary")
+    folder = tmp_path_factory.mktemp("report")
+    gif, *stills = write_animation(exact, simulated, folder, 48)
+    return write_report(compare(exact, simulated), folder, planted(), Film(gif, stills[2]))
+
+
+@pytest.fixture
+def look(browser, tmp_path):
+    """Run the browser on a page; its output."""
+
+    def run(page: Path, *options: str) -> str:
+        command = [
+            browser, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
+            f"--user-data-dir={tmp_path / 'profile'}", *options, page.as_uri(),
+        ]  # fmt: skip
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+        return done.stdout
+
+    return run
+
+
+@pytest.fixture
+def measure(look, report, tmp_path):
+    """What the probe finds in the page."""
+
+    def run(width: int, *options: str, planted: str = "") -> dict:
+        text = report.read_text(encoding="utf-8").replace("</body>", planted + PROBE)
+        (tmp_path / "probed.html").write_text(text, encoding="utf-8")
+        (tmp_path / "frame.html").write_text(FRAME.replace("{}", str(width)))
+        seen = look(
+            tmp_path / "frame.html", "--window-size=1600,1000", "--virtual-time-budget=5000",
+            "--dump-dom", *options,
+        )  # fmt: skip
+        return json.loads(unescape(re.search(r'data-found="([^"]*)"', seen)[1]))
+
+    return run
+
+
+def test_size(report):
+    assert report.stat().st_size < 5e6
+    assert (report.parent / "animation.gif").stat().st_size < 2.5e6
+
+
+@pytest.mark.parametrize("width", [360, 800, 1400])
+def test_nothing_sticks_out(measure, width):
+    found = measure(width)
+    assert found["width"] == width
+    assert found["scroll"] <= found["width"]
+    assert found["seen"] == []
+    assert min(found["pictures"]) > 100
+    assert (found["moving"], found["still"]) == (True, False)
+
+
+def test_what_sticks_out_is_seen(measure):
+    found = measure(800, planted='<div class="long" style="width: 60rem">a long line</div>')
+    assert found["scroll"] > found["width"]
+    assert found["seen"] == ["DIV.long"]
+
+
+def test_those_who_want_nothing_to_move_get_a_still(measure):
+    found = measure(800, "--force-prefers-reduced-motion")
+    assert (found["moving"], found["still"]) == (False, True)
+
+
+@pytest.mark.parametrize(
+    ("name", "scheme", "options"),
+    [
+        ("light", "light", ["--window-size=1200,2400"]),
+        ("dark", "dark", ["--window-size=1200,2400", DARK]),
+        ("narrow", "light", ["--window-size=390,4000"]),
+        ("narrow-dark", "dark", ["--window-size=390,4000", DARK]),
+    ],
+)
+def test_screenshot(look, report, name, scheme, options):
+    path = report.parent / f"screenshot-{name}.png"
+    look(report, f"--screenshot={path}", *options)
+    with Image.open(path) as image:
+        pixels = np.asarray(image.convert("RGB")).astype(int)
+    page = pixels[2, 2]
+    assert (page.min() > 240) if scheme == "light" else (page.max() < 40)
+    # Text and figures are there all the way down, and are easily told from the page.
+    bands = np.array_split(np.abs(pixels - page).max(axis=2) > 130, 8)
+    assert min(band.mean() for band in bands) > 0.003
+    blamed = np.abs(pixels - ORANGE[scheme]).max(axis=2) < 12
+    assert blamed.sum() > 3000
+
+
+def test_on_paper(look, report):
+    path = report.parent / "report.pdf"
+    look(report, f"--print-to-pdf={path}", "--no-pdf-header-footer", DARK)
+    content = path.read_bytes()
+    assert content.startswith(b"%PDF")
+    assert len(content) > 100_000
+    pages = len(re.findall(rb"/Type\s*/Page\b", content))
+    assert 5 <= pages <= 14

@@ -1,0 +1,144 @@
+"""The findings' page: planted numbers, and the sentences that they must lead to."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from analytic import CASE_NAMES, InputError
+from compare import compare
+from compare.show.findings import write_findings
+from compare.show.findings.collect import Run, collect
+from compare.show.findings.sentences import overview, sentences
+from compare.show.report import write_report
+from tests.compare.planted import planted
+from tests.conftest import exact_sweep, simulated_sweep
+
+
+def run(case="catenary", beam="chain", rms=1e-3, snap_off=1e-4, right=1.0, budget=None) -> Run:
+    """A run of which only what the page tells is known; force_y is its worst reading."""
+    agrees = rms <= 2e-3
+    comparison = {
+        "verdict": "agrees" if agrees else "disagrees",
+        "disagreement": {
+            "force_x": {"rms": rms / 3},
+            "force_y": {"rms": rms},
+            "moment_z": {"rms": rms / 2},
+        },
+        "snap_off": {"difference": snap_off},
+        "phases": {"agreement": right},
+        "candidate": {
+            "source": f"mujoco {beam}",
+            "beam": {"length": 2.0},
+            "stations": 100,
+            "provenance": {"case": case, "settings": {"beam": beam, "segments": 40}},
+        },
+    }
+    return Run(Path(f"{case}-{beam}"), comparison, budget and budget.to_dict())
+
+
+@pytest.mark.parametrize(
+    ("runs", "said"),
+    [
+        ([run()], "The chain agrees with the closed form within the tolerances."),
+        ([run(rms=3e-3)], "The chain does not agree with the closed form"),
+        ([run()], "Its worst reading is off by 1.0e-3 rms in force_y."),
+        ([run(), run(beam="rod", rms=1e-4)], "Both sweeps agree"),
+        ([run(rms=1), run(beam="rod", rms=1)], "Neither agrees"),
+        ([run(), run(beam="rod", rms=1)], "1 of 2 sweeps agree with the closed form within the "
+         "tolerances, all but: rod."),
+        ([run(), run(beam="rod"), run(beam="cable")], "All 3 sweeps agree"),
+        ([run(), run(beam="rod", rms=1e-4)], "The rod is the closest (1.0e-4 rms in force_y, its "
+         "worst reading), the chain the farthest (1.0e-3 in force_y)."),
+        ([run(budget=planted())], "The largest part of the disagreement is discretisation for the "
+         "chain (1.0e-3, of observed order 2.00)."),
+        ([run(budget=planted("facets", 3e-4)), run(beam="rod", budget=planted(size=2e-3))],
+         "is facets for the chain (3.0e-4) and discretisation for the rod (2.0e-3, of observed"),
+        ([run(budget=planted("facets")), run(beam="rod", budget=planted("facets", 2e-3))],
+         "is facets for the chain and the rod (1.0e-3 to 2.0e-3)."),
+        ([run(budget=planted())], "The budget closes: at most 2.0e-5 is unexplained."),
+        ([run(budget=planted(unexplained=3e-4, closes=False))],
+         "The budget does not close: 3.0e-4 is unexplained."),
+        ([run(budget=planted()), run(beam="rod", budget=planted(unexplained=3e-4, closes=False))],
+         "1 of 2 budgets do not close (rod): up to 3.0e-4 is unexplained."),
+        ([run()], "The snap-off is found within 5.0e-5 L, and the clamp tells every station's"),
+        ([run(snap_off=None)], "No snap-off is found in both sweeps"),
+        ([run(), run(beam="rod", snap_off=None)], "The snap-off is missing in 1 of 2 comparisons"),
+        ([run(right=0.955)], "the clamp tells the phase of at least 95.5 % rightly."),
+        ([run(right=None)], "The snap-off is found within 5.0e-5 L."),
+    ],
+)  # fmt: skip
+def test_sentences(runs, said):
+    assert said in sentences(runs)
+
+
+def test_nothing_is_said_of_a_budget_that_there_is_not():
+    told = sentences([run()]) + overview([run()])
+    assert "budget" not in told
+    assert "unexplained" not in told
+
+
+def test_overview():
+    runs = [
+        run(budget=planted()),
+        run(beam="rod", rms=4e-3, budget=planted(unexplained=3e-4, closes=False)),
+    ]
+    assert overview(runs) == (
+        "1 of 2 sweeps agree with the closed form within the tolerances, all but: catenary, rod. "
+        "The largest rms is 4.0e-3 of the largest magnitude (force_y, catenary, rod). "
+        "1 of 2 budgets do not close (catenary, rod): up to 3.0e-4 is unexplained. "
+        "No more than 5.0e-5 is unexplained in 1 of 2."
+    )
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    """Two runs as ``run`` leaves them, one with a budget."""
+    made = tmp_path_factory.mktemp("runs")
+    for case, budget in (("parabola", planted()), ("catenary", None)):
+        exact, simulated = exact_sweep(case), simulated_sweep(case)
+        write_report(compare(exact, simulated), made / f"{case}-chain", budget)
+        simulated.write(made / f"{case}-chain" / "mujoco-chain.parquet")
+    (made / "a-study").mkdir()
+    return made
+
+
+def test_page(folder, tmp_path):
+    (tmp_path / "budget-of-old.png").write_bytes(b"")
+    written = write_findings(folder, tmp_path)
+    assert [path.name for path in written] == ["README.md", "budget-parabola-chain.png"]
+    assert {path.name for path in tmp_path.iterdir()} == {path.name for path in written}
+    assert written[1].stat().st_size < 40_000  # fifteen of them stay below 1 MB
+    told = written[0].read_text(encoding="utf-8")
+    rows = [line for line in told.splitlines() if line.startswith("| catenary | chain")]
+    rms = collect(folder)[0].rms
+    assert f"| 40 | {rms['force_x']:.1e}".replace("e-0", "e-") in rows[0]
+    assert "not measured" in rows[0]
+    assert told.index("## catenary") < told.index("## parabola")
+    assert "](budget-parabola-chain.png)" in told
+    tables = [line.count("|") for line in told.splitlines() if line.startswith("|")]
+    assert set(tables) == {12, 9}  # every row has all its cells
+
+
+def test_names_are_no_markup(tmp_path):
+    name = "a|b <i>*c*</i>"
+    (tmp_path / "odd").mkdir()
+    (tmp_path / "odd" / "comparison.json").write_text(json.dumps(run(case=name).comparison))
+    told = write_findings(tmp_path, tmp_path)[0].read_text(encoding="utf-8")
+    assert "| a&#124;b &#60;i&#62;\\*c\\*&#60;/i&#62; | chain |" in told
+
+
+def test_nothing_to_tell_of(tmp_path):
+    with pytest.raises(InputError, match="a folder with runs in it"):
+        write_findings(tmp_path, tmp_path)
+    (tmp_path / "cut").mkdir()
+    (tmp_path / "cut" / "comparison.json").write_text('{"verdict": ')
+    with pytest.raises(InputError, match="JSON that a run has written"):
+        write_findings(tmp_path, tmp_path)
+    assert not (tmp_path / "README.md").exists()
+
+
+def test_all_named_cases_are_made():
+    makefile = (Path(__file__).parents[3] / "Makefile").read_text()
+    (line,) = (line for line in makefile.splitlines() if line.startswith("CASES :="))
+    assert line.removeprefix("CASES :=").split() == list(CASE_NAMES)

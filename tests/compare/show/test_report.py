@@ -1,0 +1,207 @@
+"""The report: one offline page with the verdict first, whatever the case is called."""
+
+import base64
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from markupsafe import escape
+from PIL import Image
+
+from analytic import Readings
+from analytic.problem.readings import CLAMP_READINGS
+from compare import Tolerances, compare
+from compare.explain.convergence import convergence, fitted_orders
+from compare.explain.suspects import Suspect
+from compare.show.budget_figure import headline, panels
+from compare.show.report import Film, write_report
+from compare.show.svg import inline_svg
+from compare.show.verdict import verdict
+from tests.compare.planted import planted
+from tests.compare.show.pages import Page
+from tests.conftest import exact_sweep, simulated_sweep
+
+NASTY = 'a <b>"case"</b> & <script>alert(1)</script> {{ 7 * 7 }} ünder_score'
+ELSEWHERE = re.compile(r"(?:https?:)?//(?!www\.w3\.org/(?:1999/xlink|2000/svg)\")[a-z]")
+
+
+def named(sweep: Readings, name: str) -> Readings:
+    return replace(sweep, provenance={**sweep.provenance, "case": name})
+
+
+@pytest.fixture(scope="module")
+def film(tmp_path_factory) -> Film:
+    folder = tmp_path_factory.mktemp("film")
+    Image.new("RGB", (80, 64), "white").save(folder / "film.gif")
+    Image.new("RGB", (80, 64), "white").save(folder / "still.png")
+    return Film(folder / "film.gif", folder / "still.png")
+
+
+@pytest.fixture(scope="module")
+def comparison():
+    return compare(named(exact_sweep("parabola"), NASTY), simulated_sweep("parabola"))
+
+
+@pytest.fixture(scope="module")
+def page(comparison, film, tmp_path_factory) -> Page:
+    report = write_report(comparison, tmp_path_factory.mktemp("report"), planted(), film)
+    return Page(report.read_text(encoding="utf-8"))
+
+
+def test_tags_are_balanced_and_names_unique(page):
+    assert page.faults == []
+    assert len(page.ids) == len(set(page.ids))
+
+
+def test_it_is_one_offline_file(page, film):
+    assert len(page.text.encode()) < 3e6  # leaves 2 MB for a real animation
+    assert all(a.startswith(("#", "data:image/")) for a in page.addresses), page.addresses
+    without_pictures = re.sub(r"base64,[A-Za-z0-9+/=]*", "", page.text)
+    assert ELSEWHERE.findall(without_pictures) == []
+    assert "@import" not in page.text
+    assert not page.all("script", "link", "iframe", "object")
+    for file, kind in ((film.gif, "gif"), (film.still, "png")):
+        inside = base64.b64encode(file.read_bytes()).decode()
+        assert f"data:image/{kind};base64,{inside}" in page.text
+
+
+def test_the_verdict_comes_first(page, comparison):
+    body = page.text[page.text.index("<body>") :]
+    first = body.index("The two agree.")
+    for later in ("<nav", "<table", "<svg", "<img", "<h2"):
+        assert first < body.index(later), later
+    assert page.ids.index("verdict") < page.ids.index("budget")
+    assert escape(verdict(comparison, planted())) in body
+
+
+def test_the_contents_lead_somewhere(page):
+    links = [a["href"].removeprefix("#") for a in page.all("a")]
+    assert links == [
+        "budget", "apart", "sweep", "phases", "snap-off", "convergence", "settings", "versions",
+        "tolerances",
+    ]  # fmt: skip
+    assert set(links) <= set(page.ids)
+
+
+def test_links_inside_pictures_stay_inside(page):
+    used = re.findall(r"url\(#([^)]+)\)", page.text)
+    used += [a["xlink:href"].removeprefix("#") for a in page.all("use")]
+    assert used
+    assert set(used) <= set(page.ids)
+
+
+def test_those_who_cannot_see_are_told(page):
+    assert page.all("html")[0]["lang"] == "en"
+    assert all(img.get("alt") for img in page.all("img"))
+    assert all(svg.get("aria-label") and svg.get("role") == "img" for svg in page.all("svg"))
+    levels = [int(tag[1]) for tag, _ in page.elements if re.fullmatch(r"h[1-6]", tag)]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all(np.diff(levels) <= 1)
+
+
+def test_a_nasty_name_is_text(page):
+    assert "<script" not in page.text
+    assert "&lt;script&gt;alert(1)&lt;/script&gt; {{ 7 * 7 }}" in page.text
+
+
+def test_every_limit_has_its_reason(page):
+    told = page.text[page.text.index('id="tolerances"') :]
+    assert told.count("<tr>") == 1 + len(Tolerances().limits())
+    assert "like a square root" in told
+
+
+def test_measured_readings_without_budget_or_provenance(tmp_path):
+    exact = exact_sweep("parabola")
+    bare = Readings(exact.table.drop(columns=["phase", "status"]), exact.beam)
+    page = Page(write_report(compare(bare, bare), tmp_path).read_text(encoding="utf-8"))
+    assert page.faults == []
+    assert "Not recorded." in page.text
+    assert not {"budget", "convergence"} & set(page.ids)
+    assert not page.all("img")
+    assert not (tmp_path / "budget.json").exists()
+
+
+@pytest.mark.parametrize(
+    ("budget", "said"),
+    [
+        (planted(), "which 80 segments instead of 40 would bring to about 2.5e-4."),
+        (planted("facets"), "the largest part is facets (1.0e-3), which more points of the mesh"),
+        (planted("softness"), "which a stiffer contact lowers in proportion."),
+        (planted("unrest"), "a smaller tolerance of rest"),
+        (planted("sensor"), "hold them against the sum of the contacts"),
+        (planted("extension"), "a beam that cannot be stretched"),
+        (planted("unexplained", closes=False), "neither the numerics nor a known fault"),
+        (
+            planted("unexplained", suspects=(Suspect("length", 0.004, 0.99),)),
+            "length does if it is +0.40% off in mujoco chain: check it.",
+        ),
+        (planted(unexplained=3e-4, closes=False), "2.5e-4, but 3.0e-4 stays unexplained."),
+    ],
+)
+def test_the_verdict_can_be_acted_on(comparison, budget, said):
+    sentence = verdict(comparison, budget)
+    assert said in sentence
+    assert sentence.count(".", 0, -1) == sentence.count("e-") + sentence.count("+0.")  # one only
+
+
+def test_verdicts_of_a_disagreement(comparison):
+    exact = comparison.reference
+    off = replace(exact, table=exact.table.assign(force_x=1.1 * exact.values("force_x")))
+    assert "force_x is off by" in verdict(compare(exact, off))
+    assert "Do not use" in verdict(compare(exact, off))
+    strict = compare(exact, comparison.candidate, Tolerances(max=1e-6))
+    assert "of the tolerances, though not that of the rms" in verdict(strict)
+
+
+def test_what_the_budget_says():
+    assert headline(planted()) == (
+        "The largest part is discretisation; at most 2.0e-5 stays unexplained, "
+        "and the budget closes"
+    )
+    assert "3.0e-4 stays unexplained, too much" in headline(
+        planted("facets", unexplained=3e-4, closes=False)
+    )
+
+
+def test_the_budgets_picture_sorts_and_marks():
+    (ax,) = panels(planted("facets"))["force_x"].axes
+    names = [label.get_text() for label in ax.get_yticklabels()]
+    assert (names[0], names[-1]) == ("facets", "unexplained")
+    (blamed, unexplained) = ax.patches[1:]  # bars; the others are too small for one
+    assert blamed.get_x() + blamed.get_width() == pytest.approx(1e-3)
+    assert unexplained.get_x() + unexplained.get_width() == pytest.approx(2e-5)
+
+
+def test_fitted_orders_of_a_power_law():
+    found = {n: {name: 3.0 / n**p for p, name in enumerate(CLAMP_READINGS)} for n in (10, 20, 40)}
+    assert fitted_orders(found) == pytest.approx(dict(zip(CLAMP_READINGS, (0, 1, 2), strict=True)))
+
+
+def test_convergence_is_the_disagreement_at_each_number_of_segments():
+    exact = exact_sweep("parabola")
+    runs = [
+        replace(
+            exact,
+            table=exact.table.assign(force_x=exact.values("force_x") + 1 / n),
+            provenance={"settings": {"segments": n}},
+        )
+        for n in (10, 20)
+    ]
+    kept = exact.trusted
+    found = convergence(exact, [*runs, Readings(exact.table, exact.beam)], kept)
+    scale = np.abs(exact.values("force_x")).max()
+    assert found[10]["force_x"] == pytest.approx(0.1 / scale)
+    assert found[20] == {"force_x": pytest.approx(0.05 / scale), "force_y": 0, "moment_z": 0}
+
+
+def test_pictures_take_the_pages_colours():
+    svg, again = (
+        inline_svg(panels(planted())["force_x"], "one", 'it says "this"') for _ in range(2)
+    )
+    assert "currentColor" in svg
+    assert "var(--orange)" in svg
+    assert "#d55e00" not in svg
+    assert 'aria-label="it says &#34;this&#34;"' in svg
+    assert svg == again

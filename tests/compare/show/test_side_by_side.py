@@ -1,0 +1,61 @@
+"""Several sweeps side by side: known shifts must come out, each in its place."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import Readings, named_case, solve_sweep
+from compare.show.side_by_side import side_by_side
+from tests.compare.commands.test_main import vibrissa
+
+
+@pytest.fixture(scope="module")
+def exact() -> Readings:
+    case = named_case("parabola")
+    return solve_sweep(replace(case, sweep=replace(case.sweep, stations=60)))
+
+
+def shifted(exact: Readings, share: float, seconds: float) -> Readings:
+    """With a moment that is too large by `share`."""
+    table = exact.table.assign(moment_z=exact.table["moment_z"] * (1 + share))
+    return replace(
+        exact, table=table, source="x", provenance={**exact.provenance, "seconds": seconds}
+    )
+
+
+def test_known_shifts_come_out(exact):
+    moment = exact.values("moment_z")[exact.values("force_y") > 0]
+    rms = np.sqrt(np.mean(moment**2)) / np.abs(moment).max()
+    found = side_by_side(exact, {"a": shifted(exact, 1e-3, 6.0), "b": shifted(exact, -2e-3, 12.0)})
+    table = found.table().set_index(["reference", "candidate"])
+    assert list(table.index) == [("analytic", "a"), ("analytic", "b"), ("a", "b")]
+    np.testing.assert_allclose(table["moment_z"], rms * np.array([1e-3, 2e-3, 3e-3]), rtol=5e-3)
+    assert (table[["force_x", "force_y"]] == 0).all(axis=None)
+    assert (table["snap_off"] == 0).all()
+    np.testing.assert_allclose(table["seconds_per_station"], [0.1, 0.2, 0.2])
+
+
+def test_command(exact, tmp_path):
+    exact.write(tmp_path / "exact.csv")
+    for name, share in (("near", 1e-3), ("far", 1e-2)):
+        shifted(exact, share, 6.0).write(tmp_path / f"{name}.parquet")
+    done = vibrissa(
+        "side-by-side", "exact.csv", "near.parquet", "far.parquet", "--out", "out", cwd=tmp_path
+    )
+    assert done.returncode == 1  # far is
+    assert "far" in done.stdout
+    assert "100.0" in done.stdout  # ms/station
+    assert (tmp_path / "out/side-by-side.png").stat().st_size > 10_000
+    found = json.loads((tmp_path / "out/side-by-side.json").read_text())["comparisons"]
+    assert [one["verdict"] for one in found] == ["agrees", "disagrees", "disagrees"]
+    assert found[2]["names"] == ["near", "far"]
+    done = vibrissa("side-by-side", "parabola", "near.parquet", "--out", "out", cwd=tmp_path)
+    assert done.returncode == 0
+    done = vibrissa("side-by-side", "parabola", "no.parquet", "--out", "out", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "no.parquet" in done.stderr
+    twice = vibrissa("side-by-side", "parabola", "near.parquet", "near.parquet", cwd=tmp_path)
+    assert twice.returncode == 2
+    assert "different names" in twice.stderr

@@ -1,0 +1,153 @@
+"""Study files: what they expand to, and what is said about those that are wrong."""
+
+import numpy as np
+import pytest
+
+from analytic import CASE_NAMES, InputError, named_case
+from compare.study.grid.file import case_file, load_study, shipped_studies
+from compare.study.grid.plan import Plan
+from tests.compare.study.conftest import EVENTS_ONLY
+
+
+def parameters(plan):
+    return [run.parameters for run in plan]
+
+
+def test_axes_are_crossed_in_the_order_of_the_file(plan_of):
+    plan = plan_of(EVENTS_ONLY)
+    runs = parameters(plan)
+    assert len(plan) == len(runs) == 40
+    assert runs[0] == {"profile.a": 0.3, "beam.radius": 0.001}
+    assert runs[1] == {"profile.a": 0.3, "beam.radius": 0.002}
+    assert len({run.id for run in plan}) == 40
+
+
+def test_a_log_range_has_equal_ratios_and_whole_numbers_where_they_must_be(plan_of):
+    plan = plan_of("""
+        study.case = "catenary"
+        axes.mujoco.segments = { from = 10, to = 80, count = 4, spacing = "log" }
+        axes.noise.relative = { from = 1e-4, to = 1e-2, count = 3, spacing = "log" }
+    """)
+    values = [(run["mujoco.segments"], run["noise.relative"]) for run in parameters(plan)]
+    assert {n for n, _ in values} == {10, 20, 40, 80}
+    assert {x for _, x in values} == {1e-4, 1e-3, 1e-2}
+    assert all(run["mujoco.beam"] == "chain" for run in parameters(plan))
+
+
+def test_zipped_axes_advance_together(plan_of):
+    plan = plan_of("""
+        study.case = "catenary"
+        study.zip = [["mujoco.segments", "mujoco.contour_points"]]
+        axes.mujoco.segments = [10, 20, 40]
+        axes.sweep.stations = [30, 60]
+        axes.mujoco.contour_points = { from = 100, to = 1600, count = 3, spacing = "log" }
+    """)
+    runs = parameters(plan)
+    assert len(runs) == 6
+    assert {(r["mujoco.segments"], r["mujoco.contour_points"]) for r in runs} == {
+        (10, 100), (20, 400), (40, 1600),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("method", ["latin-hypercube", "random"])
+def test_samples_repeat_with_their_seed(plan_of, method):
+    text = """
+        study.case = "catenary"
+        study.beams = []
+        sample = {{ count = 50, seed = {seed}, method = "{method}" }}
+        axes.profile.a = {{ from = 0.2, to = 0.8 }}
+        axes.beam.radius = {{ from = 1e-4, to = 1e-2, spacing = "log" }}
+    """
+    one, same, other = (list(plan_of(text.format(seed=seed, method=method))) for seed in (1, 1, 2))
+    assert one == same
+    assert one != other
+    drawn = np.array([run.parameters["profile.a"] for run in one])
+    assert ((drawn > 0.2) & (drawn < 0.8)).all()
+    if method == "latin-hypercube":  # one point in each of 50 equal strata
+        assert len(set(np.floor((drawn - 0.2) / 0.6 * 50).astype(int))) == 50
+
+
+def test_units_are_read_as_in_a_case_file(plan_of):
+    plan = plan_of("""
+        study.beams = []
+        beam = { length = "50 mm", flexural_rigidity = "2e-6 N m^2" }
+        profile = { kind = "catenary", a = 0.5, c = -0.8, scale = "5 cm" }
+        axes.beam.radius = { from = "0.1 mm", to = "0.3 mm", count = 3 }
+    """)
+    assert [run["beam.radius"] for run in parameters(plan)] == [1e-4, 2e-4, 3e-4]
+
+
+def test_named_cases_are_those_of_the_command_line(tmp_path):
+    for name in CASE_NAMES:
+        path = tmp_path / "named.toml"
+        path.write_text(f'study.case = "{name}"\nstudy.beams = []')
+        file, _ = case_file(load_study(str(path)).base)
+        assert file.case(tmp_path, name).digest == named_case(name).digest
+
+
+def test_a_run_keeps_its_id_wherever_its_numbers_stand(plan_of):
+    (fixed,) = plan_of('study = { case = "catenary", beams = [] }\nbeam.radius = 0.002')
+    (varied,) = plan_of('study = { case = "catenary", beams = [] }\naxes.beam.radius = [0.002]')
+    (changed,) = plan_of('study = { case = "catenary", beams = [] }\naxes.beam.radius = [0.003]')
+    assert fixed.id == varied.id != changed.id
+
+
+def test_a_plan_survives_its_file(plan_of):
+    plan = plan_of(EVENTS_ONLY)
+    assert list(Plan.from_json(plan.to_json())) == list(plan)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("[axes]\nbeam.radis = [1]\n", ["line 3", "axes.beam.radis", "did you mean radius"]),
+        ("[axes]\nbeam.radius = [\n  0.01,\n  -1,\n]\n", ["line 3", "axes.beam.radius", "-1"]),
+        ("[axes]\nbeam.radius = { from = 0.0, to = 1e-2, count = 3, spacing = 'log' }\n",
+         ["line 3", "both positive"]),
+        ("[axes]\nbeam.radius = { from = 0.0, too = 1e-2 }\n", ["line 3", "did you mean to"]),
+        ("[axes]\nbeam.radius = { from = 0.0, to = 1e-2 }\n", ["line 3", "[sample]"]),
+        ("[axes]\nbeam.radius = [1e-3, 1e-3]\n", ["line 3", "different"]),
+        ("[axes]\nbeam.radius = []\n", ["line 3", "different"]),
+        ("[axes]\nbeam.radius = ['1 kg']\n", ["line 3", "unit"]),
+        ("[axes]\nspeed = [1]\n", ["line 3", "beam, profile, sweep, mujoco, noise"]),
+        ("[axes]\nmujoco.beam = ['chain']\n", ["line 3", "study.beams"]),
+        ("[sample]\ncount = 0\n", ["line 3", "sample.count"]),
+        ("[sample]\ncount = 5\n", ["line 2", "[sample]"]),
+        ("[nois]\nrelative = 0\n", ["line 2", "did you mean noise"]),
+        ("[beam]\nlength = 0\n", ["line 3", "beam.length"]),
+        ("[axes\n", ["line 2", "valid TOML"]),
+    ],
+)  # fmt: skip
+def test_errors_point_at_the_line(tmp_path, text, told):
+    path = tmp_path / "grid.toml"
+    path.write_text('study = { case = "catenary" }\n' + text)
+    with pytest.raises(InputError) as caught:
+        load_study(str(path))
+    assert "\n" not in str(caught.value)
+    for words in told:
+        assert words in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ('[study]\ncase = "catenry"\n', ["line 2", "catenry"]),
+        ('[study]\ncase = "catenary"\ntimeout = -1\n', ["line 3", "timeout"]),
+        ('[study]\ncase = "catenary"\nrecord = ["event"]\n', ["line 3", "'events'"]),
+        ('[study]\ncase = "catenary"\nbeams = ["rope"]\n', ["line 3", "rope"]),
+        ('[study]\ncase = "catenary"\nzip = [["beam.radius", "profile.a"]]\n', ["line 3", "axes"]),
+    ],
+)
+def test_errors_in_the_study_table(tmp_path, text, told):
+    path = tmp_path / "grid.toml"
+    path.write_text(text)
+    with pytest.raises(InputError) as caught:
+        load_study(str(path))
+    for words in told:
+        assert words in str(caught.value)
+
+
+def test_shipped_studies_are_valid():
+    assert len(shipped_studies()) == 5
+    for name in shipped_studies():
+        assert len(Plan.of(load_study(name))) > 10

@@ -1,0 +1,136 @@
+"""A study survives what is done to it, in flat memory. Slow."""
+
+import json
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from tests.compare.study.conftest import COMMAND, EVENTS_ONLY, results, vibrissa
+
+pytestmark = pytest.mark.slow
+
+FEW_HUNDRED = EVENTS_ONLY.replace("count = 10", "count = 100")
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "grid.toml").write_text(FEW_HUNDRED)
+    return tmp_path
+
+
+def start(folder, *more, out="out"):
+    command = [*COMMAND, "study", "grid.toml", "--out", out, *more]
+    return subprocess.Popen(
+        command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+
+
+def test_killed_twenty_times(folder):
+    vibrissa("study", "grid.toml", "--out", "undisturbed", cwd=folder)
+    chance = random.Random(6)
+    seen: set[str] = set()
+    for _ in range(20):
+        process = start(folder)
+        time.sleep(chance.uniform(1.0, 4.0))
+        process.send_signal(signal.SIGKILL)
+        process.communicate()
+        if (folder / "out" / "runs").is_dir():
+            now = set(results(folder / "out")["run"])
+            assert seen <= now  # nothing that was complete is lost
+            seen = now
+    assert vibrissa("study", "grid.toml", "--out", "out", cwd=folder).returncode == 0
+    pd.testing.assert_frame_equal(results(folder / "out"), results(folder / "undisturbed"))
+    assert not pd.read_parquet(folder / "out" / "runs")["run"].duplicated().any()
+
+
+def test_two_processes_on_one_study(folder):
+    processes = [start(folder) for _ in range(2)]
+    for process in processes:
+        _, error = process.communicate(timeout=300)
+        assert (process.returncode, error) == (0, "")
+    vibrissa("study", "grid.toml", "--out", "alone", cwd=folder)
+    pd.testing.assert_frame_equal(results(folder / "out"), results(folder / "alone"))
+    assert len(pd.read_parquet(folder / "out" / "runs")) == 400
+
+
+@pytest.fixture
+def cluster(tmp_path):
+    """A scheduler and two workers, each a process of its own."""
+    file = tmp_path / "scheduler.json"
+    dask = [sys.executable, "-m", "dask"]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    scheduler = subprocess.Popen(
+        [*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
+         "--scheduler-file", str(file)], **quiet,
+    )  # fmt: skip
+    while not file.exists():
+        time.sleep(0.1)
+    workers = [
+        subprocess.Popen(
+            [*dask, "worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-dashboard",
+             "--local-directory", str(tmp_path)], **quiet,
+        )
+        for _ in range(2)
+    ]  # fmt: skip
+    time.sleep(5)
+    address = None
+    while address is None:
+        try:
+            address = json.loads(file.read_text())["address"]
+        except ValueError:
+            time.sleep(0.1)
+    yield address, scheduler
+    for process in (*workers, scheduler):
+        process.terminate()
+        process.wait()
+
+
+def test_a_cluster_gives_the_same_table(folder, cluster):
+    address, _ = cluster
+    done = vibrissa("study", "grid.toml", "--out", "out", "--scheduler", address, cwd=folder)
+    assert (done.returncode, done.stderr) == (0, "")
+    vibrissa("study", "grid.toml", "--out", "pool", cwd=folder)
+    pd.testing.assert_frame_equal(results(folder / "out"), results(folder / "pool"))
+
+
+def test_a_scheduler_that_goes_loses_nothing(folder, cluster):
+    address, scheduler = cluster
+    (folder / "grid.toml").write_text(FEW_HUNDRED.replace("100", "500"))
+    process = start(folder, "--scheduler", address)
+    while not list((folder / "out" / "runs").glob(".journal*")):
+        time.sleep(0.1)
+    time.sleep(6)
+    scheduler.kill()
+    _, error = process.communicate(timeout=120)
+    assert process.returncode == 2, error
+    assert process.returncode == 2
+    assert [line for line in error.splitlines() if "--scheduler" not in line] == []
+    before = len(results(folder / "out"))
+    assert before > 0
+    again = vibrissa("study", "grid.toml", "--out", "out", cwd=folder)
+    assert f"{before} of them done already" in again.stdout
+
+
+def peak_memory(folder: Path, runs: int) -> int:
+    text = EVENTS_ONLY.replace("count = 10", f"count = {runs // 4}")
+    (folder / "grid.toml").write_text(text)
+    code = (
+        "import sys, resource; from compare.commands.main import app; app(standalone_mode=False); "
+        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, "study", "grid.toml", "--out", f"out-{runs}"],
+        cwd=folder, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    return int(done.stdout.split()[-1])
+
+
+def test_memory_is_flat_in_the_number_of_runs(tmp_path):
+    few, many = peak_memory(tmp_path, 100), peak_memory(tmp_path, 4_000)
+    assert many < 1.2 * few

@@ -1,0 +1,106 @@
+"""The loop over any executor, and workers that die."""
+
+import os
+import signal
+import time
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+
+import pytest
+
+from compare.study.work.crews import local_crew
+from compare.study.work.execute import Crew, carry_out
+from compare.study.work.run import Recipe, Result, perform, perform_alone
+from tests.compare.study.conftest import EVENTS_ONLY
+
+
+def crew(perform, hire=None):
+    local = local_crew(2)
+    return Crew(hire or local.hire, perform, 5, pytest.fail)
+
+
+def quick(recipe, run):
+    return Result({"run": run.id, "outcome": "done"})
+
+
+def killed_once(recipe, run):
+    """The first run that finds no mark kills its worker, as the system does when memory is out."""
+    with suppress(FileExistsError):
+        os.close(os.open(recipe.base["mark"], os.O_CREAT | os.O_EXCL))
+        os.kill(os.getpid(), signal.SIGKILL)
+    return quick(recipe, run)
+
+
+def deadly(recipe, run):
+    if run.parameters["beam.radius"] == 0.002 and run.parameters["profile.a"] == 0.3:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return quick(recipe, run)
+
+
+def stuck(recipe, run):
+    """Perform a run that hangs where no Python code is asked any more."""
+    from compare.study.work import run as running
+
+    def hang(recipe, run):
+        if run.parameters["beam.radius"] == 0.002 and run.parameters["profile.a"] == 0.3:
+            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            while True:
+                time.sleep(1000)
+        return quick(recipe, run)
+
+    running.perform = hang
+    return perform_alone(recipe, run)
+
+
+@pytest.fixture
+def plan(plan_of):
+    return plan_of(EVENTS_ONLY)
+
+
+def test_any_executor_gives_the_same_rows(plan):
+    recipe = Recipe.of(plan.study)
+    tables = []
+    for executor in (lambda: ThreadPoolExecutor(3), None):
+        rows = [result.row for result in carry_out(plan, recipe, crew(perform, executor))]
+        tables.append(sorted(({**row, "seconds": 0} for row in rows), key=lambda row: row["run"]))
+    assert len(tables[0]) == len(plan)
+    assert tables[0] == tables[1]
+
+
+def test_runs_are_made_as_they_are_needed(plan):
+    made = []
+
+    def watched():
+        for run in plan:
+            made.append(run)
+            yield run
+
+    results = carry_out(
+        watched(), Recipe.of(plan.study), crew(quick, lambda: ThreadPoolExecutor(1))
+    )
+    next(results)
+    assert len(made) <= 6
+    results.close()
+
+
+def test_a_killed_worker_costs_nothing(plan, tmp_path):
+    recipe = Recipe({"mark": str(tmp_path / "mark")}, False, ("events",), False, 10)
+    rows = [result.row for result in carry_out(plan, recipe, crew(killed_once))]
+    assert {row["run"] for row in rows} == {run.id for run in plan}
+    assert {row["outcome"] for row in rows} == {"done"}
+
+
+def test_a_run_that_kills_its_workers_is_the_only_one_given_up(plan):
+    rows = [result.row for result in carry_out(plan, Recipe.of(plan.study), crew(deadly))]
+    assert len(rows) == len(plan)
+    (bad,) = [row for row in rows if row["outcome"] != "done"]
+    assert bad["outcome"] == "failed"
+    assert bad["beam.radius"] == 0.002
+
+
+def test_a_stuck_run_is_ended(plan):
+    recipe = Recipe(plan.study.base, False, ("events",), False, 0.2)
+    rows = [result.row for result in carry_out(plan, recipe, crew(stuck))]
+    assert len(rows) == len(plan)
+    (bad,) = [row for row in rows if row["outcome"] != "done"]
+    assert bad["outcome"] == "timeout"

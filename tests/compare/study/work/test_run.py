@@ -1,0 +1,105 @@
+"""One run: every outcome has a name and a reason, and the numbers are those of the library."""
+
+import time
+
+import numpy as np
+import pytest
+
+from analytic import Case, catenary, find_events, reconstruct, relative_noise, solve_sweep
+from compare import compare
+from compare.study.work import run as running
+from compare.study.work.run import Recipe, perform
+from mujoco_models import Settings, simulate_sweep
+
+SMALL = """
+    study = { case = "catenary", keep_readings = true, timeout = 30 }
+    sweep.stations = 40
+    mujoco = { segments = 10, contour_points = 800 }
+"""
+
+
+def only(plan):
+    (run,) = plan
+    return Recipe.of(plan.study), run
+
+
+def test_a_row_holds_what_the_library_finds(plan_of):
+    result = perform(*only(plan_of(SMALL)))
+    row = result.row
+    case = named(40)
+    found = compare(
+        solve_sweep(case), simulate_sweep(case, Settings(segments=10, contour_points=800))
+    )
+    assert row["outcome"] == "done"
+    assert row["disagreement_moment_z_rms"] == found.disagreement["moment_z"].rms
+    assert row["snap_off_difference"] == found.snap_off.difference
+    assert row["event_snap_off"] == find_events(case.profile, case.beam).snap_off.foot_x
+    assert row["phase_b_exists"] is True
+    assert set(result.readings) == {"analytic", "candidate"}
+
+
+def named(stations):
+    from dataclasses import replace
+
+    case = Case(profile=catenary(0.5, -0.8))
+    return replace(case, sweep=replace(case.sweep, stations=stations))
+
+
+def test_reconstruction_is_exact_without_noise_and_gets_worse_with_it(plan_of):
+    plan = plan_of("""
+        study = { case = "catenary", beams = [], record = ["reconstruction"] }
+        axes.noise.relative = [0.0, 1e-5, 1e-4, 1e-3]
+    """)
+    errors = [perform(Recipe.of(plan.study), run).row["reconstruction_rms"] for run in plan]
+    assert errors[0] < 1e-9
+    assert (np.diff(errors) > 0).all()
+
+
+def test_bad_input_is_an_outcome(plan_of):
+    recipe, run = only(plan_of('study = { case = "catenary", beams = [] }\nprofile.c = 0.5'))
+    row = perform(recipe, run).row
+    assert (row["outcome"], row["run"]) == ("bad-input", run.id)
+    assert "raise" in row["reason"] or "lower" in row["reason"]
+
+
+def test_whatever_else_goes_wrong_is_an_outcome(plan_of, monkeypatch):
+    def broken(case):
+        raise ArithmeticError("no state found")
+
+    monkeypatch.setattr(running, "solve_sweep", broken)
+    row = perform(*only(plan_of(SMALL))).row
+    assert (row["outcome"], row["reason"]) == ("failed", "ArithmeticError: no state found")
+
+
+@pytest.mark.parametrize("status", ["unsettled", "diverged"])
+def test_a_simulation_that_does_not_trust_itself(plan_of, monkeypatch, status):
+    def doubtful(case, settings, advance):
+        readings = simulate_sweep(case, settings, advance)
+        readings.table.loc[:9, "status"] = status
+        return readings
+
+    monkeypatch.setattr("mujoco_models.simulate_sweep", doubtful)
+    row = perform(*only(plan_of(SMALL))).row
+    assert (row["outcome"], row["reason"]) == (status, f"10 of 40 stations {status}")
+
+
+def test_a_slow_run_is_ended_between_stations(plan_of, monkeypatch):
+    def slow(case, settings, advance):
+        while True:
+            time.sleep(0.01)
+            advance()
+
+    monkeypatch.setattr("mujoco_models.simulate_sweep", slow)
+    row = perform(*only(plan_of(SMALL.replace("30", "0.1")))).row
+    assert row["outcome"] == "timeout"
+    assert row["seconds"] < 2
+
+
+def test_noise_is_that_of_the_reconstruction(plan_of):
+    from compare.study.grid.noise import Noise
+
+    exact = solve_sweep(named(2000))
+    noisy = Noise(relative=1e-2, seed=3).add_to(exact)
+    for name, deviation in relative_noise(exact, 1e-2).items():
+        assert np.std(noisy.values(name) - exact.values(name)) == pytest.approx(deviation, rel=0.05)
+    assert reconstruct(noisy).shape == reconstruct(exact).shape

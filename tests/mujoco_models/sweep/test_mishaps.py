@@ -1,0 +1,116 @@
+"""A sweep that ends early: named in one line, the stations so far kept."""
+
+import mujoco
+import numpy as np
+import pytest
+
+from analytic import Case, Readings, Sweep, circle
+from compare.commands import main as cli
+from compare.study.work.run import perform
+from mujoco_models import DivergedError, Settings, simulate_sweep
+from tests.compare.commands.test_main import vibrissa
+from tests.compare.study.conftest import plan_of  # noqa: F401  # a fixture
+from tests.compare.study.work.test_run import SMALL, only
+
+CASE = Case(profile=circle(1.0, lowest=(0.0, 0.4)), sweep=Sweep(stations=20))
+QUICK = Settings(segments=8, obstacle="primitive")
+
+
+@pytest.fixture
+def not_a_number(monkeypatch):
+    """MuJoCo's springs give NaN from the 60th evaluation on."""
+    sound, count = mujoco.mj_forward, iter(range(10**9))
+
+    def broken(model, data):
+        sound(model, data)
+        if next(count) >= 60:
+            data.qfrc_passive[2] = np.nan
+
+    monkeypatch.setattr(mujoco, "mj_forward", broken)
+
+
+def interrupted_after(stations):
+    left = iter(range(stations - 1))
+
+    def advance():
+        if next(left, None) is None:
+            raise KeyboardInterrupt
+
+    return advance
+
+
+@pytest.mark.parametrize("direction", ["left", "right"])
+def test_a_divergence_names_its_station_and_keeps_the_others(not_a_number, direction):
+    case = Case(profile=CASE.profile, sweep=Sweep(stations=20, direction=direction))
+    kept = []
+    with pytest.raises(DivergedError, match=r"diverged at station \d+ of 20, foot_x = .* L: "):
+        simulate_sweep(case, QUICK, keep=kept.append)
+    table = kept[0].table
+    assert 2 < len(table) < 20
+    np.testing.assert_array_equal(table["foot_x"], case.foot_x[: len(table)])
+    assert (table["status"].iloc[:-1] == "ok").all()
+    assert table["status"].iloc[-1] == "diverged"
+    assert table.iloc[-1][["force_x", "force_y", "moment_z"]].isna().all()
+    assert kept[0].trusted.sum() == len(table) - 1
+    assert kept[0].provenance["digest"] == case.digest
+
+
+@pytest.mark.parametrize("direction", ["left", "right"])
+def test_an_interrupted_sweep_keeps_its_stations(direction):
+    case = Case(profile=CASE.profile, sweep=Sweep(stations=20, direction=direction))
+    kept = []
+    with pytest.raises(KeyboardInterrupt):
+        simulate_sweep(case, QUICK, interrupted_after(7), kept.append)
+    whole = simulate_sweep(case, QUICK).table
+    np.testing.assert_array_equal(kept[0].table["force_y"], whole["force_y"].iloc[:7])
+
+
+def test_nothing_is_kept_of_no_stations():
+    kept = []
+    with pytest.raises(KeyboardInterrupt):
+        simulate_sweep(CASE, QUICK, interrupted_after(1), kept.append)
+    assert not kept
+
+
+def test_a_motion_that_explodes_is_told(monkeypatch, tmp_path):
+    """MuJoCo itself sets a bad state back to the straight beam and only warns."""
+    from mujoco_models.sweep.sweep import set_out
+
+    monkeypatch.chdir(tmp_path)  # where MuJoCo puts its log
+    model = set_out(CASE, QUICK).model
+    model.data.qpos[:] = 1e12
+    with pytest.raises(DivergedError, match="stay finite"):
+        model.creep(1e-3)
+
+
+def test_contacts_that_mujoco_leaves_out_are_told(tmp_path, monkeypatch):
+    """MuJoCo only warns when its arena is full."""
+    sound = mujoco.mj_forward
+
+    def full(model, data):
+        sound(model, data)
+        data.warning[mujoco.mjtWarning.mjWARN_CONTACTFULL].number += data.ncon > 0
+
+    monkeypatch.setattr(mujoco, "mj_forward", full)
+    done = vibrissa("simulate", "parabola", "--stations", "20", "--out", ".", cwd=tmp_path)
+    assert done.returncode == cli.BAD_INPUT
+    assert "out of memory" in done.stderr.splitlines()[-1]
+    assert "fewer segments" in done.stderr.splitlines()[-1]
+
+
+@pytest.mark.parametrize("verb", ["simulate", "run"])
+def test_command_line_keeps_a_diverged_sweep(not_a_number, tmp_path, verb):
+    done = vibrissa(verb, "parabola", "--stations", "20", "--out", ".", cwd=tmp_path)
+    assert done.returncode == cli.BAD_INPUT
+    kept, refused = done.stderr.strip().splitlines()
+    assert "stations in" in kept
+    assert "diverged at station" in refused
+    partial = Readings.read(tmp_path / "mujoco-chain.partial.parquet")
+    assert partial.table["status"].iloc[-1] == "diverged"
+    assert not (tmp_path / "mujoco-chain.parquet").exists()
+
+
+def test_a_study_calls_it_diverged(plan_of, not_a_number):  # noqa: F811
+    row = perform(*only(plan_of(SMALL))).row
+    assert row["outcome"] == "diverged"
+    assert "station" in row["reason"]
