@@ -6,8 +6,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from analytic import Readings
-from analytic.problem.readings import PHASES
+from analytic import PHASES, Readings
 from compare.explain.causes import likely_cause
 from compare.judge.allowance import NoiseAllowance, noise_allowance
 from compare.judge.failures import failures

@@ -7,8 +7,11 @@ import pandas as pd
 import pytest
 
 from analytic import (
+    CLAMP_READINGS,
+    COLUMNS,
     Case,
     InputError,
+    Readings,
     Sweep,
     certify,
     circle,
@@ -19,7 +22,6 @@ from analytic import (
     solve_sweep,
     through_points,
 )
-from analytic.problem.readings import CLAMP_READINGS, COLUMNS, Readings
 from compare import classify, compare
 from mujoco_models import simulate_sweep
 from tests.conftest import simulated_sweep

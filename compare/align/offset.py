@@ -6,9 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from analytic import InputError, Readings
+from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
-from analytic.problem.readings import CLAMP_READINGS
 from compare.sense.phases import Classification
 from compare.sense.transitions import locate_transitions
 

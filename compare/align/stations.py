@@ -6,9 +6,8 @@ import numpy as np
 import pandas as pd
 from scipy.interpolate import CubicSpline
 
-from analytic import InputError, Readings
+from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Floats, Integers, Words
-from analytic.problem.readings import CLAMP_READINGS
 from compare.sense.phases import Classification
 
 _SAME_STATION = 1e-9  # L; nearer foot positions are one and the same

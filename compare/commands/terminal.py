@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.progress import Progress
 from rich.table import Column, Table
 
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CLAMP_READINGS
 from compare.comparison import Comparison
 from compare.explain.budget import Budget
 from compare.show.budget_figure import headline

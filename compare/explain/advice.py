@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic import InputError, Readings
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CLAMP_READINGS, InputError, Readings
 from compare.explain.budget import Budget
 from compare.explain.changes import COARSER
 from mujoco_models.settings import Settings

@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from analytic import InputError, Readings
+from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
-from analytic.problem.readings import CLAMP_READINGS
 from compare.explain.changes import STIFFER
 from compare.explain.convergence import convergence
 from compare.explain.suspects import Suspect, suspects

@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 from scipy.interpolate import CubicSpline
 
+from analytic import CLAMP_READINGS
 from analytic.problem.arrays import Floats
-from analytic.problem.readings import CLAMP_READINGS
 from compare.explain.signatures import contour_signatures
 from compare.measure.disagreement import before_snap_off
 from compare.measure.measurement import Measurement

@@ -4,9 +4,8 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from analytic import Readings
+from analytic import CLAMP_READINGS, Readings
 from analytic.problem.arrays import Booleans
-from analytic.problem.readings import CLAMP_READINGS
 
 
 def convergence(

@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from analytic import Case, InputError, Readings, Sweep, solve_sweep, through_points
+from analytic import CLAMP_READINGS, Case, InputError, Readings, Sweep, solve_sweep, through_points
 from analytic.problem.arrays import Floats
-from analytic.problem.readings import CLAMP_READINGS
 
 _STEP = 1e-3  # L; the change that a signature is taken from
 _STATIONS = 1000  # of the sweeps between which it is interpolated

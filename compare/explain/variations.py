@@ -5,9 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic import Case, Readings, polygon, solve_sweep
+from analytic import Case, Readings, polygon, solve_sweep, with_friction
 from analytic.problem.arrays import Floats
-from analytic.solver.friction import with_friction
 
 STEP = 1e-3
 """Relative change of each quantity, from which its signature is taken."""

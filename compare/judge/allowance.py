@@ -6,8 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.stats import norm
 
-from analytic import Readings
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CLAMP_READINGS, Readings
 from compare.sense.noise import with_noise
 from compare.sense.phases import classify, confusion
 from compare.sense.transitions import TRANSITIONS, locate_transitions

@@ -5,8 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Literal, TypeAlias
 
-from analytic import InputError
-from analytic.problem.readings import CLAMP_READINGS, PHASES
+from analytic import CLAMP_READINGS, PHASES, InputError
 
 Kind: TypeAlias = Literal["rms", "max"]
 

@@ -5,9 +5,8 @@ from dataclasses import asdict, dataclass
 import numpy as np
 import pandas as pd
 
-from analytic import Readings
+from analytic import CLAMP_READINGS, Readings
 from analytic.problem.arrays import Booleans, Floats
-from analytic.problem.readings import CLAMP_READINGS
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,8 @@ from analytic import (
     CASE_NAMES,
     Beam,
     Case,
+    Contour,
+    Direction,
     InputError,
     Sweep,
     catenary,
@@ -26,8 +28,6 @@ from analytic import (
     through_points,
     two_circles,
 )
-from analytic.problem.case import Direction
-from analytic.problem.contours.contour import Contour
 from compare.judge.tolerances import Tolerances
 from compare.read.limits import tolerances_of
 from compare.read.toml import Place, TomlFile

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from analytic import Beam, InputError, Readings
-from analytic.problem.readings import SENSED
+from analytic import SENSED, Beam, InputError, Readings
 from compare.read.case import read_beam
 from compare.read.units import DIMENSIONS, in_si
 

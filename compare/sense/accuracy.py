@@ -5,9 +5,8 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from analytic import Readings
+from analytic import CLAMP_READINGS, PHASES, Readings
 from analytic.problem.arrays import Integers
-from analytic.problem.readings import CLAMP_READINGS, PHASES
 from compare.sense.noise import with_noise
 from compare.sense.phases import classify, confusion
 from compare.sense.transitions import TRANSITIONS, locate_transitions

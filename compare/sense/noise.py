@@ -5,9 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic import InputError, Readings
+from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Floats
-from analytic.problem.readings import CLAMP_READINGS
 
 _DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # kills cubics: what is left is noise
 _ROUND_OFF = 1e-14  # of the largest magnitude: no reading is better than that

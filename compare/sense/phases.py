@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from analytic import Readings, reconstruct
+from analytic import PHASES, Readings, reconstruct
 from analytic.problem.arrays import Floats, Words
-from analytic.problem.readings import PHASES
 from compare.sense.noise import reading_noise
 
 _SIGMAS = 5  # a force below so many standard deviations of its noise is none

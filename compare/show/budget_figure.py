@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CLAMP_READINGS
 from compare.explain.budget import UNRESOLVED, Budget
 from compare.show.page import short
 

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, NullLocator
 
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CLAMP_READINGS
 from compare.explain.convergence import fitted_orders
 
 _STYLES = dict(

@@ -13,11 +13,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 from matplotlib.ticker import MaxNLocator
 
-from analytic import Readings, reconstruct
-from analytic.from_clamp.shape import deflected_shapes
+from analytic import CLAMP_READINGS, Readings, deflected_shapes, reconstruct
 from analytic.problem.arrays import Floats, Words
 from analytic.problem.files import whole_file
-from analytic.problem.readings import CLAMP_READINGS
 from compare.comparison import Comparison
 
 # Okabe and Ito's palette: told apart by every kind of colour vision, and in print.

@@ -4,8 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from analytic import Case, Readings, find_events, reconstruct, reconstruct_by_decision
-from analytic.solver.branch import surplus
+from analytic import Case, Readings, find_events, reconstruct, reconstruct_by_decision, surplus
 from compare.show.figures import PHASE_COLOURS
 
 _A, _B = PHASE_COLOURS["tip"], PHASE_COLOURS["tangent"]

@@ -12,9 +12,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from analytic import Readings
+from analytic import CLAMP_READINGS, PHASES, Readings
 from analytic.problem.files import write_whole
-from analytic.problem.readings import CLAMP_READINGS, PHASES
 from compare.comparison import Comparison
 from compare.explain.budget import UNRESOLVED, Budget
 from compare.explain.convergence import fitted_orders

@@ -8,8 +8,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from analytic import Readings
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CLAMP_READINGS, Readings
 from compare.comparison import Comparison, compare
 from compare.show.figures import READING_SYMBOLS, shade_phases
 

@@ -1,6 +1,6 @@
 """What a comparison, and its budget if there is one, come to: a sentence to act on."""
 
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CLAMP_READINGS
 from compare.comparison import Comparison
 from compare.explain.budget import Budget
 from compare.show.page import short

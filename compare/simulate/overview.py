@@ -11,8 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc
 
-from analytic import Case, Readings, Sweep, named_case, solve_sweep
-from analytic.from_clamp.shape import deflected_shapes
+from analytic import Case, Readings, Sweep, deflected_shapes, named_case, solve_sweep
 from compare.show.figures import PHASE_COLOURS, PHASE_NAMES
 from mujoco_models import simulate_sweep
 

@@ -13,8 +13,7 @@ import exudyn
 import numpy as np
 from exudyn import itemInterface as item  # noqa: N813  # the library's own name
 
-from analytic import Readings
-from analytic.problem.readings import SENSED
+from analytic import SENSED, Readings
 
 PENALTY = 1e6  # EI/L^3, of each contact segment
 AXIAL_STIFFNESS = 1e6  # EI/L^2; a load of 10 stretches the cable by 1e-5

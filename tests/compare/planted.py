@@ -1,6 +1,6 @@
 """Budgets with planted numbers."""
 
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CLAMP_READINGS
 from compare.explain.budget import PARTS, Budget, Part
 from compare.explain.suspects import Suspect
 

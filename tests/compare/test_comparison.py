@@ -5,8 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import Beam, Case, Readings, Sweep, find_events, named_case, solve_sweep
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import (
+    CLAMP_READINGS,
+    Beam,
+    Case,
+    Readings,
+    Sweep,
+    find_events,
+    named_case,
+    solve_sweep,
+)
 from compare import Tolerances, assert_agreement, classify, compare
 from compare.sense.noise import reading_noise
 from compare.sense.phases import confusion

@@ -4,10 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic import Readings, reconstruct
-from analytic.from_clamp.shape import curvatures, deflected_shapes
+from analytic import CLAMP_READINGS, Readings, curvatures, deflected_shapes, reconstruct
 from analytic.problem.arrays import Floats, Words
-from analytic.problem.readings import CLAMP_READINGS
 from compare.sense.phases import classify
 
 _DOTS = 10  # of a dotted vibrissa, at equal steps of arc length

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from PIL import Image
 
+from analytic import CLAMP_READINGS
 from analytic.problem.arrays import Integers
-from analytic.problem.readings import CLAMP_READINGS
 from compare.show.animation.motion import Motion
 from compare.show.animation.views import CANDIDATE, CURVATURE_COLOURS, INK, Curve, View
 from compare.show.figures import PHASE_COLOURS, PHASE_NAMES, save_figure

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from analytic import CASE_NAMES, InputError
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CASE_NAMES, CLAMP_READINGS, InputError
 
 
 @dataclass(frozen=True)

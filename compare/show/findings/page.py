@@ -10,9 +10,8 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from PIL import Image
 
-from analytic import Readings
+from analytic import CLAMP_READINGS, PHASES, Readings
 from analytic.problem.files import write_whole
-from analytic.problem.readings import CLAMP_READINGS, PHASES
 from compare.explain.budget import UNRESOLVED
 from compare.sense.accuracy import phase_table
 from compare.sense.transitions import TRANSITIONS

@@ -11,8 +11,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from analytic import InputError
-from analytic.problem.named import NAMED_PROFILES
+from analytic import NAMED_PROFILES, InputError
 from compare.read.case import CaseFile, validate
 from compare.read.toml import TomlFile
 from compare.study.grid.axes import Axis, Interval, Range, Sample, Value, flatten, nest

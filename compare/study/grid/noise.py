@@ -2,8 +2,7 @@
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from analytic import Readings
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CLAMP_READINGS, Readings
 from compare.sense.noise import with_noise
 
 

@@ -12,7 +12,7 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CLAMP_READINGS
 from compare.show.figures import PHASE_COLOURS
 from compare.study.grid.file import BEAM
 from compare.study.show import tables

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from analytic import CLAMP_READINGS
 from analytic.problem.arrays import Floats
-from analytic.problem.readings import CLAMP_READINGS
 from compare.study.grid.file import BEAM
 from compare.study.grid.plan import Plan
 

@@ -4,9 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from analytic import Beam, Readings, find_events, reconstruct
-from analytic.problem.contours.contour import Contour
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CLAMP_READINGS, Beam, Contour, Readings, find_events, reconstruct
 from compare.comparison import compare
 from compare.sense.transitions import TRANSITIONS
 from compare.study.grid.file import Record

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from analytic import (
+    CLAMP_READINGS,
     Beam,
     Case,
     InputError,
@@ -25,7 +26,6 @@ from analytic import (
     through_points,
     two_circles,
 )
-from analytic.problem.readings import CLAMP_READINGS
 
 
 def inscribed(case: Case, count: int) -> Case:

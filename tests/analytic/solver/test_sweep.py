@@ -9,6 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from analytic import (
+    CLAMP_READINGS,
+    COLUMNS,
     Beam,
     Case,
     Sweep,
@@ -23,7 +25,6 @@ from analytic import (
     solve_sweep,
     two_circles,
 )
-from analytic.problem.readings import CLAMP_READINGS, COLUMNS
 
 HEIGHTS = st.floats(0.05, 0.8)
 OBJECTS = st.one_of(

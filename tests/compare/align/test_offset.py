@@ -5,8 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import CASE_NAMES, InputError, Readings, Sweep, named_case, solve_sweep
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import (
+    CASE_NAMES,
+    CLAMP_READINGS,
+    InputError,
+    Readings,
+    Sweep,
+    named_case,
+    solve_sweep,
+)
 from compare import Offset, classify, compare, separate_lag
 from compare.align.offset import estimate_offset, without_offset
 from compare.sense.noise import with_noise

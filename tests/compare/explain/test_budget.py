@@ -7,9 +7,18 @@ import mujoco
 import numpy as np
 import pytest
 
-from analytic import Beam, Case, InputError, Readings, Sweep, named_case, polygon, solve_sweep
-from analytic.problem.readings import CLAMP_READINGS
-from analytic.solver.friction import with_friction
+from analytic import (
+    CLAMP_READINGS,
+    Beam,
+    Case,
+    InputError,
+    Readings,
+    Sweep,
+    named_case,
+    polygon,
+    solve_sweep,
+    with_friction,
+)
 from compare.explain.budget import Budget, budget
 from compare.explain.changes import controlled_changes
 from compare.explain.variations import on_polygon, variations

@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import Beam, Case, Readings, Sweep, named_case, polygon, solve_sweep
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CLAMP_READINGS, Beam, Case, Readings, Sweep, named_case, polygon, solve_sweep
 from compare import assert_agreement, compare
 from compare.align.offset import without_offset
 from compare.explain.budget import Budget

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import InputError
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CLAMP_READINGS, InputError
 from compare import Limit, Tolerances, assert_agreement, compare
 from compare.read.case import load_job
 from compare.read.limits import read_tolerances

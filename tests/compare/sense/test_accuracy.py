@@ -2,8 +2,7 @@
 
 import pytest
 
-from analytic import CASE_NAMES
-from analytic.problem.readings import PHASES
+from analytic import CASE_NAMES, PHASES
 from compare.sense.accuracy import phase_table
 from compare.sense.transitions import TRANSITIONS
 from tests.conftest import exact_sweep, simulated_sweep

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from analytic import InputError
-from analytic.from_clamp.shape import curvatures, deflected_shapes
+from analytic import InputError, curvatures, deflected_shapes
 from compare.show.animation import write_animation
 from tests.conftest import exact_sweep, simulated_sweep
 

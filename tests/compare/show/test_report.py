@@ -9,8 +9,7 @@ import pytest
 from markupsafe import escape
 from PIL import Image
 
-from analytic import Readings
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CLAMP_READINGS, Readings
 from compare import Tolerances, compare
 from compare.explain.convergence import convergence, fitted_orders
 from compare.explain.suspects import Suspect

@@ -7,6 +7,7 @@ import pytest
 import trimesh
 
 from analytic import (
+    CLAMP_READINGS,
     Beam,
     Case,
     InputError,
@@ -20,7 +21,6 @@ from analytic import (
     polygon,
     solve_sweep,
 )
-from analytic.problem.readings import CLAMP_READINGS
 from compare import compare
 from mujoco_models import Settings, simulate_sweep
 from mujoco_models.obstacles.file_mesh import FileMesh

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from analytic import (
+    CLAMP_READINGS,
     Case,
     InputError,
     Profile,
@@ -16,7 +17,6 @@ from analytic import (
     polygon,
     solve_sweep,
 )
-from analytic.problem.readings import CLAMP_READINGS
 from compare import compare
 from mujoco_models import Settings, available_beams, simulate_sweep
 

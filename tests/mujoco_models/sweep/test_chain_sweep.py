@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from analytic import named_case, solve_sweep
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CLAMP_READINGS, named_case, solve_sweep
 from compare import compare
 from mujoco_models import Settings, simulate_sweep
 from tests.conftest import simulated_sweep

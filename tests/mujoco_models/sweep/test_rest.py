@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import CASE_NAMES, named_case
-from analytic.problem.readings import CLAMP_READINGS
+from analytic import CASE_NAMES, CLAMP_READINGS, named_case
 from mujoco_models import Settings, available_beams, simulate_sweep
 from tests.conftest import simulated_sweep
 

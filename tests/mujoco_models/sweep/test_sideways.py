@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from analytic import (
+    CLAMP_READINGS,
     Beam,
     Case,
     InputError,
@@ -18,7 +19,6 @@ from analytic import (
     sideways_stiffness,
     solve_sweep,
 )
-from analytic.problem.readings import CLAMP_READINGS
 from mujoco_models import Settings, available_beams, simulate_sweep
 
 BEAMS = available_beams()
