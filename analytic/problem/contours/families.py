@@ -86,6 +86,7 @@ def two_circles(
         eta=partial(_two_circles_eta, right_radius, left_radius, y),
         alpha_range=(-math.pi / 2, math.pi / 2),
         radius_of_curvature=partial(_two_circles_radius, right_radius, left_radius),
+        kinks=(0.0,),
         label=f"two circles of radius {left_radius:g} and {right_radius:g}",
     )
 

@@ -34,6 +34,8 @@ class Profile(Contour):
         d(arc length)/d(alpha) [length]; by sixth-order differences of `xi` and `eta` if not given.
     label : str
         What reports call the profile.
+    kinks : tuple of float
+        Slope angles within the range at which the radius of curvature jumps [rad].
 
     Raises
     ------
@@ -47,6 +49,7 @@ class Profile(Contour):
     alpha_range: tuple[float, float]
     radius_of_curvature: Curve | None = field(default=None, repr=False)
     label: str = "custom profile"
+    kinks: tuple[float, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
         lowest, highest = self.alpha_range
@@ -76,8 +79,9 @@ class Profile(Contour):
         return alpha
 
     def breaks(self) -> Floats:
-        """The ends of the range of slope angles, where they are corners."""
-        return np.array([end for end in self.alpha_range if abs(end) < np.pi / 2])
+        """The ends of the range of slope angles, where they are corners, and the kinks between."""
+        ends = [end for end in self.alpha_range if abs(end) < np.pi / 2]
+        return np.unique([*ends, *self.kinks])
 
     def outline(self, begin: float, end: float, points: int) -> Floats:
         """Vertices at equal steps of slope angle: equal steps of the facets' normals."""
@@ -95,6 +99,7 @@ class Profile(Contour):
             eta=partial(_offset_eta, self, radius),
             alpha_range=self.t_range,
             radius_of_curvature=partial(_offset_stretch, self, radius),
+            kinks=tuple(self.breaks().tolist()),
         )
 
     def scaled(self, factor: float) -> "Profile":
@@ -117,6 +122,7 @@ class Profile(Contour):
             eta=partial(_mirrored, self.eta, 1),
             alpha_range=(-high, -low),
             radius_of_curvature=partial(_mirrored, self._stretch, 1),
+            kinks=tuple(-kink for kink in reversed(self.kinks)),
             label=f"{self.label}, mirrored",
         )
 

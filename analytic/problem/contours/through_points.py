@@ -79,6 +79,7 @@ def through_points(points: ArrayLike, label: str = "curve through points") -> Pr
         eta=partial(_arcs_eta, arcs),
         alpha_range=(end[1], end[0]),
         radius_of_curvature=partial(_arcs_radius, arcs),
+        kinks=tuple(arcs.begin[1:-1].tolist()),
         label=label,
     )
 
