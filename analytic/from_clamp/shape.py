@@ -4,7 +4,8 @@ import numpy as np
 
 from analytic.from_clamp.reconstruct import reconstruct
 from analytic.problem.arrays import Floats
-from analytic.problem.readings import SENSED, Readings
+from analytic.problem.columns import SENSED
+from analytic.problem.readings import Readings
 
 _STEPS = 64  # of a fourth-order method: far below the width of a line
 

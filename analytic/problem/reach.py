@@ -5,7 +5,6 @@ vibrissa's centreline feels (`Contour.offset`).
 """
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
 
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
@@ -47,6 +46,7 @@ def out_of_reach(centreline: Contour, last: float, first: float) -> float:
 
     `last` and `first` are those of `contact_range`.
     """
+    from scipy.optimize import minimize_scalar  # slow to load, and stating a case needs none of it
 
     def leftmost_foot(t: float) -> float:
         point = centreline.at(np.array([t]))
@@ -63,6 +63,8 @@ def _height_one(centreline: Contour, end: float, bottom: float) -> float:
     """Where the contour passes the height 1 between its lowest point and an end, or that end."""
     if _height(centreline, end) <= 1:
         return end
+    from scipy.optimize import brentq  # slow to load, and stating a case needs none of it
+
     bracket = min(end, bottom), max(end, bottom)
     return float(brentq(lambda t: _height(centreline, t) - 1, *bracket, xtol=1e-300, rtol=9e-16))
 

@@ -13,15 +13,9 @@ import pyarrow.parquet as pq
 
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.beam import Beam
+from analytic.problem.columns import CONTACT, PHASES, SENSED, STATUSES
 from analytic.problem.errors import InputError
 from analytic.problem.files import whole_file
-
-CLAMP_READINGS = ("force_x", "force_y", "moment_z")
-SENSED = ("foot_x", *CLAMP_READINGS)
-CONTACT = ("contact_angle", "contact_arc_length", "contact_x", "contact_y", "tip_angle")
-PHASES = ("free", "tip", "tangent")
-STATUSES = ("ok", "unsettled", "diverged", "unreachable")
-COLUMNS = (*SENSED, "phase", *CONTACT, "status")
 
 _ODD = ("foot_x", "force_x", "moment_z", "contact_angle", "contact_x")  # change sign in a mirror
 _METADATA_KEY = b"vibrissa"

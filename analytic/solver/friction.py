@@ -12,10 +12,11 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.case import Case
+from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
 from analytic.problem.mirror import solve_either_way
-from analytic.problem.readings import CLAMP_READINGS, Readings
+from analytic.problem.readings import Readings
 from analytic.solver.sweep import solve_sweep
 
 _STEPS = 200  # of Runge and Kutta's: 1e-9 of the readings at the largest curvatures met

@@ -10,8 +10,9 @@ import pandas as pd
 from analytic.checks.certificate import certify
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
+from analytic.problem.columns import CLAMP_READINGS, COLUMNS
 from analytic.problem.mirror import solve_either_way
-from analytic.problem.readings import CLAMP_READINGS, COLUMNS, Readings
+from analytic.problem.readings import Readings
 from analytic.solver.branch import Branch, trace
 from analytic.solver.equilibria import (
     Column,

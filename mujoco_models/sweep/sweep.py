@@ -13,8 +13,9 @@ import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from analytic.problem.case import Case
+from analytic.problem.columns import COLUMNS
 from analytic.problem.errors import InputError
-from analytic.problem.readings import COLUMNS, Readings
+from analytic.problem.readings import Readings
 from mujoco_models.beams.kinds import build
 from mujoco_models.beams.layout import bead_spacing
 from mujoco_models.errors import DivergedError

@@ -1,0 +1,8 @@
+"""The columns of a sweep's readings, by name, and the words in two of them."""
+
+CLAMP_READINGS = ("force_x", "force_y", "moment_z")
+SENSED = ("foot_x", *CLAMP_READINGS)
+CONTACT = ("contact_angle", "contact_arc_length", "contact_x", "contact_y", "tip_angle")
+PHASES = ("free", "tip", "tangent")
+STATUSES = ("ok", "unsettled", "diverged", "unreachable")
+COLUMNS = (*SENSED, "phase", *CONTACT, "status")

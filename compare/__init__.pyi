@@ -1,0 +1,10 @@
+from .align.offset import Offset as Offset
+from .align.offset import separate_lag as separate_lag
+from .comparison import Comparison as Comparison
+from .comparison import compare as compare
+from .judge.tolerances import Limit as Limit
+from .judge.tolerances import Tolerances as Tolerances
+from .read.rig import read_measured as read_measured
+from .sense.phases import Classification as Classification
+from .sense.phases import classify as classify
+from .testing.gates import assert_agreement as assert_agreement

@@ -1,0 +1,93 @@
+"""What others ask of MuJoCo: a sweep, a load on the tip, a look.
+
+MuJoCo itself is imported when one of them is called, not before.
+"""
+
+from collections.abc import Callable
+
+from analytic.problem.case import Case
+from analytic.problem.mirror import facing, solve_either_way
+from analytic.problem.readings import Readings
+from mujoco_models.settings import Settings
+
+
+def simulate_sweep(
+    case: Case,
+    settings: Settings | None = None,
+    advance: Callable[[], None] = lambda: None,
+    keep: Callable[[Readings], None] = lambda _: None,
+) -> Readings:
+    """Sweep `case` in MuJoCo.
+
+    Parameters
+    ----------
+    case : Case
+        The problem; all that the simulation knows of it.
+    settings : Settings, optional
+        The numerics.
+    advance : callable, optional
+        Called after every station, for progress bars.
+    keep : callable, optional
+        Given the readings of all stations so far (if two or more) when the sweep ends early,
+        whatever ends it: a divergence, whose station is the last row then, an interrupt, an
+        exception in `advance`. The exception then goes on its way.
+
+    Returns
+    -------
+    Readings
+        In the units of the case's beam, source ``"mujoco <beam>"``, with four columns more:
+        ``residual``, the largest moment out of balance at any joint; ``discrepancy``, by how
+        much (dimensionless) the clamp's sensors differ from the sum of the contacts' forces and
+        moments or from the beam's own moment at its first joint, whichever is worse;
+        ``penetration``, how deep the loaded beads are in the obstacle on average [length]; and
+        ``extension``, by how much the beam is too long, over its length.
+        ``provenance["events"]["snap_off"]`` is where the simulation let go.
+
+        If the settings let the beam leave the plane of the sweep, there are also the columns
+        ``out_of_plane``, the largest distance of any of its points from the plane, and
+        ``sideways_stiffness``, force across the plane over displacement at the contact
+        [force/length], NaN where nothing touches; the residual is then that of all directions, and
+        ``provenance["events"]["out_of_plane"]`` is where the beam left the plane.
+
+    Raises
+    ------
+    InputError
+        If the case's beam has no radius: MuJoCo cannot collide a line. If the installed MuJoCo
+        lacks the beam that the settings ask for, or has no such obstacle for the contour.
+    DivergedError
+        If the simulation is not a number any more; it names the station.
+    MemoryError
+        If there are more segments or contacts than MuJoCo or the machine has room for.
+    ClampError
+        If that discrepancy is more than the station's residual can explain.
+    """
+    from mujoco_models.sweep.sweep import run_sweep
+
+    chosen = settings or Settings()
+
+    def keep_facing(found: Readings) -> None:
+        keep(facing(case, found))
+
+    return solve_either_way(
+        case, lambda leftward: run_sweep(leftward, chosen, advance, keep_facing)
+    )
+
+
+def load_tip(load: float, settings: Settings | None = None) -> tuple[float, float]:
+    """Tip of a cantilever under a dead load; see `mujoco_models.sweep.cantilever.load_tip`."""
+    from mujoco_models.sweep import cantilever
+
+    return cantilever.load_tip(load, settings or Settings())
+
+
+def view_sweep(case: Case, settings: Settings | None = None) -> None:
+    """Show the sweep of `case` in MuJoCo's interactive viewer, until its window is closed.
+
+    Raises
+    ------
+    InputError
+        If there is no display, or the case's beam has no radius.
+    """
+    from mujoco_models.view import show
+
+    show(case, settings or Settings())
