@@ -1,0 +1,58 @@
+"""Words that an engineer of today would not use: ``python -m tests.words``.
+
+Looks through all text that is kept: code, pages, templates, settings.
+"""
+
+import re
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+SUFFIXES = {".py", ".md", ".j2", ".css", ".toml", ".yaml", ".yml", ".cff", ".csv", ""}
+BETTER = {
+    r"told|tells?|telling": "reports, shows, states, determines, distinguishes",
+    r"foretold|foretells?|foretelling": "predicts",
+    r"mend(?:s|ed|ing)?": "fix",
+    r"lest": "so that ... not",
+    r"whither|thither|hither|whence|thence": "where, there, from where",
+    r"of no account": "irrelevant",
+    r"naught|nought": "nothing, zero",
+    r"where(?:of|in|by|upon)|there(?:of|upon)|hitherto|henceforth|forthwith": "plainer words",
+    r"betwixt|nigh|ere|unto|behold|beware": "between, near, before, to, see, take care",
+}
+# Not between letters; an underscore is no letter, so that names are looked through, too.
+_BANNED = {re.compile(rf"(?<![A-Za-z])(?:{x})(?![A-Za-z])", re.I): y for x, y in BETTER.items()}
+
+
+def files() -> list[Path]:
+    """All kept files of text but this one and the licence, whose words are not ours."""
+    listed = subprocess.run(
+        ["git", "ls-files"], cwd=ROOT, check=True, capture_output=True, text=True
+    ).stdout.split("\n")
+    paths = [ROOT / name for name in listed if name and name not in ("LICENSE", "tests/words.py")]
+    return [path for path in paths if path.suffix in SUFFIXES and path.is_file()]
+
+
+def offences() -> list[str]:
+    """File, line, word and what to write in its place."""
+    found = []
+    for path in files():
+        for number, line in enumerate(path.read_text(encoding="utf-8").split("\n"), 1):
+            for banned, better in _BANNED.items():
+                found += [
+                    f"{path.relative_to(ROOT)}:{number}: {hit}: {better}"
+                    for hit in banned.findall(line)
+                ]
+    return found
+
+
+if __name__ == "__main__":
+    wanted = sys.argv[1] if len(sys.argv) > 1 else ""
+    lines = [line for line in offences() if line.startswith(wanted)]
+    print("\n".join(lines))
+    for where, count in sorted(Counter(str(Path(x.split(":")[0]).parent) for x in lines).items()):
+        print(f"{count:4d} {where}")
+    print(f"{len(lines):4d} in all")
+    sys.exit(bool(lines))
