@@ -1,6 +1,5 @@
 """The command ``vibrissa``."""
 
-import json
 import math
 import os
 import sys
@@ -41,11 +40,11 @@ from compare.read.case import Job, load_job
 from compare.read.limits import read_tolerances
 from compare.read.rig import read_measured
 from compare.show.animation import write_animation
-from compare.show.budget_figure import picture
-from compare.show.figures import reconstruction, save_figure
+from compare.show.figures.geometry import reconstruction
+from compare.show.figures.paper import paper_figures
 from compare.show.findings import write_findings
-from compare.show.paper_figures import paper_figures
-from compare.show.report import Film, write_report
+from compare.show.page import document, save_figure
+from compare.show.report import Film, budget_files, write_report
 from compare.show.side_by_side import picture as side_by_side_picture
 from compare.show.side_by_side import side_by_side as set_side_by_side
 from compare.simulate.controlled import measure_budget
@@ -294,7 +293,7 @@ def side_by_side(
     _make(folder)
     for table in side_by_side_tables(found)[: len(files)]:
         TOLD.print(table)
-    tell_written(write_whole(folder / "side-by-side.json", json.dumps(found.to_dict(), indent=2)))
+    tell_written(write_whole(folder / "side-by-side.json", document(found.to_dict())))
     tell_written(save_figure(drawn, folder / "side-by-side.png"))
     return AGREES if all(one.agrees for one in found.against.values()) else DISAGREES
 
@@ -319,14 +318,12 @@ def budget(
     folder = _folder(out, job)
     found, runs = _measure_budget(job)
     advice = None if target is None else follow_advice(job.case, found, runs, target)
-    drawn = picture(found)
+    contents = budget_files(found, None if advice is None else advice.to_dict())
     tell_budget(found, job.case.name)
-    content = found.to_dict()
     if advice is not None:
         tell_advice(advice)
-        content["advice"] = advice.to_dict()
-    tell_written(write_whole(folder / "budget.json", json.dumps(content, indent=2)))
-    tell_written(save_figure(drawn, folder / "budget.png"))
+    for name, content in contents.items():
+        tell_written(write_whole(folder / name, content))
     return AGREES if found.closes and (advice is None or advice.reached) else DISAGREES
 
 

@@ -12,7 +12,7 @@ from rich.table import Column, Table
 from analytic import CLAMP_READINGS
 from compare.comparison import Comparison
 from compare.explain.budget import Budget
-from compare.show.budget_figure import headline
+from compare.show.figures.budget_bars import headline
 from compare.show.side_by_side import SideBySide
 from compare.simulate.target import Followed
 

@@ -1,13 +1,205 @@
-"""How numbers are written for people."""
+"""What all pages are made with: numbers and names for people, templates, pictures, documents."""
+
+import base64
+import io
+import json
+import re
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup, escape
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from analytic.problem.files import write_whole
+from compare.show.style import BLUE, BODY, FAINT, GREEN, GREY, INK, ORANGE, PAPER, PINK
+
+_THEMED = {
+    INK: "currentColor",
+    PAPER: "var(--page)",
+    GREY: "var(--grey)",
+    FAINT: "var(--faint)",
+    BODY: "var(--body)",
+    BLUE: "var(--blue)",
+    ORANGE: "var(--orange)",
+    GREEN: "var(--green)",
+    PINK: "var(--pink)",
+}
+_COLOUR = re.compile(r"#[0-9a-f]{6}\b")
+_IDENTIFIER = re.compile(r'(\bid="|href="#|url\(#)')
+_MARKDOWN = re.compile(r"[\\`*\[\]]|#(?!\d+;)|(?<!\w)_|_(?!\w)")
 
 
 def short(x: float | None) -> str:
-    """Two digits and a power of ten, as 1.2e-3; ``none`` for what does not exist."""
-    if x is None:
+    """Two digits and a power of ten.
+
+    Parameters
+    ----------
+    x : float or None
+        A number.
+
+    Returns
+    -------
+    str
+        As ``1.2e-3``; ``none`` for what does not exist.
+    """
+    if x is None or x != x:
         return "none"
     return f"{x:.1e}".replace("e-0", "e-").replace("e+0", "e+") if x else "0"
 
 
 def place(x: float | None) -> str:
-    """A position, to what a picture could show."""
-    return "none" if x is None else f"{x:.5g}"
+    """A position, to what a picture could show.
+
+    Parameters
+    ----------
+    x : float or None
+        A position.
+
+    Returns
+    -------
+    str
+        Of five digits; ``none`` for what does not exist.
+    """
+    return "none" if x is None or x != x else f"{x:.5g}"
+
+
+def words(name: str) -> str:
+    """An identifier as words: ``phase_b_start`` as ``Phase B start``."""
+    return name.replace("_", " ").replace("phase b", "Phase B")
+
+
+def markdown(text: object) -> str:
+    """Text without what Markdown or HTML would make of it.
+
+    Parameters
+    ----------
+    text : object
+        Any text. An underscore within a word is no mark.
+
+    Returns
+    -------
+    str
+        On one line, escaped.
+    """
+    line = " ".join(str(text).split())
+    line = re.sub(r"[&<>|]", lambda mark: f"&#{ord(mark[0])};", line)
+    return _MARKDOWN.sub(r"\\\g<0>", line)
+
+
+def render(package: str, template: str, **values: Any) -> str:  # noqa: ANN401
+    """Fill in a template.
+
+    Parameters
+    ----------
+    package : str
+        Where its folder ``templates`` is, as ``compare.show``.
+    template : str
+        Its name. All values are escaped, in ``*.md.j2`` for Markdown and else for HTML.
+    **values
+        What the template speaks of.
+
+    Returns
+    -------
+    str
+        The page.
+    """
+    is_markdown = template.endswith(".md.j2")
+    environment = Environment(
+        loader=PackageLoader(package),
+        autoescape=not is_markdown,
+        finalize=_as_markdown if is_markdown else None,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters.update(short=short, place=place, words=words)
+    return environment.get_template(template).render(**values)
+
+
+def inline_svg(figure: Figure, name: str, description: str) -> Markup:
+    """A figure as an ``<svg>`` element, in the page's own colours, light or dark.
+
+    Parameters
+    ----------
+    figure : Figure
+        Drawn with the colours of `compare.show.style`; others stay as they are.
+    name : str
+        Distinguishes it, and all identifiers in it, from the page's other figures.
+    description : str
+        What it shows, for those who cannot see it.
+
+    Returns
+    -------
+    Markup
+        The element.
+    """
+    with rc_context({"svg.hashsalt": name}):
+        unnamed = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+        text = _drawn(figure, "svg", transparent=True, metadata=unnamed).decode()
+    text = text[text.index("<svg") :]
+    text = _COLOUR.sub(lambda colour: _THEMED.get(colour[0], colour[0]), text)
+    text = _IDENTIFIER.sub(rf"\g<1>{name}-", text)
+    opening = f'<svg role="img" fill="currentColor" aria-label="{escape(description)}"'
+    return Markup(text.replace("<svg", opening, 1))  # drawn here, its words escaped
+
+
+def png(figure: Figure, dots_per_inch: int = 150) -> bytes:
+    """A figure as the contents of a PNG file.
+
+    Parameters
+    ----------
+    figure : Figure
+        What is drawn.
+    dots_per_inch : int
+        Resolution.
+
+    Returns
+    -------
+    bytes
+        The file.
+    """
+    return _drawn(figure, "png", dpi=dots_per_inch)
+
+
+def save_figure(figure: Figure, path: Path) -> Path:
+    """Write a PNG, whole or not at all; returns `path`."""
+    return write_whole(path, png(figure))
+
+
+def embedded(file: Path) -> str:
+    """A picture file as an address that holds all of it.
+
+    Parameters
+    ----------
+    file : Path
+        A GIF or PNG.
+
+    Returns
+    -------
+    str
+        ``data:image/...``.
+    """
+    content = base64.b64encode(file.read_bytes()).decode()
+    return f"data:image/{file.suffix.removeprefix('.')};base64,{content}"
+
+
+def document(content: Mapping[str, Any]) -> str:
+    """What a JSON file of results holds, as text."""
+    return json.dumps(content, indent=2)
+
+
+def _as_markdown(value: object) -> object:
+    return value if isinstance(value, Markup) else markdown(value)
+
+
+def _drawn(figure: Figure, kind: str, **options: Any) -> bytes:  # noqa: ANN401
+    buffer = io.BytesIO()
+    with warnings.catch_warnings():
+        # A character that the font lacks is drawn as a box; the page's text has it.
+        warnings.filterwarnings("ignore", message="Glyph .* missing from")
+        figure.savefig(buffer, format=kind, **options)
+    return buffer.getvalue()

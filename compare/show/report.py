@@ -1,14 +1,10 @@
 """The report of a comparison: one offline HTML file, and the figures beside it."""
 
-import base64
-import io
-import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
@@ -17,18 +13,15 @@ from analytic.problem.files import write_whole
 from compare.comparison import Comparison
 from compare.explain.budget import UNRESOLVED, Budget
 from compare.explain.convergence import fitted_orders
-from compare.show import figures
-from compare.show.budget_figure import headline, panels, picture
-from compare.show.convergence_figure import convergence_picture
-from compare.show.page import place, short
-from compare.show.svg import inline_svg
+from compare.show.figures.budget_bars import headline, panels, picture
+from compare.show.figures.geometry import geometry
+from compare.show.figures.order_plot import convergence_picture
+from compare.show.figures.phases import phase_criterion
+from compare.show.figures.readings import reading_panels, readings, snap_off_panels
+from compare.show.page import document, embedded, inline_svg, png, render, words
 from compare.show.verdict import verdict, worst_reading
 
-FIGURES = {
-    "geometry": figures.geometry,
-    "readings": figures.readings,
-    "phases": figures.phase_criterion,
-}
+FIGURES = {"geometry": geometry, "readings": readings, "phases": phase_criterion}
 """Pictures that are also written as files of their own."""
 
 _VERSIONS = ("engine", "python")  # of a source's provenance; the rest are its settings
@@ -51,55 +44,81 @@ def write_report(
 ) -> Path:
     """Write ``comparison.json``, the figures and ``report.html`` into `folder`.
 
-    With a budget also ``budget.json`` and ``budget.png``. Everything is drawn before the first file
-    is written, each file appears whole, and ``report.html`` last.
+    Everything is drawn before the first file is written, each file appears whole, and
+    ``report.html`` last.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        What is reported.
+    folder : Path
+        Made if it is not there.
+    budget : Budget, optional
+        Of the same comparison; then also ``budget.json`` and ``budget.png`` are written.
+    film : Film, optional
+        Becomes part of the page.
 
     Returns
     -------
     Path
         Of ``report.html``.
     """
+    found = comparison.to_dict()
     drawn = {name: draw(comparison) for name, draw in FIGURES.items()}
-    contents = {f"{name}.png": _png(figure, 150) for name, figure in drawn.items()}
-    contents["comparison.json"] = json.dumps(comparison.to_dict(), indent=2).encode()
+    contents: dict[str, str | bytes] = {
+        f"{name}.png": png(figure) for name, figure in drawn.items()
+    }
+    contents["comparison.json"] = document(found)
     if budget is not None:
-        contents["budget.png"] = _png(picture(budget), 100)
-        contents["budget.json"] = json.dumps(budget.to_dict(), indent=2).encode()
-    contents["report.html"] = _html(comparison, drawn, budget, film).encode()
+        contents |= budget_files(budget)
+    contents["report.html"] = _html(comparison, found, drawn, budget, film)
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in contents.items():
         write_whole(folder / name, content)
     return folder / "report.html"
 
 
+def budget_files(found: Budget, advice: Mapping[str, Any] | None = None) -> dict[str, str | bytes]:
+    """What is written of a budget.
+
+    Parameters
+    ----------
+    found : Budget
+        The parts.
+    advice : mapping, optional
+        The settings that a target asks for, as they go into the file.
+
+    Returns
+    -------
+    dict
+        Contents by name: ``budget.json`` and ``budget.png``.
+    """
+    content = found.to_dict() if advice is None else {**found.to_dict(), "advice": advice}
+    return {"budget.json": document(content), "budget.png": png(picture(found), 100)}
+
+
 def _html(
-    comparison: Comparison, drawn: Mapping[str, Figure], budget: Budget | None, film: Film | None
+    comparison: Comparison,
+    found: Mapping[str, Any],
+    drawn: Mapping[str, Figure],
+    budget: Budget | None,
+    film: Film | None,
 ) -> str:
-    environment = Environment(
-        loader=PackageLoader("compare.show"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters.update(short=short, place=place, words=_words)
-    return environment.get_template("report.html.j2").render(
-        comparison=comparison,
-        found=comparison.to_dict(),
+    return render(
+        "compare.show",
+        "report.html.j2",
+        found=found,
         verdict=verdict(comparison, budget),
         worst=worst_reading(comparison),
         readings=CLAMP_READINGS,
         phases=[p for p in PHASES if p in set(comparison.alignment.table["phase"])],
         origins=[_origin(comparison.reference), _origin(comparison.candidate)],
-        limits=comparison.tolerances.limits(),
         budget=budget,
         unresolved=UNRESOLVED,
         headline=None if budget is None else headline(budget),
         orders=fitted_orders(budget.convergence) if budget and budget.convergence else {},
         figures=_figures(comparison, drawn, budget),
-        film=None
-        if film is None
-        else {"gif": _data(film.gif, "gif"), "still": _data(film.still, "png")},
+        film=film and {"gif": embedded(film.gif), "still": embedded(film.still)},
     )
 
 
@@ -109,11 +128,11 @@ def _figures(
     """The page's pictures by the section they are in."""
     sections: dict[str, Mapping[str, Figure]] = {
         "geometry": {"both sweeps": drawn["geometry"]},
-        "readings": figures.reading_panels(comparison),
+        "readings": reading_panels(comparison),
         "phases": {"both sweeps": drawn["phases"]},
-        "snap-off": figures.snap_off_panels(comparison),
+        "snap-off": snap_off_panels(comparison),
     }
-    says = {
+    describes = {
         "geometry": "The object and the vibrissa at stations of the sweep, in {}",
         "readings": "{} of both models over the foot position, and their difference",
         "phases": "Criterion (26) and the contact's arc length of {} over the foot position",
@@ -121,13 +140,17 @@ def _figures(
     }
     if budget is not None:
         sections["budget"] = panels(budget)
-        says["budget"] = "Bars: the parts of {}'s disagreement; the table below has the numbers"
+        describes["budget"] = (
+            "Bars: the parts of {}'s disagreement; the table below has the numbers"
+        )
         if budget.convergence:
             sections["convergence"] = {"": convergence_picture(budget.convergence)}
-            says["convergence"] = "Disagreement against the number of segments, both logarithmic"
+            describes["convergence"] = (
+                "Disagreement against the number of segments, both logarithmic"
+            )
     return {
         section: [
-            inline_svg(figure, f"{section}-{i}", says[section].format(name))
+            inline_svg(figure, f"{section}-{i}", describes[section].format(name))
             for i, (name, figure) in enumerate(pictures.items())
         ]
         for section, pictures in sections.items()
@@ -143,24 +166,10 @@ def _origin(readings: Readings) -> dict[str, Any]:
         "versions": {name: known[name] for name in _VERSIONS if name in known},
         "settings": {
             "vibrissa": ", ".join(
-                f"{_words(name)} {value:g}" for name, value in asdict(readings.beam).items()
+                f"{words(name)} {value:g}" for name, value in asdict(readings.beam).items()
             ),
             "stations": len(readings.table),
             **{k: v for k, v in known.items() if k not in (*_VERSIONS, *_BULKY)},
             **{k: f"{v:g}" if isinstance(v, float) else v for k, v in numerics.items()},
         },
     }
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ").replace("phase b", "Phase B")
-
-
-def _data(file: Path, kind: str) -> str:
-    return f"data:image/{kind};base64,{base64.b64encode(file.read_bytes()).decode()}"
-
-
-def _png(figure: Figure, dots_per_inch: int) -> bytes:
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=dots_per_inch)
-    return buffer.getvalue()

@@ -10,11 +10,9 @@ from matplotlib.figure import Figure
 
 from analytic import CLAMP_READINGS, Readings
 from compare.comparison import Comparison, compare
-from compare.show.figures import READING_SYMBOLS, shade_phases
-
-# Okabe and Ito's palette; the line styles tell lines apart where they lie on each other.
-_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-_STYLES = ("-", "--", ":", "-.")
+from compare.show.figures.over_foot import shade_reference
+from compare.show.figures.thinning import draw
+from compare.show.style import FOOT, LARGE, LINE_STYLES, SERIES, SMALL, SYMBOLS, label
 
 
 @dataclass(frozen=True)
@@ -78,7 +76,7 @@ def side_by_side(reference: Readings, candidates: dict[str, Readings]) -> SideBy
     reference : Readings
         As the closed form.
     candidates : dict of Readings
-        By the names under which they are told apart; at least one.
+        By the names that distinguish them; at least one.
 
     Raises
     ------
@@ -101,29 +99,30 @@ def seconds_per_station(readings: Readings) -> float:
 
 
 def picture(found: SideBySide) -> Figure:
-    """Differences of the clamp readings from the reference over the foot position."""
+    """Draw how far the clamp readings are from the reference's, over the foot position."""
     figure = Figure(figsize=(12, 4.2), layout="constrained")
     axes = figure.subplots(1, 3, sharex=True)
     first = next(iter(found.against.values()))
-    length = first.reference.beam.length
     for ax, name in zip(axes, CLAMP_READINGS, strict=True):
-        shade_phases(ax, first.reference.values("foot_x") / length, first.judged["reference"].phase)
-        for i, (label, one) in enumerate(found.against.items()):
+        shade_reference(ax, first)
+        for i, (candidate, one) in enumerate(found.against.items()):
             table = one.alignment.table
             error = table[f"{name}_candidate"] - table[f"{name}_reference"]
-            ax.plot(
-                table["foot_x"] / length,
-                error / one.disagreement[name].scale,
-                color=_COLOURS[i % len(_COLOURS)],
-                linestyle=_STYLES[i % len(_STYLES)],
-                label=label,
+            draw(
+                ax,
+                table["foot_x"].to_numpy() / first.reference.beam.length,
+                error.to_numpy() / one.disagreement[name].scale,
+                color=SERIES[i % len(SERIES)],
+                linestyle=LINE_STYLES[i % len(LINE_STYLES)],
+                label=label(candidate),
             )
         ax.ticklabel_format(axis="y", scilimits=(-2, 2))
-        ax.set_title(READING_SYMBOLS[name][0], fontsize=11)
-        ax.set_xlabel("foot $x_0$ / $L$")
-    axes[0].set_ylabel(f"difference from {first.reference.source}\nrelative to largest magnitude")
+        ax.set_title(SYMBOLS[name], fontsize=LARGE)
+        ax.set_xlabel(FOOT)
+    axes[0].set_ylabel(f"difference from {label(found.reference)}\nrelative to largest magnitude")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(
-        handles, labels, loc="outside lower center", ncols=len(labels), fontsize=9, frameon=False
-    )
+        handles, labels, loc="outside lower center", ncols=min(len(labels), 4), fontsize=SMALL,
+        frameon=False,
+    )  # fmt: skip
     return figure

@@ -11,11 +11,31 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc
 
-from analytic import Case, Readings, Sweep, deflected_shapes, named_case, solve_sweep
-from compare.show.figures import PHASE_COLOURS, PHASE_NAMES
+from analytic import (
+    CLAMP_READINGS,
+    Case,
+    Readings,
+    Sweep,
+    deflected_shapes,
+    named_case,
+    solve_sweep,
+)
+from compare.show.style import (
+    BODY,
+    CANDIDATE,
+    FAINT,
+    FOOT,
+    GREEN,
+    GREY,
+    INK,
+    PHASE_COLOURS,
+    PHASE_NAMES,
+    REFERENCE,
+    axis_label,
+)
 from mujoco_models import simulate_sweep
 
-_INK, _FORCE = "#222222", "#009E73"
+_FORCE = GREEN
 _ARROW = {"arrowstyle": "-|>", "color": _FORCE, "linewidth": 1.8}
 
 
@@ -40,12 +60,12 @@ def _sketch(ax: Axes, exact: Readings) -> None:
         ax.plot(x[i], y[i], color=PHASE_COLOURS[name], linewidth=1.2, label=label)
         named.add(name)
     xi, eta = (np.asarray(c) for c in exact.provenance["contour"])
-    ax.fill_between(xi, eta, eta.max(), color="#DDDDDD", linewidth=0)
-    ax.plot(xi, eta, color="#555555", linewidth=2)
-    ax.text(0, 0.75, "rigid, strictly convex object", ha="center", color="#555555")
-    ax.axhline(0, color="#999999", linewidth=0.8)
-    ax.annotate("", (-3.05, -0.22), (-2.25, -0.22), arrowprops={"arrowstyle": "-|>", "color": _INK})
-    ax.text(-2.2, -0.22, "the foot $x_0$ is swept this way", va="center", color=_INK)
+    ax.fill_between(xi, eta, eta.max(), color=BODY, linewidth=0)
+    ax.plot(xi, eta, color=GREY, linewidth=2)
+    ax.text(0, 0.75, "rigid, strictly convex object", ha="center", color=GREY)
+    ax.axhline(0, color=FAINT, linewidth=0.8)
+    ax.annotate("", (-3.05, -0.22), (-2.25, -0.22), arrowprops={"arrowstyle": "-|>", "color": INK})
+    ax.text(-2.2, -0.22, "the foot $x_0$ is swept this way", va="center", color=INK)
     ax.set_aspect("equal")
     ax.set_xlim(-3.1, 4.35)
     ax.set_ylim(-0.35, 1.12)
@@ -63,12 +83,12 @@ def _signs(ax: Axes, x0: float) -> None:
     x, y = (path[i] for path in deflected_shapes(sweep))
     x = x - row["foot_x"] + x0
     cx, cy, alpha = row["contact_x"] - row["foot_x"] + x0, row["contact_y"], row["contact_angle"]
-    ax.plot(x, y, color=_INK, linewidth=2)
-    ax.plot([x0 - 0.12, x0 + 0.12], [0, 0], color=_INK, linewidth=3)
+    ax.plot(x, y, color=INK, linewidth=2)
+    ax.plot([x0 - 0.12, x0 + 0.12], [0, 0], color=INK, linewidth=3)
     span = np.linspace(-0.45, 0.45, 2)
-    ax.plot(cx + span * np.cos(alpha), cy + span * np.sin(alpha), color="#555555", linewidth=1.2)
-    ax.plot([cx, cx + 0.45], [cy, cy], color="#555555", linewidth=0.8, linestyle=":")
-    ax.add_patch(Arc((cx, cy), 0.6, 0.6, theta1=0, theta2=np.rad2deg(alpha), color="#555555"))
+    ax.plot(cx + span * np.cos(alpha), cy + span * np.sin(alpha), color=GREY, linewidth=1.2)
+    ax.plot([cx, cx + 0.45], [cy, cy], color=GREY, linewidth=0.8, linestyle=":")
+    ax.add_patch(Arc((cx, cy), 0.6, 0.6, theta1=0, theta2=np.rad2deg(alpha), color=GREY))
     ax.text(cx + 0.33, cy + 0.05, r"$\alpha$")
     ax.text(cx - 0.02, cy + 0.12, r"$(\xi, \eta)$", ha="right")
     ax.text(x[30] + 0.05, y[30] - 0.08, "$s$")
@@ -90,20 +110,18 @@ def _signs(ax: Axes, x0: float) -> None:
 
 
 def _plots(axes: list[Axes], exact: Readings, simulated: Readings) -> None:
-    symbols = {"force_x": "$F_{Ax}$ / ($EI/L^2$)", "force_y": "$F_{Ay}$ / ($EI/L^2$)"}
-    symbols["moment_z"] = "$M_{Az}$ / ($EI/L$)"
-    for ax, (name, title) in zip(axes, symbols.items(), strict=True):
-        ax.plot(exact.values("foot_x"), exact.values(name), color=_INK, label="closed form")
+    for ax, name in zip(axes, CLAMP_READINGS, strict=True):
+        ax.plot(exact.values("foot_x"), exact.values(name), color=REFERENCE, label="closed form")
         ax.plot(
             simulated.values("foot_x"),
             simulated.values(name),
             "o",
-            color="#CC79A7",
+            color=CANDIDATE,
             markersize=3,
             label="MuJoCo chain, 40 segments",
         )
-        ax.set_title(title, fontsize=10)
-        ax.set_xlabel("foot $x_0$ / $L$")
+        ax.set_title(axis_label(name), fontsize=10)
+        ax.set_xlabel(FOOT)
     axes[1].legend(fontsize=8.5, frameon=False)
 
 

@@ -14,7 +14,7 @@ from rich.table import Table
 
 from analytic import Case, Readings, Sweep, circle, solve_sweep
 from compare import compare
-from compare.show.figures import save_figure
+from compare.show.page import save_figure
 from mujoco_models import Settings, available_beams, simulate_sweep
 
 PLOT = Path("results/bench-exudyn.png")

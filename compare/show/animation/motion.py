@@ -47,7 +47,7 @@ class Motion:
 
     @classmethod
     def of(cls, readings: Readings) -> "Motion":
-        """The sweep that these readings tell, in units of their beam."""
+        """The sweep that these readings show, in units of their beam."""
         beam = readings.beam
         x, y = deflected_shapes(readings)
         units = (beam.force_unit, beam.force_unit, beam.moment_unit)

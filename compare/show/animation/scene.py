@@ -13,8 +13,9 @@ from PIL import Image
 from analytic import CLAMP_READINGS
 from analytic.problem.arrays import Integers
 from compare.show.animation.motion import Motion
-from compare.show.animation.views import CANDIDATE, CURVATURE_COLOURS, INK, Curve, View
-from compare.show.figures import PHASE_COLOURS, PHASE_NAMES, save_figure
+from compare.show.animation.views import CURVATURE_COLOURS, Curve, View
+from compare.show.page import save_figure
+from compare.show.style import CANDIDATE, INK, PHASE_COLOURS, PHASE_NAMES, label
 
 _SIZE, _DPI = (8.0, 6.4), 100  # inches and pixels an inch
 
@@ -76,13 +77,13 @@ class Scene:
         self._phase.set_color(PHASE_COLOURS.get(phase, INK))
 
     def _add_header(self, motions: tuple[Motion, Motion]) -> None:
-        case = motions[0].readings.provenance.get("case", "")
+        case = label(motions[0].readings.provenance.get("case", ""))
         self._figure.text(0.085, 0.955, case, fontsize=12, weight="bold")
         line = Line2D([], [], color=CURVATURE_COLOURS(0.6), linewidth=5)
         dots = Line2D([], [], color=CANDIDATE, marker="o", linestyle="")
         self._figure.legend(
             [line, dots],
-            [motion.readings.source for motion in motions],
+            [label(motion.readings.source) for motion in motions],
             loc="center",
             bbox_to_anchor=(0.5, 0.967),
             ncols=2,

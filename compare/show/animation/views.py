@@ -13,17 +13,12 @@ from matplotlib.patches import Polygon
 from analytic import Readings
 from analytic.problem.arrays import Floats
 from compare.show.animation.motion import Motion
-from compare.show.figures import shade_phases
+from compare.show.figures.over_foot import shade_phases
+from compare.show.style import BODY, CANDIDATE, FAINT, FOOT, GREY, INK, axis_label
 
-INK, CANDIDATE = "#222222", "#CC79A7"
 # Perceptually uniform and the same to every kind of colour vision; its palest end is left out,
 # for it would drown in the white around it.
 CURVATURE_COLOURS = ListedColormap(colormaps["viridis"](np.linspace(0.0, 0.9, 256)))
-_SYMBOLS = {
-    "force_x": "$F_{Ax}$ / ($EI/L^2$)",
-    "force_y": "$F_{Ay}$ / ($EI/L^2$)",
-    "moment_z": "$M_{Az}$ / ($EI/L$)",
-}
 _MARKS = 50  # of the candidate in a curve
 _LONGEST_ARROW = 0.75  # L; the largest contact force
 _LOWEST, _HIGHEST = -0.1, 1.08  # L; the least that is shown
@@ -47,7 +42,7 @@ class View:
         reference = motions[0]
         width, dot = (7.0, 4.5) if follows else (2.0, 0.0)
         self._body = body = Polygon(
-            _outline(reference.readings), facecolor="#E4E4E4", edgecolor="#555555", zorder=1
+            _outline(reference.readings), facecolor=BODY, edgecolor=GREY, zorder=1
         )
         self._outline = np.array(body.get_xy())
         self.line = LineCollection(
@@ -71,7 +66,7 @@ class View:
         )  # fmt: skip
         ax.add_patch(body)
         ax.add_collection(self.line)
-        ax.axhline(0, color="#999999", linewidth=0.8, zorder=0)
+        ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
         ax.set_aspect("equal")
         ax.set_xlabel("$(x - x_0)$ / $L$" if follows else "$x$ / $L$", labelpad=1)
         ax.set_ylabel("$y$ / $L$")
@@ -132,11 +127,11 @@ class Curve:
         values = np.concatenate([v for _, v in self._curves])
         ax.set_xlim(*_padded(foot_x, 0.03))
         ax.set_ylim(*_padded(values, 0.08))
-        ax.axhline(0, color="#999999", linewidth=0.8, zorder=0)
-        ax.set_ylabel(_SYMBOLS[name])
+        ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
+        ax.set_ylabel(axis_label(name))
         ax.tick_params(labelbottom=last)
         if last:
-            ax.set_xlabel("foot $x_0$ / $L$")
+            ax.set_xlabel(FOOT)
         shade_phases(ax, motions[0].foot_x, motions[0].phase)
         self.moving: list[Artist] = [self._line, self._dots, self._head]
 
@@ -163,7 +158,7 @@ def _arrow(motion: Motion) -> tuple[float, Literal["tip", "tail"]]:
 
 
 def _outline(readings: Readings) -> Floats:
-    """Vertices of the body, shape (n, 2) [L]; none if the source did not tell its contour."""
+    """Vertices of the body, shape (n, 2) [L]; none if the source did not record its contour."""
     if "contour" not in readings.provenance:
         return np.full((1, 2), np.nan)
     xi, eta = (np.asarray(c) / readings.beam.length for c in readings.provenance["contour"])

@@ -1,13 +1,11 @@
 """The page and its pictures."""
 
 import io
-import re
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from PIL import Image
 
 from analytic import CLAMP_READINGS, PHASES, Readings
@@ -15,9 +13,9 @@ from analytic.problem.files import write_whole
 from compare.explain.budget import UNRESOLVED
 from compare.sense.accuracy import phase_table
 from compare.sense.transitions import TRANSITIONS
-from compare.show.findings.collect import Run, collect
+from compare.show.findings.records import RunRecord, read_records
 from compare.show.findings.sentences import overview, sentences
-from compare.show.page import short
+from compare.show.page import render
 
 _COLOURS = 48  # that a picture keeps, which makes it a third as large
 
@@ -37,7 +35,7 @@ def write_findings(folder: Path, out: Path) -> list[Path]:
     InputError
         If there is no run, or what one has left cannot be read.
     """
-    runs = collect(folder)
+    runs = read_records(folder)
     judged = phase_table(_recorded(runs)).to_dict("records")
     pictures = {
         f"budget-{run.folder.name}.png": _smaller(run.folder / "budget.png")
@@ -54,17 +52,11 @@ def write_findings(folder: Path, out: Path) -> list[Path]:
     return [out / name for name in contents]
 
 
-def page(runs: list[Run], judged: list[dict[Any, Any]]) -> str:
+def page(runs: list[RunRecord], judged: list[dict[Any, Any]]) -> str:
     """The findings in Markdown."""
-    environment = Environment(
-        loader=PackageLoader("compare.show"),
-        autoescape=False,  # Markdown; names are escaped by the filter
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters.update(short=short, plain=_plain)
-    return environment.get_template("findings.md.j2").render(
+    return render(
+        "compare.show",
+        "findings.md.j2",
         runs=runs,
         cases={case: list(group) for case, group in groupby(runs, key=lambda run: run.case)},
         judged=judged,
@@ -77,7 +69,7 @@ def page(runs: list[Run], judged: list[dict[Any, Any]]) -> str:
     )
 
 
-def _recorded(runs: list[Run]) -> dict[str, list[Readings]]:
+def _recorded(runs: list[RunRecord]) -> dict[str, list[Readings]]:
     """By case, the readings of its first run that has left them."""
     found: dict[str, list[Readings]] = {}
     for run in runs:
@@ -90,12 +82,6 @@ def _recorded(runs: list[Run]) -> dict[str, list[Readings]]:
 def _worst_transition(row: dict[str, Any]) -> float:
     """How many stations the worst transition of a row of the phase table lies off."""
     return float(np.nanmax([row[name] for name in TRANSITIONS]))
-
-
-def _plain(text: str) -> str:
-    """Text without what Markdown or HTML would make of it; an underscore in a word is none."""
-    text = re.sub(r"[&<>|]", lambda mark: f"&#{ord(mark[0])};", text)
-    return re.sub(r"[\\`*\[\]]|#(?!\d+;)|(?<!\w)_|_(?!\w)", r"\\\g<0>", text)
 
 
 def _smaller(picture: Path) -> bytes:

@@ -4,11 +4,11 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from compare.explain.budget import UNRESOLVED
-from compare.show.findings.collect import Run
+from compare.show.findings.records import RunRecord
 from compare.show.page import short
 
 
-def overview(runs: Sequence[Run]) -> str:
+def overview(runs: Sequence[RunRecord]) -> str:
     """All runs in a paragraph."""
     worst = max(runs, key=lambda run: run.rms[run.worst])
     said = [
@@ -23,7 +23,7 @@ def overview(runs: Sequence[Run]) -> str:
     return " ".join(said)
 
 
-def sentences(runs: Sequence[Run]) -> str:
+def sentences(runs: Sequence[RunRecord]) -> str:
     """The runs of one case, in two to four sentences."""
     said = [f"{_agreeing(runs, _beam)} {_ranking(runs)}"]
     with_budget = [run for run in runs if run.budget is not None]
@@ -33,7 +33,7 @@ def sentences(runs: Sequence[Run]) -> str:
     return " ".join(said)
 
 
-def _agreeing(runs: Sequence[Run], named: Callable[[Run], str]) -> str:
+def _agreeing(runs: Sequence[RunRecord], named: Callable[[RunRecord], str]) -> str:
     failing = [run for run in runs if not run.agrees]
     n, fulfilled = len(runs), "with the closed form within the tolerances"
     if n == 1:
@@ -47,23 +47,23 @@ def _agreeing(runs: Sequence[Run], named: Callable[[Run], str]) -> str:
     return f"{n - len(failing)} of {n} sweeps agree {fulfilled}, all but: {exceptions}."
 
 
-def _ranking(runs: Sequence[Run]) -> str:
+def _ranking(runs: Sequence[RunRecord]) -> str:
     ordered = sorted(runs, key=lambda run: run.rms[run.worst])
     best, last = ordered[0], ordered[-1]
-    told = f"{short(best.rms[best.worst])} rms in {best.worst}"
+    size = f"{short(best.rms[best.worst])} rms in {best.worst}"
     if len(runs) == 1:
-        return f"Its worst reading is off by {told}."
+        return f"Its worst reading is off by {size}."
     return (
-        f"The {best.beam} is the closest ({told}, its worst reading), "
+        f"The {best.beam} is the closest ({size}, its worst reading), "
         f"the {last.beam} the farthest ({short(last.rms[last.worst])} in {last.worst})."
     )
 
 
-def _blame(runs: Sequence[Run]) -> str:
-    parts: dict[str, list[Run]] = {}
+def _blame(runs: Sequence[RunRecord]) -> str:
+    parts: dict[str, list[RunRecord]] = {}
     for run in runs:
         parts.setdefault(_budget(run)["blame"], []).append(run)
-    told = [
+    shares = [
         f"{part} for {_list([f'the {run.beam}' for run in group])} "
         f"({_span([run.part(part) or 0.0 for run in group], short)}{_order(group, part)})"
         for part, group in parts.items()
@@ -74,16 +74,16 @@ def _blame(runs: Sequence[Run]) -> str:
         for first in _budget(run)["suspects"][:1]
     ]
     doubt = f"; {_list(suspects)}" if suspects else ""
-    return f"The largest part of the disagreement is {_list(told)}{doubt}."
+    return f"The largest part of the disagreement is {_list(shares)}{doubt}."
 
 
-def _order(runs: Sequence[Run], part: str) -> str:
+def _order(runs: Sequence[RunRecord], part: str) -> str:
     if part != "discretisation":
         return ""
     return f", of observed order {_span([_budget(run)['order'] for run in runs], '{:.2f}'.format)}"
 
 
-def _closure(runs: Sequence[Run], named: Callable[[Run], str]) -> str:
+def _closure(runs: Sequence[RunRecord], named: Callable[[RunRecord], str]) -> str:
     rest = short(max(run.part("unexplained") or 0.0 for run in runs))
     still_open = [run for run in runs if not _budget(run)["closes"]]
     if not still_open:
@@ -96,12 +96,12 @@ def _closure(runs: Sequence[Run], named: Callable[[Run], str]) -> str:
     return f"{count}: up to {rest} is unexplained."
 
 
-def _allowance(runs: Sequence[Run]) -> str:
+def _allowance(runs: Sequence[RunRecord]) -> str:
     kept = sum((run.part("unexplained") or 0.0) <= UNRESOLVED for run in runs)
     return f"No more than {short(UNRESOLVED)} is unexplained in {kept} of {len(runs)}."
 
 
-def _events(runs: Sequence[Run]) -> str:
+def _events(runs: Sequence[RunRecord]) -> str:
     shifts = [run.snap_off for run in runs]
     known = [abs(shift) for shift in shifts if shift is not None]
     if len(known) == len(runs):
@@ -113,21 +113,20 @@ def _events(runs: Sequence[Run]) -> str:
     right = [run.phases_right for run in runs if run.phases_right is not None]
     if not right:
         return f"{said}."
-    if min(right) == 1:
-        return f"{said}, and the clamp tells every station's phase rightly."
-    return f"{said}, and the clamp tells the phase of at least {100 * min(right):.1f} % rightly."
+    share = "every station" if min(right) == 1 else f"at least {100 * min(right):.1f} % of stations"
+    return f"{said}, and the clamp readings give the right phase of {share}."
 
 
-def _budget(run: Run) -> dict[str, Any]:
+def _budget(run: RunRecord) -> dict[str, Any]:
     assert run.budget is not None
     return run.budget
 
 
-def _case_and_beam(run: Run) -> str:
+def _case_and_beam(run: RunRecord) -> str:
     return f"{run.case}, {run.beam}"
 
 
-def _beam(run: Run) -> str:
+def _beam(run: RunRecord) -> str:
     return run.beam
 
 

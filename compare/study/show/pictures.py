@@ -13,16 +13,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from analytic import CLAMP_READINGS
-from compare.show.figures import PHASE_COLOURS
+from compare.show.style import GREY, PHASE_COLOURS, SERIES, SYMBOLS
 from compare.study.grid.file import BEAM
 from compare.study.show import tables
 from compare.study.show.tables import WORST, Findings, curve, pareto_front
 
-# Okabe and Ito's palette, as in the figures of a comparison.
-_COLOURS = (PHASE_COLOURS["tip"], PHASE_COLOURS["tangent"], "#009E73", "#CC79A7", "#E69F00")
-_READINGS = dict(
-    zip(CLAMP_READINGS, ("force $F_{Ax}$", "force $F_{Ay}$", "moment $M_{Az}$"), strict=True)
-)
 _AXES = {
     "mujoco.segments": "segments $N$",
     "mujoco.contour_points": "contour points of the mesh",
@@ -35,7 +30,7 @@ _AXES = {
 }
 PANELS: dict[str, dict[str, str]] = {
     "disagreement, rms\n(of the largest magnitude)": {
-        f"disagreement_{name}_rms": label for name, label in _READINGS.items()
+        f"disagreement_{name}_rms": SYMBOLS[name] for name in CLAMP_READINGS
     },
     "shift of the snap-off [length]": {"snap_off_difference": ""},
     "reconstruction error / $L$": {
@@ -64,7 +59,7 @@ def axis_curves(found: Findings) -> Iterator[tuple[str, Figure]]:
         for ax, (label, columns) in zip(
             np.atleast_1d(figure.subplots(1, len(shown))), shown.items(), strict=True
         ):
-            for colour, (column, name) in zip(_COLOURS, columns.items(), strict=False):
+            for colour, (column, name) in zip(SERIES, columns.items(), strict=False):
                 line = curve(found, axis, column)
                 style = {"color": colour, "linewidth": 1.5, "marker": "o", "markersize": 3.5}
                 ax.plot(line[axis], line["median"], label=name, **style)
@@ -74,7 +69,7 @@ def axis_curves(found: Findings) -> Iterator[tuple[str, Figure]]:
                     )
             _place(ax, found.done[axis], "x")
             if column == "contact_length_minimum":
-                ax.axhline(1, color="#555555", linestyle="--", linewidth=1, label="Phase B below")
+                ax.axhline(1, color=GREY, linestyle="--", linewidth=1, label="Phase B below")
             elif _spans_decades(pd.concat([found.done[c].abs() for c in columns])):
                 ax.set_yscale("log")
             ax.set_xlabel(_label(axis))
@@ -113,7 +108,7 @@ def error_against_time(found: Findings) -> Iterator[tuple[str, Figure]]:
         return
     figure = Figure(figsize=(6.4, 4.4), layout="constrained")
     ax = figure.subplots()
-    for colour, (beam, group) in zip(_COLOURS, done.groupby(BEAM), strict=False):
+    for colour, (beam, group) in zip(SERIES, done.groupby(BEAM), strict=False):
         ax.plot(group["seconds_candidate"], group[WORST], "o", color=colour, alpha=0.6,
                 markersize=4, label=f"{beam}: {len(group)} runs")  # fmt: skip
     front = pareto_front(done, "seconds_candidate", WORST)

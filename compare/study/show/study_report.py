@@ -1,15 +1,13 @@
 """The report of a study: tables, figures and one offline page, from what is stored alone."""
 
-import io
 from pathlib import Path
 
 import pandas as pd
-from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from analytic import InputError
 from analytic.problem.files import write_whole
+from compare.show.page import inline_svg, png, render
 from compare.study.grid.plan import Plan
 from compare.study.keep.store import PLAN_FILE, Tell, read_rows
 from compare.study.show import pictures, tables
@@ -50,7 +48,7 @@ def write_report(folder: Path, tell: Tell) -> Path:
     }
     (folder / "report").mkdir(exist_ok=True)
     for name, figure in drawn.items():
-        write_whole(folder / "report" / f"{name}.png", _image(figure, "png"))
+        write_whole(folder / "report" / f"{name}.png", png(figure))
     for name, table in numbers.items():
         if not table.empty:
             write_whole(folder / "report" / f"{name}.csv", table.to_csv(index=False).encode())
@@ -59,31 +57,18 @@ def write_report(folder: Path, tell: Tell) -> Path:
 
 
 def _page(found: Findings, numbers: dict[str, pd.DataFrame], drawn: dict[str, Figure]) -> str:
-    environment = Environment(
-        loader=PackageLoader("compare.study.show"), autoescape=True, undefined=StrictUndefined
-    )
-    environment.filters["number"] = lambda x: f"{x:.4g}" if isinstance(x, float) else str(x)
     titles = {
         "outcomes": "What became of the runs",
         "orders": "Observed orders",
         "phase-b-vanishes": "Where Phase B vanishes",
     }
-    return environment.get_template("study.html.j2").render(
+    return render(
+        "compare.study.show",
+        "study.html.j2",
         study=found.plan.study,
         versions=found.plan.versions,
         done=len(found.done),
         planned=len(found.plan),
         tables={titles[name]: numbers[name] for name in titles if not numbers[name].empty},
-        figures={name: Markup(_svg(figure)) for name, figure in drawn.items()},
+        figures={name: inline_svg(figure, name, name) for name, figure in drawn.items()},
     )
-
-
-def _svg(figure: Figure) -> str:
-    text = _image(figure, "svg").decode()
-    return text[text.index("<svg") :]
-
-
-def _image(figure: Figure, kind: str) -> bytes:
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format=kind, dpi=150)
-    return buffer.getvalue()

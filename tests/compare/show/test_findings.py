@@ -8,14 +8,16 @@ import pytest
 from analytic import CASE_NAMES, InputError
 from compare import compare
 from compare.show.findings import write_findings
-from compare.show.findings.collect import Run, collect
+from compare.show.findings.records import RunRecord, read_records
 from compare.show.findings.sentences import overview, sentences
 from compare.show.report import write_report
 from tests.compare.planted import planted
 from tests.conftest import exact_sweep, simulated_sweep
 
 
-def run(case="catenary", beam="chain", rms=1e-3, snap_off=1e-4, right=1.0, budget=None) -> Run:
+def run(
+    case="catenary", beam="chain", rms=1e-3, snap_off=1e-4, right=1.0, budget=None
+) -> RunRecord:
     """A run of which only what the page tells is known; force_y is its worst reading."""
     agrees = rms <= 2e-3
     comparison = {
@@ -34,7 +36,7 @@ def run(case="catenary", beam="chain", rms=1e-3, snap_off=1e-4, right=1.0, budge
             "provenance": {"case": case, "settings": {"beam": beam, "segments": 40}},
         },
     }
-    return Run(Path(f"{case}-{beam}"), comparison, budget and budget.to_dict())
+    return RunRecord(Path(f"{case}-{beam}"), comparison, budget and budget.to_dict())
 
 
 @pytest.mark.parametrize(
@@ -61,10 +63,10 @@ def run(case="catenary", beam="chain", rms=1e-3, snap_off=1e-4, right=1.0, budge
          "The budget does not close: 3.0e-4 is unexplained."),
         ([run(budget=planted()), run(beam="rod", budget=planted(unexplained=3e-4, closes=False))],
          "1 of 2 budgets do not close (rod): up to 3.0e-4 is unexplained."),
-        ([run()], "The snap-off is found within 5.0e-5 L, and the clamp tells every station's"),
+        ([run()], "The snap-off is found within 5.0e-5 L, and the clamp"),
         ([run(snap_off=None)], "No snap-off is found in both sweeps"),
         ([run(), run(beam="rod", snap_off=None)], "The snap-off is missing in 1 of 2 comparisons"),
-        ([run(right=0.955)], "the clamp tells the phase of at least 95.5 % rightly."),
+        ([run(right=0.955)], "readings give the right phase of at least 95.5 % of stations."),
         ([run(right=None)], "The snap-off is found within 5.0e-5 L."),
     ],
 )  # fmt: skip
@@ -111,7 +113,7 @@ def test_page(folder, tmp_path):
     assert written[1].stat().st_size < 40_000  # fifteen of them stay below 1 MB
     told = written[0].read_text(encoding="utf-8")
     rows = [line for line in told.splitlines() if line.startswith("| catenary | chain")]
-    rms = collect(folder)[0].rms
+    rms = read_records(folder)[0].rms
     assert f"| 40 | {rms['force_x']:.1e}".replace("e-0", "e-") in rows[0]
     assert "not measured" in rows[0]
     assert told.index("## catenary") < told.index("## parabola")

@@ -13,9 +13,9 @@ from analytic import CLAMP_READINGS, Readings
 from compare import Tolerances, compare
 from compare.explain.convergence import convergence, fitted_orders
 from compare.explain.suspects import Suspect
-from compare.show.budget_figure import headline, panels
+from compare.show.figures.budget_bars import headline, panels
+from compare.show.page import inline_svg
 from compare.show.report import Film, write_report
-from compare.show.svg import inline_svg
 from compare.show.verdict import verdict
 from tests.compare.planted import planted
 from tests.compare.show.pages import Page

@@ -9,7 +9,7 @@ from analytic import CASE_NAMES, CLAMP_READINGS, InputError
 
 
 @dataclass(frozen=True)
-class Run:
+class RunRecord:
     """One run: the contents of its ``comparison.json`` and, if there is one, ``budget.json``."""
 
     folder: Path
@@ -73,7 +73,7 @@ class Run:
 
     @property
     def phases_right(self) -> float | None:
-        """Share of the stations whose phase the clamp tells rightly, in the worse sweep."""
+        """Share of stations whose phase is rightly judged from the clamp, in the worse sweep."""
         share = self.comparison["phases"]["agreement"]
         return None if share is None else float(share)
 
@@ -95,7 +95,7 @@ class Run:
         return max(float(part["rms"]) for part in self.budget["parts"][name].values())
 
 
-def collect(folder: Path) -> list[Run]:
+def read_records(folder: Path) -> list[RunRecord]:
     """All runs in the folders of `folder`: the named cases first, in their order.
 
     Raises
@@ -104,7 +104,7 @@ def collect(folder: Path) -> list[Run]:
         If there is none, or what one has left cannot be read.
     """
     runs = [
-        Run(file.parent, _read(file), _read(budget) if budget.exists() else None)
+        RunRecord(file.parent, _read(file), _read(budget) if budget.exists() else None)
         for file in sorted(folder.glob("*/comparison.json"))
         for budget in [file.with_name("budget.json")]
     ]

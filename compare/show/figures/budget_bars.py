@@ -7,15 +7,15 @@ from matplotlib.figure import Figure
 from analytic import CLAMP_READINGS
 from compare.explain.budget import UNRESOLVED, Budget
 from compare.show.page import short
+from compare.show.style import BLUE, BODY, GREY, INK, LARGE, ORANGE, SMALL
 
-_BLAMED, _OTHER, _UNEXPLAINED = "#d55e00", "#0072b2", "#000000"
-_GREY, _ZONE = "#555555", "#dddddd"
+_BLAMED, _OTHER, _UNEXPLAINED, _ZONE = ORANGE, BLUE, INK, BODY
 _LEAST = UNRESOLVED / 50  # of the largest magnitude; less has a number, but no bar
 _PANEL = (4.3, 3.1)  # inches
 
 
 def picture(found: Budget) -> Figure:
-    """All readings side by side, under a sentence that says what they show."""
+    """Draw all readings side by side, under a sentence that says what they show."""
     width, height = _PANEL
     figure = Figure(
         figsize=(width * len(CLAMP_READINGS) * 0.85, height + 0.4), layout="constrained"
@@ -29,14 +29,14 @@ def picture(found: Budget) -> Figure:
     figure.supxlabel(
         "rms / largest magnitude, with its uncertainty; "
         "dashed: all of it; grey: may stay unexplained",
-        fontsize=9,
+        fontsize=SMALL,
     )
     figure.suptitle(headline(found), fontsize=12)
     return figure
 
 
 def panels(found: Budget) -> dict[str, Figure]:
-    """A picture for each reading."""
+    """Draw a picture for each reading."""
     figures = {}
     for reading in CLAMP_READINGS:
         figures[reading] = figure = Figure(figsize=_PANEL, layout="constrained")
@@ -66,13 +66,13 @@ def _draw(ax: Axes, found: Budget, reading: str) -> None:
     ax.axvspan(_LEAST, UNRESOLVED, color=_ZONE, alpha=0.6, linewidth=0, zorder=0)
     for name, row, part in zip(names, rows, parts, strict=True):
         _bar(ax, row, part.rms, part.uncertainty, _colour(name, found.blame))
-    ax.axvline(total, color=_GREY, linestyle="--", linewidth=1.3, zorder=3)
-    ax.axhline(0.65, color=_GREY, linewidth=0.6)
+    ax.axvline(total, color=GREY, linestyle="--", linewidth=1.3, zorder=3)
+    ax.axhline(0.65, color=GREY, linewidth=0.6)
     ax.set_ylim(-0.6, rows[0] + 0.6)
     ax.set_yticks(rows, names)
     ax.tick_params(axis="y", length=0)
     ax.yaxis.get_ticklabels()[names.index(found.blame)].set_fontweight("bold")
-    ax.set_title(f"{reading}: {short(total)} in all", fontsize=11)
+    ax.set_title(f"{reading}: {short(total)} in all", fontsize=LARGE)
     ax.set_xlabel("rms / largest magnitude")
     for side in ("top", "right", "left"):
         ax.spines[side].set_visible(False)
@@ -84,10 +84,10 @@ def _bar(ax: Axes, row: float, rms: float, uncertainty: float, colour: str) -> N
     if rms > _LEAST:
         ax.barh(row, rms - _LEAST, left=_LEAST, height=0.62, color=colour)
     if high > _LEAST:
-        ax.plot([low, high], [row, row], color=_GREY, linewidth=1.2, marker="|", markersize=6)
+        ax.plot([low, high], [row, row], color=GREY, linewidth=1.2, marker="|", markersize=6)
     ax.annotate(
         short(rms), (1, row), (34, 0), xycoords=("axes fraction", "data"),
-        textcoords="offset points", va="center", ha="right", fontsize=9,
+        textcoords="offset points", va="center", ha="right", fontsize=SMALL,
     )  # fmt: skip
 
 

@@ -7,13 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, NullLocator
 
-from analytic import CLAMP_READINGS
 from compare.explain.convergence import fitted_orders
+from compare.show.style import FAINT, GREY, READING_COLOURS, READING_MARKERS, SMALL
 
-_STYLES = dict(
-    zip(CLAMP_READINGS, (("#0072b2", "o"), ("#d55e00", "s"), ("#009e73", "^")), strict=True)
-)
-_GREY = "#555555"
 _SECOND = 2  # the order of a beam that first bends half a cell from the clamp
 
 
@@ -24,7 +20,7 @@ def convergence_picture(found: Mapping[int, Mapping[str, float]]) -> Figure:
     n = np.array(list(found), dtype=float)
     for name, order in fitted_orders(found).items():
         errors = np.array([found[segments][name] for segments in found])
-        colour, marker = _STYLES[name]
+        colour, marker = READING_COLOURS[name], READING_MARKERS[name]
         fit = np.exp(np.log(errors).mean()) * (n / np.exp(np.log(n).mean())) ** -order
         ax.plot(n, fit, color=colour, linewidth=1.2)
         ax.plot(n, errors, marker, color=colour, markersize=6, label=f"{name}: order {order:.2f}")
@@ -34,11 +30,11 @@ def convergence_picture(found: Mapping[int, Mapping[str, float]]) -> Figure:
     ax.set_xticks(n, [f"{segments:g}" for segments in n])
     ax.xaxis.set_minor_locator(NullLocator())
     ax.yaxis.set_minor_formatter(NullFormatter())
-    ax.grid(axis="y", color="#999999", alpha=0.35, linewidth=0.6)
+    ax.grid(axis="y", color=FAINT, alpha=0.35, linewidth=0.6)
     ax.set_xlabel("segments $N$")
     ax.set_ylabel("rms / largest magnitude")
     _slope_triangle(ax, n, min(errors[name] for errors in found.values() for name in errors))
-    ax.legend(fontsize=9, frameon=False, loc="upper right")
+    ax.legend(fontsize=SMALL, frameon=False, loc="upper right")
     return figure
 
 
@@ -47,13 +43,13 @@ def _slope_triangle(ax: Axes, n: np.ndarray, lowest: float) -> None:
     left, right = n[0], n[0] * (n[-1] / n[0]) ** 0.45
     low = lowest
     high = low * (right / left) ** _SECOND
-    ax.plot([left, left, right, left], [high, low, low, high], color=_GREY, linewidth=1)
+    ax.plot([left, left, right, left], [high, low, low, high], color=GREY, linewidth=1)
     ax.annotate(
         f"{_SECOND}", (left, np.sqrt(low * high)), (-9, 0), textcoords="offset points",
-        color=_GREY, va="center",
+        color=GREY, va="center",
     )  # fmt: skip
     ax.annotate(
         "1", (np.sqrt(left * right), low), (0, -12), textcoords="offset points",
-        color=_GREY, ha="center",
+        color=GREY, ha="center",
     )  # fmt: skip
     ax.set_ylim(bottom=low / 1.8)

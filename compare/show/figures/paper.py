@@ -4,8 +4,27 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from analytic import Case, Readings, find_events, reconstruct, reconstruct_by_decision, surplus
-from compare.show.figures import PHASE_COLOURS
+from analytic import (
+    CLAMP_READINGS,
+    Case,
+    Readings,
+    find_events,
+    reconstruct,
+    reconstruct_by_decision,
+    surplus,
+)
+from compare.show.figures.over_foot import foot, unit
+from compare.show.style import (
+    FAINT,
+    GREEN,
+    INK,
+    NORMAL,
+    PHASE_COLOURS,
+    SMALL,
+    YELLOW,
+    axis_label,
+    label,
+)
 
 _A, _B = PHASE_COLOURS["tip"], PHASE_COLOURS["tangent"]
 
@@ -31,12 +50,12 @@ def contact_length(case: Case) -> Figure:
     angle = np.linspace(first, min(events.snap_off.contact_angle, 2 * lowest - first), 801)[1:]
     shortened = surplus(centreline, centreline.parameter(angle))
     s1 = 1 / (1 - shortened)
-    ax.plot(np.rad2deg(angle), np.where(shortened < 1, s1, np.nan), color="k")
-    ax.axhline(1, color="#999999", linestyle="--", linewidth=0.9)
+    ax.plot(np.rad2deg(angle), np.where(shortened < 1, s1, np.nan), color=INK)
+    ax.axhline(1, color=FAINT, linestyle="--", linewidth=0.9)
     for name, event, colour in (
         ("start of Phase B", events.phase_b_start, _B),
         ("end of Phase B", events.phase_b_end, _A),
-        ("least $s_1$", events.contact_length_minimum, "#009E73"),
+        ("least $s_1$", events.contact_length_minimum, GREEN),
     ):
         if event is not None:
             ax.plot(
@@ -50,7 +69,7 @@ def contact_length(case: Case) -> Figure:
     ax.set_xlabel(r"slope angle $\alpha$ of the contour / °")
     ax.set_ylabel("$s_1$ / $L$  (eq. 21)")
     ax.set_ylim(0, 2)
-    ax.legend(fontsize=9, frameon=False)
+    ax.legend(fontsize=SMALL, frameon=False)
     return figure
 
 
@@ -60,14 +79,14 @@ def profile(readings: Readings) -> Figure:
     ax = figure.subplots()
     scale = readings.beam.length
     xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
-    ax.plot(xi, eta, color="k", linewidth=1)
+    ax.plot(xi, eta, color=INK, linewidth=1)
     for phase, name, colour in (("tip", "Phase A", _A), ("tangent", "Phase B", _B)):
         here = (readings.table["phase"] == phase).to_numpy()
         x, y = readings.values("contact_x")[here], readings.values("contact_y")[here]
         ax.plot(x / scale, y / scale, ".", color=colour, label=name)
     ax.set_xlabel(r"$\xi$ / $L$")
     ax.set_ylabel(r"$\eta$ / $L$")
-    ax.set_title(str(readings.provenance["profile"]), fontsize=10)
+    ax.set_title(label(readings.provenance["profile"]), fontsize=NORMAL)
     ax.set_aspect("equal")
     figure.legend(loc="outside lower center", ncols=2, frameon=False)
     return figure
@@ -77,17 +96,18 @@ def observables(readings: Readings) -> Figure:
     """Fig. 15: clamp force, clamp moment and the error of the reconstruction over x0."""
     figure = Figure(figsize=(9, 6), layout="constrained")
     axes = figure.subplots(2, 2).ravel()
-    beam = readings.beam
-    x = readings.values("foot_x") / beam.length
-    for ax, name, symbol, unit in (
-        (axes[0], "force_x", "$F_{Ax}$ / ($EI/L^2$)", beam.force_unit),
-        (axes[1], "force_y", "$F_{Ay}$ / ($EI/L^2$)", beam.force_unit),
-        (axes[2], "moment_z", "$M_{Az}$ / ($EI/L$)", beam.moment_unit),
-    ):
+    x = foot(readings)
+    for ax, name in zip(axes[:3], CLAMP_READINGS, strict=True):
         for phase, colour in PHASE_COLOURS.items():
             here = (readings.table["phase"] == phase).to_numpy()
-            ax.plot(x[here], readings.values(name)[here] / unit, ".", color=colour, markersize=3)
-        ax.set_ylabel(symbol)
+            ax.plot(
+                x[here],
+                readings.values(name)[here] / unit(readings, name),
+                ".",
+                color=colour,
+                markersize=3,
+            )
+        ax.set_ylabel(axis_label(name))
     _error(axes[3], readings)
     for ax in axes:
         ax.set_xlabel("$x_0$ / $L$")
@@ -107,15 +127,14 @@ def _error(ax: Axes, readings: Readings) -> None:
     """Distance of the reconstructed from the true contact, over the foot position."""
     scale = readings.beam.length
     for method, found, colour in (
-        ("(26) and integration", reconstruct_by_decision(readings), "#E69F00"),
-        ("closed form", reconstruct(readings), "k"),
+        ("(26) and integration", reconstruct_by_decision(readings), YELLOW),
+        ("closed form", reconstruct(readings), INK),
     ):
         error = np.hypot(
             found["contact_x"] - readings.values("contact_x"),
             found["contact_y"] - readings.values("contact_y"),
         )
-        x = readings.values("foot_x") / scale
         shown = np.maximum(error / scale, 1e-17)  # zero has no place on a logarithmic axis
-        ax.semilogy(x, shown, ".", markersize=3, color=colour, label=method)
+        ax.semilogy(foot(readings), shown, ".", markersize=3, color=colour, label=method)
     ax.set_ylabel("error of the contact point / $L$")
-    ax.legend(fontsize=9, frameon=False)
+    ax.legend(fontsize=SMALL, frameon=False)

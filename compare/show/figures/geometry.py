@@ -1,0 +1,151 @@
+"""The object and the vibrissa as they stand in space."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PatchCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle
+
+from analytic import Readings, deflected_shapes, reconstruct
+from analytic.problem.arrays import Words
+from compare.comparison import Comparison
+from compare.show.figures.over_foot import foot
+from compare.show.figures.thinning import cloud
+from compare.show.style import (
+    BODY,
+    FAINT,
+    GREEN,
+    GREY,
+    INK,
+    NORMAL,
+    PAGE_WIDTH,
+    PHASE_COLOURS,
+    PHASE_NAMES,
+    SMALL,
+    label,
+)
+
+_SHAPES = 24  # drawn of each sweep
+_OBJECT: dict[str, Any] = {"color": GREY, "linewidth": 2.5}
+_CONTACT: dict[str, Any] = {"color": INK, "marker": "o", "markersize": 1.5, "linestyle": ""}
+
+
+def geometry(comparison: Comparison) -> Figure:
+    """Draw the object and the deflected vibrissa, coloured by phase, in both models.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Drawn from its readings alone.
+
+    Returns
+    -------
+    Figure
+        The reference above the candidate, at equal scales.
+    """
+    figure = Figure(layout="constrained")
+    axes = figure.subplots(2, 1, sharex=True, sharey=True)
+    sides = {"reference": comparison.reference, "candidate": comparison.candidate}
+    for ax, (which, readings) in zip(axes, sides.items(), strict=True):
+        phase = comparison.judged[which].phase
+        _draw_shapes(ax, readings, phase)
+        _draw_object(ax, readings, phase)
+        ax.set_title(f"{which}: {label(readings.source)}", loc="left", fontsize=NORMAL)
+        ax.set_ylabel("$y$ / $L$")
+        ax.set_aspect("equal")
+        ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
+    foot_x = foot(comparison.reference)
+    direction = "right" if foot_x[-1] > foot_x[0] else "left"
+    axes[-1].set_xlabel(f"$x$ / $L$   (the foot moves to the {direction} along $y = 0$)")
+    handles = [Line2D([], [], color=PHASE_COLOURS[p], label=PHASE_NAMES[p]) for p in PHASE_COLOURS]
+    handles += [
+        Line2D([], [], **_OBJECT, label="object"),
+        Line2D([], [], **_CONTACT | {"markersize": 3}, label="reconstructed contact"),
+    ]
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=5, fontsize=SMALL, frameon=False
+    )
+    # As high as both axes need, at equal scales, besides their labels and the legend.
+    wide, high = (np.ptp(limits) for limits in (axes[0].get_xlim(), axes[0].get_ylim()))
+    figure.set_size_inches(PAGE_WIDTH, 2 * (PAGE_WIDTH - 0.8) * high / wide + 1.5)
+    return figure
+
+
+def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
+    """Draw the contact points that the clamp readings show, with their uncertainty if known.
+
+    Parameters
+    ----------
+    readings : Readings
+        The sweep.
+    found : pandas.DataFrame
+        As of `analytic.reconstruct`.
+
+    Returns
+    -------
+    Figure
+        The points, the vibrissa at some stations, and the object where the source recorded it.
+    """
+    figure = Figure(figsize=(PAGE_WIDTH, 4.5), layout="constrained")
+    ax = figure.subplots()
+    _draw_shapes(ax, readings, found["phase"].to_numpy(dtype=str))
+    scale = readings.beam.length
+    if "contour" in readings.provenance:
+        xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
+        ax.plot(xi, eta, color=FAINT, linewidth=3, label="object", zorder=0)
+    x, y = found["contact_x"].to_numpy() / scale, found["contact_y"].to_numpy() / scale
+    drawn = cloud(x, y)
+    if "uncertainty" in found:
+        radius = found["uncertainty"].to_numpy() / scale
+        circles = PatchCollection(
+            [Circle((x[i], y[i]), radius[i]) for i in drawn if np.isfinite(radius[i])],
+            color=GREEN,
+            alpha=0.08,
+            linewidth=0,
+        )
+        ax.add_collection(circles)
+        ax.plot([], [], "o", color=GREEN, alpha=0.3, markersize=9, label="95 % of cases")
+    ax.plot(x[drawn], y[drawn], ".", color=INK, markersize=3.5, label="reconstructed contact")
+    unit = "$L$" if scale == 1 else f"$L$ = {scale:g}"
+    ax.set_xlabel(f"$x$ / ({unit})")
+    ax.set_ylabel(f"$y$ / ({unit})")
+    ax.set_aspect("equal")
+    ax.set_ylim(-0.05, 1.15)
+    ax.axhline(0, color=FAINT, linewidth=0.8)
+    ax.legend(fontsize=SMALL, frameon=False, loc="upper center", ncols=3)
+    return figure
+
+
+def _draw_shapes(ax: Axes, readings: Readings, phase: Words) -> None:
+    usable = np.flatnonzero(np.isin(phase, list(PHASE_COLOURS)))
+    chosen = usable[np.linspace(0, len(usable) - 1, min(_SHAPES, len(usable))).astype(int)]
+    if not chosen.size:
+        return
+    scale = readings.beam.length
+    # A sweep has two stations at least.
+    picked = Readings(readings.table.iloc[np.append(chosen, chosen[-1])], readings.beam)
+    x, y = (path[:-1] / scale for path in deflected_shapes(picked))
+    lines = LineCollection(
+        list(np.stack([x, y], axis=-1)),
+        colors=[PHASE_COLOURS[str(phase[i])] for i in chosen],
+        linewidths=1.1,
+    )
+    ax.add_collection(lines)
+    ax.plot(x[:, 0], y[:, 0], "s", color=GREY, markersize=2.5)
+    ax.autoscale_view()
+
+
+def _draw_object(ax: Axes, readings: Readings, phase: Words) -> None:
+    scale = readings.beam.length
+    if "contour" in readings.provenance:
+        xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
+        ax.fill_between(xi, eta, eta.max(), color=BODY, linewidth=0, zorder=0)
+        ax.plot(xi, eta, **_OBJECT, zorder=1)
+    found = reconstruct(readings)[np.isin(phase, ("tip", "tangent"))]
+    x, y = found["contact_x"].to_numpy() / scale, found["contact_y"].to_numpy() / scale
+    drawn = cloud(x, y)
+    ax.plot(x[drawn], y[drawn], **_CONTACT)

@@ -1,0 +1,93 @@
+"""What all pictures over the foot position share: units of the beam, phases, marks, the key."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from analytic import CLAMP_READINGS, Readings, reconstruct
+from analytic.problem.arrays import Floats, Words
+from compare.comparison import Comparison
+from compare.show.figures.thinning import stretches
+from compare.show.style import CANDIDATE, PHASE_COLOURS, PHASE_NAMES, REFERENCE
+
+LINE: dict[str, Any] = {"color": REFERENCE, "linewidth": 1.6}
+"""How the reference is drawn."""
+_BEYOND_TIP = 1.1  # L; as far as a noisy contact is drawn
+
+
+def dots(comparison: Comparison) -> dict[str, Any]:
+    """How the candidate is drawn: the smaller the more stations it has."""
+    size = 2.2 if len(comparison.candidate.table) > 100 else 4.0
+    return {"color": CANDIDATE, "marker": "o", "markersize": size, "linestyle": ""}
+
+
+def foot(readings: Readings) -> Floats:
+    """Foot positions [L], shape (stations,)."""
+    return readings.values("foot_x") / readings.beam.length
+
+
+def unit(readings: Readings, name: str) -> float:
+    """The unit that a clamp reading is drawn in."""
+    return readings.beam.moment_unit if name == "moment_z" else readings.beam.force_unit
+
+
+def scaled(readings: Readings, name: str) -> Floats:
+    """A reading as it is drawn.
+
+    Parameters
+    ----------
+    readings : Readings
+        The sweep.
+    name : str
+        Of a clamp reading, or ``contact_arc_length`` for the reconstructed one.
+
+    Returns
+    -------
+    array, shape (stations,)
+        In units of the beam; NaN where it is not to be trusted, or no place on the vibrissa.
+    """
+    if name in CLAMP_READINGS:
+        return np.where(readings.trusted, readings.values(name) / unit(readings, name), np.nan)
+    s = reconstruct(readings)[name].to_numpy(dtype=float) / readings.beam.length
+    # Without a load the noise of a rig puts it anywhere; with one, a little beyond the tip.
+    return np.where((s > 0) & (s < _BEYOND_TIP), s, np.nan)
+
+
+def shade_phases(ax: Axes, foot_x: Floats, phase: Words) -> None:
+    """Draw the contact phases of a sweep as a background over its foot positions.
+
+    Parameters
+    ----------
+    ax : Axes
+        Where.
+    foot_x : array, shape (stations,)
+        In the unit of the axis.
+    phase : array of str, shape (stations,)
+        As of `compare.sense.phases.Classification`.
+    """
+    for begin, end, name in zip(*stretches(phase), strict=True):
+        if name in ("tip", "tangent"):
+            ax.axvspan(
+                foot_x[max(begin - 1, 0)],
+                foot_x[end],
+                color=PHASE_COLOURS[str(name)],
+                alpha=0.10,
+                linewidth=0,
+            )
+
+
+def shade_reference(ax: Axes, comparison: Comparison) -> None:
+    """The same, of a comparison's reference."""
+    shade_phases(ax, foot(comparison.reference), comparison.judged["reference"].phase)
+
+
+def key(ax: Axes) -> tuple[list[Artist], list[str]]:
+    """What the lines and the shades of a reading's axes mean."""
+    handles, labels = ax.get_legend_handles_labels()
+    shades: list[Artist] = [
+        Line2D([], [], color=PHASE_COLOURS[p], alpha=0.35, linewidth=7) for p in ("tip", "tangent")
+    ]
+    return [*handles, *shades], [*labels, PHASE_NAMES["tip"], PHASE_NAMES["tangent"]]

@@ -1,0 +1,46 @@
+"""What decides the phase, over the foot position."""
+
+from matplotlib.figure import Figure
+
+from compare.comparison import Comparison
+from compare.show.figures.over_foot import LINE, dots, foot, shade_reference
+from compare.show.figures.thinning import draw
+from compare.show.style import CANDIDATE, FOOT, GREY, PAGE_WIDTH, REFERENCE, SMALL, label
+
+
+def phase_criterion(comparison: Comparison) -> Figure:
+    """Draw criterion (26), zero in Phase B, and the contact, at the tip in Phase A.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Drawn from what its readings were judged by.
+
+    Returns
+    -------
+    Figure
+        The criterion above the contact's arc length.
+    """
+    figure = Figure(figsize=(PAGE_WIDTH, 5.4), layout="constrained")
+    axes = figure.subplots(2, 1, sharex=True)
+    for readings, which, style in (
+        (comparison.reference, "reference", LINE),
+        (comparison.candidate, "candidate", dots(comparison)),
+    ):
+        judged, x = comparison.judged[which], foot(readings)
+        draw(axes[0], x, judged.criterion, label=label(readings.source), **style)
+        draw(axes[1], x, 1 - judged.shortfall, **style)
+    for ax, expected in zip(axes, (0, 1), strict=True):
+        shade_reference(ax, comparison)
+        ax.axhline(expected, color=GREY, linewidth=0.8, linestyle="--")
+    axes[0].set_ylabel(r"$(2F_{Ay} - M_{Az}^2)\,/\,2f$  (26)" + "\nzero in Phase B")
+    axes[1].set_ylabel("contact $s_1$ / $L$\none in Phase A")
+    axes[1].set_xlabel(f"{FOOT}   (dotted: transitions found from the clamp)")
+    length = comparison.reference.beam.length
+    for place in comparison.transitions.values():
+        for where, colour in ((place.reference, REFERENCE), (place.candidate, CANDIDATE)):
+            if where is not None:
+                for ax in axes:
+                    ax.axvline(where / length, color=colour, linestyle=":", linewidth=1)
+    figure.legend(loc="outside lower center", ncols=2, fontsize=SMALL, frameon=False)
+    return figure

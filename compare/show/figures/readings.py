@@ -1,0 +1,126 @@
+"""Clamp readings over the foot position: both models above, their difference below."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from analytic import CLAMP_READINGS, Readings
+from analytic.problem.arrays import Floats
+from compare.comparison import Comparison
+from compare.show.figures.over_foot import (
+    LINE,
+    dots,
+    foot,
+    key,
+    scaled,
+    shade_reference,
+    unit,
+)
+from compare.show.figures.thinning import draw
+from compare.show.style import (
+    CANDIDATE,
+    FOOT,
+    INK,
+    LARGE,
+    REFERENCE,
+    SMALL,
+    SYMBOLS,
+    axis_label,
+    label,
+)
+
+_NEAR = 0.03  # of the sweep's length: what is shown on either side of the snap-off
+
+
+def readings(comparison: Comparison) -> Figure:
+    """Draw clamp force, moment and reconstructed contact, and differences, side by side."""
+    figure = Figure(figsize=(12, 5.4), layout="constrained")
+    upper, lower = figure.subplots(
+        2, 4, sharex=True, height_ratios=[2.2, 1], gridspec_kw={"hspace": 0.05}
+    )
+    for i, name in enumerate(SYMBOLS):
+        _draw_reading(upper[i], lower[i], comparison, name)
+    lower[0].set_ylabel("difference\n(same unit)")
+    handles, labels = key(upper[0])
+    figure.legend(
+        handles, labels, loc="outside lower center", ncols=4, fontsize=SMALL, frameon=False
+    )
+    return figure
+
+
+def reading_panels(comparison: Comparison) -> dict[str, Figure]:
+    """The same, a picture for each reading."""
+    return {name: _panel(comparison, name) for name in SYMBOLS}
+
+
+def snap_off_panels(comparison: Comparison) -> dict[str, Figure]:
+    """Draw the clamp readings around the snap-off.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Drawn from its readings alone.
+
+    Returns
+    -------
+    dict of Figure
+        By reading; empty if there is no snap-off.
+    """
+    places = [comparison.snap_off.reference, comparison.snap_off.candidate]
+    known = [place / comparison.reference.beam.length for place in places if place is not None]
+    if not known:
+        return {}
+    half = _NEAR * float(np.ptp(foot(comparison.reference)))
+    figures = {name: _panel(comparison, name) for name in CLAMP_READINGS}
+    for figure in figures.values():
+        for ax in figure.axes:
+            ax.set_xlim(min(known) - half, max(known) + half)
+            ax.xaxis.set_major_locator(MaxNLocator(4))
+            for place, colour in zip(places, (REFERENCE, CANDIDATE), strict=True):
+                if place is not None:
+                    where = place / comparison.reference.beam.length
+                    ax.axvline(where, color=colour, linestyle=":", linewidth=1.3)
+    return figures
+
+
+def _panel(comparison: Comparison, name: str) -> Figure:
+    figure = Figure(figsize=(4.8, 4.0), layout="constrained")
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.2, 1])
+    _draw_reading(upper, lower, comparison, name)
+    lower.set_ylabel("difference")
+    figure.align_ylabels()
+    handles, labels = key(upper)
+    figure.legend(
+        handles, labels, loc="outside lower center", ncols=2, fontsize=SMALL, frameon=False
+    )
+    return figure
+
+
+def _draw_reading(upper: Axes, lower: Axes, comparison: Comparison, name: str) -> None:
+    """A reading of both sweeps above, their difference below."""
+    for ax in (upper, lower):
+        shade_reference(ax, comparison)
+    for one, style in ((comparison.reference, LINE), (comparison.candidate, dots(comparison))):
+        draw(upper, foot(one), scaled(one, name), label=label(one.source), **style)
+    upper.set_title(axis_label(name), fontsize=LARGE)
+    lower.axhline(0, color=INK, linewidth=0.8)
+    draw(lower, *_difference(comparison, name), **dots(comparison))
+    lower.set_xlabel(FOOT)
+    lower.ticklabel_format(axis="y", scilimits=(-2, 2))
+
+
+def _difference(comparison: Comparison, name: str) -> tuple[Floats, Floats]:
+    """Foot positions and candidate less reference, both in units of the beam."""
+    table, beam = comparison.alignment.table, comparison.reference.beam
+    foot_x = table["foot_x"].to_numpy() / beam.length
+    if name in CLAMP_READINGS:
+        apart = (table[f"{name}_candidate"] - table[f"{name}_reference"]).to_numpy()
+        return foot_x, apart / unit(comparison.reference, name)
+    if len(table) < 2:  # no sweep
+        return foot_x, np.full(len(table), np.nan)
+    candidate, reference = (
+        Readings(table.rename(columns={f"{r}_{side}": r for r in CLAMP_READINGS}), beam)
+        for side in ("candidate", "reference")
+    )
+    return foot_x, scaled(candidate, name) - scaled(reference, name)

@@ -1,0 +1,120 @@
+"""Long sweeps drawn with no more points than a picture can show; numbers never pass through here.
+
+A picture across a page is some 1,300 pixels wide, so what is left out would lie on what is drawn.
+"""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from analytic.problem.arrays import Floats, Integers, Words
+
+_PARTS = 500  # that a long sweep is cut into, each a pixel or three wide
+_KEPT = 4  # stations of each: the first, the last, the lowest, the highest
+_CELLS = 600  # across a cloud of points; one dot a cell
+
+
+def draw(ax: Axes, x: Floats, y: Floats, **style: Any) -> Line2D:  # noqa: ANN401
+    """Plot a reading over the foot position, thinned where there are more stations than pixels.
+
+    Parameters
+    ----------
+    ax : Axes
+        Where.
+    x, y : array, shape (stations,)
+        In sweep order.
+    **style
+        As of `Axes.plot`.
+
+    Returns
+    -------
+    Line2D
+        What was drawn.
+    """
+    kept = envelope(y)
+    (line,) = ax.plot(x[kept], y[kept], **style)
+    return line
+
+
+def envelope(y: Floats) -> Integers:
+    """Stations that draw the same picture as all of them: no peak and no dip is lost.
+
+    Parameters
+    ----------
+    y : array, shape (stations,)
+        One reading in sweep order; NaN where there is nothing to draw.
+
+    Returns
+    -------
+    array of int
+        Their indices, ascending: all of them, if they are few.
+    """
+    if len(y) <= _PARTS * _KEPT:
+        return np.arange(len(y))
+    lowest, highest = (np.where(np.isnan(y), bound, y) for bound in (np.inf, -np.inf))
+    kept = [
+        (part[0], part[-1], part[lowest[part].argmin()], part[highest[part].argmax()])
+        for part in np.array_split(np.arange(len(y)), _PARTS)
+    ]
+    return np.unique(kept)
+
+
+def cloud(x: Floats, y: Floats) -> Integers:
+    """Points that draw the same cloud as all of them: one of each small cell.
+
+    Parameters
+    ----------
+    x, y : array, shape (n,)
+        Places; those that are not finite are left out.
+
+    Returns
+    -------
+    array of int
+        Their indices, ascending: all finite ones, if they are few.
+    """
+    finite = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+    if len(finite) <= _PARTS * _KEPT:
+        return finite
+    places = np.column_stack([x[finite], y[finite]])
+    size = np.ptp(places, axis=0).max() / _CELLS
+    _, first = np.unique(np.rint(places / (size or 1.0)), axis=0, return_index=True)
+    return np.sort(finite[first])
+
+
+def stretches(phase: Words) -> tuple[Integers, Integers, Words]:
+    """Uninterrupted stretches of one phase, as many as a picture can show.
+
+    Parameters
+    ----------
+    phase : array of str, shape (stations,)
+        In sweep order.
+
+    Returns
+    -------
+    begin, end : array of int
+        First and last station of each.
+    name : array of str
+        Its phase. Where noise makes phases alternate too often to be seen, the prevailing one.
+    """
+    begin, end = _runs(phase)
+    if len(begin) <= _PARTS:
+        return begin, end, phase[begin]
+    parts = np.array_split(np.arange(len(phase)), _PARTS)
+    prevailing = []
+    for part in parts:
+        names, counts = np.unique(phase[part], return_counts=True)
+        prevailing.append(names[counts.argmax()])
+    names = np.array(prevailing)
+    begin, end = _runs(names)
+    return (
+        np.array([parts[i][0] for i in begin]),
+        np.array([parts[i][-1] for i in end]),
+        names[begin],
+    )
+
+
+def _runs(phase: Words) -> tuple[Integers, Integers]:
+    edges = np.flatnonzero(phase[1:] != phase[:-1])
+    return np.append(0, edges + 1), np.append(edges, len(phase) - 1)
