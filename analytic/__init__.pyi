@@ -13,6 +13,7 @@ from .problem.columns import CLAMP_READINGS as CLAMP_READINGS
 from .problem.columns import COLUMNS as COLUMNS
 from .problem.columns import PHASES as PHASES
 from .problem.columns import SENSED as SENSED
+from .problem.columns import STATUSES as STATUSES
 from .problem.contours.contour import Contour as Contour
 from .problem.contours.families import catenary as catenary
 from .problem.contours.families import circle as circle

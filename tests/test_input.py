@@ -78,7 +78,7 @@ def test_readings_that_are_none(tmp_path):
         Readings(sweep.table.drop(columns="moment_z"))
     with pytest.raises(InputError, match="phase"):
         Readings(sweep.table.assign(phase="sideways"))
-    with pytest.raises(InputError, match="numbers"):
+    with pytest.raises(InputError, match="a number"):
         Readings(sweep.table.assign(force_x="strong"))
     with pytest.raises(InputError, match="two or more"):
         Readings(sweep.table.head(1))

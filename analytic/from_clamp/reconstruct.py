@@ -9,7 +9,8 @@ import pandas as pd
 from analytic.checks.integration import integrate_span
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.columns import CLAMP_READINGS, SENSED
-from analytic.problem.readings import Readings, mirrored_table
+from analytic.problem.readings import Readings
+from analytic.problem.table import mirrored_table
 from analytic.solver.elastica import frame, span, span_of_moment
 
 _UNLOADED = 1e-9  # of EI/L^2: below, a force has no direction to speak of

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, is_finite_number
 
 
 @dataclass(frozen=True)
@@ -23,8 +23,8 @@ class Beam:
     Raises
     ------
     InputError
-        If a value is not finite, length or rigidity is not positive, or the radius is negative or
-        not small against the length.
+        If a value is not a finite number, length or rigidity is not positive, the units of force
+        and moment that follow overflow, or the radius is negative or not small against the length.
     """
 
     length: float = 1.0
@@ -34,24 +34,39 @@ class Beam:
     def __post_init__(self) -> None:
         for name in ("length", "flexural_rigidity"):
             value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
+            if not (is_finite_number(value) and value > 0):
                 raise InputError(
                     f"beam.{name}", value, "positive and finite", "give it in the units of the case"
                 )
-        if not (math.isfinite(self.radius) and 0 <= self.radius < 0.1 * self.length):
+        if not (is_finite_number(self.radius) and 0 <= self.radius < 0.1 * self.length):
             raise InputError(
                 "beam.radius",
                 self.radius,
                 f"finite, not negative and below a tenth of the length ({self.length:g})",
                 "a vibrissa is slender: check the units of radius and length",
             )
+        for name in ("length", "flexural_rigidity", "radius"):
+            object.__setattr__(self, name, float(getattr(self, name)))
+        if not self._has_units():
+            raise InputError(
+                "beam.flexural_rigidity",
+                f"{self.flexural_rigidity:g} with a length of {self.length:g}",
+                "such that EI/L^2 and EI/L are numbers",
+                "choose units nearer to the case",
+            )
 
     @property
     def force_unit(self) -> float:
-        """EI/L^2, the force that the dimensionless solution counts in [force]."""
+        """EI/L^2, in which the dimensionless solution counts forces [force]."""
         return self.flexural_rigidity / self.length**2
 
     @property
     def moment_unit(self) -> float:
-        """EI/L, the moment that the dimensionless solution counts in [force length]."""
+        """EI/L, in which the dimensionless solution counts moments [force length]."""
         return self.flexural_rigidity / self.length
+
+    def _has_units(self) -> bool:
+        try:
+            return 0 < self.force_unit < math.inf and 0 < self.moment_unit < math.inf
+        except (OverflowError, ZeroDivisionError):
+            return False

@@ -1,10 +1,54 @@
-"""Files that appear whole or not at all."""
+"""Files: read only if they are files of a reasonable size, written whole or not at all."""
 
 import os
 import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+from analytic.problem.errors import InputError
+
+
+def regular_file(path: str | Path, name: str, largest: int) -> Path:
+    """A path that can be read without surprises: no pipe, no device, not too large.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    name : str
+        What an error calls it.
+    largest : int
+        Size allowed [bytes].
+
+    Returns
+    -------
+    Path
+        `path`.
+
+    Raises
+    ------
+    InputError
+        If it is missing, is no regular file, or is larger.
+    """
+    path = Path(path)
+    try:
+        size = path.stat().st_size
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(
+            name, path, "a file that is there", f"check the path ({reason})"
+        ) from error
+    if not path.is_file():
+        raise InputError(name, path, "a regular file", "a folder, pipe or device cannot be read")
+    if size > largest:
+        raise InputError(
+            f"{name} {path}",
+            f"of {size / 1e6:.0f} MB",
+            f"at most {largest / 1e6:.0f} MB",
+            "split it or drop what is not needed",
+        )
+    return path
 
 
 @contextmanager
@@ -18,6 +62,11 @@ def whole_file(path: Path) -> Iterator[Path]:
     ----------
     path : Path
         The file that is to appear; one that is there is replaced.
+
+    Yields
+    ------
+    Path
+        Where to write.
 
     Raises
     ------
@@ -46,6 +95,11 @@ def write_whole(path: Path, content: str | bytes) -> Path:
     -------
     Path
         `path`.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; `path` is then as it was.
     """
     with whole_file(path) as unfinished:
         unfinished.write_bytes(content.encode() if isinstance(content, str) else content)

@@ -1,28 +1,27 @@
 """One sweep's readings: the table that every engine, rig and comparison speaks."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
-import pyarrow as pa
-import pyarrow.parquet as pq
+from numpy.typing import ArrayLike
 
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.beam import Beam
-from analytic.problem.columns import CONTACT, PHASES, SENSED, STATUSES
+from analytic.problem.columns import SENSED
 from analytic.problem.errors import InputError
-from analytic.problem.files import whole_file
+from analytic.problem.readings_file import read_file, write_file
+from analytic.problem.readings_shown import as_html, as_text, plot
+from analytic.problem.table import Place, checked_table, mirrored_table, row_number
 
-_ODD = ("foot_x", "force_x", "moment_z", "contact_angle", "contact_x")  # change sign in a mirror
-_METADATA_KEY = b"vibrissa"
-_CSV_PREFIX = "# vibrissa "
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Readings:
     """One sweep, in the units of its beam.
 
@@ -33,7 +32,8 @@ class Readings:
         ``moment_z`` [force length] are the clamp's action on the vibrissa at the foot, in the world
         frame. ``phase``, the contact (``contact_angle`` [rad], ``contact_arc_length``,
         ``contact_x``, ``contact_y`` [length], on the body's surface), ``tip_angle`` [rad] and
-        ``status`` may be missing from measured data; engines may add columns.
+        ``status`` may be missing from measured data; engines may add columns. NaN in a force or
+        moment is a gap: the station is kept, and not trusted.
     beam : Beam
         The vibrissa that was swept.
     source : str
@@ -44,8 +44,13 @@ class Readings:
     Raises
     ------
     InputError
-        If a sensed column is missing or not numeric, there are fewer than two stations, or a phase
-        or status is unknown.
+        If a sensed column is missing, a cell is no number, a ``foot_x`` is NaN, there are fewer
+        than two stations, a phase or status is unknown, or the provenance has another form.
+
+    See Also
+    --------
+    Readings.of : from a DataFrame or a mapping as a rig gives it.
+    Readings.read : from a file.
     """
 
     table: pd.DataFrame
@@ -54,36 +59,75 @@ class Readings:
     provenance: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        table = self.table
-        missing = [name for name in SENSED if name not in table]
-        if missing:
-            raise InputError(
-                f"columns of the readings ({self.source})",
-                ", ".join(map(str, table.columns)) or "none",
-                f"at least {', '.join(SENSED)}",
-                f"add {', '.join(missing)}",
-            )
-        for name in (*SENSED, *CONTACT):
-            if name in table and not pd.api.types.is_numeric_dtype(table[name]):
+        for name, value, kind, remedy in (
+            ("table", self.table, pd.DataFrame, "`Readings.of` takes mappings too"),
+            ("beam", self.beam, Beam, "as Beam(length=..., flexural_rigidity=...)"),
+            ("source", self.source, str, "it says who produced them"),
+            ("provenance", self.provenance, Mapping, "as {'engine': '...'}"),
+        ):
+            if not isinstance(value, kind):
                 raise InputError(
-                    f"column {name}", f"of type {table[name].dtype}", "numbers", "mend the column"
+                    f"readings' {name}", f"a {type(value).__name__}", f"a {kind.__name__}", remedy
                 )
-        if len(table) < 2 or not np.isfinite(table["foot_x"]).all():
+        table = checked_table(self.table, self.source)
+        if len(table) < 2 or table["foot_x"].isna().any():
             raise InputError(
                 f"stations of the readings ({self.source})",
-                f"{len(table)}, {int(np.isfinite(table['foot_x']).sum())} with a finite foot_x",
+                f"{len(table)}, {int(table['foot_x'].notna().sum())} with a finite foot_x",
                 "two or more, each with a finite foot_x",
-                "is the file complete?",
+                "is it complete? `Readings.of` drops rows without a foot_x",
             )
-        for name, allowed in (("phase", PHASES), ("status", STATUSES)):
-            unknown = set(table[name]) - set(allowed) if name in table else set()
-            if unknown:
-                raise InputError(
-                    f"column {name}",
-                    ", ".join(sorted(map(str, unknown))),
-                    f"one of {', '.join(allowed)}",
-                    "mend the column",
-                )
+        _check_provenance(self.provenance)
+        object.__setattr__(self, "table", table)
+
+    @classmethod
+    def of(
+        cls,
+        data: pd.DataFrame | Mapping[str, ArrayLike],
+        beam: Beam | None = None,
+        source: str = "measured",
+        provenance: Mapping[str, Any] | None = None,
+        place: Place = row_number,
+    ) -> "Readings":
+        """Readings from a table as a rig gives it; rows without a foot position are dropped.
+
+        Parameters
+        ----------
+        data : pandas.DataFrame or mapping
+            Columns by name, each of shape (stations,); see `Readings` for names and units.
+        beam : Beam, optional
+            The vibrissa; ``Beam()`` if not given.
+        source : str
+            Who produced the readings; how many rows were dropped is added to it.
+        provenance : mapping, optional
+            Anything JSON can hold; ``rows_without_foot_x`` counts the rows dropped.
+        place : callable
+            What an error calls a row, given its number from 0.
+
+        Returns
+        -------
+        Readings
+            Of the remaining rows, in their order.
+
+        Raises
+        ------
+        InputError
+            As `Readings`, but for a NaN in ``foot_x``.
+
+        Examples
+        --------
+        >>> Readings.of({"foot_x": [1, 0.9], "force_x": [0, -0.1], "force_y": [0, 0.2],
+        ...              "moment_z": [0, 0.3]}).gaps
+        0
+        """
+        table = checked_table(_frame(data), source, place)
+        lost = int(table["foot_x"].isna().sum())
+        provenance = {} if provenance is None else provenance
+        if lost and isinstance(provenance, Mapping):
+            table = table[table["foot_x"].notna()].reset_index(drop=True)
+            source = f"{source} ({lost} row{'s' if lost > 1 else ''} without foot_x dropped)"
+            provenance = {**provenance, "rows_without_foot_x": lost}
+        return cls(table, Beam() if beam is None else beam, source, provenance)
 
     @property
     def snap_off(self) -> float | None:
@@ -92,7 +136,18 @@ class Readings:
         return None if value is None else float(value)
 
     def values(self, column: str) -> Floats:
-        """A numeric column, shape (stations,); NaN throughout if it was not measured."""
+        """A numeric column.
+
+        Parameters
+        ----------
+        column : str
+            One of `COLUMNS` but ``phase`` and ``status``, or one that an engine added.
+
+        Returns
+        -------
+        array, shape (stations,)
+            In the column's unit; NaN throughout if it was not measured.
+        """
         if column not in self.table:
             return np.full(len(self.table), np.nan)
         return self.table[column].to_numpy(dtype=float)
@@ -101,7 +156,7 @@ class Readings:
     def trusted(self) -> Booleans:
         """Stations whose four sensed values may be used, shape (stations,).
 
-        That is: no status speaks against them, and all four are finite.
+        That is: no status speaks against them, and none of the four is a gap.
         """
         finite = np.isfinite(self.table[list(SENSED)].to_numpy(dtype=float)).all(axis=1)
         if "status" in self.table:
@@ -109,16 +164,27 @@ class Readings:
         return np.asarray(finite, dtype=bool)
 
     @property
+    def gaps(self) -> int:
+        """Number of stations at which a force or the moment is missing (NaN)."""
+        return int(self.table[list(SENSED)].isna().any(axis=1).sum())
+
+    @property
     def bends_left(self) -> bool:
         """Whether the vibrissa bends to the left, as when its foot moves to the right.
 
-        The clamp's moment tells: it is negative then. The sum over the sweep decides, lest the
-        noise of a hardly loaded station does.
+        The clamp's moment is negative then. The sum over the sweep decides, so that the noise of a
+        hardly loaded station does not.
         """
         return float(np.nansum(self.values("moment_z"))) < 0
 
     def mirrored(self) -> "Readings":
-        """The readings in a mirror, x to -x, with what `provenance` knows of events and contour."""
+        """The readings in a mirror, x to -x.
+
+        Returns
+        -------
+        Readings
+            With what `provenance` says of events and contour mirrored too.
+        """
         provenance = dict(self.provenance)
         if "events" in provenance:
             events = provenance["events"]
@@ -132,107 +198,150 @@ class Readings:
         """Write to Parquet (metadata inside) or CSV (metadata in the first line), by the suffix.
 
         The file appears whole or not at all.
+
+        Parameters
+        ----------
+        path : str or Path
+            Named ``*.parquet`` or ``*.csv``.
+
+        Returns
+        -------
+        Path
+            `path`.
+
+        Raises
+        ------
+        InputError
+            If the name has another suffix, or JSON cannot hold the provenance.
+        OSError
+            If the file cannot be written.
         """
-        path = Path(path)
-        metadata = json.dumps(
-            {"beam": asdict(self.beam), "source": self.source, "provenance": dict(self.provenance)}
-        )
-        with whole_file(path) as unfinished:
-            if _is_csv(path):
-                with unfinished.open("w", encoding="utf-8") as file:
-                    file.write(_CSV_PREFIX + metadata + "\n")
-                    self.table.to_csv(file, index=False)
-            else:
-                columns = pa.Table.from_pandas(self.table, preserve_index=False)
-                kept = columns.schema.metadata or {}
-                columns = columns.replace_schema_metadata({**kept, _METADATA_KEY: metadata})
-                pq.write_table(columns, unfinished)
-        return path
+        metadata = {
+            "beam": asdict(self.beam),
+            "source": self.source,
+            "provenance": dict(self.provenance),
+        }
+        write_file(Path(path), self.table, metadata)
+        return Path(path)
 
     @staticmethod
     def read_table(path: str | Path) -> pd.DataFrame:
         """The bare table in a Parquet or CSV file, whatever its columns.
 
+        Parameters
+        ----------
+        path : str or Path
+            Named ``*.parquet`` or ``*.csv``.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns whose cells are not all numbers are texts.
+
         Raises
         ------
         InputError
-            If the file is missing or truncated.
+            If the file is missing, damaged, too large or no regular file.
         """
-        return _read(Path(path))[1]
+        return read_file(Path(path)).table
 
     @classmethod
-    def read(cls, path: str | Path, otherwise: Beam = Beam()) -> "Readings":  # noqa: B008
+    def read(cls, path: str | Path, otherwise: Beam | None = None) -> "Readings":
         """Read what `write` wrote; a file without metadata is measured data.
 
         Parameters
         ----------
         path : str or Path
-            Parquet or CSV.
-        otherwise : Beam
-            The vibrissa, if the file does not tell.
+            Named ``*.parquet`` or ``*.csv``.
+        otherwise : Beam, optional
+            The vibrissa if the file names none; ``Beam()`` if not given.
+
+        Returns
+        -------
+        Readings
+            Rows without a ``foot_x`` are dropped and counted, as by `of`.
 
         Raises
         ------
         InputError
-            If the file is missing, truncated or not a sweep.
+            If the file is missing, damaged, too large or not a sweep; the message has line and
+            column of a cell that cannot be read.
         """
         path = Path(path)
-        metadata, table = _read(path)
+        content = read_file(path)
+        metadata = content.metadata
         try:
-            beam = Beam(**metadata["beam"]) if "beam" in metadata else otherwise
-            return cls(
-                table,
+            beam = _beam(metadata["beam"]) if "beam" in metadata else otherwise
+            return cls.of(
+                content.table,
                 beam,
                 metadata.get("source", f"measured, {path.name}"),
                 metadata.get("provenance", {}),
+                content.place,
             )
-        except (InputError, TypeError, AttributeError) as error:
+        except InputError as error:
             raise InputError(
                 f"readings file {path}", "unusable", "one sweep", str(error)
             ) from error
 
+    def plot(self) -> "list[Axes]":
+        """Draw force and moment at the clamp over the foot position.
 
-def mirrored_table(table: pd.DataFrame) -> pd.DataFrame:
-    """A table with columns of readings, x to -x; angles are measured from the x-axis as before."""
-    changed = {name: 0.0 - table[name] for name in _ODD if name in table}  # lest a 0 become -0
-    if "tip_angle" in table:
-        changed["tip_angle"] = np.pi - table["tip_angle"]
-    return table.assign(**changed)
+        Returns
+        -------
+        list of matplotlib.axes.Axes
+            One a reading: ``force_x``, ``force_y``, ``moment_z``.
+        """
+        return plot(self.table, self.trusted, self.source)
+
+    def __repr__(self) -> str:
+        return as_text(self.table, self.beam, self.source, self.gaps)
+
+    def _repr_html_(self) -> str:
+        return as_html(self.table, repr(self))
 
 
-def _read(path: Path) -> tuple[dict[str, Any], pd.DataFrame]:
-    """Metadata and table of a file."""
+def _frame(data: pd.DataFrame | Mapping[str, ArrayLike]) -> pd.DataFrame:
+    if isinstance(data, pd.DataFrame):
+        return data
+    allowed, remedy = "a DataFrame, or columns of one length by name", "as {'foot_x': [...], ...}"
+    if not isinstance(data, Mapping):
+        raise InputError("readings", f"a {type(data).__name__}", allowed, remedy)
     try:
-        return _read_csv(path) if _is_csv(path) else _read_parquet(path)
-    except InputError:
-        raise
-    except (OSError, ValueError, TypeError, KeyError, pa.ArrowException) as error:
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        return pd.DataFrame(dict(data))
+    except (ValueError, TypeError) as error:
+        raise InputError("readings", "no table", allowed, f"{remedy} ({error})") from error
+
+
+def _beam(table: object) -> Beam:
+    try:
+        return Beam(**table)  # type: ignore[arg-type]  # whatever the file holds
+    except TypeError as error:
+        raise InputError("beam", table, "a table of Beam's numbers", str(error)) from error
+
+
+def _check_provenance(provenance: Mapping[str, Any]) -> None:
+    """Refuse what `snap_off` and `mirrored` could not use."""
+    events = provenance.get("events", {})
+    if not isinstance(events, Mapping) or not all(_is_place(x) for x in events.values()):
         raise InputError(
-            f"readings file {path}",
-            f"unreadable ({reason})",
-            "a whole Parquet or CSV file",
-            "write it anew or name another file",
-        ) from error
+            "provenance.events", _short(events), "foot positions or null by name", "drop it"
+        )
+    contour = provenance.get("contour", [[], []])
+    try:
+        right = np.ndim(contour) == 2 and len(contour) == 2 and np.isfinite(contour).all()
+    except (TypeError, ValueError):
+        right = False
+    if not right:
+        raise InputError(
+            "provenance.contour", _short(contour), "two lists of as many coordinates", "drop it"
+        )
 
 
-def _is_csv(path: Path) -> bool:
-    if path.suffix not in (".csv", ".parquet"):
-        raise InputError("readings file", path, "named *.parquet or *.csv", "rename it")
-    return path.suffix == ".csv"
+def _is_place(value: object) -> bool:
+    return value is None or (isinstance(value, int | float) and not isinstance(value, bool))
 
 
-def _read_parquet(path: Path) -> tuple[dict[str, Any], pd.DataFrame]:
-    columns = pq.read_table(path)
-    metadata = (columns.schema.metadata or {}).get(_METADATA_KEY, b"{}")
-    return json.loads(metadata), columns.to_pandas()
-
-
-def _read_csv(path: Path) -> tuple[dict[str, Any], pd.DataFrame]:
-    with path.open(encoding="utf-8") as file:
-        first = file.readline()
-        has_metadata = first.startswith(_CSV_PREFIX)
-        metadata = json.loads(first.removeprefix(_CSV_PREFIX)) if has_metadata else {}
-        if not has_metadata:
-            file.seek(0)
-        return metadata, pd.read_csv(file, comment="#")
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 80 else f"{text[:80]}..."

@@ -1,5 +1,6 @@
 """What happens in a sweep, and where: first contact, phase limits, snap-off (paper, section 4)."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -141,8 +142,8 @@ def _first_touch(centreline: Contour, t: float, beam: Beam) -> Event:
         phase="tip" if alpha < np.pi / 2 else "tangent",
         contact_angle=alpha,
         contact_arc_length=min(eta, 1.0) * beam.length,
-        contact_x=xi * beam.length - beam.radius * np.sin(alpha),
-        contact_y=eta * beam.length + beam.radius * np.cos(alpha),
+        contact_x=xi * beam.length - beam.radius * math.sin(alpha),
+        contact_y=eta * beam.length + beam.radius * math.cos(alpha),
         tip_angle=np.pi / 2,
         status="ok",
     )

@@ -1,9 +1,31 @@
-"""Readings survive the file they are written to."""
+"""Readings as rigs and users give them, and as files keep them."""
 
+import os
+
+import numpy as np
 import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
+from hypothesis import HealthCheck, given, seed, settings
+from hypothesis import strategies as st
 
-from analytic import Beam, Readings, named_case, solve_sweep
+from analytic import Beam, InputError, Readings, named_case, solve_sweep
+
+RIG = "foot_x,force_x,force_y,moment_z\n"
+FOUR = {
+    "foot_x": [1.0, 0.9, 0.8],
+    "force_x": [0.0, -0.1, -0.2],
+    "force_y": [0.0, 0.2, 0.3],
+    "moment_z": [0.0, 0.3, 0.4],
+}
+
+
+def refusal(make, *args) -> str:
+    with pytest.raises(InputError) as refused:
+        make(*args)
+    assert "\n" not in str(refused.value)
+    return str(refused.value)
 
 
 @pytest.mark.parametrize("suffix", ["parquet", "csv"])
@@ -17,13 +39,254 @@ def test_round_trip(tmp_path, suffix):
     assert [path.name for path in tmp_path.iterdir()] == [f"sweep.{suffix}"]
 
 
+NUMBERS = st.floats(allow_infinity=False, allow_nan=True, width=64)
+
+
+@seed(1)
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(st.lists(st.tuples(NUMBERS, NUMBERS, NUMBERS), min_size=2, max_size=12))
+def test_any_numbers_survive_parquet(tmp_path_factory, rows):
+    path = tmp_path_factory.mktemp("any") / "sweep.parquet"
+    columns = dict(zip(("force_x", "force_y", "moment_z"), zip(*rows, strict=True), strict=True))
+    sweep = Readings.of({"foot_x": range(len(rows)), **columns})
+    back = Readings.read(sweep.write(path))
+    pd.testing.assert_frame_equal(back.table, sweep.table, check_exact=True)
+    assert back.gaps == int(np.isnan(rows).any(axis=1).sum())
+
+
 def test_measured_data_need_four_columns_only(tmp_path):
     path = tmp_path / "rig.csv"
-    path.write_text("foot_x,force_x,force_y,moment_z\n1,0,0,0\n0.9,-0.1,0.2,0.3\n0.8,,0.3,0.4\n")
+    path.write_text(RIG + "1,0,0,0\n0.9,-0.1,0.2,0.3\n0.8,,0.3,0.4\n")
     rig = Readings.read(path)
     assert rig.beam == Beam()
     assert rig.trusted.tolist() == [True, True, False]
+    assert rig.gaps == 1
     assert pd.isna(rig.values("contact_x")).all()
+
+
+def test_a_row_without_a_foot_position_is_dropped_and_counted(tmp_path):
+    path = tmp_path / "rig.csv"
+    path.write_text(RIG + "1,0,0,0\n,-0.1,0.2,0.3\n0.8,-0.2,0.3,0.4\n")
+    rig = Readings.read(path)
+    assert rig.values("foot_x").tolist() == [1.0, 0.8]
+    assert rig.provenance["rows_without_foot_x"] == 1
+    assert "1 row without foot_x dropped" in rig.source
+    assert "1 row without foot_x dropped" in repr(rig)
+    strict = refusal(Readings, Readings.read_table(path))
+    assert "each with a finite foot_x" in strict
+
+
+@pytest.mark.parametrize(
+    ("cell", "said"),
+    [("ERR", "'ERR'"), ('"0,5"', "'0,5'"), ("1_000", "'1_000'"), ("inf", "inf"), ("0 N", "'0 N'")],
+)
+def test_a_cell_that_is_no_number_is_named_by_line_and_column(tmp_path, cell, said):
+    path = tmp_path / "rig.csv"
+    path.write_text(f"# made by hand\n{RIG}1,0,0,0\n\n0.9,-0.1,{cell},0.3\n0.8,-0.2,0.3,0.4\n")
+    message = refusal(Readings.read, path)
+    assert f"column force_y, line 5 of {path}, = {said}" in message
+
+
+@pytest.mark.parametrize(
+    "column",
+    [
+        pd.Series([True, False, True]),
+        pd.Series(["a", "b", "c"]),
+        pd.Series([1.0, 2.0, 3.0]).astype("category"),
+        pd.Series([0.0, np.inf, 0.0]),
+        pd.Series([1j, 2j, 3j]),
+        pd.to_datetime(pd.Series([1, 2, 3])),
+        pd.Series([True, 1.0, 2.0], dtype=object),
+        pd.Series([[1], {}, 10**400], dtype=object),
+    ],
+)
+def test_what_is_no_reading(column):
+    assert "column force_y" in refusal(Readings.of, {**FOUR, "force_y": column})
+
+
+@pytest.mark.parametrize(
+    "column",
+    [
+        [0, 1, 2],
+        np.float32([0, 0.5, 1]),
+        pd.array([0, None, 2], dtype="Int64"),
+        ["0", "0.5", "1e0"],
+        [None, 0.5, 1],
+        pd.Series([0.0, None, 1.0], dtype=pd.ArrowDtype(pa.float64())),
+    ],
+)
+def test_whatever_holds_numbers_is_a_reading(column):
+    sweep = Readings.of({**FOUR, "moment_z": column})
+    assert sweep.table["moment_z"].dtype == float
+
+
+def test_a_table_of_ones_own():
+    """Any index, integer positions, repeated and unsorted rows: they are somebody's measurement."""
+    table = pd.DataFrame({**FOUR, "foot_x": [1, 0, 0]}, index=["a", "b", "b"])
+    sweep = Readings.of(table)
+    assert sweep.values("foot_x").tolist() == [1, 0, 0]
+    assert sweep.table.index.tolist() == [0, 1, 2]
+    assert table.index.tolist() == ["a", "b", "b"]
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: Readings.of("rig.csv"), "a str"),
+        (lambda: Readings.of({**FOUR, "force_x": [1.0]}), "columns of one length"),
+        (lambda: Readings.of({"foot_x": 1.0}), "readings"),
+        (lambda: Readings(FOUR), "`Readings.of`"),
+        (lambda: Readings.of(FOUR, beam=1.0), "a float"),
+        (lambda: Readings.of(FOUR, source=3), "a int"),
+        (lambda: Readings.of({**FOUR, "phase": ["free", "tip", "loose"]}), "row 2, = loose"),
+        (lambda: Readings.of({**FOUR, "phase": [["free"], None, 1]}), "row 0"),
+        (lambda: Readings.of(FOUR, provenance={"events": [1]}), "provenance.events"),
+        (lambda: Readings.of(FOUR, provenance={"events": {"snap_off": "x"}}), "provenance.events"),
+        (lambda: Readings.of(FOUR, provenance={"contour": [[1], [2, 3]]}), "provenance.contour"),
+        (lambda: Readings.of(FOUR, provenance={"f": len}).write("x.csv"), "what JSON can hold"),
+        (lambda: Readings.of(FOUR).write("x.txt"), "x.txt"),
+    ],
+)
+def test_misuse(make, said):
+    assert said in refusal(make)
+
+
+def with_metadata(path, text: bytes):
+    columns = pa.table(FOUR).replace_schema_metadata({b"vibrissa": text})
+    pq.write_table(columns, path)
+    return path
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        b"[1]",
+        b"{",
+        b"\xff",
+        b"[" * 100_000,
+        b'{"provenance": [1]}',
+        b'{"provenance": {"events": 3}}',
+        b'{"beam": [1]}',
+        b'{"beam": {"length": "long"}}',
+        b'{"beam": {"size": 1}}',
+        b'{"beam": {"length": true}}',
+        b'{"beam": {"length": 1e-200}}',
+        b'{"source": 7}',
+    ],
+)
+def test_damaged_metadata(tmp_path, text):
+    assert "sweep.parquet" in refusal(
+        Readings.read, with_metadata(tmp_path / "sweep.parquet", text)
+    )
+
+
+def test_what_is_no_file_is_not_opened(tmp_path):
+    pipe = tmp_path / "pipe.csv"
+    os.mkfifo(pipe)
+    endless = tmp_path / "endless.csv"
+    endless.symlink_to("/dev/zero")
+    large = tmp_path / "large.csv"
+    with large.open("wb") as file:
+        file.truncate(10**12)  # sparse
+    folder = tmp_path / "folder.csv"
+    folder.mkdir()
+    for path in (pipe, endless, folder):
+        assert "regular file" in refusal(Readings.read, path)
+    assert "at most" in refusal(Readings.read, large)
+
+
+def test_a_small_file_of_too_many_cells(tmp_path):
+    path = tmp_path / "same.parquet"
+    columns = [pa.repeat(1.0, 1_000_000)] * 101
+    pq.write_table(pa.table(columns, names=[f"c{i}" for i in range(101)]), path)
+    assert path.stat().st_size < 10_000_000
+    assert "cells" in refusal(Readings.read, path)
+
+
+@seed(2)
+@settings(max_examples=150, deadline=None)
+@given(st.data())
+def test_any_damage_to_a_file_is_one_line(tmp_path_factory, data):
+    """Bytes changed, cut or doubled: it still is a sweep, or one line says that it is not."""
+    suffix = data.draw(st.sampled_from(["csv", "parquet"]))
+    path = tmp_path_factory.mktemp("damaged") / f"sweep.{suffix}"
+    Readings.of(FOUR, provenance={"events": {"snap_off": None}}).write(path)
+    content = bytearray(path.read_bytes())
+    for _ in range(data.draw(st.integers(1, 4))):
+        at = data.draw(st.integers(0, len(content)))
+        match data.draw(st.sampled_from(["change", "cut", "double", "insert"])):
+            case "change" if at < len(content):
+                content[at] = data.draw(st.integers(0, 255))
+            case "cut":
+                del content[at : at + data.draw(st.integers(1, 50))]
+            case "double":
+                content[at:at] = content[: data.draw(st.integers(1, 200))]
+            case _:
+                content[at:at] = data.draw(st.binary(max_size=8))
+    path.write_bytes(content)
+    try:
+        sweep = Readings.read(path)
+    except InputError as error:
+        assert "\n" not in str(error)
+    else:
+        assert np.isfinite(sweep.values("foot_x")).all()
+        assert repr(sweep)
+
+
+CELLS = st.one_of(
+    st.floats(),
+    st.integers(-(10**30), 10**30),
+    st.booleans(),
+    st.none(),
+    st.text(max_size=5),
+    st.lists(st.integers(), max_size=2),
+)
+
+
+@seed(3)
+@settings(max_examples=150, deadline=None)
+@given(
+    st.dictionaries(
+        st.sampled_from(
+            ["foot_x", "force_x", "force_y", "moment_z", "phase", "status", "tip_angle"]
+        ),
+        st.lists(CELLS, max_size=4),
+    )
+)
+def test_any_columns_are_readings_or_one_line(columns):
+    try:
+        sweep = Readings.of({**FOUR, **columns})
+    except InputError as error:
+        assert "\n" not in str(error)
+    else:
+        assert not np.isinf(sweep.table.select_dtypes(float)).any().any()
+
+
+def test_shown_on_one_screen(exact):
+    text = repr(exact)
+    assert len(text) < 500
+    assert len(text.splitlines()) <= 6
+    assert "200 stations" in text
+    assert "free" in text
+    page = exact._repr_html_()
+    assert "<table" in page
+    assert len(page) < 10_000
+    odd = Readings.of(FOUR, source="rig <b>$$")
+    assert "&lt;b&gt;" in odd._repr_html_()
+
+
+def test_plot_draws_the_three_readings():
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
+
+    sweep = Readings.of({**FOUR, "moment_z": [0, np.nan, 0.4]}, source="rig <b>$$")
+    axes = sweep.plot()
+    assert [ax.get_ylabel() for ax in axes] == ["force_x", "force_y", "moment_z"]
+    np.testing.assert_array_equal(axes[0].lines[0].get_ydata(), FOUR["force_x"])
+    axes[0].figure.canvas.draw()
+    plt.close(axes[0].figure)
 
 
 def test_a_failed_write_leaves_what_was_there(tmp_path, monkeypatch):

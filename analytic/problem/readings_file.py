@@ -1,0 +1,173 @@
+"""One sweep in a file: Parquet with its metadata inside, or CSV with it in the first line."""
+
+import json
+import warnings
+from collections.abc import Mapping
+from itertools import islice
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from analytic.problem.columns import COLUMNS
+from analytic.problem.errors import InputError
+from analytic.problem.files import regular_file, whole_file
+from analytic.problem.table import Place
+
+_LARGEST = 512_000_000  # bytes; a CSV of 10^6 stations with all columns has 220 MB
+_MOST_CELLS = 100_000_000  # a small Parquet file may hold the same value that often
+_METADATA_KEY = b"vibrissa"
+_CSV_PREFIX = "# vibrissa "
+
+
+class FileContent(NamedTuple):
+    """What a file of readings holds."""
+
+    metadata: dict[str, Any]
+    """Beam, source and provenance as `write_file` wrote them; empty if there are none."""
+    table: pd.DataFrame
+    place: Place
+    """Where a row of the table stands in the file."""
+
+
+def write_file(path: Path, table: pd.DataFrame, metadata: Mapping[str, Any]) -> None:
+    """Write to Parquet or CSV, by the suffix; the file appears whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+        Named ``*.parquet`` or ``*.csv``.
+    table : pandas.DataFrame
+        A row a station.
+    metadata : mapping
+        Anything JSON can hold.
+
+    Raises
+    ------
+    InputError
+        If the name has another suffix, or JSON cannot hold the metadata.
+    OSError
+        If the file cannot be written.
+    """
+    try:
+        text = json.dumps(metadata)
+    except (TypeError, ValueError, RecursionError) as error:
+        raise InputError(
+            "provenance", "given", "what JSON can hold", f"numbers, texts, lists, tables ({error})"
+        ) from error
+    is_csv = _is_csv(path)
+    with whole_file(path) as unfinished:
+        if is_csv:
+            with unfinished.open("w", encoding="utf-8") as file:
+                file.write(_CSV_PREFIX + text + "\n")
+                table.to_csv(file, index=False)
+        else:
+            columns = pa.Table.from_pandas(table, preserve_index=False)
+            kept = columns.schema.metadata or {}
+            columns = columns.replace_schema_metadata({**kept, _METADATA_KEY: text})
+            pq.write_table(columns, unfinished)
+
+
+def read_file(path: Path) -> FileContent:
+    """Metadata and bare table of a file, whatever its columns.
+
+    Parameters
+    ----------
+    path : Path
+        Named ``*.parquet`` or ``*.csv``.
+
+    Returns
+    -------
+    FileContent
+        Columns whose cells are not all numbers are texts.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, damaged, too large, no regular file or has another suffix.
+    """
+    is_csv = _is_csv(path)
+    regular_file(path, "readings file", _LARGEST)
+    try:
+        metadata, table = _read_csv(path) if is_csv else _read_parquet(path)
+    except InputError:
+        raise
+    except (
+        OSError,
+        ValueError,
+        TypeError,
+        LookupError,
+        RecursionError,
+        MemoryError,
+        NotImplementedError,
+        pd.errors.ParserWarning,
+        pa.ArrowException,
+    ) as error:
+        reason = " ".join(str(error).split())[:200] or type(error).__name__
+        raise InputError(
+            f"readings file {path}",
+            f"unreadable ({reason})",
+            "a whole Parquet or CSV file",
+            "write it again or name another file",
+        ) from error
+    if not isinstance(metadata, dict):
+        raise InputError(
+            f"metadata of {path}", "no table", "what `Readings.write` wrote", "write it again"
+        )
+
+    def place(row: int) -> str:
+        return f"line {_line_of(path, row)} of {path}" if is_csv else f"row {row} of {path}"
+
+    return FileContent(metadata, table, place)
+
+
+def _is_csv(path: Path) -> bool:
+    if path.suffix not in (".csv", ".parquet"):
+        raise InputError("readings file", path, "named *.parquet or *.csv", "rename it")
+    return path.suffix == ".csv"
+
+
+def _read_parquet(path: Path) -> tuple[Any, pd.DataFrame]:
+    with pq.ParquetFile(path) as file:
+        if file.metadata.num_rows * file.metadata.num_columns > _MOST_CELLS:
+            raise InputError(
+                f"readings file {path}",
+                f"{file.metadata.num_rows} rows of {file.metadata.num_columns} columns",
+                f"at most {_MOST_CELLS:.0e} cells",
+                "split it",
+            )
+        columns = file.read()
+    metadata = (columns.schema.metadata or {}).get(_METADATA_KEY, b"{}")
+    return json.loads(metadata), columns.to_pandas(ignore_metadata=True)
+
+
+def _read_csv(path: Path) -> tuple[Any, pd.DataFrame]:
+    with path.open(encoding="utf-8-sig") as file:
+        first = file.readline()
+        is_ours = first.startswith(_CSV_PREFIX)
+        metadata = json.loads(first.removeprefix(_CSV_PREFIX)) if is_ours else {}
+        if not is_ours:
+            file.seek(0)
+        with warnings.catch_warnings():
+            # A row with more cells than the header would shift or lose values.
+            warnings.simplefilter("error", pd.errors.ParserWarning)
+            table = pd.read_csv(
+                file,
+                comment="#",
+                index_col=False,
+                skipinitialspace=True,
+                low_memory=False,
+            )
+    twice = [name for name in COLUMNS if f"{name}.1" in table]
+    if twice:  # pandas numbers columns of one name
+        raise InputError(f"column {twice[0]} of {path}", "there twice", "one column", "drop one")
+    return metadata, table
+
+
+def _line_of(path: Path, row: int) -> int:
+    """Line, from 1, of a row, from 0; blank lines and comments do not count as rows."""
+    with path.open(encoding="utf-8-sig") as file:
+        filled = (number for number, line in enumerate(file, 1) if line.partition("#")[0].strip())
+        return next(islice(filled, row + 1, None), 0)

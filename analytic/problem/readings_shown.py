@@ -1,0 +1,100 @@
+"""How one sweep looks: in a terminal, in a notebook, as a picture."""
+
+from html import escape
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from analytic.problem.arrays import Booleans
+from analytic.problem.beam import Beam
+from analytic.problem.columns import CLAMP_READINGS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_ROWS = 8
+
+
+def as_text(table: pd.DataFrame, beam: Beam, source: str, gaps: int) -> str:
+    """A sweep in a few lines: how long, how large, which phases.
+
+    Parameters
+    ----------
+    table, beam, source
+        As in `Readings`.
+    gaps : int
+        Stations at which a force or the moment is missing.
+
+    Returns
+    -------
+    str
+        At most 6 lines.
+    """
+    foot_x = table["foot_x"]
+    largest = ", ".join(f"{name} {table[name].abs().max():.4g}" for name in CLAMP_READINGS)
+    lines = [
+        f"Readings ({source}): {len(table)} stations, "
+        f"foot_x from {foot_x.iloc[0]:.6g} to {foot_x.iloc[-1]:.6g}",
+        f"  beam: length {beam.length:g}, flexural rigidity {beam.flexural_rigidity:g}, "
+        f"radius {beam.radius:g}",
+        f"  largest magnitudes: {largest}",
+    ]
+    for name in ("phase", "status"):
+        if name in table:
+            counts = table[name].value_counts(sort=False).items()
+            lines.append(f"  {name}: {', '.join(f'{word} {count}' for word, count in counts)}")
+    if gaps:
+        lines.append(f"  gaps: {gaps} stations without a force or the moment")
+    return "\n".join(lines)
+
+
+def as_html(table: pd.DataFrame, text: str) -> str:
+    """The same for a notebook, with the first and last rows.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        That of the readings.
+    text : str
+        From `as_text`.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    rows = table.to_html(max_rows=_ROWS, float_format="{:.6g}".format, border=0)
+    return f"<pre>{escape(text)}</pre>{rows}"
+
+
+def plot(table: pd.DataFrame, trusted: Booleans, source: str) -> "list[Axes]":
+    """Force and moment at the clamp over the foot position.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        That of the readings.
+    trusted : array of bool, shape (stations,)
+        The others are marked.
+    source : str
+        The title.
+
+    Returns
+    -------
+    list of matplotlib.axes.Axes
+        One a reading.
+    """
+    import matplotlib.pyplot as plt  # a third of a second, and most users draw nothing
+
+    figure, axes = plt.subplots(len(CLAMP_READINGS), sharex=True, layout="constrained")
+    foot_x = table["foot_x"]
+    for ax, name in zip(axes, CLAMP_READINGS, strict=True):
+        ax.plot(foot_x, table[name], ".-", markersize=3, linewidth=0.8)
+        ax.plot(foot_x[~trusted], table[name][~trusted], "x", color="tab:red", label="not trusted")
+        ax.set_ylabel(name)
+    axes[-1].set_xlabel("foot_x")
+    axes[0].set_title(source.replace("$", r"\$"))
+    if not trusted.all():
+        axes[0].legend()
+    figure.align_ylabels()
+    return list(axes)

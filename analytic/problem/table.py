@@ -1,0 +1,180 @@
+"""What may stand in the table of one sweep."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from analytic.problem.arrays import Floats
+from analytic.problem.columns import COLUMNS, CONTACT, PHASES, SENSED, STATUSES
+from analytic.problem.errors import InputError
+
+_ODD = ("foot_x", "force_x", "moment_z", "contact_angle", "contact_x")  # change sign in a mirror
+_TEXT_FIX = "fix the cell, or leave it empty where nothing was measured"
+
+Place = Callable[[int], str]
+"""Where a row of a table stands, in words: ``"line 17 of rig.csv"``."""
+
+
+def row_number(row: int) -> str:
+    """Where a row of a table in memory stands, counted from 0."""
+    return f"row {row}"
+
+
+def as_numbers(column: "pd.Series[Any]", name: str, place: Place = row_number) -> Floats:
+    """A column of readings as numbers, NaN where a cell is empty.
+
+    Parameters
+    ----------
+    column : pandas.Series
+        Integers, floats or texts that are numbers.
+    name : str
+        What an error calls the column.
+    place : callable
+        What an error calls a row, given its number from 0.
+
+    Returns
+    -------
+    array, shape (n,)
+        The numbers, in the column's unit.
+
+    Raises
+    ------
+    InputError
+        If the column holds booleans, categories or times, a cell that is not empty is no number, or
+        a number is infinite.
+    """
+    types = pd.api.types
+    kind = column.dtype
+    if types.is_bool_dtype(kind) or isinstance(kind, pd.CategoricalDtype):
+        raise _wrong_type(name, kind)
+    if types.is_float_dtype(kind) or types.is_integer_dtype(kind):
+        numbers = column.to_numpy(dtype=float, na_value=np.nan)
+    elif types.is_object_dtype(kind) or types.is_string_dtype(kind):
+        numbers = _parsed(column, name, place)
+    else:
+        raise _wrong_type(name, kind)
+    infinite = np.isinf(numbers)
+    if infinite.any():
+        row = int(np.argmax(infinite))
+        raise InputError(f"column {name}, {place(row)},", numbers[row], "finite", _TEXT_FIX)
+    return np.asarray(numbers, dtype=float)
+
+
+def checked_table(table: pd.DataFrame, source: str, place: Place = row_number) -> pd.DataFrame:
+    """A table whose columns are those of readings: numbers as floats, rows counted from 0.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        A row a station; it is not changed.
+    source : str
+        What an error calls the readings.
+    place : callable
+        What an error calls a row.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The same cells; columns that are not those of readings as they are.
+
+    Raises
+    ------
+    InputError
+        If a sensed column is missing, a column stands twice, a cell is no number, or a phase or
+        status is unknown.
+    """
+    missing = [name for name in SENSED if name not in table]
+    if missing:
+        raise InputError(
+            f"columns of the readings ({source})",
+            _few(list(map(str, table.columns))) or "none",
+            f"at least {', '.join(SENSED)}",
+            f"add {', '.join(missing)}",
+        )
+    twice = [name for name in COLUMNS if name in table and table[name].ndim != 1]
+    if twice:
+        raise InputError(f"column {twice[0]}", "there more than once", "one column", "drop one")
+    numbers = {
+        name: as_numbers(table[name], name, place) for name in (*SENSED, *CONTACT) if name in table
+    }
+    changed = {name: column for name, column in numbers.items() if table[name].dtype != float}
+    for name, allowed in (("phase", PHASES), ("status", STATUSES)):
+        if name in table:
+            _check_words(table[name], name, allowed, place)
+    if not isinstance(table.index, pd.RangeIndex):
+        table = table.reset_index(drop=True)
+    return table.assign(**changed) if changed else table
+
+
+def mirrored_table(table: pd.DataFrame) -> pd.DataFrame:
+    """A table of readings in a mirror, x to -x.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        With any of the columns of readings.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The same columns; angles are measured from the x-axis as before.
+    """
+    changed = {name: 0.0 - table[name] for name in _ODD if name in table}  # keeps 0 from being -0
+    if "tip_angle" in table:
+        changed["tip_angle"] = np.pi - table["tip_angle"]
+    return table.assign(**changed)
+
+
+def _parsed(column: "pd.Series[Any]", name: str, place: Place) -> Floats:
+    numbers = np.array([_number(cell) for cell in column], dtype=float)
+    wrong = np.isnan(numbers) & column.notna().to_numpy()
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        cell = repr(column.iloc[row])
+        shown = cell if len(cell) <= 40 else f"{cell[:40]}..."
+        raise InputError(f"column {name}, {place(row)},", shown, "a number", _TEXT_FIX)
+    return numbers
+
+
+def _number(cell: object) -> float:
+    """The number in a cell of text, NaN where there is none."""
+    if isinstance(cell, str | int | float | np.number) and not isinstance(cell, bool):
+        try:
+            return np.nan if "_" in str(cell) else float(cell)
+        except (ValueError, OverflowError):
+            pass
+    return np.nan
+
+
+def _check_words(
+    column: "pd.Series[Any]",
+    name: str,
+    allowed: tuple[str, ...],
+    place: Place,
+) -> None:
+    unknown = ~column.astype(str).isin(allowed).to_numpy()
+    if unknown.any():
+        row = int(np.argmax(unknown))
+        raise InputError(
+            f"column {name}, {place(row)},",
+            _few([str(column.iloc[row])]),
+            f"one of {', '.join(allowed)}",
+            "fix the column or drop it",
+        )
+
+
+def _wrong_type(name: str, kind: object) -> InputError:
+    return InputError(
+        f"column {name}",
+        f"of type {kind}",
+        "numbers",
+        "booleans, categories, times are no readings",
+    )
+
+
+def _few(names: list[str]) -> str:
+    """Names in one line that fits a screen."""
+    text = ", ".join(names)
+    return text if len(text) <= 120 else f"{text[:120]}... ({len(names)} in all)"
