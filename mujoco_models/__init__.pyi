@@ -1,4 +1,5 @@
 from .beams.available import available_beams as available_beams
+from .errors import ClampError as ClampError
 from .errors import DivergedError as DivergedError
 from .settings import Settings as Settings
 from .simulate import load_tip as load_tip

@@ -74,7 +74,27 @@ def simulate_sweep(
 
 
 def load_tip(load: float, settings: Settings | None = None) -> tuple[float, float]:
-    """Tip of a cantilever under a dead load; see `mujoco_models.sweep.cantilever.load_tip`."""
+    """Tip of a cantilever under a dead load across its undeformed axis.
+
+    Parameters
+    ----------
+    load : float
+        P L^2/EI.
+    settings : Settings, optional
+        Beam, number of segments, clamp and tolerance; nothing else matters without a contact.
+
+    Returns
+    -------
+    across, shortening : float
+        Displacement of the tip along the load and along the axis, towards the clamp [L].
+
+    Raises
+    ------
+    InputError
+        If the installed MuJoCo lacks the beam.
+    RuntimeError
+        If the beam does not come to rest.
+    """
     from mujoco_models.sweep import cantilever
 
     return cantilever.load_tip(load, settings or Settings())
@@ -82,6 +102,13 @@ def load_tip(load: float, settings: Settings | None = None) -> tuple[float, floa
 
 def view_sweep(case: Case, settings: Settings | None = None) -> None:
     """Show the sweep of `case` in MuJoCo's interactive viewer, until its window is closed.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+    settings : Settings, optional
+        The numerics.
 
     Raises
     ------

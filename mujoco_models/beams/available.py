@@ -1,4 +1,4 @@
-"""Which beams the installed MuJoCo has."""
+"""Which beams the installed MuJoCo has; apart from them, so that asking does not load MuJoCo."""
 
 from importlib.metadata import version
 
@@ -6,7 +6,7 @@ from analytic.problem.errors import InputError
 
 
 class Beams(tuple[str, ...]):
-    """The beams that there are; ``missing`` tells of each other one why it is not.
+    """The beams that there are; ``missing`` gives for each other one the reason why it is not.
 
     Attributes
     ----------
@@ -21,6 +21,11 @@ def available_beams() -> Beams:
     """The beams that the installed MuJoCo has, and why not the others.
 
     Judged by MuJoCo's version alone, without importing it.
+
+    Returns
+    -------
+    Beams
+        Their names.
     """
     old = int(version("mujoco").split(".")[0]) < 4
     found = Beams(("chain", "cable") if old else ("chain", "rod"))
@@ -34,6 +39,11 @@ def available_beams() -> Beams:
 
 def require(beam: str) -> None:
     """Refuse a beam that the installed MuJoCo lacks.
+
+    Parameters
+    ----------
+    beam : str
+        Its name.
 
     Raises
     ------

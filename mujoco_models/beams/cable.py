@@ -12,15 +12,9 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from mujoco_models.beams.coordinates import Balls
-from mujoco_models.beams.layout import Layout
+from mujoco_models.beams.layout import Layout, vertices
 from mujoco_models.beams.protocol import FOOT
-from mujoco_models.beams.strip import vertices
 from mujoco_models.settings import Settings
-
-# GJ/EI. At rest nothing twists the vibrissa, so that any would do; but the plugin's moments derive
-# from an energy only if it resists twisting as it does bending. At GJ = 0.1 EI or 10 EI the
-# stiffness of a bent cable sideways is wrong by 2 % at N = 40, of second order in 1/N.
-_TWIST = 1.0
 
 _XML = """
 <mujoco>
@@ -42,9 +36,23 @@ _XML = """
 
 
 class Cable(Balls):
-    """A composite cable; see `mujoco_models.beams.protocol.Beam`."""
+    """A composite cable; see `mujoco_models.beams.protocol.Beam`.
 
-    def __init__(self, settings: Settings, spacing: float) -> None:
+    Parameters
+    ----------
+    settings : Settings
+        Number of segments, and which clamp.
+    spacing : float
+        Of the beads, at most [L].
+    twist : float
+        GJ/EI. At rest nothing twists the vibrissa, so that any would do; but the plugin's moments
+        derive from an energy only if it resists twisting as it does bending. At GJ = 0.1 EI or
+        10 EI the stiffness of a bent cable sideways is wrong by 2 % at N = 40, of second order in
+        1/N.
+    """
+
+    def __init__(self, settings: Settings, spacing: float, twist: float = 1.0) -> None:
+        self._twist = twist
         self._vertices = vertices(settings)
         self._cell = float(self._vertices[1] - self._vertices[0])
         joints = self._vertices[1:-1]
@@ -57,7 +65,7 @@ class Cable(Balls):
             foot=FOOT,
             vertices=" ".join(f"0 {s!r} 0" for s in self._vertices.tolist()),
             young=1 / area_moment,
-            shear=_TWIST / (2 * area_moment),
+            shear=self._twist / (2 * area_moment),
             armature=1e-4 / self._cell,
             radius=radius,
         )

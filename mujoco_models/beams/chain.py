@@ -9,42 +9,26 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from mujoco_models.beams import links
 from mujoco_models.beams.layout import Layout
+from mujoco_models.beams.links import HingedLinks
 from mujoco_models.settings import Settings
 
 
-class Chain:
+class Chain(HingedLinks):
     """Hinges with springs; see `mujoco_models.beams.protocol.Beam`."""
 
     def __init__(self, settings: Settings, spacing: float) -> None:
         n = settings.segments
         cells = np.arange(n)
         joints = (cells + 0.5) / n if settings.clamp == "second-order" else cells[1:] / n
-        self.layout = Layout.of(joints, np.full(len(joints), 1 / n), spacing)
+        super().__init__(Layout.of(joints, np.full(len(joints), 1 / n), spacing))
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """The links, and a spring in every hinge."""
-        spec = links.hinged_links(self.layout, radius)
+        spec = super().spec(radius)
         for joint, cell in zip(spec.joints, self.layout.cells, strict=True):
             joint.stiffness[0] = 1 / cell
         return spec
-
-    def mount(self, spec: mujoco.MjSpec, link: int, s: float) -> tuple[mujoco.MjsBody, Floats]:
-        """The link itself."""
-        return links.mount(spec, self.layout, link, s)
-
-    def place(self, data: mujoco.MjData, angles: Floats) -> None:
-        """The joint angles are MuJoCo's own coordinates."""
-        data.qpos[:] = angles
-
-    def angles(self, data: mujoco.MjData) -> Floats:
-        """The joint angles are MuJoCo's own coordinates."""
-        return np.array(data.qpos)
-
-    def moments(self, force: Floats) -> Floats:
-        """The moments at the joints are MuJoCo's own generalised forces."""
-        return force
 
     def stiffness(self, angles: Floats) -> Floats:
         """EI/h."""

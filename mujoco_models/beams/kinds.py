@@ -20,6 +20,18 @@ _SPATIAL: _Kinds = {"chain": SpatialChain, "rod": SpatialRod, "cable": Cable}
 def build(settings: Settings, spacing: float) -> Beam:
     """The beam that the settings ask for, with beads at most `spacing` apart [L].
 
+    Parameters
+    ----------
+    settings : Settings
+        Which beam, of how many segments.
+    spacing : float
+        Of the beads [L].
+
+    Returns
+    -------
+    Beam
+        Not yet a model of MuJoCo's.
+
     Raises
     ------
     InputError

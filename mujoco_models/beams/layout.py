@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
+from mujoco_models.settings import Settings
 
 # A bead is a fixed material point, so the readings err by the contour's curvature times the beads'
 # spacing. It is bounded in radii of the vibrissa, in radii of curvature of the contour, and by the
-# square of the cell's length, lest it spoil the second order.
+# square of the cell's length, so that it does not spoil the second order.
 _OF_RADIUS = 0.65
 _OF_CURVATURE = 0.01
 _OF_CELLS = 3.0
@@ -38,7 +39,19 @@ class Layout:
 
     @classmethod
     def of(cls, joints: Floats, cells: Floats, spacing: float) -> "Layout":
-        """Beads at most `spacing` apart, and at least two to a link."""
+        """Beads at most `spacing` apart, and at least two to a link.
+
+        Parameters
+        ----------
+        joints, cells : array, shape (n_joints,)
+            As in the attributes [L].
+        spacing : float
+            Of the beads [L].
+
+        Returns
+        -------
+        Layout
+        """
         lengths = np.diff(joints, append=1.0)
         counts = np.maximum(2, np.ceil(lengths / spacing - 1e-9).astype(int))
         beads = [
@@ -64,7 +77,40 @@ def bead_spacing(segments: int, radius: float, curvature: float) -> float:
         Of the vibrissa [L].
     curvature : float
         Largest curvature of the contour, may be 0 [1/L].
+
+    Returns
+    -------
+    float
+        Spacing [L].
     """
     turning = _OF_CURVATURE / max(curvature, _OF_CURVATURE)
     dense = min(_OF_RADIUS * radius, turning, _OF_CELLS / segments**2)
     return max(dense, _LEAST)
+
+
+def vertices(settings: Settings, grading: float = 0.0) -> Floats:
+    """Arc lengths of the vertices of a beam that MuJoCo builds from N segments.
+
+    The first segment is rigid in the clamp. If it straddles the clamp, as much before it as behind,
+    the vertices that bend sit at the centres of their cells, and the beam is of second order; if it
+    begins there (the naive beam), it is of first order.
+
+    Parameters
+    ----------
+    settings : Settings
+        Number of segments, and which clamp.
+    grading : float
+        How much longer segments grow towards the tip: by (1 + 3 grading) from the clamp on. The
+        naive beam has equal ones.
+
+    Returns
+    -------
+    array, shape (N + 1,)
+        Arc lengths, ascending [L].
+    """
+    n = settings.segments
+    if settings.clamp == "naive":
+        return np.asarray(np.arange(n + 1) / n)
+    # An odd and smooth map of equal segments: it keeps the symmetry at the clamp, and the order.
+    u = (np.arange(n + 1) - 0.5) / (n - 0.5)
+    return np.asarray(u * (1 + grading * u**2) / (1 + grading))

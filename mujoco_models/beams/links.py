@@ -11,34 +11,69 @@ _MASS = 1e-5  # of a link, any small number: at rest masses do not matter
 _ARMATURE = 1e-4  # of a joint with unit stiffness: likewise
 
 
-def hinged_links(layout: Layout, radius: float) -> mujoco.MjSpec:
-    """Links that turn about z, on hinges without stiffness; link i is the body `link_name(i)`."""
-    spec = mujoco.MjSpec()
-    body = spec.worldbody.add_body(name=FOOT)
-    _add_capsule(body, layout.joints[0], radius)
-    for i, offset in enumerate(np.diff(layout.joints, prepend=0.0)):
-        body = body.add_body(name=link_name(i), pos=[0, offset, 0])
-        body.add_joint(
-            type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 0, 1], armature=_ARMATURE / layout.cells[i]
-        )
-        _add_capsule(body, layout.lengths[i], radius)
-    return spec
+class HingedLinks:
+    """Links that turn about z, on hinges whose angles are MuJoCo's own coordinates.
 
+    Parameters
+    ----------
+    layout : Layout
+        Where the joints and the beads are.
+    """
 
-def mount(
-    spec: mujoco.MjSpec, layout: Layout, link: int, s: float
-) -> tuple[mujoco.MjsBody, Floats]:
-    """The link, and the place in its frame at arc length `s`."""
-    return spec.body(link_name(link)), np.array([0, s - layout.joints[link], 0])
+    def __init__(self, layout: Layout) -> None:
+        self.layout = layout
+
+    def spec(self, radius: float) -> mujoco.MjSpec:
+        """The foot and the links, on hinges without stiffness."""
+        layout = self.layout
+        spec = mujoco.MjSpec()
+        body = spec.worldbody.add_body(name=FOOT)
+        _add_capsule(body, layout.joints[0], radius)
+        for i, offset in enumerate(np.diff(layout.joints, prepend=0.0)):
+            body = body.add_body(name=link_name(i), pos=[0, offset, 0])
+            body.add_joint(
+                type=mujoco.mjtJoint.mjJNT_HINGE,
+                axis=[0, 0, 1],
+                armature=_ARMATURE / layout.cells[i],
+            )
+            _add_capsule(body, layout.lengths[i], radius)
+        return spec
+
+    def mount(self, spec: mujoco.MjSpec, link: int, s: float) -> tuple[mujoco.MjsBody, Floats]:
+        """The link itself, which lies along its own y axis."""
+        return spec.body(link_name(link)), np.array([0, s - self.layout.joints[link], 0])
+
+    def place(self, data: mujoco.MjData, angles: Floats) -> None:
+        """The joint angles are MuJoCo's own coordinates."""
+        data.qpos[:] = angles
+
+    def angles(self, data: mujoco.MjData) -> Floats:
+        """The joint angles are MuJoCo's own coordinates."""
+        return np.array(data.qpos)
+
+    def moments(self, force: Floats) -> Floats:
+        """The moments at the joints are MuJoCo's own generalised forces."""
+        return force
 
 
 def link_name(link: int) -> str:
-    """Name of a link's body."""
+    """Name of a link's body.
+
+    Parameters
+    ----------
+    link : int
+        Its number.
+
+    Returns
+    -------
+    str
+        The name.
+    """
     return f"link{link}"
 
 
 def _add_capsule(body: mujoco.MjsBody, length: float, radius: float) -> None:
-    """What the eye sees of a link; its mass is there because MuJoCo wants one."""
+    """What the eye sees of a link; its mass is there because MuJoCo requires one."""
     body.add_geom(
         type=mujoco.mjtGeom.mjGEOM_CAPSULE,
         fromto=[0, 0, 0, 0, length, 0],

@@ -21,6 +21,7 @@ class Beam(Protocol):
     """
 
     layout: Layout
+    """Where its joints and beads are."""
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """The foot and the beam on it, with all collisions off.
@@ -29,19 +30,82 @@ class Beam(Protocol):
         ----------
         radius : float
             Of the vibrissa [L].
+
+        Returns
+        -------
+        mujoco.MjSpec
+            Not yet compiled.
         """
 
     def mount(self, spec: mujoco.MjSpec, link: int, s: float) -> tuple[mujoco.MjsBody, Floats]:
-        """The body that moves with `link` at arc length `s`, and the place in its frame."""
+        """The body that moves with a link, and where on it an arc length is.
+
+        Parameters
+        ----------
+        spec : mujoco.MjSpec
+            Made by `spec`.
+        link : int
+            Number of the link.
+        s : float
+            Arc length [L].
+
+        Returns
+        -------
+        body : mujoco.MjsBody
+            The link's.
+        position : array, shape (3,)
+            In the body's frame [L].
+        """
 
     def place(self, data: mujoco.MjData, angles: Floats) -> None:
-        """Set MuJoCo's coordinates to joint angles, shape (n_joints,) [rad]."""
+        """Set MuJoCo's coordinates.
+
+        Parameters
+        ----------
+        data : mujoco.MjData
+            Changed in place.
+        angles : array, shape (n_joints,)
+            Joint angles [rad].
+        """
 
     def angles(self, data: mujoco.MjData) -> Floats:
-        """Joint angles of MuJoCo's coordinates, shape (n_joints,) [rad]."""
+        """Joint angles of MuJoCo's coordinates.
+
+        Parameters
+        ----------
+        data : mujoco.MjData
+            A planar configuration.
+
+        Returns
+        -------
+        array, shape (n_joints,)
+            Joint angles [rad].
+        """
 
     def moments(self, force: Floats) -> Floats:
-        """Moment about z at each joint, shape (n_joints,) [EI/L], of a generalised force."""
+        """Moment about z at each joint.
+
+        Parameters
+        ----------
+        force : array, shape (nv,)
+            A generalised force of MuJoCo's.
+
+        Returns
+        -------
+        array, shape (n_joints,)
+            Moments [EI/L].
+        """
 
     def stiffness(self, angles: Floats) -> Floats:
-        """Derivative of each joint's elastic moment by its angle, shape (n_joints,) [EI/L]."""
+        """Derivative of each joint's elastic moment by its angle.
+
+        Parameters
+        ----------
+        angles : array, shape (n_joints,)
+            Joint angles [rad].
+
+        Returns
+        -------
+        array, shape (n_joints,)
+            Stiffnesses [EI/L].
+        """

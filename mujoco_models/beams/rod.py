@@ -14,10 +14,9 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from mujoco_models.beams import links
-from mujoco_models.beams.layout import Layout
+from mujoco_models.beams.layout import Layout, vertices
+from mujoco_models.beams.links import HingedLinks, link_name
 from mujoco_models.beams.protocol import FOOT
-from mujoco_models.beams.strip import vertices
 from mujoco_models.settings import Settings
 
 # The law above is too stiff by (curvature h)^2/3, so segments are shorter where a clamped beam
@@ -26,44 +25,28 @@ from mujoco_models.settings import Settings
 _GRADING = 0.4
 
 
-class Rod:
+class Rod(HingedLinks):
     """A one-dimensional flex; see `mujoco_models.beams.protocol.Beam`."""
 
     def __init__(self, settings: Settings, spacing: float) -> None:
         self._vertices = vertices(settings, _GRADING)
         cells = (self._vertices[2:] - self._vertices[:-2]) / 2
-        self.layout = Layout.of(self._vertices[1:-1], cells, spacing)
+        super().__init__(Layout.of(self._vertices[1:-1], cells, spacing))
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """Links without springs, and the flex that bends them."""
-        spec = links.hinged_links(self.layout, radius)
+        spec = super().spec(radius)
         flex = spec.add_flex(name="rod", dim=1, radius=radius, contype=0, conaffinity=0)
         flex.selfcollide = False
         flex.young = 1 / (np.pi * radius**4 / 4)
         # The first edge is the foot's; every link has the vertex at its end.
         count = len(self.layout.joints)
-        flex.vertbody = [FOOT, FOOT, *(links.link_name(i) for i in range(count))]
+        flex.vertbody = [FOOT, FOOT, *(link_name(i) for i in range(count))]
         at = np.zeros((count + 2, 3))
         at[:, 1] = [*self._vertices[:2], *self.layout.lengths]
         flex.vert = at.ravel()
         flex.elem = [end for i in range(count + 1) for end in (i, i + 1)]
         return spec
-
-    def mount(self, spec: mujoco.MjSpec, link: int, s: float) -> tuple[mujoco.MjsBody, Floats]:
-        """The link itself."""
-        return links.mount(spec, self.layout, link, s)
-
-    def place(self, data: mujoco.MjData, angles: Floats) -> None:
-        """The hinge angles are MuJoCo's own coordinates."""
-        data.qpos[:] = angles
-
-    def angles(self, data: mujoco.MjData) -> Floats:
-        """The hinge angles are MuJoCo's own coordinates."""
-        return np.array(data.qpos)
-
-    def moments(self, force: Floats) -> Floats:
-        """The moments at the hinges are MuJoCo's own generalised forces."""
-        return force
 
     def stiffness(self, angles: Floats) -> Floats:
         """Second derivative of (2 EI/h) tan^2(theta/2)."""

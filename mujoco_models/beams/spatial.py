@@ -10,9 +10,9 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from mujoco_models.beams import links
 from mujoco_models.beams.chain import Chain
 from mujoco_models.beams.coordinates import Balls
+from mujoco_models.beams.links import link_name
 from mujoco_models.beams.rod import Rod
 
 
@@ -42,7 +42,7 @@ class SpatialRod(Rod):
         """The links with a second hinge each, about the x axis that the first one turns."""
         spec = super().spec(radius)
         for i, joint in enumerate(tuple(spec.joints)):
-            body = spec.body(links.link_name(i))
+            body = spec.body(link_name(i))
             body.add_joint(
                 type=mujoco.mjtJoint.mjJNT_HINGE, axis=[1, 0, 0], armature=joint.armature
             )

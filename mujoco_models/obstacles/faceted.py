@@ -9,10 +9,17 @@ from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
 from mujoco_models.obstacles.protocol import GEOM_PREFIX, TOP, Obstacle
 
-# Corners +x, -x, +y, -y, +z, -z; every face with its corners counterclockwise from outside.
-_OCTAHEDRON = [
-    [x, y, z] if (x + y + z) % 2 else [x, z, y] for x in (0, 1) for y in (2, 3) for z in (4, 5)
-]
+# Corners +x, -x, +y, -y, +z, -z; every face has one of each pair, counterclockwise from outside.
+_OCTAHEDRON = (
+    (0, 2, 4),
+    (0, 5, 2),
+    (0, 4, 3),
+    (0, 3, 5),
+    (1, 4, 2),
+    (1, 2, 5),
+    (1, 3, 4),
+    (1, 5, 3),
+)
 
 
 class Faceted(Obstacle):
@@ -50,7 +57,18 @@ class Faceted(Obstacle):
         return np.asarray(self._curvature[self.vertex(slope)])
 
     def vertex(self, slope: Floats) -> Integers:
-        """Number of the vertex at which each slope angle is passed, shape (n,)."""
+        """Number of the vertex at which each slope angle is passed.
+
+        Parameters
+        ----------
+        slope : array, shape (n,)
+            Slope angles [rad].
+
+        Returns
+        -------
+        array of int, shape (n,)
+            Numbers of vertices.
+        """
         return np.searchsorted(self.facet_angles, slope)
 
     def faces(self, slope: Floats) -> bool:
@@ -114,9 +132,19 @@ class Faceted(Obstacle):
 
 
 def touchable(case: Case) -> tuple[float, float]:
-    """Slope angles between which a case's object can be touched [rad].
+    """Slope angles between which a case's object can be touched.
 
     An end of the object is a corner; there a bead may touch a little above the widest place.
+
+    Parameters
+    ----------
+    case : Case
+        Of a sweep to the left.
+
+    Returns
+    -------
+    low, high : float
+        Slope angles [rad].
     """
     low, high = case.centreline.at(np.array(case.reach)).alpha
     upright = np.pi / 2 - 1e-9
@@ -126,13 +154,26 @@ def touchable(case: Case) -> tuple[float, float]:
 def add_hull(
     spec: mujoco.MjSpec, number: int, vertices: Floats, inner: Floats, size: float
 ) -> None:
-    """Add the hull of `vertices`, shape (n, 3), as the geom of that number to the world body.
+    """Add the hull of points to the world body.
 
     MuJoCo stores vertices in single precision relative to the centroid of the *faces*, while
-    collisions use the hull of all vertices. So the only faces are those of a speck of that size
-    round the place `inner`: there, rounding is 1e-9 instead of 1e-7. The speck is an octahedron
-    whose axes of inertia are those of the world, so that both ends of a prism round alike and its
-    sides stay flat.
+    collisions use the hull of all vertices. So the only faces are those of a speck round a place
+    near the contact: there, rounding is 1e-9 instead of 1e-7. The speck is an octahedron whose axes
+    of inertia are those of the world, so that both ends of a prism round alike and its sides stay
+    flat.
+
+    Parameters
+    ----------
+    spec : mujoco.MjSpec
+        Changed in place.
+    number : int
+        Of the geom.
+    vertices : array, shape (n, 3)
+        The points [L].
+    inner : array, shape (3,)
+        Centre of the speck, inside the hull [L].
+    size : float
+        Smallest half axis of the speck; the largest is three times that [L].
     """
     speck = inner + size * np.kron(np.diag([1, 2, 3]), [[1], [-1]])
     faces = len(vertices) + np.array(_OCTAHEDRON, dtype=np.int32)

@@ -12,6 +12,18 @@ from mujoco_models.settings import Settings
 def place(case: Case, settings: Settings) -> Obstacle:
     """The obstacle that the settings ask for.
 
+    Parameters
+    ----------
+    case : Case
+        Of a sweep to the left.
+    settings : Settings
+        Which obstacle, and how fine.
+
+    Returns
+    -------
+    Obstacle
+        Dimensionless, L = 1.
+
     Raises
     ------
     InputError

@@ -52,6 +52,15 @@ class Primitive(Obstacle):
     def of(cls, case: Case) -> "Primitive":
         """The part of the case's object that the vibrissa can reach.
 
+        Parameters
+        ----------
+        case : Case
+            Of a sweep to the left.
+
+        Returns
+        -------
+        Primitive
+
         Raises
         ------
         InputError
@@ -114,7 +123,7 @@ class Primitive(Obstacle):
         return self._outline.faces(slope)
 
     def near(self, points: Floats, distance: float) -> Integers:
-        """Told by the polygon."""
+        """By the polygon."""
         return self._outline.near(points, distance)
 
     def clearance(self, point: Floats) -> tuple[float, float]:

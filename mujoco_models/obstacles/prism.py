@@ -56,6 +56,17 @@ class Prism(Faceted):
         It has `points` vertices if the contour is curved, or else those of the contour. Where the
         contour goes on beyond reach, so does the polygon, along its tangent: a tip that presses on
         the very end must not be pushed out through the top.
+
+        Parameters
+        ----------
+        case : Case
+            Of a sweep to the left.
+        points : int
+            Of the polygon, if the contour is curved.
+
+        Returns
+        -------
+        Prism
         """
         last, first = case.reach
         body = case.profile.scaled(1 / case.beam.length)

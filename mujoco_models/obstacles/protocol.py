@@ -19,7 +19,7 @@ class Obstacle(ABC):
     """
 
     faceted: bool
-    """Whether the normal turns in jumps, so that a curvature does not tell where it turns."""
+    """Whether the normal turns in jumps, so that a curvature does not say where it turns."""
     geoms: int
     """How many geoms there are."""
 
@@ -35,7 +35,13 @@ class Obstacle(ABC):
 
     @abstractmethod
     def add_to(self, spec: mujoco.MjSpec) -> None:
-        """Add the geoms to the world body."""
+        """Add the geoms to the world body.
+
+        Parameters
+        ----------
+        spec : mujoco.MjSpec
+            Changed in place.
+        """
 
     @abstractmethod
     def show(self, model: mujoco.MjModel, geoms: Integers, window: int) -> None:
@@ -53,28 +59,111 @@ class Obstacle(ABC):
 
     @abstractmethod
     def curvature(self, slope: Floats) -> Floats:
-        """Curvature of the contour where it has these slope angles, shape (n,) [1/L]."""
+        """Curvature of the contour where it has these slope angles.
+
+        Parameters
+        ----------
+        slope : array, shape (n,)
+            Slope angles [rad].
+
+        Returns
+        -------
+        array, shape (n,)
+            Curvatures [1/L].
+        """
 
     @abstractmethod
     def faces(self, slope: Floats) -> bool:
-        """Whether contacts with these slope angles are with the contour, not with its far side."""
+        """Whether contacts with these slope angles are with the contour, not with its far side.
+
+        Parameters
+        ----------
+        slope : array, shape (n,)
+            Slope angles [rad].
+
+        Returns
+        -------
+        bool
+            Of all of them.
+        """
 
     @abstractmethod
     def near(self, points: Floats, distance: float) -> Integers:
-        """Which of the points, shape (n, 2), may be nearer to the contour than `distance`."""
+        """Which of the points may be nearer to the contour than a distance.
+
+        Parameters
+        ----------
+        points : array, shape (n, 2)
+            Positions [L].
+        distance : float
+            From the contour [L].
+
+        Returns
+        -------
+        array of int, shape (m,)
+            Their numbers.
+        """
 
     @abstractmethod
     def clearance(self, point: Floats) -> tuple[float, float]:
-        """Distance of a point from the contour, negative inside, and the place it is at."""
+        """Distance of a point from the contour.
+
+        Parameters
+        ----------
+        point : array, shape (2,)
+            Position [L].
+
+        Returns
+        -------
+        distance : float
+            Negative inside [L].
+        place : float
+            Of the nearest point of the contour, in the measure of `place`.
+        """
 
     @abstractmethod
     def place(self, slope: Floats) -> Floats:
-        """Where along the contour these slope angles are, in whatever measure windows have."""
+        """Where along the contour these slope angles are, in whatever measure windows have.
+
+        Parameters
+        ----------
+        slope : array, shape (n,)
+            Slope angles [rad].
+
+        Returns
+        -------
+        array, shape (n,)
+            Places.
+        """
 
     @abstractmethod
     def window_of(self, place: float) -> int:
-        """The window that is best for a place."""
+        """The window that is best for a place.
+
+        Parameters
+        ----------
+        place : float
+            Along the contour.
+
+        Returns
+        -------
+        int
+            Number of the window.
+        """
 
     @abstractmethod
     def is_inside(self, window: int, places: Floats) -> bool:
-        """Whether `window` has all of the contour around these places."""
+        """Whether a window has all of the contour around some places.
+
+        Parameters
+        ----------
+        window : int
+            Its number.
+        places : array, shape (n,)
+            Along the contour.
+
+        Returns
+        -------
+        bool
+            Of all of them.
+        """

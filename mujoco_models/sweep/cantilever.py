@@ -6,7 +6,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam as Vibrissa
 from mujoco_models.beams.kinds import build
-from mujoco_models.model.model import add_options
+from mujoco_models.model.spec import add_options
 from mujoco_models.settings import Settings
 
 _ITERATIONS = 50

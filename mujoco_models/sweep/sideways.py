@@ -3,7 +3,8 @@
 The obstacle is a frictionless prism along z: nothing of it holds the vibrissa sideways. What does
 is that a turn about the clamp's tangent drags the contact along the contour. In closed form
 (`analytic.from_clamp.sideways`) the stiffness is -force_x over the contact's distance from that
-tangent, and it changes its sign where the contact passes the lowest point. Here MuJoCo is asked.
+tangent, and it changes its sign where the contact passes the lowest point. Here MuJoCo's own
+moments give it.
 """
 
 from dataclasses import dataclass
@@ -41,7 +42,18 @@ class Sideways:
     axes: Integers
 
     def softest(self, count: int) -> Floats:
-        """The turns that are resisted least, as one of MuJoCo's velocities, shape (count,)."""
+        """The turns that are resisted least.
+
+        Parameters
+        ----------
+        count : int
+            How many velocities MuJoCo has.
+
+        Returns
+        -------
+        array, shape (count,)
+            One of MuJoCo's velocities, of norm 1.
+        """
         mode = np.zeros(count)
         mode[self.axes] = np.linalg.eigh(self.joints)[1][:, 0]
         return mode
@@ -52,6 +64,16 @@ def sideways(model: BeamModel) -> Sideways:
 
     The derivative of MuJoCo's own moments by turns out of the plane, by differences; the model is
     left as it was.
+
+    Parameters
+    ----------
+    model : BeamModel
+        At rest in the plane.
+
+    Returns
+    -------
+    Sideways
+        Its stiffness across the plane.
     """
     data, count = model.data, model.model.nv
     axes = np.flatnonzero(np.abs(data.cdof[:, 2]) < _ALONG_Z)

@@ -1,7 +1,7 @@
 """The sweep of a beam that may leave the plane, which the obstacle does not hold sideways.
 
 Newton's method follows the branch of planar equilibria; by symmetry they are equilibria in space
-too. At every station MuJoCo's own forces tell whether the beam would return to the plane. Where it
+too. At every station MuJoCo's own forces show whether the beam would return to the plane. Where it
 would not, it is nudged, and MuJoCo's own motion carries it to wherever it comes to rest.
 """
 
@@ -11,9 +11,10 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from mujoco_models.model.model import AT_REST, LONG_STEP, STEP, BeamModel
-from mujoco_models.sweep.rest import State, relax, turned
+from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.sideways import Sideways, sideways
-from mujoco_models.sweep.sweep import LARGEST_TURN, Walk
+from mujoco_models.sweep.state import State, turned
+from mujoco_models.sweep.walk import Walk
 
 _ONSET = 1e-4  # L; how closely the place where the beam leaves is located
 _NUDGES = (1e-4, 1e-3, 1e-2, 1e-1)  # L, across the plane
@@ -35,12 +36,19 @@ class _Departure(NamedTuple):
 
 
 class SpatialWalk(Walk):
-    """A walk that leaves the plane where the planar equilibrium is not stable in space."""
+    """A walk that leaves the plane where the planar equilibrium is not stable in space.
 
-    def __init__(self, model: BeamModel, foot_x: float, tolerance: float) -> None:
-        super().__init__(model, foot_x, tolerance)
+    Attributes
+    ----------
+    left_plane : float or None
+        Where the beam first left the plane of the sweep [L].
+    """
+
+    def __init__(
+        self, model: BeamModel, foot_x: float, tolerance: float, numerics: Numerics | None = None
+    ) -> None:
+        super().__init__(model, foot_x, tolerance, numerics)
         self.left_plane: float | None = None
-        """Where the beam first left the plane of the sweep [L]."""
         self._held: Sideways | None = None
         self._departure: _Departure | None = None
 
@@ -129,7 +137,7 @@ class SpatialWalk(Walk):
         for _ in range(steps):
             if model.creep(timestep) < AT_REST or model.out_of_plane() < _IN_PLANE:
                 break
-            model.follow_contact()
+            model.lookout.follow_contact(model.contacts())
         model.evaluate()
 
     def _drift(self, target: float, departure: _Departure) -> None:
@@ -145,8 +153,8 @@ class SpatialWalk(Walk):
             self._state = State(angles, {}, imbalance, imbalance < self._tolerance)
             self._departure = departure
         else:
-            self._state = relax(model, target, State(angles, {}), self._tolerance)
+            self._state = self._relax(target, State(angles, {}))
             self._look()
             self._departure = None
-            if turned(angles, departure.angles) > LARGEST_TURN:
+            if turned(angles, departure.angles) > self._numerics.branch_turn:
                 self.snap_off = departure.foot_x

@@ -16,7 +16,8 @@ from rich.table import Table
 from analytic import Case, Sweep, named_case
 from mujoco_models import Settings
 from mujoco_models.model.model import BeamModel
-from mujoco_models.sweep.sweep import Walk, set_out
+from mujoco_models.sweep.sweep import set_out
+from mujoco_models.sweep.walk import Walk
 
 STATIONS = 100
 CAP = 2_000  # steps a station
@@ -99,12 +100,7 @@ def look(model: BeamModel, near: bool) -> None:
     """Use the mesh that is fine at the contact; let only beads `near` the obstacle collide."""
     if near:
         positions = model.bead_positions(np.arange(len(model.layout.beads)))
-        close = model.obstacle.near(positions, 0.005 + 1e-3)
+        close = model.obstacle.near(positions, model.radius + 1e-3)
         far = range(0, len(positions), _SPACING)
-        model.watch(frozenset(close.tolist()) or frozenset(far))
-    loaded = model.contacts()
-    if (loaded.distance < 0).any():
-        normal = loaded.normal[loaded.distance < 0].mean(axis=0)
-        slope = np.arctan2(normal[:1], -normal[1:])
-        vertex = float(model.obstacle.nearest_vertex(slope)[0])
-        model.use_window(model.obstacle.window_of(vertex))
+        model.lookout.watch(frozenset(close.tolist()) or frozenset(far))
+    model.lookout.follow_contact(model.contacts())

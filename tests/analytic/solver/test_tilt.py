@@ -55,7 +55,8 @@ def test_mujoco_slips_off_there():
     from mujoco_models import Settings
     from mujoco_models.beams.protocol import FOOT
     from mujoco_models.sweep.spatial_walk import GENTLE_STEP
-    from mujoco_models.sweep.sweep import Walk, set_out
+    from mujoco_models.sweep.sweep import set_out
+    from mujoco_models.sweep.walk import Walk
 
     case = Case(profile=CIRCLE)
     settings = Settings(segments=10, contour_points=1600, planar=False)
@@ -66,13 +67,13 @@ def test_mujoco_slips_off_there():
     for foot_x in np.linspace(0.9, place + 0.02, 30):
         walk.go_to(float(foot_x))
     model.model.body_quat[model.model.body(FOOT).id] = [np.cos(tilt / 2), np.sin(tilt / 2), 0, 0]
-    model.watch(frozenset(range(len(model.layout.beads))))
+    model.lookout.watch(frozenset(range(len(model.layout.beads))))
     out = []
     for ahead in (0.02, 0.01, 0.004, -0.004):
         model.move_foot(place + ahead)
         for _ in range(10_000):
             moved = model.creep(GENTLE_STEP)
-            model.follow_contact()
+            model.lookout.follow_contact(model.contacts())
             if moved < 1e-8:
                 break
         model.evaluate()

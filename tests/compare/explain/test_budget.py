@@ -212,9 +212,9 @@ def rubbing(monkeypatch):
             if distance < 0:
                 load = -distance * self.contact_stiffness
                 drag = FRICTION * load * np.array([-normal[1], normal[0], 0])  # to the right
-                geom = self._beads[bead]
+                geom = self.beads[bead]
                 body = self.model.geom_bodyid[geom]
-                at = self.data.geom_xpos[geom] - self._radius * np.array([*normal, 0])
+                at = self.data.geom_xpos[geom] - self.radius * np.array([*normal, 0])
                 arm = at - self.data.xipos[body]
                 self.data.xfrc_applied[body] += [*drag, *np.cross(arm, drag)]
                 mujoco.mj_applyFT(self.model, self.data, drag, np.zeros(3), at, body, pulled)

@@ -121,12 +121,11 @@ def test_tilt_of_edges_in_the_plane(tmp_path):
     assert tilt == pytest.approx(0.1, abs=0.02)
 
 
-def test_meshes_that_cannot_be_simulated(tmp_path, monkeypatch):
-    monkeypatch.setattr("mujoco_models.obstacles.file_mesh._MOST_VERTICES", 100)
-    with pytest.raises(
-        InputError, match=r"mesh body.stl = of 402 vertices: must be of at most 100"
-    ):
-        swept(section(prism(), tmp_path))
+def test_meshes_that_cannot_be_simulated(tmp_path):
+    profile = section(prism(), tmp_path)
+    huge = replace(profile.solid, vertices=np.zeros((50_001, 3)))
+    with pytest.raises(InputError, match=r"mesh body.stl = of 50001 vertices: must be .* 50000"):
+        swept(replace(profile, solid=huge))
     with pytest.raises(InputError, match=r"section of body.stl.* must be below 1 L"):
         Case(profile=mesh_section(_file(prism(), tmp_path), offset=(0, 5)))
     with pytest.raises(InputError, match=r"section of body\.stl: must be 'mesh'"):

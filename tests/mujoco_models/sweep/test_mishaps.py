@@ -1,19 +1,40 @@
 """A sweep that ends early: named in one line, the stations so far kept."""
 
+import sys
+
 import mujoco
 import numpy as np
 import pytest
 
 from analytic import Case, Readings, Sweep, circle
-from compare.commands import main as cli
-from compare.study.work.run import perform
+from compare.commands.main import main
+from compare.study.grid.file import load_study
+from compare.study.grid.plan import Plan
+from compare.study.work.run import Recipe, perform
 from mujoco_models import DivergedError, Settings, simulate_sweep
-from tests.compare.commands.test_main import vibrissa
-from tests.compare.study.conftest import plan_of  # noqa: F401  # a fixture
-from tests.compare.study.work.test_run import SMALL, only
 
 CASE = Case(profile=circle(1.0, lowest=(0.0, 0.4)), sweep=Sweep(stations=20))
 QUICK = Settings(segments=8, obstacle="primitive")
+BAD_INPUT = 2  # the command's exit code
+STUDY = """
+    study = { case = "catenary" }
+    sweep.stations = 40
+    mujoco = { segments = 10, contour_points = 800 }
+"""
+
+
+@pytest.fixture
+def vibrissa(tmp_path, monkeypatch, capsys):
+    """Run the command in an empty folder; its exit code and the lines of its errors."""
+
+    def run(*words):
+        monkeypatch.chdir(tmp_path)
+        monkeypatch.setattr(sys, "argv", ["vibrissa", *words])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        return ended.value.code, capsys.readouterr().err.strip().splitlines()
+
+    return run
 
 
 @pytest.fixture
@@ -72,7 +93,7 @@ def test_nothing_is_kept_of_no_stations():
     assert not kept
 
 
-def test_a_motion_that_explodes_is_told(monkeypatch, tmp_path):
+def test_a_motion_that_explodes_is_an_error(monkeypatch, tmp_path):
     """MuJoCo itself sets a bad state back to the straight beam and only warns."""
     from mujoco_models.sweep.sweep import set_out
 
@@ -83,7 +104,7 @@ def test_a_motion_that_explodes_is_told(monkeypatch, tmp_path):
         model.creep(1e-3)
 
 
-def test_contacts_that_mujoco_leaves_out_are_told(tmp_path, monkeypatch):
+def test_contacts_that_mujoco_leaves_out_are_an_error(vibrissa, monkeypatch):
     """MuJoCo only warns when its arena is full."""
     sound = mujoco.mj_forward
 
@@ -92,17 +113,16 @@ def test_contacts_that_mujoco_leaves_out_are_told(tmp_path, monkeypatch):
         data.warning[mujoco.mjtWarning.mjWARN_CONTACTFULL].number += data.ncon > 0
 
     monkeypatch.setattr(mujoco, "mj_forward", full)
-    done = vibrissa("simulate", "parabola", "--stations", "20", "--out", ".", cwd=tmp_path)
-    assert done.returncode == cli.BAD_INPUT
-    assert "out of memory" in done.stderr.splitlines()[-1]
-    assert "fewer segments" in done.stderr.splitlines()[-1]
+    code, errors = vibrissa("simulate", "parabola", "--stations", "20", "--out", ".")
+    assert code == BAD_INPUT
+    assert "out of memory" in errors[-1]
+    assert "fewer segments" in errors[-1]
 
 
 @pytest.mark.parametrize("verb", ["simulate", "run"])
-def test_command_line_keeps_a_diverged_sweep(not_a_number, tmp_path, verb):
-    done = vibrissa(verb, "parabola", "--stations", "20", "--out", ".", cwd=tmp_path)
-    assert done.returncode == cli.BAD_INPUT
-    kept, refused = done.stderr.strip().splitlines()
+def test_command_line_keeps_a_diverged_sweep(vibrissa, not_a_number, tmp_path, verb):
+    code, (kept, refused) = vibrissa(verb, "parabola", "--stations", "20", "--out", ".")
+    assert code == BAD_INPUT
     assert "stations in" in kept
     assert "diverged at station" in refused
     partial = Readings.read(tmp_path / "mujoco-chain.partial.parquet")
@@ -110,7 +130,10 @@ def test_command_line_keeps_a_diverged_sweep(not_a_number, tmp_path, verb):
     assert not (tmp_path / "mujoco-chain.parquet").exists()
 
 
-def test_a_study_calls_it_diverged(plan_of, not_a_number):  # noqa: F811
-    row = perform(*only(plan_of(SMALL))).row
+def test_a_study_calls_it_diverged(not_a_number, tmp_path):
+    (tmp_path / "grid.toml").write_text(STUDY)
+    plan = Plan.of(load_study(str(tmp_path / "grid.toml")))
+    (run,) = plan
+    row = perform(Recipe.of(plan.study), run).row
     assert row["outcome"] == "diverged"
     assert "station" in row["reason"]

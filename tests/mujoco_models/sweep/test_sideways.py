@@ -1,4 +1,4 @@
-"""Out of the plane: where MuJoCo's beams leave it, and that until then nothing tells."""
+"""Out of the plane: where MuJoCo's beams leave it, and that until then nothing shows it."""
 
 from dataclasses import replace
 from functools import cache
@@ -90,7 +90,8 @@ def test_motion_returns_to_the_plane_before_that_place_and_grows_beyond(beam):
     from mujoco_models.model.model import BeamModel
     from mujoco_models.sweep.sideways import sideways
     from mujoco_models.sweep.spatial_walk import GENTLE_STEP
-    from mujoco_models.sweep.sweep import Walk, set_out
+    from mujoco_models.sweep.sweep import set_out
+    from mujoco_models.sweep.walk import Walk
 
     model: BeamModel = set_out(CIRCLE, replace(COARSE, beam=beam)).model
     walk = Walk(model, float(CIRCLE.foot_x[0]), 1e-8)  # keeps to the plane, come what may
@@ -126,8 +127,8 @@ def test_it_comes_to_rest_on_the_other_side_bent_the_other_way():
         expected = np.interp(table["foot_x"], other["foot_x"], other[name])
         # 10 segments: 1e-2 of the largest reading of the whole sweep.
         np.testing.assert_allclose(table[name], expected, atol=1e-2 * found.table[name].abs().max())
-    # The clamp tells the contact on either side; at first contact, where hardly a force acts, with
-    # an error of the vibrissa's radius.
+    # The clamp determines the contact on either side; at first contact, where hardly a force acts,
+    # with an error of the vibrissa's radius.
     points = reconstruct(found).loc[table.index]
     for name in ("contact_x", "contact_y"):
         np.testing.assert_allclose(points[name], table[name], atol=CIRCLE.beam.radius)
@@ -156,16 +157,22 @@ def test_results_scale_with_the_beam():
 
 @pytest.mark.skipif("cable" not in BEAMS, reason="only the cable's torsional stiffness can be set")
 @pytest.mark.slow
-def test_torsional_stiffness_does_not_matter_to_second_order(monkeypatch):
+def test_torsional_stiffness_does_not_matter_to_second_order():
     """With GJ = EI not at all; else the plugin's moments derive from no energy."""
-    from mujoco_models.beams import cable
+    from mujoco_models.beams.cable import Cable
+    from mujoco_models.beams.layout import bead_spacing
+    from mujoco_models.model.model import BeamModel
+    from mujoco_models.obstacles.kinds import place
     from mujoco_models.sweep.sideways import sideways
-    from mujoco_models.sweep.sweep import Walk, set_out
+    from mujoco_models.sweep.walk import Walk
 
     def error(twist, segments):
-        monkeypatch.setattr(cable, "_TWIST", twist)
         settings = replace(COARSE, beam="cable", segments=segments)
-        walk = Walk(set_out(CIRCLE, settings).model, float(CIRCLE.foot_x[0]), 1e-8)
+        obstacle = place(CIRCLE, settings)
+        spacing = bead_spacing(segments, CIRCLE.radius, obstacle.largest_curvature)
+        cable = Cable(settings, spacing, twist)
+        model = BeamModel(cable, CIRCLE.radius, obstacle, settings.contact_stiffness)
+        walk = Walk(model, float(CIRCLE.foot_x[0]), 1e-8)
         for foot_x in np.linspace(0.9, -0.459, 25):
             walk.go_to(float(foot_x))
         row = walk.row()

@@ -1,0 +1,89 @@
+"""The clamp's action on the vibrissa, by three accounts that must agree."""
+
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats, Integers
+
+
+class Clamp(NamedTuple):
+    """The clamp's action on the vibrissa, in the world frame, at the foot [EI/L^2, EI/L]."""
+
+    force_x: float
+    force_y: float
+    moment_z: float
+
+
+def by_sensors(data: mujoco.MjData) -> Clamp:
+    """MuJoCo's force and torque sensors at the clamp.
+
+    Their site sits at the foot, its axes are those of the world: what it transmits to the beam is
+    what the clamp does to the vibrissa.
+
+    Parameters
+    ----------
+    data : mujoco.MjData
+        An evaluated configuration.
+
+    Returns
+    -------
+    Clamp
+        What the sensors read.
+    """
+    fx, fy, _, _, _, mz = data.sensordata
+    return Clamp(float(fx), float(fy), float(mz))
+
+
+def by_contacts(
+    model: mujoco.MjModel, data: mujoco.MjData, foot: Floats, bead_of: Integers
+) -> Clamp:
+    """The wrench at the foot that holds all contact forces.
+
+    Parameters
+    ----------
+    model, data : mujoco.MjModel, mujoco.MjData
+        An evaluated configuration.
+    foot : array, shape (2,)
+        Position of the foot [L].
+    bead_of : array of int, shape (ngeom,)
+        The bead that each geom is, or -1.
+
+    Returns
+    -------
+    Clamp
+        By equilibrium of the whole vibrissa.
+    """
+    held = np.zeros(3)
+    wrench = np.zeros(6)
+    for i in range(data.ncon):
+        mujoco.mj_contactForce(model, data, i, wrench)
+        contact = data.contact[i]
+        force = wrench[:3] @ contact.frame.reshape(3, 3)
+        force *= 1.0 if bead_of[contact.geom[1]] >= 0 else -1.0
+        arm = contact.pos[:2] - foot
+        held += [force[0], force[1], arm[0] * force[1] - arm[1] * force[0]]
+    return Clamp(*(-held).tolist())
+
+
+def discrepancy(sensed: Clamp, required: Clamp, first_joint: float, moment: float) -> float:
+    """By how much three accounts of the clamp differ, the worst of all.
+
+    Parameters
+    ----------
+    sensed, required : Clamp
+        By the sensors and by the contacts.
+    first_joint : float
+        Arc length of the beam's first joint, to which the sensors' wrench is carried [L].
+    moment : float
+        The beam's own elastic moment there [EI/L].
+
+    Returns
+    -------
+    float
+        Largest difference [EI/L^2, EI/L].
+    """
+    by_contact = np.abs(np.subtract(sensed, required)).max()
+    at_joint = sensed.moment_z + first_joint * sensed.force_x
+    return float(max(by_contact, abs(at_joint - moment)))

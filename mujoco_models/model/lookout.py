@@ -1,0 +1,173 @@
+"""What of beam and obstacle takes part in collisions, and what that could overlook."""
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats, Integers
+from mujoco_models.model.contacts import Contacts
+from mujoco_models.obstacles.protocol import GEOM_PREFIX, Obstacle
+
+_NEAR = 1e-6  # L; beads that are nearer to the obstacle must be watched at rest
+_OVERLOOKED = 1e-6  # L; how deep an unloaded bead may be in the obstacle
+
+
+class Lookout:
+    """The obstacle's window and the watched beads: all else is left out of collisions, for speed.
+
+    Parameters
+    ----------
+    model, data : mujoco.MjModel, mujoco.MjData
+        The compiled model and its state; collision masks are changed in place.
+    beads : array of int, shape (n_beads,)
+        The beads' geoms.
+    obstacle : Obstacle
+        What the beam is swept past.
+    radius : float
+        Of the vibrissa [L].
+
+    Attributes
+    ----------
+    window : int
+        The obstacle's window that takes part in collisions.
+    watched : frozenset of int
+        The beads that do.
+    """
+
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        beads: Integers,
+        obstacle: Obstacle,
+        radius: float,
+    ) -> None:
+        self._model = model
+        self._data = data
+        self._beads = beads
+        self._obstacle = obstacle
+        self._radius = radius
+        self._obstacle_geoms = np.array(
+            [model.geom(f"{GEOM_PREFIX}{i}").id for i in range(obstacle.geoms)]
+        )
+        self._trail: tuple[float, ...] = ()
+        self.window = -1
+        right_end = obstacle.place(np.array([np.pi / 2]))
+        self.use_window(obstacle.window_of(float(right_end[0])))
+        self.watched: frozenset[int] = frozenset()
+        self.watch(frozenset(range(len(beads))))
+
+    def use_window(self, window: int) -> None:
+        """Let MuJoCo see what the obstacle has for this window.
+
+        Parameters
+        ----------
+        window : int
+            See `Obstacle.window_of`.
+        """
+        if window != self.window:
+            self._obstacle.show(self._model, self._obstacle_geoms, window)
+            self.window = window
+
+    def move_window(self, loaded: Floats) -> bool:
+        """Ensure that all load rests on full resolution.
+
+        Parameters
+        ----------
+        loaded : array, shape (n,)
+            Places of the loaded contacts along the contour, see `Obstacle.place`.
+
+        Returns
+        -------
+        bool
+            True if the window had to be changed: MuJoCo's answer is then out of date.
+        """
+        if loaded.size == 0 or self._obstacle.is_inside(self.window, loaded):
+            return False
+        best = self._obstacle.window_of(float(loaded.mean()))
+        if best == self.window:
+            return False
+        self.use_window(best)
+        return True
+
+    def anticipate_window(self) -> None:
+        """Use the window towards which the contact has been moving."""
+        if len(self._trail) == 2:
+            before, last = self._trail
+            self.use_window(self._obstacle.window_of(2 * last - before))
+
+    def leave_trail(self, place: float) -> None:
+        """Remember where the contact rests, for `anticipate_window`.
+
+        Parameters
+        ----------
+        place : float
+            Along the contour, see `Obstacle.place`.
+        """
+        self._trail = (*self._trail[-1:], place)
+
+    def follow_contact(self, contacts: Contacts) -> None:
+        """Use the window that is nearest to the deepest contact, if there is a loaded one.
+
+        Parameters
+        ----------
+        contacts : Contacts
+            Of the last evaluated configuration.
+        """
+        if contacts.loaded.any():
+            deepest = contacts.slope[[np.argmin(contacts.distance)]]
+            place = self._obstacle.place(deepest)
+            if not self._obstacle.is_inside(self.window, place):
+                self.use_window(self._obstacle.window_of(float(place[0])))
+
+    def watch(self, beads: frozenset[int]) -> None:
+        """Let these beads, and no others, take part in collisions.
+
+        Parameters
+        ----------
+        beads : frozenset of int
+            Their numbers.
+        """
+        if beads != self.watched:
+            self._model.geom_conaffinity[self._beads] = 0
+            self._model.geom_conaffinity[self._beads[sorted(beads)]] = 1
+            self.watched = beads
+
+    def near_the_obstacle(self) -> frozenset[int]:
+        """Beads that touch the obstacle or nearly do, whether or not MuJoCo looks at them.
+
+        Returns
+        -------
+        frozenset of int
+            Their numbers.
+        """
+        near = self._obstacle.near(self._positions(), self._radius + _NEAR)
+        return frozenset(near.tolist())
+
+    def overlooked(self, contacts: Contacts) -> float | None:
+        """Where a watched bead is in the obstacle and MuJoCo reports no load on it.
+
+        What collides is true to the contour near its window only: this makes sure, at every state
+        at rest, that it has not let the beam through.
+
+        Parameters
+        ----------
+        contacts : Contacts
+            Of the last evaluated configuration.
+
+        Returns
+        -------
+        float or None
+            The place along the contour, see `Obstacle.place`; None if there is no such bead.
+        """
+        unloaded = np.setdiff1d(sorted(self.watched), contacts.bead[contacts.loaded])
+        positions = self._positions()[unloaded]
+        inside = self._radius - _OVERLOOKED
+        for suspect in self._obstacle.near(positions, inside):
+            clearance, place = self._obstacle.clearance(positions[suspect])
+            if clearance < inside:
+                return place
+        return None
+
+    def _positions(self) -> Floats:
+        """Shape (n_beads, 2) [L]."""
+        return np.asarray(self._data.geom_xpos[self._beads, :2])

@@ -1,0 +1,70 @@
+"""The model before it is compiled: the beam with its beads, the clamp's sensors, the obstacle."""
+
+import mujoco
+
+from mujoco_models.beams.protocol import FOOT, Beam
+from mujoco_models.obstacles.protocol import Obstacle
+
+_CONTACT_GAP = 0.01  # L; how far ahead the solver sees contacts that carry no force yet
+
+
+def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
+    """Beam, beads, sensors and obstacle.
+
+    The beam touches the obstacle with spheres on its axis, not with capsules: the distance of a
+    point to a convex body has a continuous derivative, so an equilibrium exists at every station; a
+    capsule that lies along a facet has no single nearest point, its contact jumps from end to end,
+    and nothing comes to rest.
+
+    Parameters
+    ----------
+    beam : Beam
+        Which beam, and where its joints and beads are.
+    radius : float
+        Of the vibrissa [L].
+    obstacle : Obstacle
+        What it is swept past.
+
+    Returns
+    -------
+    mujoco.MjSpec
+        The beads are its only spheres, in the order of the layout.
+    """
+    spec = beam.spec(radius)
+    add_options(spec)
+    obstacle.add_to(spec)
+    for s, link in zip(beam.layout.beads, beam.layout.links.tolist(), strict=True):
+        body, place = beam.mount(spec, link, float(s))
+        body.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_SPHERE,
+            pos=place,
+            size=[radius, 0, 0],
+            contype=0,
+            conaffinity=1,
+            condim=1,
+            density=0,
+            gap=_CONTACT_GAP,
+            priority=1,
+        )
+    spec.body(FOOT).add_site(name="clamp")
+    for kind in (mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE):
+        spec.add_sensor(type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="clamp")
+    return spec
+
+
+def add_options(spec: mujoco.MjSpec) -> None:
+    """Set what every model needs for its forces to be right to rounding.
+
+    Parameters
+    ----------
+    spec : mujoco.MjSpec
+        Changed in place.
+    """
+    option = spec.option
+    option.gravity = [0, 0, 0]
+    option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE  # 4.0.0: wrong Hessian with sparse ones
+    option.tolerance = 1e-14
+    option.ccd_tolerance = 1e-12
+    option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
+    # The midphase's tree tests every bead against every window: seven times the cost of a step.
+    option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MIDPHASE

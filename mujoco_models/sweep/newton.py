@@ -1,0 +1,153 @@
+"""One step of Newton's method on MuJoCo's own balance of moments.
+
+Each step minimises the quadratic model of the energy, with the contacts' unilateral constraints
+linearised; its stiffness includes what turning levers and turning normals contribute.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg.lapack import dpotrf, dpotrs
+from scipy.optimize import nnls
+
+from analytic.problem.arrays import Floats
+from mujoco_models.errors import DivergedError
+from mujoco_models.model.contacts import Contacts
+from mujoco_models.model.model import BeamModel
+from mujoco_models.sweep.numerics import Numerics
+from mujoco_models.sweep.state import State, turned
+
+
+class Touch(NamedTuple):
+    """Where a bead is, and which way the obstacle faces it.
+
+    Attributes
+    ----------
+    normal_angle : float
+        Slope angle of the contour there [rad].
+    position : array, shape (2,)
+        Of the bead's centre [L].
+    """
+
+    normal_angle: float
+    position: Floats
+
+
+class Newton:
+    """Newton's method, with what it remembers from one step to the next.
+
+    Parameters
+    ----------
+    model : BeamModel
+        Evaluated at the state that a step starts from.
+    numerics : Numerics
+        Constants.
+    """
+
+    def __init__(self, model: BeamModel, numerics: Numerics) -> None:
+        self._model = model
+        self._numerics = numerics
+        self._last: dict[int, Touch] = {}
+
+    def step(self, state: State, contacts: Contacts, inertia: float = 0.0) -> State:
+        """The next iterate.
+
+        Parameters
+        ----------
+        state : State
+            The configuration in which the model is.
+        contacts : Contacts
+            MuJoCo's, of that configuration.
+        inertia : float
+            Makes the step shorter, in units of each joint's stiffness.
+
+        Returns
+        -------
+        State
+            With the imbalance of `state`: its own is not known yet.
+
+        Raises
+        ------
+        DivergedError
+            If the stiffness is not finite.
+        """
+        model, numerics = self._model, self._numerics
+        curvature = self._curvature(contacts)
+        layout = model.layout
+        count = len(layout.joints)
+        bead, normal, distance = contacts
+        lever = model.bead_positions(bead)[:, None] - model.joint_positions()
+        carried = np.arange(count) <= layout.links[bead][:, None]
+        along = (lever[:, :, 0] * normal[:, 1:] - lever[:, :, 1] * normal[:, :1]) * carried
+        across = (lever[:, :, 0] * normal[:, :1] + lever[:, :, 1] * normal[:, 1:]) * carried
+        force = np.array([state.forces.get(i, 0.0) for i in bead.tolist()])
+        loaded = force > 0
+
+        stiffness = np.diag((1 + inertia) * model.beam.stiffness(state.angles))
+        # The lever of a force turns with every joint below the outer one of two ...
+        outer = np.maximum.outer(np.arange(count), np.arange(count))
+        stiffness += (force @ across)[outer]
+        # ... and the normal turns as the bead slides along the contour.
+        stiffness -= (force * curvature * across.T) @ across
+
+        # Loaded contacts convexify the model; their slack is zero at rest, and so is the effect.
+        held, slack = along[loaded], (distance + force / model.contact_stiffness)[loaded]
+        stiffness += numerics.stiffening * held.T @ held
+        gradient = -model.elastic_moments() + numerics.stiffening * held.T @ slack
+        factor = _cholesky(stiffness, float(count))
+        solved, _ = dpotrs(factor, np.column_stack([-gradient, along.T]), lower=1)
+        free, compliance = solved[:, 0], solved[:, 1:]
+        softness = np.eye(len(bead)) / model.contact_stiffness
+        forces = _unilateral(along @ compliance + softness, distance + along @ free)
+        step = free + compliance @ forces
+        turn = turned(step, np.zeros(count))
+        return State(
+            state.angles + step * min(1.0, numerics.largest_turn / max(turn, 1e-300)),
+            {int(i): float(f) for i, f in zip(bead, forces, strict=True) if f > 0},
+            state.imbalance,
+        )
+
+    def _curvature(self, contacts: Contacts) -> Floats:
+        """How fast each contact's normal turns as the bead slides, shape (n_contacts,) [1/L].
+
+        On a faceted obstacle a bead sees a polygon: no turn along a facet, all of it within 1e-8 L
+        at a vertex. Only the secant through the last two iterates sees what is at hand; with the
+        contour's mean curvature Newton's method can jump for ever between a vertex's two facets.
+        """
+        angles = contacts.slope
+        places = self._model.bead_positions(contacts.bead)
+        now = {
+            bead: Touch(float(angle), place.copy())
+            for bead, angle, place in zip(contacts.bead.tolist(), angles, places, strict=True)
+        }
+        found = self._model.contact_curvature(angles)
+        if self._model.obstacle.faceted:
+            for i, (bead, touch) in enumerate(now.items()):
+                before = self._last.get(bead)
+                if before is not None:
+                    turn = touch.normal_angle - before.normal_angle
+                    slid = float(np.hypot(*(touch.position - before.position)))
+                    same = abs(turn) < self._numerics.same_normal
+                    found[i] = 0.0 if same else abs(turn) / slid
+        self._last = now
+        return found
+
+
+def _cholesky(stiffness: Floats, scale: float) -> Floats:
+    """Factor of the stiffness, or of the least shifted one that is positive definite."""
+    if not np.isfinite(stiffness).all():
+        raise DivergedError("the stiffness is not finite")
+    shift = 0.0
+    while True:
+        factor, info = dpotrf(stiffness + shift * np.eye(len(stiffness)), lower=1)
+        if info == 0:
+            return np.asarray(factor)
+        shift = max(2 * shift, 0.02 * scale)
+
+
+def _unilateral(compliance: Floats, gap: Floats) -> Floats:
+    """Contact forces f >= 0 that minimise f.compliance.f/2 + gap.f, shape (n,)."""
+    if len(gap) == 0:
+        return np.zeros(0)
+    root = np.linalg.cholesky(compliance)
+    return np.asarray(nnls(root.T, -np.linalg.solve(root, gap))[0])

@@ -1,0 +1,71 @@
+"""A configuration of the beam, and how far two of them are apart."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+
+
+@dataclass(frozen=True)
+class State:
+    """A configuration of the beam.
+
+    Attributes
+    ----------
+    angles : array, shape (n_joints,)
+        Joint angles [rad].
+    forces : dict
+        Contact force by bead [EI/L^2].
+    imbalance : float
+        Largest moment out of balance at any joint [EI/L].
+    settled : bool
+        Whether that is below the tolerance, with the whole beam looking at the obstacle.
+    """
+
+    angles: Floats
+    forces: dict[int, float]
+    imbalance: float = np.inf
+    settled: bool = False
+
+    @classmethod
+    def straight(cls, joints: int) -> "State":
+        """The unloaded beam.
+
+        Parameters
+        ----------
+        joints : int
+            How many it has.
+
+        Returns
+        -------
+        State
+            Not yet known to be at rest.
+        """
+        return cls(np.zeros(joints), {})
+
+    @property
+    def load(self) -> float:
+        """Sum of the contact forces [EI/L^2]."""
+        return sum(self.forces.values())
+
+    @property
+    def loaded_bead(self) -> float:
+        """Mean number of the loaded beads, weighed by their forces."""
+        return sum(i * f for i, f in self.forces.items()) / self.load
+
+
+def turned(angles: Floats, before: Floats) -> float:
+    """The farthest that any link has turned.
+
+    Parameters
+    ----------
+    angles, before : array, shape (n_joints,)
+        Joint angles of two configurations [rad].
+
+    Returns
+    -------
+    float
+        Turn of a link in the plane [rad].
+    """
+    return float(np.abs(np.cumsum(angles - before)).max())
