@@ -29,6 +29,23 @@ NAMED_PROFILES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
 CASE_NAMES = tuple(NAMED_PROFILES)
 
 
+def named_contour(name: str) -> Contour:
+    """The contour of one of the named cases.
+
+    Parameters
+    ----------
+    name : str
+        One of `CASE_NAMES`.
+
+    Returns
+    -------
+    Contour
+        In units of the vibrissa's length.
+    """
+    numbers = dict(NAMED_PROFILES[name])
+    return _KINDS[numbers.pop("kind")](**numbers)
+
+
 def named_case(name: str) -> Case:
     """One of the named cases, with the default beam and sweep.
 
@@ -54,5 +71,4 @@ def named_case(name: str) -> Case:
             f"one of {', '.join(CASE_NAMES)}, or a TOML file",
             "see `vibrissa cases`",
         )
-    numbers = dict(NAMED_PROFILES[name])
-    return Case(profile=_KINDS[numbers.pop("kind")](**numbers), name=name)
+    return Case(profile=named_contour(name), name=name)

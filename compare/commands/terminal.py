@@ -1,79 +1,210 @@
-"""What the command line says: tables and lines on standard output, progress beside it."""
+"""What the command line prints: tables and lines on standard output, progress beside it.
+
+Lengths are printed in units of the vibrissa's length L, whatever the units of the case.
+"""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from rich.console import Console
-from rich.progress import Progress
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    Task,
+    TextColumn,
+    TimeRemainingColumn,
+)
 from rich.table import Column, Table
+from rich.text import Text
 
-from analytic import CLAMP_READINGS
+from analytic import CLAMP_READINGS, PHASES, Readings
 from compare.comparison import Comparison
 from compare.explain.budget import Budget
 from compare.show.figures.budget_bars import headline
 from compare.show.side_by_side import SideBySide
 from compare.simulate.target import Followed
 
-TOLD = Console(highlight=False)
-NOTED = Console(stderr=True, highlight=False)
+
+def print_line(text: str) -> None:
+    """Print a line as it is: no markup, no folding.
+
+    Parameters
+    ----------
+    text : str
+        The line.
+    """
+    _output().print(text, soft_wrap=True, markup=False)
+
+
+def print_written(path: Path) -> None:
+    """Print which file there is now.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    """
+    print_line(f"wrote {path}")
+
+
+class _Rate(ProgressColumn):
+    def render(self, task: Task) -> Text:
+        return Text("" if task.speed is None else f"{task.speed:.3g}/s")
 
 
 @contextmanager
 def progress(what: str, total: int) -> Iterator[Callable[[], None]]:
-    """A bar on a terminal, nothing elsewhere."""
-    with Progress(console=NOTED, disable=not NOTED.is_terminal, transient=True) as bar:
-        task = bar.add_task(what, total=total)
+    """Show a bar with rate and remaining time on a terminal, nothing elsewhere.
+
+    Parameters
+    ----------
+    what : str
+        What is counted.
+    total : int
+        How many there are.
+
+    Yields
+    ------
+    callable
+        To be called after each of them.
+    """
+    console = Console(stderr=True, highlight=False)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), _Rate(),
+               TimeRemainingColumn())  # fmt: skip
+    with Progress(
+        *columns, console=console, disable=not console.is_terminal, transient=True
+    ) as bar:
+        task = bar.add_task(Text(what).markup, total=total)
         yield lambda: bar.advance(task)
 
 
-def tell_comparison(comparison: Comparison) -> None:
-    """The verdict, and why."""
-    TOLD.print(_summary(comparison))
+def print_sweep(readings: Readings) -> None:
+    """Print what a sweep found, in a line: stations, phases, snap-off, the worst residuals.
+
+    Parameters
+    ----------
+    readings : Readings
+        Of an engine.
+    """
+    table, length = readings.table, readings.beam.length
+    parts = [f"{int(readings.trusted.sum())} of {len(table)} stations ok"]
+    if "phase" in table:
+        counts = table["phase"].value_counts()
+        found = [f"{counts[phase]} {phase}" for phase in PHASES if phase in counts]
+        parts.append(", ".join(found))
+    snap_off = readings.snap_off
+    parts.append(
+        "no snap-off" if snap_off is None else f"snap-off at foot_x = {snap_off / length:.4f} L"
+    )
+    for name, unit in (
+        ("residual", " EI/L"),
+        ("residual_boundary", ""),
+        ("residual_moment", " EI/L"),
+    ):
+        if name in table:
+            worst = np.nanmax(table[name].to_numpy(dtype=float), initial=0.0)
+            parts.append(f"{name.replace('_', ' ')} at most {worst:.1e}{unit}")
+    print_line(f"{readings.source}: {'; '.join(parts)}")
+
+
+def print_reconstruction(readings: Readings, found: pd.DataFrame) -> None:
+    """Print what a reconstruction found, in a line.
+
+    Parameters
+    ----------
+    readings : Readings
+        What the contact was found from.
+    found : pandas.DataFrame
+        As `analytic.reconstruct` returns it.
+    """
+    counts = found["phase"].value_counts()
+    touching = int(np.isfinite(found["contact_x"].to_numpy(dtype=float)).sum())
+    words = [
+        f"{touching} contact points from {len(found)} stations",
+        ", ".join(f"{counts[phase]} {phase}" for phase in PHASES if phase in counts),
+    ]
+    unused = int((~readings.trusted).sum())
+    if unused:
+        words.append(f"{unused} not used, their readings are not to be trusted")
+    if touching:
+        x, y = (found[name].to_numpy(dtype=float) for name in ("contact_x", "contact_y"))
+        length = readings.beam.length
+        words.append(
+            f"x from {np.nanmin(x) / length:.4g} to {np.nanmax(x) / length:.4g} L, "
+            f"y from {np.nanmin(y) / length:.4g} to {np.nanmax(y) / length:.4g} L"
+        )
+    print_line(f"{readings.source}: {'; '.join(words)}")
+
+
+def print_comparison(comparison: Comparison) -> None:
+    """Print the verdict, and why.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        What was found.
+    """
+    _output().print(_summary(comparison))
     for failure in comparison.failures:
-        TOLD.print(f"  {failure}", soft_wrap=True, markup=False)
+        print_line(f"  {failure}")
     if comparison.likely is not None:
-        TOLD.print(f"  likely: {comparison.likely}", soft_wrap=True, markup=False)
+        print_line(f"  likely: {comparison.likely}")
 
 
 def _summary(comparison: Comparison) -> Table:
-    verdict = "[green]agrees[/]" if comparison.agrees else "[red]disagrees[/]"
+    length = comparison.reference.beam.length
+    title = Text(f"{comparison.candidate.source} ")
+    title.append("agrees" if comparison.agrees else "disagrees",
+                 "green" if comparison.agrees else "red")  # fmt: skip
+    title.append(f" with {comparison.reference.source}")
     table = Table(
         "reading", "rms", "max", "at foot_x", "phase",
-        title=f"{comparison.candidate.source} {verdict} with {comparison.reference.source}",
-        caption="relative to each reading's largest magnitude",
+        title=title, caption="relative to each reading's largest magnitude; lengths in L",
     )  # fmt: skip
     for name in CLAMP_READINGS:
         d = comparison.disagreement[name]
-        table.add_row(name, f"{d.rms:.1e}", f"{d.max:.1e}", f"{d.at:.4g}", d.phase)
+        table.add_row(name, f"{d.rms:.1e}", f"{d.max:.1e}", f"{d.at / length:.4g} L", d.phase)
     table.add_section()
     shift = comparison.snap_off.difference
     agreement = comparison.phase_agreement()
-    table.add_row("snap-off", "", "none" if shift is None else f"{shift:+.1e}", "", "")
+    table.add_row("snap-off", "", "none" if shift is None else f"{shift / length:+.1e} L", "", "")
     if agreement:
         table.add_row("phases", "", f"{min(agreement.values()):.1%} right", "", "")
     offset = comparison.offset
     if offset.value or offset.uncertainty:
-        table.add_row("offset", "", f"{offset.value:+.4g}", f"+- {offset.uncertainty:.1g}", "")
+        width = f"+- {offset.uncertainty / length:.1g} L"
+        table.add_row("offset", "", f"{offset.value / length:+.4g} L", width, "")
     if any(comparison.noise.level.values()):
         table.add_row("noise", "", f"{max(comparison.noise.level.values()):.1e}", "", "")
     return table
 
 
-def tell_budget(found: Budget, case: str) -> None:
-    """The parts, the verdict and the suspects."""
-    TOLD.print(_budget_table(found, case))
-    TOLD.print(f"{headline(found)}.", soft_wrap=True)
+def print_budget(found: Budget, case: str) -> None:
+    """Print the parts, the verdict and the suspects.
+
+    Parameters
+    ----------
+    found : Budget
+        What was measured.
+    case : str
+        Name of the case.
+    """
+    _output().print(_budget_table(found, case))
+    print_line(f"{headline(found)}.")
     for suspect in found.suspects:
-        TOLD.print(
+        print_line(
             f"  suspect: {suspect.name} differs by {suspect.change:+.2%} "
             f"(accounts for {suspect.share:.0%} of the unexplained)"
         )
 
 
 def _budget_table(found: Budget, case: str) -> Table:
-    table = Table("part", *CLAMP_READINGS, title=f"Budget of {case}, rms +- uncertainty")
+    table = Table("part", *CLAMP_READINGS, title=Text(f"Budget of {case}, rms +- uncertainty"))
     for name, readings in found.parts.items():
         cells = [f"{p.rms:.1e} +- {p.uncertainty:.0e}" for p in readings.values()]
         table.add_row(name, *cells)
@@ -85,28 +216,40 @@ def _budget_table(found: Budget, case: str) -> Table:
     return table
 
 
-def tell_advice(advice: Followed) -> None:
-    """The settings, foretold and measured."""
+def print_advice(advice: Followed) -> None:
+    """Print the advised settings, with what was predicted and measured of them.
+
+    Parameters
+    ----------
+    advice : Followed
+        Advice, and what came of it.
+    """
     settings = advice.foretold.settings
     mesh = f" of {settings.contour_points} points" if settings.obstacle == "mesh" else ""
-    TOLD.print(
+    print_line(
         f"Cheapest for {advice.target:g}: {settings.beam} of {settings.segments} segments, "
         f"{settings.obstacle}{mesh}, contact stiffness {settings.contact_stiffness:.1e}."
     )
-    for told, error, seconds in (
+    for what, error, seconds in (
         ("foretold", advice.foretold.error, advice.foretold.seconds_a_station),
         ("measured", advice.error, advice.seconds_a_station),
     ):
-        TOLD.print(f"  {told}: {error:.1e} rms, {1e3 * seconds:.1f} ms a station")
+        print_line(f"  {what}: {error:.1e} rms, {1e3 * seconds:.1f} ms a station")
     if not advice.reached:
-        TOLD.print("  The target was missed: ask for a little less.")
+        print_line("  The target was missed: ask for a little less.")
 
 
-def side_by_side_tables(found: SideBySide) -> tuple[Table, Table]:
-    """Against the reference, and the largest rms between the candidates."""
+def print_side_by_side(found: SideBySide) -> None:
+    """Print the candidates against the reference and, if there are several, against each other.
+
+    Parameters
+    ----------
+    found : SideBySide
+        All comparisons.
+    """
     against = Table(
         "", Column("candidate", overflow="fold"), *CLAMP_READINGS, "snap-off", "ms/station",
-        title=f"Against {found.reference}: rms relative to each reading's largest magnitude",
+        title=Text(f"Against {found.reference}: rms relative to each reading's largest magnitude"),
     )  # fmt: skip
     rows = found.table()
     numbers = {name: str(i) for i, name in enumerate(found.against, 1)}
@@ -114,11 +257,14 @@ def side_by_side_tables(found: SideBySide) -> tuple[Table, Table]:
         took, snap_off = row["seconds_per_station"], row["snap_off"]
         against.add_row(
             numbers[row["candidate"]],
-            row["candidate"],
+            Text(row["candidate"]),
             *(f"{row[name]:.1e}" for name in CLAMP_READINGS),
             "none" if np.isnan(snap_off) else f"{snap_off:+.1e}",
             "" if np.isnan(took) else f"{1e3 * took:.1f}",
         )
+    _output().print(against)
+    if len(numbers) < 2:
+        return
     between = Table("", *list(numbers.values())[:-1], title="Each other: the largest rms")
     worst = {
         (row["reference"], row["candidate"]): max(row[name] for name in CLAMP_READINGS)
@@ -127,9 +273,9 @@ def side_by_side_tables(found: SideBySide) -> tuple[Table, Table]:
     names = list(numbers)
     for i, name in enumerate(names[1:], 1):
         between.add_row(numbers[name], *(f"{worst[one, name]:.1e}" for one in names[:i]))
-    return against, between
+    _output().print(between)
 
 
-def tell_written(path: Path) -> None:
-    """Which file there is now."""
-    TOLD.print(f"wrote {path}", soft_wrap=True, markup=False)
+def _output() -> Console:
+    """Standard output, as it is now: tests and notebooks replace it."""
+    return Console(highlight=False)

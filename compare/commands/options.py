@@ -1,0 +1,162 @@
+"""Options that several commands share, and the job that they describe."""
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from analytic.problem.errors import InputError
+from mujoco_models.settings import BeamKind, ObstacleKind
+
+if TYPE_CHECKING:
+    from compare.read.case import Job
+
+AGREES, DISAGREES = 0, 1
+
+CaseName = Annotated[
+    str, typer.Argument(metavar="CASE", help="A named case (see `vibrissa cases`) or a TOML file.")
+]
+Out = Annotated[
+    Path | None,
+    typer.Option(
+        "--out",
+        metavar="DIR",
+        help="Folder for what is written.",
+        show_default="results/CASE, with the options that change the case",
+    ),
+]
+OutFolder = Annotated[
+    Path | None, typer.Option("--out", metavar="DIR", help="Folder for what is written.")
+]
+Stations = Annotated[
+    int | None,
+    typer.Option(metavar="N", help="Stations of the sweep.", show_default="the case's, or 200"),
+]
+Segments = Annotated[
+    int | None,
+    typer.Option(metavar="N", help="Segments of MuJoCo's beam.", show_default="the case's, or 40"),
+]
+Beam = Annotated[
+    BeamKind | None, typer.Option(help="MuJoCo's beam.", show_default="the case's, or chain")
+]
+Obstacle = Annotated[
+    ObstacleKind | None,
+    typer.Option(help="MuJoCo's obstacle.", show_default="the case's, or mesh"),
+]
+Spatial = Annotated[
+    bool, typer.Option("--spatial", help="Let MuJoCo's beam leave the plane of the sweep.")
+]
+BeamFile = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="TOML file whose [beam] table describes the vibrissa of measured data.",
+    ),
+]
+Columns = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME=COLUMN[:UNIT]", help="A column of a rig's file; repeat the option for each."
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Changes:
+    """What the command line changes of a case and of its simulation; None leaves it as it is."""
+
+    stations: int | None = None
+    segments: int | None = None
+    beam: BeamKind | None = None
+    obstacle: ObstacleKind | None = None
+    spatial: bool = False
+
+    def job(self, name: str) -> "Job":
+        """The job of that name or TOML file, with these changes.
+
+        Parameters
+        ----------
+        name : str
+            A named case, or the path of a TOML file.
+
+        Returns
+        -------
+        Job
+            Case, settings and tolerances.
+
+        Raises
+        ------
+        InputError
+            If there is no such case, or a number is out of its range.
+        """
+        from compare.read.case import load_job
+
+        job = load_job(name)
+        case = job.case
+        if self.stations is not None:
+            case = replace(case, sweep=replace(case.sweep, stations=self.stations))
+        named: dict[str, Any] = {
+            "segments": self.segments,
+            "beam": self.beam,
+            "obstacle": self.obstacle,
+            "planar": False if self.spatial else None,
+        }
+        given = {key: value for key, value in named.items() if value is not None}
+        return replace(job, case=case, settings=replace(job.settings, **given))
+
+    def folder(self, out: Path | None, case: str) -> Path:
+        """Where the results go by default: runs that differ do not overwrite each other.
+
+        Parameters
+        ----------
+        out : Path, optional
+            The folder that was asked for, if any.
+        case : str
+            Name of the case.
+
+        Returns
+        -------
+        Path
+            ``results/catenary``, or ``results/catenary-rod-80-segments`` and the like.
+        """
+        words = [
+            case,
+            *(word for word in (self.beam, self.obstacle) if word),
+            *([f"{self.segments}-segments"] if self.segments is not None else []),
+            *([f"{self.stations}-stations"] if self.stations is not None else []),
+            *(["spatial"] if self.spatial else []),
+        ]
+        return out or Path("results") / "-".join(words)
+
+
+def number_or_auto(option: str, text: str) -> float | Literal["auto"]:
+    """What an option says that takes a number or the word auto.
+
+    Parameters
+    ----------
+    option : str
+        Its name, for the error.
+    text : str
+        What was given.
+
+    Returns
+    -------
+    float or "auto"
+        A finite number, or the word.
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+    """
+    if text == "auto":
+        return "auto"
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise InputError(option, repr(text), "a number or auto", "write it with a decimal point")
+    return number

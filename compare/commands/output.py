@@ -1,0 +1,89 @@
+"""The folder that a command writes to, and signals that end it."""
+
+import signal
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from types import FrameType
+
+from analytic.problem.errors import InputError
+
+_SIGNALS = {"SIGINT": "interrupted", "SIGTERM": "ended by SIGTERM", "SIGHUP": "ended by SIGHUP"}
+
+
+class Ended(KeyboardInterrupt):
+    """A signal asked the command to end."""
+
+
+@contextmanager
+def output_folder(folder: Path) -> Iterator[Path]:
+    """Make a folder, and see that it can be written to before any work is done.
+
+    What was made and stays empty is removed again.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder; its parents are made, too.
+
+    Yields
+    ------
+    Path
+        `folder`.
+
+    Raises
+    ------
+    InputError
+        If it cannot be made or written to.
+    """
+    made: list[Path] = []
+    try:
+        made = [one for one in (folder, *folder.parents) if not one.exists()]
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except (OSError, ValueError) as error:
+        _remove_empty(made)
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(
+            "--out", folder, "a folder that can be written to", f"choose another ({reason})"
+        ) from error
+    try:
+        yield folder
+    finally:
+        _remove_empty(made)
+
+
+@contextmanager
+def ended_by_signals() -> Iterator[None]:
+    """Let SIGTERM and SIGHUP end the work as Ctrl-C does, so that what there is can be kept.
+
+    Processes that were started for the work end at once.
+
+    Raises
+    ------
+    Ended
+        When one of the signals arrives.
+    """
+    from multiprocessing import active_children
+
+    def end(number: int, _: FrameType | None) -> None:
+        for child in active_children():
+            child.terminate()
+        raise Ended(_SIGNALS[signal.Signals(number).name])
+
+    known = [getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)]
+    before = {number: signal.signal(number, end) for number in known}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _remove_empty(folders: list[Path]) -> None:
+    """Remove these folders, the innermost first, as far as nothing is in them."""
+    with suppress(OSError):
+        for folder in folders:
+            folder.rmdir()

@@ -1,0 +1,160 @@
+"""Commands on files of readings: ``compare``, ``reconstruct``, ``side-by-side``."""
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from analytic.problem.errors import InputError
+from compare.commands.options import (
+    AGREES,
+    DISAGREES,
+    BeamFile,
+    Columns,
+    OutFolder,
+    number_or_auto,
+)
+from compare.commands.output import output_folder
+
+
+def compare(
+    reference: Annotated[Path, typer.Argument(help="Readings, Parquet or CSV.")],
+    candidate: Annotated[Path, typer.Argument(help="Readings to hold against them.")],
+    out: OutFolder = None,
+    column: Columns = None,
+    beam: BeamFile = None,
+    reference_column: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=COLUMN[:UNIT]", help="As --column, for the reference."),
+    ] = None,
+    reference_beam: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="As --beam, for the reference.")
+    ] = None,
+    offset: Annotated[
+        str,
+        typer.Option(
+            metavar="NUMBER|auto",
+            help="By how much the candidate's foot_x exceeds the reference's; auto: estimate it.",
+        ),
+    ] = "0",
+    noise: Annotated[
+        str,
+        typer.Option(
+            metavar="NUMBER|auto",
+            help="Noise of the clamp readings over their largest magnitude, as 0.01, by which the "
+            "limits are widened; auto: estimate it.",
+        ),
+    ] = "0",
+    tolerances: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="TOML file whose [tolerances] table has the limits."),
+    ] = None,
+) -> int:
+    """Compare two files of readings, of engines or of a rig."""
+    given_offset, given_noise = (
+        number_or_auto("--offset", offset),
+        number_or_auto("--noise", noise),
+    )
+    from compare.read.limits import read_tolerances
+
+    limits = None if tolerances is None else read_tolerances(tolerances)
+    from compare.commands import terminal
+    from compare.comparison import compare as compare_readings
+    from compare.read.rig import read_measured
+
+    expected = read_measured(reference, reference_beam, tuple(reference_column or ()))
+    measured = read_measured(candidate, beam, tuple(column or ()), expected.beam)
+    comparison = compare_readings(
+        expected, measured, limits, offset=given_offset, noise=given_noise
+    )
+    default = Path("results") / f"{reference.stem}-{candidate.stem}"
+    with output_folder(out or default) as folder:
+        from compare.show.report import write_report
+
+        report = write_report(comparison, folder)
+        terminal.print_comparison(comparison)
+        terminal.print_written(report)
+    return AGREES if comparison.agrees else DISAGREES
+
+
+def reconstruct(
+    file: Annotated[Path, typer.Argument(help="Readings, Parquet or CSV.")],
+    out: OutFolder = None,
+    beam: BeamFile = None,
+    column: Columns = None,
+    noise: Annotated[
+        float | None,
+        typer.Option(
+            metavar="NUMBER",
+            help="Noise of the clamp readings over their largest magnitude, as 0.01.",
+        ),
+    ] = None,
+) -> int:
+    """Find the object from the clamp readings alone."""
+    from analytic import reconstruct as reconstruct_contour
+    from analytic import relative_noise
+    from compare.commands import terminal
+    from compare.read.rig import read_measured
+
+    readings = read_measured(file, beam, tuple(column or ()))
+    level = None if noise is None else relative_noise(readings, noise)
+    found = reconstruct_contour(readings, level)
+    with output_folder(out or Path("results") / f"{file.stem}-reconstructed") as folder:
+        from analytic.problem.files import write_whole
+        from compare.show.figures.geometry import reconstruction
+        from compare.show.page import save_figure
+
+        points = found.assign(foot_x=readings.values("foot_x"))
+        path = write_whole(folder / "points.csv", points.to_csv(index=False))
+        terminal.print_reconstruction(readings, found)
+        terminal.print_written(path)
+        picture = reconstruction(readings, found)
+        terminal.print_written(save_figure(picture, folder / "reconstruction.png"))
+    return AGREES
+
+
+def side_by_side(
+    reference: Annotated[
+        str, typer.Argument(help="A case, for its closed form, or a file of readings.")
+    ],
+    files: Annotated[list[Path], typer.Argument(help="Readings to hold against it.")],
+    out: OutFolder = None,
+) -> int:
+    """Compare many files of readings with one reference."""
+    if len({path.absolute() for path in files}) < len(files):
+        raise InputError(
+            "FILE", ", ".join(map(str, files)), "each file once", "leave the second one out"
+        )
+    is_file = Path(reference).suffix in (".parquet", ".csv")
+    job = None
+    if not is_file:
+        from compare.read.case import load_job
+
+        job = load_job(reference)
+    from analytic import Readings, solve_sweep
+    from compare.commands import terminal
+    from compare.show.side_by_side import side_by_side as compare_all
+
+    candidates = {name: Readings.read(path) for name, path in _short(files).items()}
+    exact = Readings.read(reference) if job is None else solve_sweep(job.case)
+    found = compare_all(exact, candidates)
+    with output_folder(out or Path("results") / "side-by-side") as folder:
+        from analytic.problem.files import write_whole
+        from compare.show.page import document, save_figure
+        from compare.show.side_by_side import picture
+
+        path = write_whole(folder / "side-by-side.json", document(found.to_dict()))
+        terminal.print_side_by_side(found)
+        terminal.print_written(path)
+        terminal.print_written(save_figure(picture(found), folder / "side-by-side.png"))
+    return AGREES if all(one.agrees for one in found.against.values()) else DISAGREES
+
+
+def _short(files: list[Path]) -> dict[str, Path]:
+    """The files by what distinguishes them from each other."""
+    common = os.path.commonpath([path.absolute().parent for path in files])
+    named = {str(path.absolute().with_suffix("").relative_to(common)): path for path in files}
+    if len(named) < len(files):  # one.csv and one.parquet
+        return {str(path.absolute().relative_to(common)): path for path in files}
+    return named

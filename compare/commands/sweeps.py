@@ -1,0 +1,171 @@
+"""Commands that sweep a case: ``run``, ``analytic``, ``simulate``, ``view``, ``animate``."""
+
+from typing import Annotated
+
+import typer
+
+from compare.commands.options import (
+    AGREES,
+    DISAGREES,
+    Beam,
+    CaseName,
+    Changes,
+    Obstacle,
+    Out,
+    Segments,
+    Spatial,
+    Stations,
+)
+from compare.commands.output import output_folder
+
+_FRAMES = 48  # of a report's animation: smooth enough, and under 2 MB
+
+
+def run(
+    case: CaseName,
+    out: Out = None,
+    stations: Stations = None,
+    segments: Segments = None,
+    beam: Beam = None,
+    with_budget: Annotated[
+        bool, typer.Option("--budget", help="Split the disagreement into its parts too.")
+    ] = False,
+    obstacle: Obstacle = None,
+    spatial: Spatial = False,
+) -> int:
+    """Sweep in both models, compare, and write the report."""
+    changes = Changes(stations, segments, beam, obstacle, spatial)
+    job = changes.job(case)
+    with output_folder(changes.folder(out, job.case.name)) as folder:
+        from analytic import solve_sweep
+        from compare.commands import terminal
+        from compare.commands.engines import measured_budget, simulated
+        from compare.comparison import compare
+        from compare.show.animation import write_animation
+        from compare.show.report import Film, write_report
+
+        exact = solve_sweep(job.case)
+        exact.write(folder / "analytic.parquet")
+        found = None
+        if with_budget:
+            found, runs = measured_budget(job)
+            candidate = runs["base"]
+            candidate.write(folder / f"mujoco-{job.settings.beam}.parquet")
+        else:
+            candidate = simulated(job, folder)
+        comparison = compare(exact, candidate, job.tolerances)
+        if found is not None:
+            terminal.print_budget(found, job.case.name)
+        with terminal.progress("frames", _FRAMES) as advance:
+            gif, *stills = write_animation(exact, candidate, folder, _FRAMES, advance)
+        report = write_report(comparison, folder, found, Film(gif, stills[2]))
+        terminal.print_comparison(comparison)
+        terminal.print_written(report)
+        return AGREES if comparison.agrees else DISAGREES
+
+
+def analytic(
+    case: CaseName,
+    out: Out = None,
+    stations: Stations = None,
+    certified: Annotated[
+        bool, typer.Option("--certified", help="Check each station by integration from the clamp.")
+    ] = False,
+    figures: Annotated[
+        bool, typer.Option("--figures", help="Draw the paper's figures 12, 14, 15 and 16.")
+    ] = False,
+) -> int:
+    """Sweep in closed form."""
+    changes = Changes(stations)
+    job = changes.job(case)
+    with output_folder(changes.folder(out, job.case.name)) as folder:
+        from analytic import solve_sweep
+        from compare.commands import terminal
+
+        readings = solve_sweep(job.case, certified)
+        terminal.print_sweep(readings)
+        terminal.print_written(readings.write(folder / "analytic.parquet"))
+        if figures:
+            from compare.show.figures.paper import paper_figures
+            from compare.show.page import save_figure
+
+            for name, figure in paper_figures(job.case, readings).items():
+                terminal.print_written(save_figure(figure, folder / f"{name}.png"))
+        return AGREES if readings.trusted.all() else DISAGREES
+
+
+def simulate(
+    case: CaseName,
+    out: Out = None,
+    stations: Stations = None,
+    segments: Segments = None,
+    beam: Beam = None,
+    obstacle: Obstacle = None,
+    spatial: Spatial = False,
+) -> int:
+    """Sweep in MuJoCo."""
+    changes = Changes(stations, segments, beam, obstacle, spatial)
+    job = changes.job(case)
+    with output_folder(changes.folder(out, job.case.name)) as folder:
+        from compare.commands import terminal
+        from compare.commands.engines import simulated
+
+        terminal.print_sweep(simulated(job, folder))
+        terminal.print_written(folder / f"mujoco-{job.settings.beam}.parquet")
+        return AGREES
+
+
+def view(
+    case: CaseName,
+    stations: Stations = None,
+    segments: Segments = None,
+    beam: Beam = None,
+    obstacle: Obstacle = None,
+) -> int:
+    """Show the sweep in MuJoCo's interactive viewer."""
+    job = Changes(stations, segments, beam, obstacle).job(case)
+    from mujoco_models import view_sweep
+
+    view_sweep(job.case, job.settings)
+    return AGREES
+
+
+def animate(
+    case: CaseName,
+    out: Out = None,
+    frames: Annotated[int, typer.Option(min=2, max=2000, help="Frames of the animation.")] = 60,
+    stations: Stations = None,
+    segments: Segments = None,
+    beam: Beam = None,
+    obstacle: Obstacle = None,
+) -> int:
+    """Sweep in both models, and draw it in motion."""
+    changes = Changes(stations, segments, beam, obstacle)
+    job = changes.job(case)
+    with output_folder(changes.folder(out, job.case.name)) as folder:
+        from analytic import solve_sweep
+        from compare.commands import terminal
+        from compare.commands.engines import simulated
+        from compare.show.animation import write_animation
+
+        exact = solve_sweep(job.case)
+        exact.write(folder / "analytic.parquet")
+        candidate = simulated(job, folder)
+        with terminal.progress("frames", frames) as advance:
+            for path in write_animation(exact, candidate, folder, frames, advance):
+                terminal.print_written(path)
+        return AGREES
+
+
+def cases() -> int:
+    """List the named cases."""
+    import numpy as np
+
+    from analytic.problem.named import CASE_NAMES, named_contour
+
+    for name in CASE_NAMES:
+        profile = named_contour(name)
+        lowest = profile.at(profile.parameter(np.array([0.0])))
+        place = f"lowest at x = {lowest.xi[0]:g} L, y = {lowest.eta[0]:.4g} L"
+        typer.echo(f"{name:18}{profile.label:40}{place}")
+    return AGREES
