@@ -1,14 +1,12 @@
 """``vibrissa study`` and ``vibrissa study-report``."""
 
-import os
-import sys
+from contextlib import closing
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from analytic.problem.errors import InputError
-from compare.commands.options import AGREES
+from compare.commands.options import AGREES, DISAGREES
 
 
 def study(
@@ -29,19 +27,25 @@ def study(
         typer.Option(min=1, metavar="N", help="Processes.", show_default="one a core"),
     ] = None,
     scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDR", help="Of a Dask cluster, as tcp://host:8786.")
+        str | None,
+        typer.Option(
+            metavar="ADDR",
+            help="Of a Dask cluster, as tcp://host:8786. Dask listens on all interfaces and lets "
+            "anyone run code there; outside a trusted network use tls:// with certificates.",
+        ),
     ] = None,
 ) -> int:
-    """Do the runs of a study that are not done yet."""
-    if sys.platform == "win32":
-        raise InputError(
-            "vibrissa study", "on Windows", "on Linux or macOS", "WSL has a Linux for it"
-        )
+    """Do the runs of a study that are not done yet.
+
+    The exit code is 0 if all are done then, 1 if any failed, diverged, did not settle or took too
+    long: those are tried again the next time.
+    """
+    from compare.simulate.workers import available_cores
     from compare.study.grid.file import load_study
     from compare.study.grid.plan import Plan
 
     plan = Plan.of(load_study(file))
-    cores = workers or _cores()
+    cores = workers or available_cores()
     from compare.commands.terminal import print_line, progress
 
     if dry_run:
@@ -52,7 +56,7 @@ def study(
     from compare.study.keep.store import Store
     from compare.study.work.crews import dask_crew, local_crew
     from compare.study.work.execute import carry_out
-    from compare.study.work.run import Recipe
+    from compare.study.work.perform import Recipe
 
     folder = out or Path("results") / plan.study.name
     crew = dask_crew(scheduler) if scheduler else local_crew(cores)
@@ -60,17 +64,20 @@ def study(
     with Store(folder, plan, _warn) as store:
         done = store.done()
         todo = (run for run in plan if run.id not in done)
-        count = sum(run.id not in done for run in plan)
-        print_line(f"{len(plan)} runs, {len(plan) - count} of them done already")
+        count = len(plan) - len(done)
+        print_line(f"{len(plan)} runs, {len(done)} of them done already")
         if count:
-            with progress(plan.study.name, count) as advance:
-                for result in carry_out(todo, Recipe.of(plan.study), crew):
+            with (
+                progress(plan.study.name, count) as advance,
+                closing(carry_out(todo, Recipe.of(plan.study), crew)) as results,
+            ):
+                for result in results:
                     store.add(result)
                     counts[result.row["outcome"]] = counts.get(result.row["outcome"], 0) + 1
                     advance()
     said = ", ".join(f"{number} {outcome}" for outcome, number in sorted(counts.items()))
     print_line(f"{said or 'nothing to do'}; in {folder}")
-    return AGREES
+    return AGREES if counts.keys() <= {"done"} else DISAGREES
 
 
 def study_report(
@@ -82,13 +89,6 @@ def study_report(
 
     print_written(write_report(folder, _warn))
     return AGREES
-
-
-def _cores() -> int:
-    """How many cores this process may use; not every system restricts them."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _warn(line: str) -> None:

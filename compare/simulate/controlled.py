@@ -1,13 +1,13 @@
 """The budget of a case: all the sweeps that it takes, on all cores."""
 
 from collections.abc import Callable, Mapping
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
+from concurrent.futures import BrokenExecutor
 
 from analytic import Case, InputError, Readings, solve_sweep
 from compare.explain.budget import Budget, budget
 from compare.explain.changes import controlled_changes
 from compare.explain.variations import on_polygon, variations
+from compare.simulate.workers import Workers, available_cores
 from mujoco_models.settings import Settings
 
 
@@ -48,14 +48,37 @@ def measure_budget(
 def simulate_all(
     case: Case, changes: Mapping[str, Settings], advance: Callable[[], None] = lambda: None
 ) -> dict[str, Readings]:
-    """Sweeps of one case by name, a process each; equal settings are swept once."""
-    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
-        # The longest first, so that no core waits for it at the end.
-        longest_first = sorted(set(changes.values()), key=lambda s: -s.segments)
+    """Sweep one case with many settings, a process each; equal settings are swept once.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+    changes : mapping
+        Settings by name.
+    advance : callable, optional
+        Called after every sweep, for progress bars.
+
+    Returns
+    -------
+    dict of Readings
+        The sweeps by the same names.
+
+    Raises
+    ------
+    MemoryError
+        If the system ends a worker, as it does when memory is short.
+    """
+    # The longest first, so that no core waits for it at the end.
+    longest_first = sorted(set(changes.values()), key=lambda s: -s.segments)
+    with Workers(min(len(longest_first), available_cores())) as pool:
         sweeps = {settings: pool.submit(sweep_alone, case, settings) for settings in longest_first}
         for sweep in sweeps.values():
             sweep.add_done_callback(lambda _: advance())
-        return {name: sweeps[settings].result() for name, settings in changes.items()}
+        try:
+            return {name: sweeps[settings].result() for name, settings in changes.items()}
+        except BrokenExecutor as error:
+            raise MemoryError("the system ended a worker process") from error
 
 
 def sweep_alone(case: Case, settings: Settings) -> Readings:

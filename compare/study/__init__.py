@@ -5,8 +5,9 @@ lists the runs lazily, an executor of any kind does them, each becomes one row o
 dataset, and the report reads nothing but that.
 """
 
-from compare.study.grid.file import Study, load_study
+from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
-from compare.study.keep.store import read_rows
+from compare.study.grid.study import Study
+from compare.study.keep.reading import read_rows
 
 __all__ = ["Plan", "Study", "load_study", "read_rows"]

@@ -9,16 +9,16 @@ from pathlib import Path
 from rich.console import Console
 
 from compare.study.grid.file import load_study
-from compare.study.grid.plan import Plan, Run
+from compare.study.grid.plan import Plan, PlannedRun
 from compare.study.work.crews import local_crew
 from compare.study.work.execute import carry_out
-from compare.study.work.run import Recipe, Result
-from tests.compare.study.conftest import EVENTS_ONLY, vibrissa
+from compare.study.work.perform import Recipe, Result
+from tests.compare.study.studies import EVENTS_ONLY, vibrissa
 
 _RUNS = 2_000
 
 
-def spin(recipe: Recipe, run: Run) -> Result:
+def spin(recipe: Recipe, run: PlannedRun) -> Result:
     """A run of a fifth of a second of work."""
     end = time.process_time() + 0.2
     while time.process_time() < end:
@@ -26,7 +26,7 @@ def spin(recipe: Recipe, run: Run) -> Result:
     return nothing(recipe, run)
 
 
-def nothing(recipe: Recipe, run: Run) -> Result:
+def nothing(recipe: Recipe, run: PlannedRun) -> Result:
     return Result({"run": run.id, "outcome": "done"})
 
 
@@ -55,7 +55,7 @@ def _plan(path: Path, runs: int) -> Plan:
     return Plan.of(load_study(str(path)))
 
 
-def _seconds(plan: Plan, workers: int, perform: Callable[[Recipe, Run], Result]) -> float:
+def _seconds(plan: Plan, workers: int, perform: Callable[[Recipe, PlannedRun], Result]) -> float:
     begin = time.perf_counter()
     crew = replace(local_crew(workers), perform=perform)
     assert sum(1 for _ in carry_out(plan, Recipe.of(plan.study), crew)) == len(plan)

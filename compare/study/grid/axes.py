@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
@@ -10,8 +10,9 @@ from scipy.stats import qmc
 
 from analytic.problem.arrays import Floats
 
-Value: TypeAlias = int | float | str
-Parameters: TypeAlias = Mapping[str, Value]
+Value: TypeAlias = bool | int | float | str
+MOST_RUNS = 1_000_000
+"""Largest number of runs of a study: an index of so many (about 300 MB) still fits in memory."""
 
 
 class Range(BaseModel):
@@ -19,7 +20,7 @@ class Range(BaseModel):
 
     Parameters
     ----------
-    low, high : float or str
+    low, high : int, float or str
         First and last value (``from``, ``to``); a text has a unit.
     count : int, optional
         Number of values; without it the range is sampled.
@@ -27,11 +28,11 @@ class Range(BaseModel):
         Equal differences, or equal ratios.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
-    low: float | str = Field(alias="from")
-    high: float | str = Field(alias="to")
-    count: Annotated[int, Field(ge=2)] | None = None
+    low: int | float | str = Field(alias="from")
+    high: int | float | str = Field(alias="to")
+    count: Annotated[int, Field(ge=2, le=MOST_RUNS)] | None = None
     spacing: Literal["linear", "log"] = "linear"
 
 
@@ -48,14 +49,25 @@ class Sample(BaseModel):
         The same seed draws the same points.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
-    count: int = Field(ge=1)
+    count: int = Field(ge=1, le=MOST_RUNS)
     method: Literal["latin-hypercube", "random"] = "latin-hypercube"
     seed: int = Field(default=0, ge=0)
 
     def draw(self, dimensions: int) -> Floats:
-        """Points in the unit cube, shape (count, dimensions)."""
+        """Draw the points.
+
+        Parameters
+        ----------
+        dimensions : int
+            How many ranges are sampled together.
+
+        Returns
+        -------
+        ndarray
+            Points in the unit cube, shape (count, dimensions).
+        """
         if self.method == "latin-hypercube":
             return np.asarray(qmc.LatinHypercube(dimensions, rng=self.seed).random(self.count))
         return np.random.default_rng(self.seed).random((self.count, dimensions))
@@ -63,7 +75,17 @@ class Sample(BaseModel):
 
 @dataclass(frozen=True)
 class Interval:
-    """A range whose ends are numbers, in the units that the case ends up in."""
+    """A range whose ends are numbers, in the units that the case ends up in.
+
+    Parameters
+    ----------
+    low, high : float
+        First and last value.
+    log : bool
+        Whether equal ratios follow each other, rather than equal differences.
+    whole : bool
+        Whether its values are whole numbers.
+    """
 
     low: float
     high: float
@@ -71,7 +93,18 @@ class Interval:
     whole: bool
 
     def at(self, fraction: Floats) -> list[Value]:
-        """Values at fractions of the way from one end to the other, shape (n,)."""
+        """Take values between the ends.
+
+        Parameters
+        ----------
+        fraction : ndarray
+            Of the way from one end to the other, shape (n,).
+
+        Returns
+        -------
+        list
+            The values, n of them.
+        """
         if self.log:
             values = self.low * (self.high / self.low) ** fraction
         else:
@@ -92,38 +125,32 @@ class Axis:
         Dotted keys of the case file; one, or several that are zipped or sampled together.
     points : tuple of tuple
         One value for each key; each point once.
+
+    Raises
+    ------
+    ValueError
+        If there is no point, or one that has not as many values as there are keys.
     """
 
     keys: tuple[str, ...]
     points: tuple[tuple[Value, ...], ...]
 
+    def __post_init__(self) -> None:
+        if not self.points or {len(point) for point in self.points} != {len(self.keys)}:
+            raise ValueError("an axis needs a point, and each point a value for each key")
+
     @classmethod
     def of(cls, columns: Mapping[str, Sequence[Value]]) -> "Axis":
-        """The axis that takes the values of all `columns` row by row; a repeated row counts once.
+        """Make the axis that takes the values of several columns row by row.
 
-        Rounding to whole numbers is what repeats them.
+        Parameters
+        ----------
+        columns : mapping
+            The values by key, equally many for each.
+
+        Returns
+        -------
+        Axis
+            Its points; a repeated row, which rounding to whole numbers makes, counts once.
         """
         return cls(tuple(columns), tuple(dict.fromkeys(zip(*columns.values(), strict=True))))
-
-
-def flatten(tables: Mapping[str, Any], stop: frozenset[str] = frozenset()) -> dict[str, Any]:
-    """Nested tables as one with dotted keys; a table with a key in `stop` is a value."""
-    flat: dict[str, Any] = {}
-    for key, value in tables.items():
-        if isinstance(value, Mapping) and not stop & value.keys():
-            flat |= {f"{key}.{inner}": x for inner, x in flatten(value, stop).items()}
-        else:
-            flat[key] = value
-    return flat
-
-
-def nest(flat: Mapping[str, Any]) -> dict[str, Any]:
-    """The reverse of `flatten`."""
-    tables: dict[str, Any] = {}
-    for key, value in flat.items():
-        *outer, last = key.split(".")
-        table = tables
-        for name in outer:
-            table = table.setdefault(name, {})
-        table[last] = value
-    return tables

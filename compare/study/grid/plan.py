@@ -1,23 +1,24 @@
 """The runs of a study, one after the other."""
 
 import hashlib
-import itertools
 import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
 
 from pydantic import TypeAdapter
 
-from compare.study.grid.axes import Value
-from compare.study.grid.file import MESH, Study
+from analytic import InputError
+from compare.study.grid.axes import MOST_RUNS, Axis, Value
+from compare.study.grid.sources import sources_digest
+from compare.study.grid.study import MESH, Study
 
 
-class Run(NamedTuple):
+class PlannedRun(NamedTuple):
     """One point of a study.
 
     ``id`` is a hash of everything that the result depends on; ``parameters`` are what the axes say.
@@ -36,37 +37,119 @@ class Plan:
     study : Study
         What varies.
     versions : dict
-        Of the engines. They are part of a run's id, so that what another version computed is not
-        taken for this one's.
+        Of the engines, and a digest of this package's sources. They are part of a run's id, so that
+        what other code computed is not taken for this one's.
+
+    Raises
+    ------
+    InputError
+        If there are more than `MOST_RUNS` runs.
     """
 
     study: Study
     versions: dict[str, str]
 
+    def __post_init__(self) -> None:
+        count = math.prod(len(axis.points) for axis in self._axes)  # may be too large for len()
+        if count > MOST_RUNS:
+            raise InputError(
+                "study", f"{count:.3g} runs" if count < 1e300 else "more than 1e300 runs",
+                f"at most {MOST_RUNS:,}", "take fewer values an axis, or [sample] the ranges",
+            )  # fmt: skip
+
     @classmethod
     def of(cls, study: Study) -> "Plan":
-        """The plan for the engines that are installed here."""
+        """Plan a study for the engines that are installed here.
+
+        Parameters
+        ----------
+        study : Study
+            What varies.
+
+        Returns
+        -------
+        Plan
+            Its runs.
+
+        Raises
+        ------
+        InputError
+            If there are more than `MOST_RUNS` of them.
+        """
         engines = ["vibrissa-testbed", *(["mujoco"] if study.beams else [])]
-        return cls(study, {name: version(name) for name in engines})
+        packages = ["analytic", "compare", *(["mujoco_models"] if study.beams else [])]
+        versions = {name: version(name) for name in engines}
+        return cls(study, versions | {"sources": sources_digest(*packages)})
 
     def to_json(self) -> str:
-        """What `from_json` reads."""
+        """Write the plan as what `from_json` reads.
+
+        Returns
+        -------
+        str
+            JSON.
+        """
         return TypeAdapter(Plan).dump_json(self, indent=1).decode()
 
     @classmethod
     def from_json(cls, text: str | bytes) -> "Plan":
-        """A plan from what `to_json` wrote."""
+        """Read what `to_json` wrote.
+
+        Parameters
+        ----------
+        text : str or bytes
+            JSON.
+
+        Returns
+        -------
+        Plan
+            The same plan: its runs have the same ids.
+
+        Raises
+        ------
+        ValueError
+            If `text` is no plan.
+        """
         return TypeAdapter(Plan).validate_json(text)
 
-    def __len__(self) -> int:
-        return math.prod(len(axis.points) for axis in self.study.crossed)
+    @cached_property
+    def _axes(self) -> tuple[Axis, ...]:
+        return self.study.crossed
 
-    def __iter__(self) -> Iterator[Run]:
-        axes = self.study.crossed
-        keys = [key for axis in axes for key in axis.keys]
-        for points in itertools.product(*(axis.points for axis in axes)):
-            parameters = dict(zip(keys, itertools.chain(*points), strict=True))
-            yield Run(self._id(parameters), parameters)
+    def __len__(self) -> int:
+        return math.prod(len(axis.points) for axis in self._axes)
+
+    def __getitem__(self, index: int) -> PlannedRun:
+        parameters = self.parameters(index)
+        return PlannedRun(self._id(parameters), parameters)
+
+    def __iter__(self) -> Iterator[PlannedRun]:
+        return (self[index] for index in range(len(self)))
+
+    def parameters(self, index: int) -> dict[str, Value]:
+        """Say what the axes are at in a run.
+
+        Parameters
+        ----------
+        index : int
+            Number of the run, from 0; the last axis varies fastest.
+
+        Returns
+        -------
+        dict
+            Values by dotted key.
+        """
+        if not 0 <= index < len(self):
+            raise IndexError(index)
+        found: list[tuple[Axis, int]] = []
+        for axis in reversed(self._axes):
+            index, place = divmod(index, len(axis.points))
+            found.append((axis, place))
+        return {
+            key: value
+            for axis, place in reversed(found)
+            for key, value in zip(axis.keys, axis.points[place], strict=True)
+        }
 
     def _id(self, parameters: dict[str, Value]) -> str:
         """The same for the same problem, wherever in the file its numbers stand."""

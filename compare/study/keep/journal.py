@@ -1,92 +1,148 @@
 """Rows on their way to a part: safe from the moment they are written, whatever kills the process.
 
 A Parquet file is complete only when it is closed, so a row would wait in memory for its part to
-fill up. In the meantime it stands in a text file, a line a row, which a dead process leaves behind
-for the next one.
+fill up. In the meantime it stands in a text file, a line a row with a checksum, which a dead
+process leaves behind for the next one.
 """
 
-import fcntl
 import json
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
+import time
+import zlib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
 
-from compare.study.keep.parts import new_name, write_part
+from compare.study.keep.locks import claim
+from compare.study.keep.parts import Damaged, new_name, write_part
 
-
-@contextmanager
-def lock(folder: Path) -> Iterator[None]:
-    """Keep other processes from changing the set of files in `folder`."""
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(descriptor)
+_SYNC = 1.0  # s; a loss of power costs the rows of so long, a dead process none
 
 
 class Journal:
-    """A journal of this process; made, and turned into a part, under `lock`.
+    """A journal of this process; made, and turned into a part, under `locks.lock`.
 
-    Its first line says what the columns are, since the next process may have others. It is locked
-    as long as its process lives.
+    It is locked as long as its process lives.
+
+    Parameters
+    ----------
+    folder : Path
+        Where it is.
+    columns : mapping
+        Arrow types of the columns that are known, by name.
     """
 
-    def __init__(self, folder: Path, columns: dict[str, str]) -> None:
+    def __init__(self, folder: Path, columns: Mapping[str, str]) -> None:
         self.path = folder / f".journal-{new_name()}.jsonl"
         self.rows = 0
+        self._columns = columns
         self._file = self.path.open("ab", buffering=0)
-        fcntl.flock(self._file, fcntl.LOCK_EX)
-        self._append(columns)
+        self._synced = time.monotonic()
+        claim(self._file)
 
-    def add(self, row: dict[str, Any]) -> None:
-        """Append a row; when this returns, killing the process cannot lose it."""
-        self._append(row)
-        self.rows += 1
+    def add(self, row: Mapping[str, Any]) -> None:
+        """Append a row; when this returns, killing the process cannot lose it.
 
-    def close(self) -> None:
-        """Turn it into a part."""
-        make_part(self.path)
-        self._file.close()
+        Parameters
+        ----------
+        row : mapping
+            Numbers and texts by column.
 
-    def _append(self, content: dict[str, Any]) -> None:
-        line = json.dumps(content).encode() + b"\n"
+        Raises
+        ------
+        OSError
+            If the disk is full.
+        """
+        line = json.dumps(row).encode()
+        line = b"%08x %b\n" % (zlib.crc32(line), line)
         if self._file.write(line) != len(line):
             raise OSError(28, os.strerror(28), str(self.path))
+        self.rows += 1
+        if time.monotonic() > self._synced + _SYNC:
+            os.fsync(self._file.fileno())
+            self._synced = time.monotonic()
+
+    def close(self, damaged: Damaged) -> None:
+        """Turn it into a part.
+
+        Parameters
+        ----------
+        damaged : callable
+            Is called if lines have been lost.
+        """
+        _make_part(self.path, self._columns, damaged)
+        self._file.close()
 
 
-def read_journals(folder: Path) -> Iterator[pa.Table]:
-    """The rows of all journals, those of living processes too."""
-    for path in sorted(folder.glob(".journal-*.jsonl")):
-        yield _table(path)
+def list_journals(folder: Path) -> list[Path]:
+    """The journals in a folder, those of living processes too."""
+    return sorted(folder.glob(".journal-*.jsonl"))
 
 
-def adopt_journals(folder: Path) -> None:
-    """Turn what dead processes left into parts."""
-    for path in sorted(folder.glob(".journal-*.jsonl")):
+def read_journal(path: Path, columns: Mapping[str, str]) -> tuple[pa.Table, int]:
+    """Read the complete lines of a journal.
+
+    What follows the last of them was being written, or cut off by a full disk, and is no damage.
+
+    Parameters
+    ----------
+    path : Path
+        The journal.
+    columns : mapping
+        Arrow types of the columns that are known, by name.
+
+    Returns
+    -------
+    pyarrow.Table
+        A row a run.
+    int
+        How many lines are damaged.
+    """
+    lines = path.read_bytes().split(b"\n")[:-1]
+    rows = [row for line in lines if (row := _row(line)) is not None]
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    names = [*(name for name in columns if name in names), *(n for n in names if n not in columns)]
+    arrays = [pa.array([row.get(name) for row in rows], columns.get(name)) for name in names]
+    if not arrays:
+        arrays, names = [pa.array([], "string")] * 2, ["run", "outcome"]
+    return pa.Table.from_arrays(arrays, names), len(lines) - len(rows)
+
+
+def adopt_journals(folder: Path, columns: Mapping[str, str], damaged: Damaged) -> None:
+    """Turn what dead processes left into parts.
+
+    Parameters
+    ----------
+    folder : Path
+        Where the journals are.
+    columns : mapping
+        Arrow types of the columns that are known, by name.
+    damaged : callable
+        Is called for a journal with damaged lines; the others are kept.
+    """
+    for path in list_journals(folder):
         with path.open("rb") as file:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                continue  # its process lives
-            make_part(path)
+            if claim(file):  # else its process lives
+                _make_part(path, columns, damaged)
 
 
-def make_part(path: Path) -> None:
+def _make_part(path: Path, columns: Mapping[str, str], damaged: Damaged) -> None:
     """Turn the journal at `path` into a part; it goes when the part is there."""
-    table = _table(path)
+    table, lost = read_journal(path, columns)
     if table.num_rows:
         write_part(path.parent, table.schema, [table])
-    path.unlink()
+    if lost:
+        damaged(path, f"{lost} of {table.num_rows + lost} lines")
+    else:
+        path.unlink()
 
 
-def _table(path: Path) -> pa.Table:
-    """The complete lines of a journal: the last one may have been cut off by a full disk."""
-    lines = path.read_bytes().split(b"\n")[:-1]
-    columns = json.loads(lines[0]) if lines else {"run": "string", "outcome": "string"}
-    schema = pa.schema([(name, pa.type_for_alias(kind)) for name, kind in columns.items()])
-    return pa.Table.from_pylist([json.loads(line) for line in lines[1:]], schema)
+def _row(line: bytes) -> dict[str, Any] | None:
+    """The row on a line, None if not every bit of it is as it was written."""
+    checksum, _, text = line.partition(b" ")
+    if checksum != b"%08x" % zlib.crc32(text):
+        return None
+    row: dict[str, Any] = json.loads(text)
+    return row

@@ -1,11 +1,9 @@
 """One table out of many parts, a row a run."""
 
-from collections.abc import Iterable, Iterator
-from pathlib import Path
+from collections.abc import Callable, Container, Iterable, Iterator
 
+import numpy as np
 import pyarrow as pa
-
-from compare.study.keep.parts import Damaged, list_parts, sound_parts, write_part
 
 
 class Choice:
@@ -19,20 +17,75 @@ class Choice:
         self._best: dict[str, tuple[bool, int, int]] = {}
 
     def see(self, part: int, table: pa.Table) -> None:
-        """Take the rows of part number `part` into account; parts come in order of time."""
+        """Take a part into account; parts come in order of time.
+
+        Parameters
+        ----------
+        part : int
+            Its number.
+        table : pyarrow.Table
+            Its rows.
+        """
         for row, (run, outcome) in enumerate(_keys(table)):
             rank = (outcome == "done", part, row)
             self._best[run] = max(rank, self._best.get(run, rank))
 
-    def kept(self, part: int, table: pa.Table) -> pa.Table:
-        """The rows of part number `part` that stand for their runs."""
+    def count(self, wanted: Container[str]) -> int:
+        """Count the runs that were seen.
+
+        Parameters
+        ----------
+        wanted : container of str
+            Ids that count.
+
+        Returns
+        -------
+        int
+            How many of them there are.
+        """
+        return sum(run in wanted for run in self._best)
+
+    def kept(
+        self, part: int, table: pa.Table, wanted: Callable[[str], bool] = lambda run: True
+    ) -> pa.Table:
+        """Keep the rows of a part that stand for their runs.
+
+        Parameters
+        ----------
+        part : int
+            Its number.
+        table : pyarrow.Table
+            Its rows.
+        wanted : callable, optional
+            Says of a run's id whether it is asked for; all are by default.
+
+        Returns
+        -------
+        pyarrow.Table
+            Those rows.
+        """
         best = self._best
-        mask = [best[run][1:] == (part, row) for row, (run, _) in enumerate(_keys(table))]
-        return table.filter(pa.array(mask, pa.bool_()))
+        mask = np.array(
+            [best[run][1:] == (part, row) and wanted(run)
+             for row, (run, _) in enumerate(_keys(table))],
+            dtype=bool,
+        )  # fmt: skip
+        return table.filter(pa.array(mask))
 
 
 def merge(tables: Iterable[pa.Table]) -> pa.Table:
-    """The rows of all `tables`, in order of time, each run once, with the columns of all."""
+    """Merge tables into one.
+
+    Parameters
+    ----------
+    tables : iterable of pyarrow.Table
+        At least one, in order of time.
+
+    Returns
+    -------
+    pyarrow.Table
+        The rows of all, each run once, with the columns of all.
+    """
     tables = list(tables)
     choice = Choice()
     for part, table in enumerate(tables):
@@ -41,32 +94,6 @@ def merge(tables: Iterable[pa.Table]) -> pa.Table:
         [choice.kept(part, table) for part, table in enumerate(tables)],
         promote_options="permissive",
     )
-
-
-def compact(folder: Path, damaged: Damaged) -> None:
-    """Make one part of all sound ones, so that any reader of the folder sees each run once.
-
-    One part at a time is in memory. The old ones go when the new one is complete; between the two,
-    `Choice` sees to it that nothing counts double.
-    """
-    if len(list_parts(folder)) < 2:
-        return
-    choice, schemas, old = Choice(), [], []
-    for part, (path, table) in enumerate(sound_parts(folder, damaged)):
-        choice.see(part, table)
-        schemas.append(table.schema)
-        old.append(path)
-    schema = pa.unify_schemas(schemas, promote_options="permissive")
-
-    def tables() -> Iterator[pa.Table]:
-        for part, (_, table) in enumerate(sound_parts(folder, damaged)):
-            yield pa.concat_tables(
-                [schema.empty_table(), choice.kept(part, table)], promote_options="permissive"
-            )
-
-    write_part(folder, schema, tables())
-    for path in old:
-        path.unlink()
 
 
 def _keys(table: pa.Table) -> Iterator[tuple[str, str]]:

@@ -1,9 +1,10 @@
 """The part files of a study's Parquet dataset: each appears whole or not at all."""
 
+import hashlib
 import os
 import time
 import uuid
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TypeAlias
 
@@ -14,10 +15,11 @@ from analytic.problem.files import whole_file
 
 Damaged: TypeAlias = Callable[[Path, str], None]
 """What to do about a part that cannot be read, and why it cannot."""
+_DIGITS = 32  # of a digest in a part's name; names of eight are older and have none
 
 
 def list_parts(folder: Path) -> list[Path]:
-    """The part files in `folder`, in the order in which they were begun."""
+    """The part files in a folder, in the order in which they were begun."""
     return sorted(folder.glob("part-*.parquet"))
 
 
@@ -27,34 +29,118 @@ def new_name() -> str:
 
 
 def write_part(folder: Path, schema: pa.Schema, tables: Iterable[pa.Table]) -> None:
-    """Write `tables` as one new part, which is on the disk itself before it gets its name."""
-    part = folder / f"part-{new_name()}.parquet"
-    with whole_file(part) as unfinished, unfinished.open("wb") as file:
-        # Checksums: a flipped bit must not be read as a result.
-        with pq.ParquetWriter(file, schema, compression="zstd", write_page_checksum=True) as writer:
+    """Write tables as one new part, which is on the disk itself before it gets its name.
+
+    Parameters
+    ----------
+    folder : Path
+        Where it goes.
+    schema : pyarrow.Schema
+        Its columns.
+    tables : iterable of pyarrow.Table
+        Its rows.
+    """
+    name = new_name()
+    whole = folder / f".part-{name}.parquet"
+    with whole_file(whole) as unfinished, unfinished.open("wb") as file:
+        with pq.ParquetWriter(file, schema, compression="zstd") as writer:
             for table in tables:
                 writer.write_table(table.cast(schema))
         file.flush()
         os.fsync(file.fileno())
+    # The name holds a digest: not one flipped bit is read as a result.
+    whole.rename(folder / f"part-{name}-{_digest(whole.read_bytes())}.parquet")
 
 
 def read_part(path: Path) -> pa.Table:
-    """The rows of a part.
+    """Read the rows of a part.
+
+    Parameters
+    ----------
+    path : Path
+        The part.
+
+    Returns
+    -------
+    pyarrow.Table
+        A row a run.
 
     Raises
     ------
-    pyarrow.ArrowException, OSError
+    pyarrow.ArrowException, OSError, ValueError
         If it is damaged.
     """
-    return pq.ParquetFile(path, page_checksum_verification=True).read()
+    content = path.read_bytes()
+    *_, digest = path.stem.split("-")
+    if len(digest) == _DIGITS and digest != _digest(content):
+        raise ValueError("its content is not what its name says")
+    return pq.ParquetFile(pa.BufferReader(content), page_checksum_verification=True).read()
 
 
-def sound_parts(folder: Path, damaged: Damaged) -> Iterator[tuple[Path, pa.Table]]:
-    """Every part that can be read; of the others `damaged` is told."""
-    for path in list_parts(folder):
+class Columns:
+    """The columns that parts have, which must fit together.
+
+    Parameters
+    ----------
+    known : mapping
+        Arrow types of the columns that are known beforehand, by name.
+    """
+
+    def __init__(self, known: Mapping[str, str]) -> None:
+        self._known = {name: pa.type_for_alias(kind) for name, kind in known.items()}
+        self._all = pa.schema(list(self._known.items()))
+
+    def take(self, table: pa.Table) -> None:
+        """Take the columns of a table into account.
+
+        Parameters
+        ----------
+        table : pyarrow.Table
+            A row a run.
+
+        Raises
+        ------
+        pyarrow.ArrowException
+            If it has no runs, or columns of other types than are known.
+        """
+        for name in ("run", "outcome"):
+            if name not in table.schema.names or table.column(name).null_count:
+                raise pa.ArrowInvalid(f"a column {name} with a text in every row is missing")
+        together = pa.unify_schemas([self._all, table.schema], promote_options="permissive")
+        for name, kind in self._known.items():
+            if together.field(name).type != kind:
+                raise pa.ArrowTypeError(f"its column {name} is no {kind}")
+        self._all = together
+
+
+def sound_parts(
+    paths: Iterable[Path], columns: Columns, damaged: Damaged
+) -> Iterator[tuple[Path, pa.Table]]:
+    """Read parts.
+
+    Parameters
+    ----------
+    paths : iterable of Path
+        The parts.
+    columns : Columns
+        What they have to fit.
+    damaged : callable
+        Is called for each that cannot be read or does not fit.
+
+    Yields
+    ------
+    Path, pyarrow.Table
+        The others and their rows.
+    """
+    for path in paths:
         try:
             table = read_part(path)
-        except (pa.ArrowException, OSError) as error:
+            columns.take(table)
+        except (pa.ArrowException, OSError, ValueError, KeyError) as error:
             damaged(path, " ".join(str(error).split())[:100])
         else:
             yield path, table
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:_DIGITS]

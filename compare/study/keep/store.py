@@ -11,35 +11,36 @@ from pathlib import Path
 from types import TracebackType
 from typing import TypeAlias
 
-import pandas as pd
-import pyarrow as pa
 import pyarrow.compute as pc
 
 from analytic import InputError
 from analytic.problem.files import write_whole
 from compare.study.grid.plan import Plan
-from compare.study.keep.journal import Journal, adopt_journals, lock, read_journals
-from compare.study.keep.merge import compact, merge
-from compare.study.keep.parts import Damaged, sound_parts
-from compare.study.work.run import Result, columns
+from compare.study.keep.journal import Journal, adopt_journals, list_journals, read_journal
+from compare.study.keep.locks import check_platform, lock
+from compare.study.keep.parts import Columns, list_parts, sound_parts
+from compare.study.keep.tidy import Shelves, tidy
+from compare.study.work.perform import Result, columns
 
 PLAN_FILE = "study.json"
-_ROWS_A_PART = 5000
+ROWS_A_PART = 5000
 
 Tell: TypeAlias = Callable[[str], None]
+"""Takes a line for the user."""
 
 
 class Store:
     """Where a study's results go, and which are there already.
 
-    Use it as a context: what is left to be tidied up then is, also after an error.
+    Use it as a context: it is tidied up at its end, also after an error.
 
     Parameters
     ----------
     folder : Path
         Of the study; made if it is not there.
     plan : Plan
-        What is to be done; it is kept beside the results.
+        What is to be done; it is kept beside the results. Rows of other plans are moved to
+        ``DIR/earlier``, and taken up again if a later plan asks for them.
     tell : callable
         Takes a line about anything that is wrong with what is stored.
 
@@ -50,16 +51,19 @@ class Store:
     """
 
     def __init__(self, folder: Path, plan: Plan, tell: Tell) -> None:
+        check_platform()
         self._folder = folder
-        self._runs = folder / "runs"
+        self._plan = plan
+        self._shelves = Shelves(folder / "runs", folder / "earlier")
         self._columns = columns(plan.study)
+        self._wanted = {run.id: number for number, run in enumerate(plan)}
         self._tell = tell
-        with _told(folder):
-            self._runs.mkdir(parents=True, exist_ok=True)
-            write_whole(folder / PLAN_FILE, plan.to_json().encode())
-            with lock(self._runs):
-                adopt_journals(self._runs)
-                self._journal = Journal(self._runs, self._columns)
+        with _in_one_line(folder):
+            self._shelves.runs.mkdir(parents=True, exist_ok=True)
+            with lock(self._shelves.runs):
+                adopt_journals(self._shelves.runs, self._columns, self._set_aside)
+                self._tidy()
+                self._journal = Journal(self._shelves.runs, self._columns)
 
     def __enter__(self) -> "Store":
         return self
@@ -70,65 +74,61 @@ class Store:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        with _told(self._folder), lock(self._runs):
-            self._journal.close()
-            compact(self._runs, self._set_aside)
+        with _in_one_line(self._folder), lock(self._shelves.runs):
+            self._journal.close(self._set_aside)
+            self._tidy()
 
     def done(self) -> set[str]:
-        """Ids of the runs that need not be done again.
+        """Find out what need not be done again.
 
-        Damaged parts are set aside, under a hidden name, so that their runs are.
+        Returns
+        -------
+        set of str
+            Ids of runs. Damaged parts are set aside, under a hidden name, so that their runs are
+            done again.
         """
-        found: set[str] = set()
-        with _told(self._folder), lock(self._runs):
-            for table in _tables(self._runs, self._set_aside):
+        runs, found = self._shelves.runs, set[str]()
+        with _in_one_line(self._folder), lock(runs):
+            parts = sound_parts(list_parts(runs), Columns(self._columns), self._set_aside)
+            journals = (read_journal(path, self._columns)[0] for path in list_journals(runs))
+            for table in (*(table for _, table in parts), *journals):
                 done = table.filter(pc.equal(table["outcome"], "done"))
                 found.update(done["run"].to_pylist())
-        return found
+        return found & self._wanted.keys()
 
     def add(self, result: Result) -> None:
-        """Store a result: its readings first, so that a row that is there is complete."""
-        with _told(self._folder):
+        """Store a result: its readings first, so that a row that is there is complete.
+
+        Parameters
+        ----------
+        result : Result
+            Of a run.
+        """
+        with _in_one_line(self._folder):
             if result.readings:
                 (self._folder / "readings").mkdir(exist_ok=True)
             for name, readings in result.readings.items():
                 readings.write(self._folder / "readings" / f"{result.row['run']}-{name}.parquet")
             self._journal.add(result.row)
-            if self._journal.rows == _ROWS_A_PART:
-                with lock(self._runs):
-                    self._journal.close()
-                    self._journal = Journal(self._runs, self._columns)
+            if self._journal.rows == ROWS_A_PART:
+                with lock(self._shelves.runs):
+                    self._journal.close(self._set_aside)
+                    self._journal = Journal(self._shelves.runs, self._columns)
+
+    def _tidy(self) -> None:
+        """Whoever does this last says what the folder holds."""
+        write_whole(self._folder / PLAN_FILE, self._plan.to_json().encode())
+        moved = tidy(self._shelves, self._plan, self._wanted, self._columns, self._set_aside)
+        if moved:
+            self._tell(f"{moved} runs of another plan are kept in {self._shelves.earlier}")
 
     def _set_aside(self, path: Path, reason: str) -> None:
-        path.rename(path.with_name(f".damaged-{path.name}"))
+        path.rename(path.with_name(f".damaged-{path.name.lstrip('.')}"))
         self._tell(f"{path} is damaged ({reason}) and set aside: its runs are done again")
 
 
-def read_rows(folder: Path, tell: Tell) -> pd.DataFrame:
-    """All that is stored of a study, a row a run, also while it is under way.
-
-    Raises
-    ------
-    InputError
-        If there is no study in `folder`.
-    """
-    runs = folder / "runs"
-    if not runs.is_dir():
-        raise InputError("DIR", folder, "the folder of a study", "`vibrissa study` makes one")
-    with lock(runs):
-        tables = list(_tables(runs, lambda path, reason: tell(f"{path} is damaged ({reason})")))
-    frame = merge(tables).to_pandas() if tables else pd.DataFrame({"run": [], "outcome": []})
-    return frame.sort_values("run", ignore_index=True)
-
-
-def _tables(runs: Path, damaged: Damaged) -> Iterator[pa.Table]:
-    for _, table in sound_parts(runs, damaged):
-        yield table
-    yield from read_journals(runs)
-
-
 @contextmanager
-def _told(folder: Path) -> Iterator[None]:
+def _in_one_line(folder: Path) -> Iterator[None]:
     """A full or read-only disk in one line."""
     try:
         yield
@@ -138,5 +138,5 @@ def _told(folder: Path) -> Iterator[None]:
             "--out",
             f"{folder} ({reason})",
             "a folder that can be written to, with space left",
-            "mend that and start again: complete runs are kept",
+            "correct that and start again: complete runs are kept",
         ) from error

@@ -14,9 +14,9 @@ from matplotlib.ticker import MaxNLocator
 
 from analytic import CLAMP_READINGS
 from compare.show.style import GREY, PHASE_COLOURS, SERIES, SYMBOLS
-from compare.study.grid.file import BEAM
+from compare.study.grid.study import BEAM
 from compare.study.show import tables
-from compare.study.show.tables import WORST, Findings, curve, pareto_front
+from compare.study.show.tables import WORST, StudyResults, curve, pareto_front
 
 _AXES = {
     "mujoco.segments": "segments $N$",
@@ -42,7 +42,7 @@ PANELS: dict[str, dict[str, str]] = {
 """What is drawn over an axis: a panel's label, its columns and what they are called."""
 
 
-def panels(found: Findings) -> dict[str, dict[str, str]]:
+def panels(found: StudyResults) -> dict[str, dict[str, str]]:
     """The panels that this study has numbers for; those that are zero throughout have none."""
     there = {
         label: {column: name for column, name in columns.items() if _varies(found.done, column)}
@@ -51,7 +51,7 @@ def panels(found: Findings) -> dict[str, dict[str, str]]:
     return {label: columns for label, columns in there.items() if columns}
 
 
-def axis_curves(found: Findings) -> Iterator[tuple[str, Figure]]:
+def axis_curves(found: StudyResults) -> Iterator[tuple[str, Figure]]:
     """Each axis by itself: medians, and bands over all that varies besides."""
     shown = panels(found)
     for axis in found.plain_axes if shown else ():
@@ -79,7 +79,7 @@ def axis_curves(found: Findings) -> Iterator[tuple[str, Figure]]:
         yield f"curves-{axis}", figure
 
 
-def heat_maps(found: Findings) -> Iterator[tuple[str, Figure]]:
+def heat_maps(found: StudyResults) -> Iterator[tuple[str, Figure]]:
     """Each pair of axes: the median of what lies at a place, as a colour."""
     shown = [
         (label.replace("\n", " "), next(iter(columns)) if len(columns) < 3 else WORST)
@@ -101,7 +101,7 @@ def heat_maps(found: Findings) -> Iterator[tuple[str, Figure]]:
         yield f"map-{across}-{up}", figure
 
 
-def error_against_time(found: Findings) -> Iterator[tuple[str, Figure]]:
+def error_against_time(found: StudyResults) -> Iterator[tuple[str, Figure]]:
     """Every simulated run by its time and its error, and the front that none of them beats."""
     done = found.done
     if WORST not in done or not _varies(done, "seconds_candidate"):

@@ -8,10 +8,10 @@ from matplotlib.figure import Figure
 from analytic import InputError
 from analytic.problem.files import write_whole
 from compare.show.page import inline_svg, png, render
-from compare.study.grid.plan import Plan
-from compare.study.keep.store import PLAN_FILE, Tell, read_rows
+from compare.study.keep.reading import read_plan, read_rows
+from compare.study.keep.store import Tell
 from compare.study.show import pictures, tables
-from compare.study.show.tables import Findings
+from compare.study.show.tables import StudyResults
 
 
 def write_report(folder: Path, tell: Tell) -> Path:
@@ -28,8 +28,8 @@ def write_report(folder: Path, tell: Tell) -> Path:
         If there is no study in `folder`, or none of its runs is done.
     """
     rows = read_rows(folder, tell)
-    plan = Plan.from_json((folder / PLAN_FILE).read_bytes())
-    found = Findings.of(plan, rows)
+    plan = read_plan(folder)
+    found = StudyResults.of(plan, rows)
     if found.done.empty:
         raise InputError(
             "DIR", folder, "a study with a run that is done", "see the reasons in DIR/runs"
@@ -56,7 +56,7 @@ def write_report(folder: Path, tell: Tell) -> Path:
     return folder / "report.html"
 
 
-def _page(found: Findings, numbers: dict[str, pd.DataFrame], drawn: dict[str, Figure]) -> str:
+def _page(found: StudyResults, numbers: dict[str, pd.DataFrame], drawn: dict[str, Figure]) -> str:
     titles = {
         "outcomes": "What became of the runs",
         "orders": "Observed orders",

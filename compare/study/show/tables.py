@@ -8,8 +8,8 @@ import pandas as pd
 
 from analytic import CLAMP_READINGS
 from analytic.problem.arrays import Floats
-from compare.study.grid.file import BEAM
 from compare.study.grid.plan import Plan
+from compare.study.grid.study import BEAM
 
 REFINED = ("mujoco.segments", "mujoco.contour_points", "sweep.stations")
 """Parameters that should make the disagreement fall."""
@@ -18,7 +18,7 @@ _BAND = (0.1, 0.9)  # quantiles over everything else that varies
 
 
 @dataclass(frozen=True)
-class Findings:
+class StudyResults:
     """What is stored of a study, as its reports look at it.
 
     Attributes
@@ -40,7 +40,7 @@ class Findings:
     axes: tuple[str, ...]
 
     @classmethod
-    def of(cls, plan: Plan, rows: pd.DataFrame) -> "Findings":
+    def of(cls, plan: Plan, rows: pd.DataFrame) -> "StudyResults":
         """Those rows that belong to `plan`."""
         rows = rows[rows["run"].isin({run.id for run in plan})]
         done = rows[rows["outcome"] == "done"]
@@ -58,7 +58,7 @@ class Findings:
         return tuple(key for key in self.axes if key != "noise.seed")
 
 
-def outcomes(found: Findings) -> pd.DataFrame:
+def outcomes(found: StudyResults) -> pd.DataFrame:
     """How many runs came to what, and one reason for each."""
     missing = len(found.plan) - len(found.rows)
     table = found.rows.groupby("outcome").agg(runs=("run", "size"), example=("reason", "first"))
@@ -69,7 +69,7 @@ def outcomes(found: Findings) -> pd.DataFrame:
     return table
 
 
-def curve(found: Findings, axis: str, metric: str) -> pd.DataFrame:
+def curve(found: StudyResults, axis: str, metric: str) -> pd.DataFrame:
     """Median of the size of `metric` and the band that holds 80 %, for each value of `axis`.
 
     A sampled axis is cut into stretches with equally many runs.
@@ -84,7 +84,7 @@ def curve(found: Findings, axis: str, metric: str) -> pd.DataFrame:
     return table.rename_axis(axis).reset_index()
 
 
-def curves(found: Findings, metrics: Sequence[str]) -> pd.DataFrame:
+def curves(found: StudyResults, metrics: Sequence[str]) -> pd.DataFrame:
     """All curves in one long table."""
     tables = [
         curve(found, axis, metric).rename(columns={axis: "value"}).assign(axis=axis, metric=metric)
@@ -95,7 +95,7 @@ def curves(found: Findings, metrics: Sequence[str]) -> pd.DataFrame:
     return pd.concat(tables)[columns] if tables else pd.DataFrame(columns=columns)
 
 
-def orders(found: Findings) -> pd.DataFrame:
+def orders(found: StudyResults) -> pd.DataFrame:
     """Observed orders: how fast the disagreement falls as a number is refined.
 
     The other refined numbers are at their largest, so that their error hides the least of it.
@@ -129,7 +129,7 @@ def orders(found: Findings) -> pd.DataFrame:
     return pd.DataFrame(found_rows)
 
 
-def vanishing(found: Findings) -> pd.DataFrame:
+def vanishing(found: StudyResults) -> pd.DataFrame:
     """Where Phase B vanishes: the contact length's minimum (eq. 21) passes 1, interpolated."""
     rows = []
     if "contact_length_minimum" in found.done:

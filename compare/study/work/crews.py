@@ -2,40 +2,51 @@
 
 import logging
 import os
-import signal
-from concurrent.futures import Executor, ProcessPoolExecutor
-from multiprocessing import get_context, parent_process
-from threading import Thread
-from typing import Any, NoReturn
+from typing import Any
 
 from analytic import InputError
+from compare.simulate.workers import Workers
 from compare.study.work.execute import Crew
-from compare.study.work.run import perform, perform_alone
+from compare.study.work.perform import perform, perform_alone
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
-# What they log when the scheduler goes, this module tells in a line.
+# What they log when the scheduler goes, this module says in a line.
 _CHATTY = ("distributed.client", "distributed.core", "tornado.application", "asyncio")
 
 
 def local_crew(workers: int) -> Crew:
-    """Processes on this machine, each with one thread.
+    """Hire processes on this machine, each with one thread.
 
-    They are forked from a server that has imported everything once, so a worker is there in no
-    time, and its memory is shared.
+    Parameters
+    ----------
+    workers : int
+        How many.
+
+    Returns
+    -------
+    Crew
+        It hires nobody before the first run.
     """
     os.environ |= dict.fromkeys(_THREADS, "1")  # read by the libraries when they are imported
-    context = get_context("forkserver")
-    context.set_forkserver_preload(["compare.study.work.run"])
-
-    def hire() -> Executor:
-        return ProcessPoolExecutor(workers, context, _begin_work)
-
-    return Crew(hire, perform_alone, 2 * workers + 1, _unexpected)
+    preload = ("compare.study.work.perform",)
+    return Crew(lambda: Workers(workers, preload), perform_alone, 2 * workers + 1, _unexpected)
 
 
 def dask_crew(address: str) -> Crew:
-    """The workers of the Dask cluster whose scheduler is at `address`.
+    """Hire the workers of a Dask cluster.
+
+    Parameters
+    ----------
+    address : str
+        Of its scheduler, as ``"tcp://host:8786"`` or ``"tls://host:8786"``. Whoever reaches the
+        port can run code there unless the cluster uses TLS; the certificates are taken from
+        Dask's own configuration.
+
+    Returns
+    -------
+    Crew
+        The workers that the cluster has now.
 
     Raises
     ------
@@ -72,19 +83,6 @@ def dask_crew(address: str) -> Crew:
         4 * sum(threads.values()),
         failure,
     )
-
-
-def _begin_work() -> None:
-    """Before a worker's first run: Ctrl-C is the leader's affair, and no worker outlives it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    Thread(target=_end_with_leader, daemon=True).start()
-
-
-def _end_with_leader() -> NoReturn:
-    leader = parent_process()
-    assert leader is not None
-    leader.join()
-    os._exit(1)
 
 
 def _unexpected(error: BaseException) -> str:

@@ -1,10 +1,9 @@
 """What a study will take, before it is started."""
 
-from itertools import islice
 from statistics import mean
 
 from compare.study.grid.plan import Plan
-from compare.study.work.run import Recipe, perform
+from compare.study.work.perform import Recipe, perform
 
 _PROBES = 3  # runs that are done to see how long one takes
 _BYTES_A_ROW = 250  # in a Parquet part of thousands of rows
@@ -12,10 +11,24 @@ _BYTES_A_STATION = 100  # of kept readings, in either engine
 
 
 def estimate(plan: Plan, workers: int) -> str:
-    """Number of runs, time and disk, in a line; a few runs, spread over the plan, are timed."""
+    """Estimate a study's time and size; a few runs, spread over the plan, are timed.
+
+    Parameters
+    ----------
+    plan : Plan
+        Its runs.
+    workers : int
+        How many processes will do them.
+
+    Returns
+    -------
+    str
+        Number of runs, time and disk, in a line.
+    """
     recipe = Recipe.of(plan.study)
-    probes = islice(plan, 0, None, max(1, (len(plan) - 1) // (_PROBES - 1)))
-    rows = [perform(recipe, run).row for run in probes]
+    last = len(plan) - 1
+    probes = sorted({round(i * last / (_PROBES - 1)) for i in range(_PROBES)})
+    rows = [perform(recipe, plan[index]).row for index in probes]
     seconds = mean(row["seconds"] for row in rows) * len(plan) / workers
     stations = plan.study.base["sweep.stations"] if plan.study.keep_readings else 0
     size = len(plan) * (_BYTES_A_ROW + 2 * stations * _BYTES_A_STATION)

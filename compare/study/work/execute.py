@@ -1,15 +1,15 @@
 """Runs done by any executor, a few ahead of those that are collected."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import dataclass
 from time import perf_counter
 from typing import TypeAlias
 
-from compare.study.grid.plan import Run
-from compare.study.work.run import Recipe, Result, lost
+from compare.study.grid.plan import PlannedRun
+from compare.study.work.perform import Recipe, Result, lost
 
-Perform: TypeAlias = Callable[[Recipe, Run], Result]
+Perform: TypeAlias = Callable[[Recipe, PlannedRun], Result]
 
 
 @dataclass(frozen=True)
@@ -34,19 +34,40 @@ class Crew:
     failure: Callable[[BaseException], str]
 
 
-def carry_out(runs: Iterable[Run], recipe: Recipe, crew: Crew) -> Iterator[Result]:
-    """The results of `runs`, in the order in which they are done.
+def carry_out(runs: Iterable[PlannedRun], recipe: Recipe, crew: Crew) -> Generator[Result]:
+    """Do runs.
 
+    Parameters
+    ----------
+    runs : iterable of PlannedRun
+        They are taken as workers become free.
+    recipe : Recipe
+        What they have in common.
+    crew : Crew
+        Who does them.
+
+    Yields
+    ------
+    Result
+        In the order in which they are done. Close the generator to end workers at once.
+
+    Raises
+    ------
+    InputError
+        If no worker can be had.
+
+    Notes
+    -----
     If a worker dies, the runs that were handed out are done once more, one by one, each in an
     executor of its own: the one that kills its worker again is known then, and only that one is
     given up.
     """
     waiting = iter(runs)
     executor = crew.hire()
-    under_way: dict[Future[Result], Run] = {}
+    under_way: dict[Future[Result], PlannedRun] = {}
     try:
         while True:
-            suspects: list[Run] = []
+            suspects: list[PlannedRun] = []
             try:
                 while len(under_way) < crew.ahead and (run := next(waiting, None)) is not None:
                     suspects = [run]
@@ -68,7 +89,7 @@ def carry_out(runs: Iterable[Run], recipe: Recipe, crew: Crew) -> Iterator[Resul
         executor.shutdown(wait=False)
 
 
-def _collect(under_way: dict[Future[Result], Run], crew: Crew) -> Iterator[Result]:
+def _collect(under_way: dict[Future[Result], PlannedRun], crew: Crew) -> Iterator[Result]:
     """The results that are there, at least one; they leave `under_way`."""
     finished, _ = wait(under_way, return_when=FIRST_COMPLETED)
     broken: BrokenExecutor | None = None
@@ -86,7 +107,7 @@ def _collect(under_way: dict[Future[Result], Run], crew: Crew) -> Iterator[Resul
         raise broken
 
 
-def _alone(run: Run, recipe: Recipe, crew: Crew) -> Result:
+def _alone(run: PlannedRun, recipe: Recipe, crew: Crew) -> Result:
     begin = perf_counter()
     with crew.hire() as executor:
         try:

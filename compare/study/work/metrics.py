@@ -7,7 +7,7 @@ import numpy as np
 from analytic import CLAMP_READINGS, Beam, Contour, Readings, find_events, reconstruct
 from compare.comparison import compare
 from compare.sense.transitions import TRANSITIONS
-from compare.study.grid.file import Record
+from compare.study.grid.study import Record
 
 _EVENTS = ("first_contact", "phase_b_start", "phase_b_end", "snap_off")
 
@@ -42,11 +42,21 @@ COLUMNS: Mapping[Record, Mapping[str, str]] = {
 
 
 def events(beam: Beam, profile: Contour) -> dict[str, float | bool | None]:
-    """The events of the sweep in closed form.
+    """Find the events of the sweep in closed form.
 
-    ``contact_length_minimum`` [L] is that of eq. 21: Phase B exists where it is less than 1 and the
-    sweep gets there before the snap-off. ``event_*`` are foot positions
-    [length], None where there is no such event.
+    Parameters
+    ----------
+    beam : Beam
+        The vibrissa.
+    profile : Contour
+        The object.
+
+    Returns
+    -------
+    dict
+        ``contact_length_minimum`` [L] is that of eq. 21 of Behn and others: Phase B exists where
+        it is less than 1 and the sweep gets there before the snap-off. ``event_*`` are foot
+        positions [length], None where there is no such event.
     """
     found = find_events(profile, beam)
     places = {name: getattr(found, name) for name in _EVENTS}
@@ -62,7 +72,18 @@ def events(beam: Beam, profile: Contour) -> dict[str, float | bool | None]:
 
 
 def disagreement(reference: Readings, candidate: Readings) -> dict[str, float | int | bool | None]:
-    """What `compare.compare` finds: relative to each reading's largest magnitude, places [length].
+    """Compare two sweeps.
+
+    Parameters
+    ----------
+    reference, candidate : Readings
+        The sweeps, shape (stations,) each.
+
+    Returns
+    -------
+    dict
+        What `compare.compare` finds: disagreements relative to each reading's largest magnitude,
+        places [length].
 
     Raises
     ------
@@ -86,10 +107,19 @@ def disagreement(reference: Readings, candidate: Readings) -> dict[str, float | 
 
 
 def reconstruction(candidate: Readings) -> dict[str, float | None]:
-    """How far the contact points told by the clamp are from the true ones [L].
+    """Measure how far the contact points that the clamp shows are from the true ones.
 
-    Over the trusted stations in contact; ``reconstruction_share`` is the share of them whose
-    readings some elastica explains, the others have no contact point.
+    Parameters
+    ----------
+    candidate : Readings
+        A sweep with its true contact points, shape (stations,).
+
+    Returns
+    -------
+    dict
+        Distances [L] over the trusted stations in contact, rms and largest;
+        ``reconstruction_share`` is the share of them whose readings some elastica explains, the
+        others have no contact point. None without such stations.
     """
     touching = candidate.trusted & np.isfinite(candidate.values("contact_x"))
     found = reconstruct(candidate)

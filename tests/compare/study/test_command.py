@@ -9,7 +9,7 @@ import pytest
 
 from compare.study.grid.file import shipped_studies
 from compare.study.keep.parts import list_parts
-from tests.compare.study.conftest import EVENTS_ONLY, vibrissa
+from tests.compare.study.studies import EVENTS_ONLY, vibrissa
 
 SIMULATED = """
 [study]

@@ -10,7 +10,7 @@ from analytic import Case, Readings, Sweep, circle
 from compare.commands.main import main
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
-from compare.study.work.run import Recipe, perform
+from compare.study.work.perform import Recipe, perform
 from mujoco_models import DivergedError, Settings, simulate_sweep
 
 CASE = Case(profile=circle(1.0, lowest=(0.0, 0.4)), sweep=Sweep(stations=20))

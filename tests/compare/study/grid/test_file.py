@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from analytic import CASE_NAMES, InputError, named_case
-from compare.study.grid.file import case_file, load_study, shipped_studies
+from compare.study.grid.file import load_study, shipped_studies
 from compare.study.grid.plan import Plan
-from tests.compare.study.conftest import EVENTS_ONLY
+from compare.study.grid.study import case_file
+from tests.compare.study.studies import EVENTS_ONLY
 
 
 def parameters(plan):

@@ -1,6 +1,5 @@
 """What is stored: whole or not at all, once, and found again whatever happened."""
 
-import json
 import multiprocessing
 
 import pandas as pd
@@ -9,9 +8,10 @@ import pytest
 from analytic import InputError
 from compare.study.keep import journal
 from compare.study.keep.parts import list_parts
-from compare.study.keep.store import Store, read_rows
-from compare.study.work.run import Recipe, Result, perform
-from tests.compare.study.conftest import EVENTS_ONLY
+from compare.study.keep.reading import read_rows
+from compare.study.keep.store import Store
+from compare.study.work.perform import Recipe, Result, perform
+from tests.compare.study.studies import EVENTS_ONLY
 
 
 @pytest.fixture
@@ -103,7 +103,7 @@ def test_a_living_process_keeps_its_journal(tmp_path, plan, stored, told):
 
 
 def test_many_parts_become_one(tmp_path, plan, stored, told, monkeypatch):
-    monkeypatch.setattr("compare.study.keep.store._ROWS_A_PART", 2)
+    monkeypatch.setattr("compare.study.keep.store.ROWS_A_PART", 2)
     fill(tmp_path, plan, stored, told)
     assert len(list_parts(tmp_path / "runs")) == 1
     assert len(pd.read_parquet(tmp_path / "runs")) == len(stored)
@@ -145,9 +145,7 @@ def test_a_file_where_the_folder_should_be(tmp_path, plan, told):
 
 
 def test_a_full_disk_loses_nothing(tmp_path, plan, stored, told, monkeypatch):
-    def full(self, content):
-        line = json.dumps(content).encode()
-        self._file.write(line[: len(line) // 2])
+    def full(self, row):
         raise OSError(28, "No space left on device")
 
     with (
@@ -156,7 +154,7 @@ def test_a_full_disk_loses_nothing(tmp_path, plan, stored, told, monkeypatch):
     ):
         store.add(stored[0])
         store.add(stored[1])
-        monkeypatch.setattr(journal.Journal, "_append", full)
+        monkeypatch.setattr(journal.Journal, "add", full)
         store.add(stored[2])
     monkeypatch.undo()
     with Store(tmp_path, plan, told.append) as store:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from tests.compare.study.conftest import COMMAND, EVENTS_ONLY, results, vibrissa
+from tests.compare.study.studies import COMMAND, EVENTS_ONLY, results, vibrissa
 
 pytestmark = pytest.mark.slow
 

@@ -10,8 +10,8 @@ import pytest
 
 from compare.study.work.crews import local_crew
 from compare.study.work.execute import Crew, carry_out
-from compare.study.work.run import Recipe, Result, perform, perform_alone
-from tests.compare.study.conftest import EVENTS_ONLY
+from compare.study.work.perform import Recipe, Result, perform, perform_alone
+from tests.compare.study.studies import EVENTS_ONLY
 
 
 def crew(perform, hire=None):
@@ -39,7 +39,7 @@ def deadly(recipe, run):
 
 def stuck(recipe, run):
     """Perform a run that hangs where no Python code is asked any more."""
-    from compare.study.work import run as running
+    from compare.study.work import perform as running
 
     def hang(recipe, run):
         if run.parameters["beam.radius"] == 0.002 and run.parameters["profile.a"] == 0.3:

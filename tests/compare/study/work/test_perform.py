@@ -1,30 +1,22 @@
 """One run: every outcome has a name and a reason, and the numbers are those of the library."""
 
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from analytic import Case, catenary, find_events, reconstruct, relative_noise, solve_sweep
 from compare import compare
-from compare.study.work import run as running
-from compare.study.work.run import Recipe, perform
+from compare.study.grid.sensor import SensorNoise
+from compare.study.work import perform as running
+from compare.study.work.perform import Recipe, perform
 from mujoco_models import Settings, simulate_sweep
-
-SMALL = """
-    study = { case = "catenary", keep_readings = true, timeout = 30 }
-    sweep.stations = 40
-    mujoco = { segments = 10, contour_points = 800 }
-"""
-
-
-def only(plan):
-    (run,) = plan
-    return Recipe.of(plan.study), run
+from tests.compare.study.studies import ONE_SIMULATION, only
 
 
 def test_a_row_holds_what_the_library_finds(plan_of):
-    result = perform(*only(plan_of(SMALL)))
+    result = perform(*only(plan_of(ONE_SIMULATION)))
     row = result.row
     case = named(40)
     found = compare(
@@ -39,8 +31,6 @@ def test_a_row_holds_what_the_library_finds(plan_of):
 
 
 def named(stations):
-    from dataclasses import replace
-
     case = Case(profile=catenary(0.5, -0.8))
     return replace(case, sweep=replace(case.sweep, stations=stations))
 
@@ -67,7 +57,7 @@ def test_whatever_else_goes_wrong_is_an_outcome(plan_of, monkeypatch):
         raise ArithmeticError("no state found")
 
     monkeypatch.setattr(running, "solve_sweep", broken)
-    row = perform(*only(plan_of(SMALL))).row
+    row = perform(*only(plan_of(ONE_SIMULATION))).row
     assert (row["outcome"], row["reason"]) == ("failed", "ArithmeticError: no state found")
 
 
@@ -79,7 +69,7 @@ def test_a_simulation_that_does_not_trust_itself(plan_of, monkeypatch, status):
         return readings
 
     monkeypatch.setattr("mujoco_models.simulate_sweep", doubtful)
-    row = perform(*only(plan_of(SMALL))).row
+    row = perform(*only(plan_of(ONE_SIMULATION))).row
     assert (row["outcome"], row["reason"]) == (status, f"10 of 40 stations {status}")
 
 
@@ -90,16 +80,14 @@ def test_a_slow_run_is_ended_between_stations(plan_of, monkeypatch):
             advance()
 
     monkeypatch.setattr("mujoco_models.simulate_sweep", slow)
-    row = perform(*only(plan_of(SMALL.replace("30", "0.1")))).row
+    row = perform(*only(plan_of(ONE_SIMULATION.replace("30", "0.1")))).row
     assert row["outcome"] == "timeout"
     assert row["seconds"] < 2
 
 
 def test_noise_is_that_of_the_reconstruction(plan_of):
-    from compare.study.grid.noise import Noise
-
     exact = solve_sweep(named(2000))
-    noisy = Noise(relative=1e-2, seed=3).add_to(exact)
+    noisy = SensorNoise(relative=1e-2, seed=3).add_to(exact)
     for name, deviation in relative_noise(exact, 1e-2).items():
         assert np.std(noisy.values(name) - exact.values(name)) == pytest.approx(deviation, rel=0.05)
     assert reconstruct(noisy).shape == reconstruct(exact).shape

@@ -15,8 +15,8 @@ from typing import Any, Literal, TypeAlias
 from analytic import InputError, Readings, solve_sweep
 from compare.judge.tolerances import Tolerances
 from compare.study.grid.axes import Value
-from compare.study.grid.file import Record, Study, case_file
-from compare.study.grid.plan import Run
+from compare.study.grid.plan import PlannedRun
+from compare.study.grid.study import RECORDS, Record, Study, case_file
 from compare.study.work import metrics
 from mujoco_models import DivergedError
 
@@ -32,6 +32,14 @@ _ABOUT = {
     "system": "string",
     "host": "string",
 }
+_IDENTITY = {"run": "string", "outcome": "string", "reason": "string"}
+RECORDED = {
+    **_IDENTITY,
+    **{name: kind for record in RECORDS for name, kind in metrics.COLUMNS[record].items()},
+    "seed": "int64",
+    **_ABOUT,
+}
+"""Arrow types of all columns that a row may have besides its parameters."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +54,18 @@ class Recipe:
 
     @classmethod
     def of(cls, study: Study) -> "Recipe":
-        """The recipe of `study`."""
+        """Take from a study what its runs have in common.
+
+        Parameters
+        ----------
+        study : Study
+            The study.
+
+        Returns
+        -------
+        Recipe
+            Of each of its runs.
+        """
         return cls(study.base, bool(study.beams), study.record, study.keep_readings, study.timeout)
 
 
@@ -63,9 +82,20 @@ class _TimeIsUp(Exception):  # noqa: N818  # not an error: an outcome
 
 
 def columns(study: Study) -> dict[str, str]:
-    """Arrow types of a row's columns, in order."""
-    types = {int: "int64", float: "double", str: "string"}
-    found = {"run": "string", "outcome": "string", "reason": "string"}
+    """List the columns of a study's rows.
+
+    Parameters
+    ----------
+    study : Study
+        What varies and what is recorded.
+
+    Returns
+    -------
+    dict
+        Their Arrow types by name, in order.
+    """
+    types = {bool: "bool", int: "int64", float: "double", str: "string"}
+    found = dict(_IDENTITY)
     for axis in study.crossed:
         for key, values in zip(axis.keys, zip(*axis.points, strict=True), strict=True):
             kinds = {types[type(value)] for value in values}
@@ -75,8 +105,21 @@ def columns(study: Study) -> dict[str, str]:
     return found | {"seed": "int64"} | _ABOUT
 
 
-def perform(recipe: Recipe, run: Run) -> Result:
-    """Do one run. Whatever goes wrong becomes its outcome; nothing is raised."""
+def perform(recipe: Recipe, run: PlannedRun) -> Result:
+    """Do one run. Whatever goes wrong becomes its outcome; nothing is raised.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        What all runs have in common.
+    run : PlannedRun
+        Which one.
+
+    Returns
+    -------
+    Result
+        Its row, and its readings if they are to be kept.
+    """
     begin = time.perf_counter()
     row: Row = {"run": run.id, "outcome": "done", "reason": "", **run.parameters, **_system()}
     readings: dict[str, Readings] = {}
@@ -94,17 +137,44 @@ def perform(recipe: Recipe, run: Run) -> Result:
     return Result(row, readings if recipe.keep_readings else {})
 
 
-def perform_alone(recipe: Recipe, run: Run) -> Result:
-    """`perform` for a process that does nothing else: a run that hangs takes the process with it.
+def perform_alone(recipe: Recipe, run: PlannedRun) -> Result:
+    """Do one run in a process that does nothing else: a run that hangs ends the process.
 
     `perform` asks the time between stations, which ends a slow run but not a stuck one.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        What all runs have in common.
+    run : PlannedRun
+        Which one.
+
+    Returns
+    -------
+    Result
+        As of `perform`.
     """
     with _end_of_process(1.1 * recipe.timeout + 1):
         return perform(recipe, run)
 
 
-def lost(run: Run, outcome: Outcome, reason: str) -> Result:
-    """The row of a run that left none itself."""
+def lost(run: PlannedRun, outcome: Outcome, reason: str) -> Result:
+    """Make the row of a run that left none itself.
+
+    Parameters
+    ----------
+    run : PlannedRun
+        Which one.
+    outcome : str
+        What became of it.
+    reason : str
+        Why.
+
+    Returns
+    -------
+    Result
+        Its row.
+    """
     return Result({"run": run.id, "outcome": outcome, "reason": reason, **run.parameters})
 
 
@@ -162,8 +232,11 @@ def _deadline(end: float) -> Callable[[], None]:
 def _end_of_process(seconds: float) -> Iterator[None]:
     """After so many seconds the operating system ends the process, whatever it is doing.
 
-    An alarm that nobody handles kills; no Python code has to run for it.
+    An alarm that nobody handles kills; no Python code has to run for it. Windows has no such alarm.
     """
+    if not hasattr(signal, "setitimer"):
+        yield
+        return
     signal.setitimer(signal.ITIMER_REAL, seconds)
     try:
         yield

@@ -1,4 +1,4 @@
-"""Sensor noise, added to the clamp readings of a sweep."""
+"""The sensor of a study: noise that is added to the clamp readings of a sweep."""
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -6,7 +6,7 @@ from analytic import CLAMP_READINGS, Readings
 from compare.sense.noise import with_noise
 
 
-class Noise(BaseModel):
+class SensorNoise(BaseModel):
     """Gaussian noise of the sensor at the clamp.
 
     Parameters
@@ -17,13 +17,24 @@ class Noise(BaseModel):
         The same seed draws the same noise, whatever the case.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     relative: float = Field(default=0.0, ge=0, lt=1)
-    seed: int = Field(default=0, ge=0)
+    seed: int = Field(default=0, ge=0, lt=2**63)  # the row's column has 64 bits
 
     def add_to(self, readings: Readings) -> Readings:
-        """`readings` as a sensor with this noise gives them; the contact truth is kept."""
+        """Add the noise to a sweep.
+
+        Parameters
+        ----------
+        readings : Readings
+            The sweep, shape (stations,).
+
+        Returns
+        -------
+        Readings
+            What a sensor with this noise gives; the true contact points are kept.
+        """
         if self.relative == 0:
             return readings
         return with_noise(readings, dict.fromkeys(CLAMP_READINGS, self.relative), self.seed)

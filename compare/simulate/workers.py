@@ -1,0 +1,97 @@
+"""Worker processes on this machine: they start or it is said why not, and end with their leader."""
+
+import os
+import signal
+from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
+from contextlib import suppress
+from multiprocessing import get_all_start_methods, get_context
+from multiprocessing.connection import Connection
+from threading import Thread
+from types import TracebackType
+from typing import NoReturn
+
+from analytic import InputError
+
+_START = 120.0  # s; a worker is there within one or two, on a crowded machine within ten
+
+
+def available_cores() -> int:
+    """The number of cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):  # not on macOS, nor on Windows
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+class Workers(ProcessPoolExecutor):
+    """A pool whose processes end as soon as their leader does, however that ends.
+
+    Each holds one end of a pipe whose other end only the leader has: it closes when the leader lets
+    go of it, is killed, or crashes. Ctrl-C is the leader's affair alone.
+
+    Parameters
+    ----------
+    count : int
+        Number of processes.
+    preload : tuple of str
+        Modules that a server imports once; workers are forked from it and share its memory. Where
+        there is no such server, or without modules, each worker starts afresh.
+
+    Raises
+    ------
+    InputError
+        If the first worker does not start: then none would, again and again.
+    """
+
+    def __init__(self, count: int, preload: tuple[str, ...] = ()) -> None:
+        server = preload and "forkserver" in get_all_start_methods()
+        context = get_context("forkserver" if server else "spawn")
+        if server:
+            context.set_forkserver_preload(list(preload))
+        self._watched, self._held = context.Pipe(duplex=False)
+        super().__init__(count, context, _begin_work, (self._watched,))
+        try:
+            self.submit(os.getpid).result(timeout=_START)
+        except (BrokenExecutor, OSError, TimeoutError) as error:
+            self.shutdown(wait=False, cancel_futures=True)
+            reason = " ".join(str(error).split()) or type(error).__name__
+            raise InputError(
+                "workers", count, "processes that can be started here",
+                f"the first one did not start ({reason}): free memory or processes",
+            ) from error  # fmt: skip
+        except BaseException:
+            self.shutdown(wait=False, cancel_futures=True)
+            raise
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End the processes.
+
+        Parameters
+        ----------
+        wait : bool
+            Whether what is under way is finished first; otherwise they end at once.
+        cancel_futures : bool
+            Whether what waits is dropped.
+        """
+        if not wait:
+            self._held.close()
+        super().shutdown(wait=wait, cancel_futures=cancel_futures)
+        self._held.close()
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.shutdown(wait=error is None, cancel_futures=error is not None)
+
+
+def _begin_work(watched: Connection) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=_end_with_leader, args=(watched,), daemon=True).start()
+
+
+def _end_with_leader(watched: Connection) -> NoReturn:
+    with suppress(EOFError, OSError):
+        watched.recv_bytes()  # nothing is ever sent
+    os._exit(1)

@@ -1,0 +1,143 @@
+"""The base case of a study file: what each run is a variation of, and what a key of it may be."""
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
+
+from pydantic import ValidationError
+
+from analytic import NAMED_PROFILES, InputError
+from compare.read.case import CaseFile, validate
+from compare.read.toml import TomlFile
+from compare.study.grid.axes import Value
+from compare.study.grid.schema import CASE_TABLES, StudyFile, complaint
+from compare.study.grid.sensor import SensorNoise
+from compare.study.grid.study import BEAM, MESH, flatten
+
+_VARIED = (*CASE_TABLES, "noise")
+
+
+class Base:
+    """The base case of a study file, and a trial of values on it.
+
+    Parameters
+    ----------
+    file : TomlFile
+        The study file.
+    content : StudyFile
+        What it says.
+
+    Raises
+    ------
+    InputError
+        If the base case cannot be used; the line is named.
+    """
+
+    def __init__(self, file: TomlFile, content: StudyFile) -> None:
+        self._file = file
+        self._folder = file.path.parent
+        self._noise = content.noise
+        self._tables = self._overlaid(content)
+        checked = validate(self._tables, file.place)
+        try:
+            self._built(checked)
+        except InputError as error:
+            named, _, _ = str(error).partition(" = ")
+            where = file.place(named.split(".") if "." in named else ["profile"])
+            raise InputError(where, "unusable", "usable", str(error)) from error
+        tables = checked.model_dump(include=set(CASE_TABLES)) | {"noise": self._noise.model_dump()}
+        self.values = {key: value for key, value in flatten(tables).items() if value is not None}
+        if MESH in self.values:
+            self.values[MESH] = self._path(self.values[MESH])
+
+    def tried(self, key: str, value: object, place: Sequence[str]) -> Value:
+        """Try a value on the base case; combinations of values are not tried.
+
+        Parameters
+        ----------
+        key : str
+            Dotted key.
+        value : object
+            As the file gives it.
+        place : sequence of str
+            Where the file gives it.
+
+        Returns
+        -------
+        bool, int, float or str
+            The number or word that the case holds then.
+
+        Raises
+        ------
+        InputError
+            If there is no such key or it cannot have this value; the line is named.
+        """
+        where = self._file.place(place)
+        table, *inner = key.split(".")
+        if table not in _VARIED or len(inner) != 1:
+            raise InputError(
+                where, "an axis", f"a key of {', '.join(_VARIED)}",
+                "write it as in a case file, as beam.radius",
+            )  # fmt: skip
+        if key == BEAM and place[0] == "axes":
+            raise InputError(where, value, "given as study.beams", "list the beams there")
+        found = self._tried(table, inner[0], value, place)
+        if isinstance(value, bool) != isinstance(found, bool):
+            allowed = "true or false" if isinstance(found, bool) else "a number or a word"
+            raise InputError(where, repr(value), allowed, "correct it")
+        if not isinstance(found, int | float | str):
+            raise InputError(where, repr(value), "one number or word", "this key cannot be an axis")
+        return self._path(str(found)) if key == MESH else found
+
+    def _tried(self, table: str, key: str, value: object, place: Sequence[str]) -> object:
+        """What the base case holds with `value` for a key."""
+        if table == "noise":
+            try:
+                noise = SensorNoise.model_validate(self._noise.model_dump() | {key: value})
+            except ValidationError as error:
+                raise complaint(error, self._file.place, place) from error
+            return noise.model_dump()[key]
+        where = self._file.place(place)
+        changed = {**self._tables, table: {**self._tables.get(table, {}), key: value}}
+        checked = validate(changed, partial(_at, where))
+        try:
+            self._built(checked)
+        except InputError as error:
+            raise InputError(where, value, "usable", str(error)) from error
+        return checked.model_dump(include={table})[table][key]
+
+    def _built(self, case: CaseFile) -> None:
+        """Raise if the parts of a case cannot be made."""
+        case.physics(self._folder)
+        case.sweep.build()
+
+    def _overlaid(self, content: StudyFile) -> dict[str, Any]:
+        """The base case's tables with the study's own over them."""
+        own: Mapping[str, dict[str, Any]] = content.model_dump(include=set(CASE_TABLES))
+        own = {name: table for name, table in own.items() if table}
+        case = content.study.case
+        if case is None:
+            return dict(own)
+        if case in NAMED_PROFILES:
+            base: dict[str, Any] = {"profile": dict(NAMED_PROFILES[case])}
+        elif case.endswith(".toml"):
+            file = TomlFile.read(self._folder / case, "case file")
+            validate(file.tables, file.place)  # its errors are on its own lines
+            base = {name: table for name, table in file.tables.items() if name in CASE_TABLES}
+        else:
+            raise InputError(
+                self._file.place(["study", "case"]),
+                repr(case),
+                f"one of {', '.join(NAMED_PROFILES)}, or the path of a .toml file",
+                "leave it out to describe the case here",
+            )
+        return {name: {**base.get(name, {}), **own.get(name, {})} for name in {**base, **own}}
+
+    def _path(self, name: str) -> str:
+        """A mesh file's path, whole: a run may be done in another folder."""
+        return str((self._folder / name).resolve())
+
+
+def _at(place: str, _: Sequence[str]) -> str:
+    """What an error calls a value of an axis, whichever key of the case complains."""
+    return place

@@ -1,0 +1,99 @@
+"""What a study is, once its file has been checked."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+from compare.read.case import CaseFile, validate
+from compare.study.grid.axes import Axis
+from compare.study.grid.sensor import SensorNoise
+
+Record: TypeAlias = Literal["events", "disagreement", "reconstruction"]
+RECORDS: tuple[Record, ...] = ("events", "disagreement", "reconstruction")
+BEAM = "mujoco.beam"
+MESH = "profile.file"
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study, checked.
+
+    Parameters
+    ----------
+    name : str
+        What files and reports call it.
+    base : dict
+        Dotted keys of the base case, its simulation and the noise, in SI or without units.
+    axes : tuple of Axis
+        Crossed with each other.
+    beams : tuple of str
+        MuJoCo's beams, as a further axis; without any the runs are analytic only.
+    record : tuple of str
+        What is computed.
+    keep_readings : bool
+        Whether the readings of every run are kept.
+    timeout : float
+        A run that takes longer is ended [s].
+    case : str
+        What reports call the base case.
+    """
+
+    name: str
+    base: dict[str, Any]
+    axes: tuple[Axis, ...]
+    beams: tuple[str, ...]
+    record: tuple[Record, ...]
+    keep_readings: bool
+    timeout: float
+    case: str = "case"
+
+    @property
+    def crossed(self) -> tuple[Axis, ...]:
+        """All axes, that of the beams included."""
+        return (*self.axes, Axis.of({BEAM: self.beams})) if self.beams else self.axes
+
+
+def flatten(tables: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    """Turn tables into one with dotted keys.
+
+    Parameters
+    ----------
+    tables : mapping
+        Tables by name.
+
+    Returns
+    -------
+    dict
+        Values by ``"table.key"``.
+    """
+    return {
+        f"{name}.{key}": value for name, table in tables.items() for key, value in table.items()
+    }
+
+
+def case_file(parameters: Mapping[str, Any]) -> tuple[CaseFile, SensorNoise]:
+    """Read the case and the noise from dotted keys.
+
+    Parameters
+    ----------
+    parameters : mapping
+        Values by dotted key, as `Study.base` with the values of a run over it.
+
+    Returns
+    -------
+    CaseFile
+        The case.
+    SensorNoise
+        The noise.
+
+    Raises
+    ------
+    InputError
+        If the keys describe no case.
+    """
+    tables: dict[str, dict[str, Any]] = {}
+    for dotted, value in parameters.items():
+        name, _, key = dotted.partition(".")
+        tables.setdefault(name, {})[key] = value
+    noise = SensorNoise(**tables.pop("noise", {}))
+    return validate(tables, ".".join), noise
