@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from analytic import Readings
+from analytic import InputError, Readings
 from compare.comparison import Comparison, compare
 from compare.judge.tolerances import Tolerances
 
@@ -46,13 +46,62 @@ def assert_agreement(
     InputError
         As `compare`.
     """
-    comparison = compare(reference, candidate, tolerances, offset=offset, noise=noise)
+    comparison = compared(reference, candidate, tolerances, offset=offset, noise=noise)
     demand(comparison, budget)
     return comparison
 
 
+def compared(
+    reference: Readings,
+    candidate: Readings,
+    tolerances: Tolerances | None = None,
+    *,
+    offset: float | Literal["auto"] = 0.0,
+    noise: float | Literal["auto"] = 0.0,
+) -> Comparison:
+    """Compare two sweeps, if they are sweeps: a test's simulator may return anything.
+
+    Parameters
+    ----------
+    reference, candidate, tolerances, offset, noise
+        As `compare` takes them.
+
+    Returns
+    -------
+    Comparison
+        Whether they agree or not.
+
+    Raises
+    ------
+    InputError
+        If one of the two is no `Readings`; else as `compare`.
+    """
+    for name, given in (("reference", reference), ("candidate", candidate)):
+        if not isinstance(given, Readings):
+            raise InputError(
+                name,
+                "None" if given is None else f"a {type(given).__name__}",
+                "analytic.Readings",
+                "solve_sweep, simulate_sweep, read_measured or Readings(table, beam) make them",
+            )
+    return compare(reference, candidate, tolerances, offset=offset, noise=noise)
+
+
 def demand(comparison: Comparison, budget: Budget | None = None) -> None:
-    """Raise AssertionError unless `comparison` agrees; as `assert_agreement`."""
+    """Raise AssertionError unless `comparison` agrees.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        What was found.
+    budget : Budget, optional
+        As `assert_agreement` takes it.
+
+    Raises
+    ------
+    AssertionError
+        If a limit is exceeded; its message is that of `assert_agreement`.
+    """
     if comparison.agrees:
         return
     title = f"{comparison.candidate.source} disagrees with {comparison.reference.source}:"
@@ -65,6 +114,6 @@ def _cause(comparison: Comparison, budget: Budget | None) -> str:
     if comparison.likely is not None:
         return f"likely: {comparison.likely}"
     return (
-        "the readings alone do not tell why; `vibrissa budget` measures the parts of a "
+        "the readings alone do not show why; `vibrissa budget` measures the parts of a "
         "MuJoCo model's disagreement"
     )

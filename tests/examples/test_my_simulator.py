@@ -29,20 +29,20 @@ def my_simulator(case: Case) -> Readings:
 
 
 @pytest.mark.vibrissa("catenary", "parabola")  # without: all named cases, or --vibrissa-case
-def test_my_simulator(case, agreement):
-    agreement(my_simulator(case))
+def test_my_simulator(vibrissa_case, vibrissa_agreement):
+    vibrissa_agreement(my_simulator(vibrissa_case))
 
 
 @pytest.mark.vibrissa("tip-only")
-def test_my_simulator_against_mujoco(case, sweep, agreement):
+def test_my_simulator_against_mujoco(vibrissa_case, vibrissa_sweep, vibrissa_agreement):
     allowed = Tolerances(rms=Limit(3e-3, "MuJoCo's chain of 20 segments is itself off by 2e-3"))
-    agreement(my_simulator(case), sweep("chain", segments=20), allowed)
+    vibrissa_agreement(my_simulator(vibrissa_case), vibrissa_sweep("chain", segments=20), allowed)
 
 
 @pytest.fixture
-def rig_csv(case, tmp_path) -> Path:
+def rig_csv(vibrissa_case, tmp_path) -> Path:
     """Your rig's file, in place of this stand-in: 3 mm off, with half a per cent of noise."""
-    exact = solve_sweep(case)
+    exact = solve_sweep(vibrissa_case)
     rng = np.random.default_rng(0)
 
     def noisy(name: str, unit: float) -> np.ndarray:
@@ -62,8 +62,8 @@ def rig_csv(case, tmp_path) -> Path:
 
 
 @pytest.mark.vibrissa(str(Path(__file__).with_name("rig.toml")))
-def test_my_rig(case, rig_csv, agreement):
+def test_my_rig(vibrissa_case, rig_csv, vibrissa_agreement):
     columns = ["foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm"]
-    measured = read_measured(rig_csv, columns=columns, otherwise=case.beam)
-    found = agreement(measured, offset="auto", noise=5e-3)
+    measured = read_measured(rig_csv, columns=columns, otherwise=vibrissa_case.beam)
+    found = vibrissa_agreement(measured, offset="auto", noise=5e-3)
     assert found.offset.value == pytest.approx(3e-3, abs=2 * found.offset.uncertainty)

@@ -9,12 +9,20 @@ import pytest
 
 # What a run inside this process imports first is forgotten after it, and not all modules bear that.
 import compare.read.case
-import compare.show.report  # noqa: F401
-import mujoco_models  # noqa: F401
+import compare.testing.gates
+import compare.testing.summary  # noqa: F401
+from analytic import named_case, solve_sweep  # noqa: F401
+from mujoco_models import simulate_sweep  # noqa: F401
 
 pytest_plugins = ["pytester"]
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.fixture(autouse=True)
+def without_hypothesis(monkeypatch):
+    """Its plugin would be compiled anew in every run, for a second each."""
+    monkeypatch.setenv("PYTEST_ADDOPTS", "-p no:hypothesispytest")
 
 
 @pytest.mark.slow
@@ -37,10 +45,11 @@ import pytest
 from analytic import Beam, Sweep, solve_sweep
 
 @pytest.mark.vibrissa("parabola")
-def test_stiff(case, agreement):
+def test_stiff(vibrissa_case, vibrissa_agreement):
+    case = vibrissa_case
     sweep = Sweep(200, float(case.foot_x[0]), float(case.foot_x[-1]))
     stiff = replace(case, beam=Beam(flexural_rigidity=1.02), sweep=sweep)
-    agreement(replace(solve_sweep(stiff), beam=case.beam, source="mine"))
+    vibrissa_agreement(replace(solve_sweep(stiff), beam=case.beam, source="mine"))
 """
 
 
@@ -70,14 +79,44 @@ def test_reports_of_workers_are_gathered(pytester):
 
 
 def test_which_cases_a_test_is_run_for(pytester):
-    pytester.makepyfile("def test_name(case): print('case', case.name)")
+    pytester.makepyfile("def test_name(vibrissa_case): print('case', vibrissa_case.name)")
     pytester.runpytest().assert_outcomes(passed=5)
     result = pytester.runpytest("--vibrissa-case", "tip-only", "-s")
     result.assert_outcomes(passed=1)
     result.stdout.fnmatch_lines(["*case tip-only*"])
+
+
+@pytest.mark.parametrize("marker", ["", "@pytest.mark.vibrissa('tip-only')"])
+def test_a_case_that_is_none_is_an_error_in_any_run(pytester, marker):
+    pytester.makepyfile(f"import pytest\n{marker}\ndef test_name(vibrissa_case): pass")
     result = pytester.runpytest("--vibrissa-case", "tip-onli")
-    result.assert_outcomes(errors=1)
-    result.stdout.fnmatch_lines(["*did you mean tip-only?*"])
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines(["ERROR: --vibrissa-case: case = *did you mean tip-only?"])
+
+
+def test_the_marker_goes_before_the_option(pytester):
+    pytester.makepyfile(
+        "import pytest\n"
+        "@pytest.mark.vibrissa('tip-only')\n"
+        "def test_marked(vibrissa_case): assert vibrissa_case.name == 'tip-only'\n"
+        "def test_plain(vibrissa_case): assert vibrissa_case.name == 'parabola'\n"
+    )
+    pytester.runpytest("--vibrissa-case", "parabola").assert_outcomes(passed=2)
+
+
+OLD_NAMES = """
+import pytest
+@pytest.mark.vibrissa("tip-only")
+def test_old(case, sweep, agreement):
+    agreement(sweep())
+"""
+
+
+def test_old_names_work_and_warn(pytester):
+    pytester.makepyfile(OLD_NAMES)
+    result = pytester.runpytest()
+    result.assert_outcomes(passed=1, warnings=3)
+    result.stdout.fnmatch_lines(["*fixture `case` of vibrissa-testbed is called `vibrissa_case`*"])
 
 
 def test_the_users_own_case_goes_first(pytester):
@@ -87,7 +126,25 @@ def test_the_users_own_case_goes_first(pytester):
         "def case(): return analytic.named_case('tip-only')\n"
     )
     pytester.makepyfile("def test_it(case, sweep, agreement): agreement(sweep())")
-    pytester.runpytest().assert_outcomes(passed=1)
+    pytester.runpytest().assert_outcomes(passed=1, warnings=2)
+
+
+def test_the_users_own_parameters_are_not_crossed_with_the_named_cases(pytester):
+    pytester.makeconftest(
+        "def pytest_generate_tests(metafunc):\n"
+        "    if 'case' in metafunc.fixturenames:\n"
+        "        metafunc.parametrize('case', [1, 2])\n"
+    )
+    pytester.makepyfile("def test_it(case): assert case in (1, 2)")
+    pytester.runpytest("-W", "error").assert_outcomes(passed=2)
+
+
+def test_the_users_own_kind_of_case_is_named(pytester):
+    pytester.makeconftest("import pytest\n@pytest.fixture\ndef case(): return {}\n")
+    pytester.makepyfile("def test_it(case, sweep): pass")
+    result = pytester.runpytest()
+    result.assert_outcomes(errors=1, warnings=1)
+    result.stdout.fnmatch_lines(["*`case` in use here is your own and gives a dict*"])
 
 
 def test_each_sweep_is_made_once(pytester):
@@ -96,8 +153,8 @@ def test_each_sweep_is_made_once(pytester):
         "seen = []\n"
         "@pytest.mark.vibrissa('tip-only')\n"
         "@pytest.mark.parametrize('again', range(2))\n"
-        "def test_it(sweep, again):\n"
-        "    seen.append(sweep())\n"
+        "def test_it(vibrissa_sweep, again):\n"
+        "    seen.append(vibrissa_sweep())\n"
         "    assert seen[0] is seen[-1]\n"
     )
     pytester.runpytest().assert_outcomes(passed=2)
@@ -107,15 +164,60 @@ def test_two_given_sweeps_need_no_case(pytester):
     pytester.makepyfile(
         "import analytic\n"
         "exact = analytic.solve_sweep(analytic.named_case('tip-only'))\n"
-        "def test_two(agreement): agreement(exact, exact)\n"
-        "def test_one(agreement): agreement(exact)\n"
+        "def test_two(vibrissa_agreement): vibrissa_agreement(exact, exact)\n"
+        "def test_one(vibrissa_agreement): vibrissa_agreement(exact)\n"
     )
     result = pytester.runpytest()
     result.assert_outcomes(passed=1, failed=1)
-    result.stdout.fnmatch_lines(["*give a reference, or let the test use `case`*"])
+    result.stdout.fnmatch_lines(["*give a reference, or let the test use `vibrissa_case`*"])
 
 
-@pytest.mark.parametrize("module", ["numpy", "pandas", "scipy", "mujoco", "analytic"])
+@pytest.mark.parametrize("given", ["None", "exact.table", "'analytic.parquet'"])
+def test_what_is_no_sweep_is_said_in_a_line(pytester, given):
+    pytester.makepyfile(
+        "import analytic\n"
+        "exact = analytic.solve_sweep(analytic.named_case('tip-only'))\n"
+        f"def test_it(vibrissa_agreement): vibrissa_agreement({given}, exact)\n"
+    )
+    result = pytester.runpytest("--tb=line")
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*InputError: candidate = *: must be analytic.Readings; *"])
+
+
+@pytest.mark.parametrize("hidden", ["compare", "analytic", "mujoco_models"])
+def test_a_file_of_the_users_that_hides_a_package(pytester, hidden):
+    """Who does not use the plugin does not notice it; who does is told which file it is."""
+    pytester.makepyfile(**{hidden: "x = 1"})
+    pytester.makepyfile(
+        test_own=f"import {hidden}\ndef test_own(): assert {hidden}.x == 1",
+        test_ours="import pytest\n"
+        "@pytest.mark.vibrissa('tip-only')\n"
+        "def test_ours(vibrissa_case): pass",
+    )
+    result = pytester.runpytest_subprocess()
+    result.assert_outcomes(passed=1, errors=1)
+    result.stdout.fnmatch_lines([f"*{hidden}.py hides the package `{hidden}` of vibrissa-testbed*"])
+
+
+def test_a_hidden_package_and_a_case_on_the_command_line(pytester):
+    pytester.makepyfile(compare="")
+    result = pytester.runpytest_subprocess("--vibrissa-case", "tip-only")
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines(["ERROR: --vibrissa-case: *compare.py hides the package*"])
+
+
+@pytest.mark.parametrize("module", ["numpy", "pandas", "scipy", "mujoco", "analytic", "compare"])
 def test_who_does_not_use_it_does_not_wait_for_it(module):
-    code = f"import sys, compare.testing.plugin; sys.exit({module!r} in sys.modules)"
+    code = f"import sys, pytest, pytest_vibrissa; sys.exit({module!r} in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_it_costs_a_foreign_project_less_than_50_ms():
+    code = (
+        "import pytest, time; begin = time.process_time(); import pytest_vibrissa; "
+        "print(time.process_time() - begin)"
+    )
+    took = subprocess.run(
+        [sys.executable, "-c", code], check=True, capture_output=True, text=True
+    ).stdout
+    assert float(took) < 0.05

@@ -1,0 +1,283 @@
+"""Fixtures for users' own tests: ``vibrissa_case``, ``vibrissa_sweep``, ``vibrissa_agreement``.
+
+The package registers this module as a pytest plugin, so every run of pytest in an environment that
+has the package imports it. It imports nothing but pytest until a fixture or option is used; and it
+is no part of a package, so that a ``compare.py`` of the user's own is in nobody's way.
+
+``--vibrissa-case NAME|FILE`` (repeat it) or the marker ``@pytest.mark.vibrissa(NAME, ...)`` choose
+the cases that a test is run for, by default all named ones; where there are both, the marker's.
+``--vibrissa-report DIR`` writes the report of every comparison that `vibrissa_agreement` makes, and
+``DIR/summary.md``.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from collections.abc import Callable
+from importlib import import_module
+from importlib.util import find_spec
+from inspect import signature
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import pytest
+
+if TYPE_CHECKING:
+    from analytic import Case, Readings
+    from compare.comparison import Comparison
+    from compare.explain.budget import Budget
+    from compare.judge.tolerances import Tolerances
+    from compare.read.case import Job
+    from mujoco_models import Settings
+    from mujoco_models.settings import BeamKind
+
+    Sweeps = dict[tuple[str, Settings | None], Readings]
+
+_PACKAGES = ("analytic", "mujoco_models", "compare")
+_RECORD = "vibrissa"
+_JOB = pytest.StashKey["Job"]()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """The plugin's options."""
+    group = parser.getgroup("vibrissa", "sweeps of a vibrissa")
+    group.addoption(
+        "--vibrissa-case",
+        action="append",
+        metavar="NAME|FILE",
+        help="case of tests that use `vibrissa_case` and have no marker `vibrissa`, named or a "
+        "TOML file; repeat it (default: all named)",
+    )
+    group.addoption(
+        "--vibrissa-report",
+        type=Path,
+        metavar="DIR",
+        help="write a report of every comparison of `vibrissa_agreement`, and a summary",
+    )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """The plugin's marker; its options, checked; its summary, if asked for."""
+    config.addinivalue_line(
+        "markers",
+        "vibrissa(case, ...): the cases, named or TOML files, of the `vibrissa_case` fixture",
+    )
+    for name in config.getoption("--vibrissa-case") or ():
+        try:
+            _ours("compare.read.case").load_job(name)
+        except (ValueError, OSError, pytest.fail.Exception) as error:  # InputError is a ValueError
+            raise pytest.UsageError(f"--vibrissa-case: {error}") from None
+    folder = config.getoption("--vibrissa-report")
+    if folder is not None and not hasattr(config, "workerinput"):  # xdist's workers have that
+        config.pluginmanager.register(_Summary(folder))
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """One test a case, unless the user's own hook has chosen the cases."""
+    if "vibrissa_case" not in metafunc.fixturenames:
+        return
+    # Without a public way to ask what is parametrized already, a user's `case` would be crossed
+    # with all named cases.
+    chosen = {name for call in metafunc._calls for name in call.params}
+    asked = {"vibrissa_sweep", "vibrissa_job"}.intersection(metafunc.fixturenames)
+    if "vibrissa_case" in signature(metafunc.function).parameters:
+        asked.add("vibrissa_case")
+    if "vibrissa_case" in chosen or ("case" in chosen and not asked):
+        return
+    marker = metafunc.definition.get_closest_marker("vibrissa")
+    names = (marker.args if marker else ()) or metafunc.config.getoption("--vibrissa-case")
+    names = [str(name) for name in names or _ours("analytic").CASE_NAMES]
+    metafunc.parametrize("vibrissa_case", names, ids=[Path(n).stem for n in names], indirect=True)
+
+
+@pytest.fixture
+def vibrissa_case(request: pytest.FixtureRequest) -> Case:
+    """The problem: an `analytic.Case`, one test for each that marker or option names."""
+    if not hasattr(request, "param"):
+        pytest.fail("vibrissa_case: no case is chosen; let the test itself use it", pytrace=False)
+    job: Job = _ours("compare.read.case").load_job(request.param)
+    request.node.stash[_JOB] = job
+    return job.case
+
+
+@pytest.fixture
+def vibrissa_job(request: pytest.FixtureRequest, vibrissa_case: Case) -> Job:
+    """The case with MuJoCo's settings and the tolerances that its file states."""
+    job: Job = request.node.stash[_JOB]
+    return job
+
+
+@pytest.fixture(scope="session")
+def vibrissa_sweeps() -> Sweeps:
+    """The sweeps of this session, by case and by MuJoCo's settings (None: the closed form)."""
+    return {}
+
+
+@pytest.fixture
+def vibrissa_sweep(vibrissa_case: Case, vibrissa_sweeps: Sweeps) -> Callable[..., Readings]:
+    """``vibrissa_sweep()`` is the closed form's sweep of `vibrissa_case`.
+
+    ``vibrissa_sweep("chain", segments=80)`` is MuJoCo's; further words are those of
+    `mujoco_models.Settings`. Each sweep is made once a session.
+    """
+    return _sweep_of(vibrissa_case, vibrissa_sweeps)
+
+
+@pytest.fixture
+def vibrissa_agreement(
+    request: pytest.FixtureRequest, record_property: Callable[[str, object], None]
+) -> Callable[..., Comparison]:
+    """``vibrissa_agreement(candidate)`` fails unless the candidate agrees with the closed form.
+
+    ``vibrissa_agreement(candidate, reference, tolerances, offset=, noise=, budget=)``, as
+    `compare.assert_agreement` takes them. Without a reference it is the closed form's sweep of
+    ``vibrissa_case``, which the test then has to use; without tolerances those of the case's file
+    hold. The comparison is reported either way.
+    """
+    return _agreement("vibrissa_case", request, record_property)
+
+
+@pytest.fixture
+def case(request: pytest.FixtureRequest, vibrissa_case: Case) -> Case:
+    """The old name of `vibrissa_case`."""
+    _warn(request, "case")
+    return vibrissa_case
+
+
+@pytest.fixture
+def sweep(
+    request: pytest.FixtureRequest, case: Case, vibrissa_sweeps: Sweeps
+) -> Callable[..., Readings]:
+    """The old name of `vibrissa_sweep`."""
+    _warn(request, "sweep")
+    return _sweep_of(_checked("sweep", case), vibrissa_sweeps)
+
+
+@pytest.fixture
+def agreement(
+    request: pytest.FixtureRequest, record_property: Callable[[str, object], None]
+) -> Callable[..., Comparison]:
+    """The old name of `vibrissa_agreement`."""
+    _warn(request, "agreement")
+    return _agreement("case", request, record_property)
+
+
+def _warn(request: pytest.FixtureRequest, name: str) -> None:
+    request.node.warn(
+        DeprecationWarning(
+            f"fixture `{name}` of vibrissa-testbed is called `vibrissa_{name}` now; the old name "
+            "will go, since it may be one of your own"
+        )
+    )
+
+
+def _checked(fixture: str, case: object) -> Case:
+    """The case, if it is one: the user may have a fixture `case` for something else."""
+    checked: type[Case] = _ours("analytic").Case
+    if not isinstance(case, checked):
+        pytest.fail(
+            f"{fixture}: the fixture `case` in use here is your own and gives a "
+            f"{type(case).__name__}, no analytic.Case; use `vibrissa_case` and "
+            f"`vibrissa_{fixture}`",
+            pytrace=False,
+        )
+    return case
+
+
+def _sweep_of(case: Case, sweeps: Sweeps) -> Callable[..., Readings]:
+    def made(beam: BeamKind | None = None, **settings: Any) -> Readings:  # noqa: ANN401
+        mujoco_models = _ours("mujoco_models")
+        numerics = None if beam is None else mujoco_models.Settings(beam=beam, **settings)
+        key = case.digest, numerics
+        if key not in sweeps:
+            sweeps[key] = (
+                _ours("analytic").solve_sweep(case)
+                if numerics is None
+                else mujoco_models.simulate_sweep(case, numerics)
+            )
+        return sweeps[key]
+
+    return made
+
+
+def _agreement(
+    named: str, request: pytest.FixtureRequest, record: Callable[[str, object], None]
+) -> Callable[..., Comparison]:
+    reported = 0
+
+    def agree(
+        candidate: Readings,
+        reference: Readings | None = None,
+        tolerances: Tolerances | None = None,
+        *,
+        offset: float | Literal["auto"] = 0.0,
+        noise: float | Literal["auto"] = 0.0,
+        budget: Budget | None = None,
+    ) -> Comparison:
+        nonlocal reported
+        gates = _ours("compare.testing.gates")
+        if reference is None:
+            if named not in request.fixturenames:
+                pytest.fail(
+                    f"agreement: give a reference, or let the test use `{named}`", pytrace=False
+                )
+            case = _checked("agreement", request.getfixturevalue(named))
+            reference = _sweep_of(case, request.getfixturevalue("vibrissa_sweeps"))()
+        job = request.node.stash.get(_JOB, None)
+        if tolerances is None and job is not None:
+            tolerances = job.tolerances
+        found: Comparison = gates.compared(
+            reference, candidate, tolerances, offset=offset, noise=noise
+        )
+        folder = request.config.getoption("--vibrissa-report")
+        if folder is not None:
+            reported += 1
+            name = re.sub(r"[^\w.-]+", "-", f"{request.node.nodeid}-{reported}")
+            row = _ours("compare.testing.summary").report(found, folder, name)
+            record(_RECORD, json.dumps(row))
+        gates.demand(found, budget)
+        return found
+
+    return agree
+
+
+def _ours(module: str) -> Any:  # noqa: ANN401
+    """A module of the packages beside this file, which the user's own may hide."""
+    here = Path(__file__).parent
+    for package in _PACKAGES:
+        found = sys.modules[package].__spec__ if package in sys.modules else find_spec(package)
+        origin = Path(found.origin) if found and found.origin else None
+        if origin is None or origin.resolve() != (here / package / "__init__.py").resolve():
+            pytest.fail(
+                f"vibrissa: {origin or 'a folder'} hides the package `{package}` of "
+                "vibrissa-testbed from these tests; give it another name",
+                pytrace=False,
+            )
+    return import_module(module)
+
+
+class _Summary:
+    """What the tests of this session, in whatever process, recorded of their comparisons."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._rows: list[dict[str, Any]] = []
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Take what a test recorded."""
+        if report.when == "call":
+            recorded = (value for key, value in report.user_properties if key == _RECORD)
+            self._rows.extend(json.loads(str(value)) for value in recorded)
+
+    def pytest_sessionfinish(self) -> None:
+        """Write ``summary.json`` and ``summary.md``."""
+        _ours("compare.testing.summary").write_summary(self._rows, self._folder)
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        """Say where it is."""
+        terminalreporter.write_line(
+            f"{len(self._rows)} comparisons reported in {self._folder / 'summary.md'}"
+        )
