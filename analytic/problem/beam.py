@@ -3,7 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from analytic.problem.errors import InputError, is_finite_number
+from analytic.problem.errors import InputError
+from analytic.problem.numbers import is_finite_number
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,6 @@
 """The problem: a vibrissa, a contour, and the positions of its foot."""
 
 import hashlib
-import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal, TypeAlias, get_args
@@ -13,11 +12,14 @@ from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.families import catenary
 from analytic.problem.errors import InputError
-from analytic.problem.reach import contact_range, out_of_reach
+from analytic.problem.numbers import is_finite_number, is_whole_number
+from analytic.problem.reach import FARTHEST, contact_range, out_of_reach
 
 Direction: TypeAlias = Literal["left", "right"]
 
 _MARGIN = 0.01  # L; the default sweep starts and ends this far beyond reach
+_MOST_STATIONS = 1_000_000
+_SHORTEST = 1e-9  # L, of the sweep: stations must differ by more than rounding
 
 
 @dataclass(frozen=True)
@@ -27,13 +29,13 @@ class Sweep:
     Parameters
     ----------
     stations : int
-        Number of stations, at least 2.
+        Number of stations, from 2 to 1,000,000.
     start, stop : float, optional
         First and last foot position [length]. By default from just before the first contact to
         just past the position from which the contour is out of reach: geometry only, so that no
         engine is told the answer.
     direction : str
-        Whither the foot moves: ``"left"``, as in the paper, or ``"right"``. The vibrissa starts
+        Where the foot moves to: ``"left"``, as in the paper, or ``"right"``. The vibrissa starts
         clear of the object and straight either way, so the two are different sweeps: what one
         touches first, the other lets go of last and elsewhere.
 
@@ -49,13 +51,17 @@ class Sweep:
     direction: Direction = "left"
 
     def __post_init__(self) -> None:
-        if not (isinstance(self.stations, int) and self.stations >= 2):
+        if not (is_whole_number(self.stations) and 2 <= self.stations <= _MOST_STATIONS):
             raise InputError(
-                "sweep.stations", self.stations, "a whole number, 2 or more", "200 is usual"
+                "sweep.stations",
+                self.stations,
+                f"a whole number, 2 to {_MOST_STATIONS:,}",
+                "200 is usual",
             )
+        object.__setattr__(self, "stations", int(self.stations))
         for name in ("start", "stop"):
             value = getattr(self, name)
-            if value is not None and not math.isfinite(value):
+            if value is not None and not is_finite_number(value):
                 raise InputError(f"sweep.{name}", value, "finite", "leave it out for the default")
         if self.direction not in get_args(Direction):
             raise InputError(
@@ -84,7 +90,9 @@ class Case:
     Raises
     ------
     InputError
-        If the vibrissa cannot reach the contour or the sweep does not start clear of it.
+        If a field is of another kind, the vibrissa cannot reach the contour, the contour is more
+        than 1,000 L wide within reach or farther than 10,000 L from the origin, or the sweep does
+        not start clear of it.
     """
 
     beam: Beam = field(default_factory=Beam)
@@ -93,7 +101,24 @@ class Case:
     name: str = "case"
 
     def __post_init__(self) -> None:
+        for name, kind, remedy in (
+            ("beam", Beam, "as Beam(length=..., flexural_rigidity=...)"),
+            ("profile", Contour, "as catenary(0.5, -0.8), or polygon([...])"),
+            ("sweep", Sweep, "as Sweep(stations=200)"),
+            ("name", str, "it names files and reports"),
+        ):
+            value = getattr(self, name)
+            if not isinstance(value, kind):
+                raise InputError(
+                    f"case.{name}", f"a {type(value).__name__}", f"a {kind.__name__}", remedy
+                )
         touch = self._first_contact * self.beam.length
+        farthest = 2 * FARTHEST * self.beam.length
+        for name, value in (("start", self._start), ("stop", self._stop)):
+            if not abs(value) <= farthest:
+                raise InputError(
+                    f"sweep.{name}", value, f"within {farthest:g} of the origin", "check its unit"
+                )
         if self._way * self._start > self._way * touch:
             raise InputError(
                 "sweep.start",
@@ -102,10 +127,10 @@ class Case:
                 "where the tip first touches",
                 "a sweep starts clear of the object",
             )
-        if not self._way * self._stop > self._way * self._start:
+        if not self._way * (self._stop - self._start) > _SHORTEST * self.beam.length:
             raise InputError(
                 "sweep.stop",
-                self.sweep.stop,
+                self._stop,
                 f"{'more' if self._way > 0 else 'less'} than the start, {self._start:.6g}",
                 f"the foot moves to the {self.sweep.direction} (sweep.direction)",
             )
@@ -151,7 +176,14 @@ class Case:
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     def provenance(self) -> dict[str, Any]:
-        """What every engine records of the problem that it solved."""
+        """What every engine records of the problem that it solved.
+
+        Returns
+        -------
+        dict
+            ``case`` and ``profile`` by name, ``digest``, and ``contour``: two lists, xi and eta
+            [length].
+        """
         xi, eta = self.outline()
         return {
             "case": self.name,
@@ -161,13 +193,30 @@ class Case:
         }
 
     def outline(self, points: int = 181) -> tuple[Floats, Floats]:
-        """The body's contour within reach of the vibrissa, for pictures: xi, eta [length]."""
+        """The body's contour within reach of the vibrissa, for pictures.
+
+        Parameters
+        ----------
+        points : int
+            How many, unless the contour is a polygon.
+
+        Returns
+        -------
+        xi, eta : array, shape (points,)
+            Coordinates [length].
+        """
         left, right = self.reach
         vertices = self.profile.scaled(1 / self.beam.length).outline(left, right, points)
         return vertices[:, 0] * self.beam.length, vertices[:, 1] * self.beam.length
 
     def mirrored(self) -> "Case":
-        """The mirror image of the problem, x to -x, whose foot moves the other way."""
+        """The mirror image of the problem, x to -x.
+
+        Returns
+        -------
+        Case
+            Its foot moves the other way, from and to the mirrored positions.
+        """
         opposite: Direction = "left" if self.sweep.direction == "right" else "right"
         sweep = Sweep(self.sweep.stations, -self._start, -self._stop, opposite)
         return replace(self, profile=self.profile.mirrored(), sweep=sweep)

@@ -1,8 +1,4 @@
-"""The one exception for input that cannot be used, and what a number is."""
-
-import math
-from numbers import Real
-from typing import TypeGuard
+"""The one exception for input that cannot be used."""
 
 
 class InputError(ValueError):
@@ -27,24 +23,3 @@ class InputError(ValueError):
 
     def __reduce__(self) -> tuple[type["InputError"], tuple[str, str, str, str]]:
         return type(self), self._given  # so that another process can hand it back
-
-
-def is_finite_number(value: object) -> TypeGuard[float]:
-    """Whether a value is a real, finite number and no boolean.
-
-    Parameters
-    ----------
-    value : object
-        Anything.
-
-    Returns
-    -------
-    bool
-        True for Python's and NumPy's real scalars that fit a float.
-    """
-    if not isinstance(value, Real) or isinstance(value, bool):
-        return False
-    try:
-        return math.isfinite(value)
-    except OverflowError:  # an integer too large for a float
-        return False

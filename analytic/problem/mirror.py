@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from analytic.problem.case import Case
+from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
 
 
@@ -19,14 +20,39 @@ def solve_either_way(case: Case, solve: Callable[[Case], Readings]) -> Readings:
         The problem.
     solve : callable
         Makes readings of a case whose foot moves to the left.
+
+    Returns
+    -------
+    Readings
+        Of `case`.
+
+    Raises
+    ------
+    InputError
+        If `case` is none.
     """
+    if not isinstance(case, Case):
+        raise InputError("case", repr(case)[:80], "a Case", "named_case('catenary') makes one")
     if case.sweep.direction == "left":
         return solve(case)
     return facing(case, solve(case.mirrored()))
 
 
 def facing(case: Case, found: Readings) -> Readings:
-    """The readings of the sweep to the left that was solved for `case`, as readings of `case`."""
+    """The readings of the sweep to the left that was solved for `case`, as readings of `case`.
+
+    Parameters
+    ----------
+    case : Case
+        The problem, whichever way its foot moves.
+    found : Readings
+        Of the case or, if its foot moves to the right, of its mirror image.
+
+    Returns
+    -------
+    Readings
+        In the frame of `case`.
+    """
     if case.sweep.direction == "left":
         return found
     mirrored = found.mirrored()

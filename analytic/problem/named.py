@@ -1,19 +1,13 @@
 """The named cases: the paper's contours and two more, in one table."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
 from analytic.problem.case import Case
 from analytic.problem.contours.contour import Contour
-from analytic.problem.contours.families import catenary, parabola, two_circles
+from analytic.problem.contours.kinds import CONTOURS
 from analytic.problem.errors import InputError
-
-_KINDS: Mapping[str, Callable[..., Contour]] = {
-    "catenary": catenary,
-    "parabola": parabola,
-    "two-circles": two_circles,
-}
 
 NAMED_PROFILES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     {
@@ -43,7 +37,7 @@ def named_contour(name: str) -> Contour:
         In units of the vibrissa's length.
     """
     numbers = dict(NAMED_PROFILES[name])
-    return _KINDS[numbers.pop("kind")](**numbers)
+    return CONTOURS[numbers.pop("kind")](**numbers)
 
 
 def named_case(name: str) -> Case:

@@ -9,9 +9,17 @@ import numpy as np
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
 
+FARTHEST = 1e4  # L, from the origin: positions are then good to 2e-12 L
+_WIDEST = 1e3  # L; a wider object turns by less than 1e-3 rad while the vibrissa passes
+
 
 def contact_range(centreline: Contour) -> tuple[float, float]:
     """The contour parameters between which the contour lies within reach, eta <= 1.
+
+    Parameters
+    ----------
+    centreline : Contour
+        What the vibrissa's centreline feels [L].
 
     Returns
     -------
@@ -23,7 +31,8 @@ def contact_range(centreline: Contour) -> tuple[float, float]:
     Raises
     ------
     InputError
-        If the contour starts below the foot line or lies out of reach.
+        If the contour starts below the foot line, lies out of reach, or is so wide or so far away
+        that it is lost in rounding.
     """
     low, high = centreline.t_range
     bottom = float(centreline.parameter(np.array([0.0]))[0])
@@ -38,13 +47,25 @@ def contact_range(centreline: Contour) -> tuple[float, float]:
             "below 1 L, the tip of the vibrissa",
             "lower the object or lengthen the vibrissa",
         )
-    return _height_one(centreline, low, bottom), _height_one(centreline, high, bottom)
+    ends = _height_one(centreline, low, bottom), _height_one(centreline, high, bottom)
+    _check_place(centreline, ends)
+    return ends
 
 
 def out_of_reach(centreline: Contour, last: float, first: float) -> float:
     """The foot position, left of the contour, from which all of it is farther away than 1.
 
-    `last` and `first` are those of `contact_range`.
+    Parameters
+    ----------
+    centreline : Contour
+        What the vibrissa's centreline feels [L].
+    last, first : float
+        Contour parameters, those of `contact_range`.
+
+    Returns
+    -------
+    float
+        Foot position [L].
     """
     from scipy.optimize import minimize_scalar  # slow to load, and stating a case needs none of it
 
@@ -59,6 +80,24 @@ def out_of_reach(centreline: Contour, last: float, first: float) -> float:
     return float(minimize_scalar(leftmost_foot, bounds=bounds, method="bounded").fun)
 
 
+def _check_place(centreline: Contour, ends: tuple[float, float]) -> None:
+    left, right = (float(x) for x in centreline.at(np.array(ends)).xi)
+    if right - left > _WIDEST:
+        raise InputError(
+            f"width of the object within reach ({centreline.label})",
+            f"{right - left:.6g} L",
+            f"at most {_WIDEST:g} L",
+            "the vibrissa feels a straight wall: check the units, or cut a part out",
+        )
+    if not max(abs(left), abs(right)) <= FARTHEST:
+        raise InputError(
+            f"place of the object ({centreline.label})",
+            f"x from {left:.6g} L to {right:.6g} L",
+            f"within {FARTHEST:g} L of the origin",
+            "move the origin to the object, or check the units of object and beam",
+        )
+
+
 def _height_one(centreline: Contour, end: float, bottom: float) -> float:
     """Where the contour passes the height 1 between its lowest point and an end, or that end."""
     if _height(centreline, end) <= 1:
@@ -66,7 +105,15 @@ def _height_one(centreline: Contour, end: float, bottom: float) -> float:
     from scipy.optimize import brentq  # slow to load, and stating a case needs none of it
 
     bracket = min(end, bottom), max(end, bottom)
-    return float(brentq(lambda t: _height(centreline, t) - 1, *bracket, xtol=1e-300, rtol=9e-16))
+    return float(
+        brentq(
+            lambda t: _height(centreline, t) - 1,
+            *bracket,
+            xtol=1e-300,
+            rtol=9e-16,
+            maxiter=2000,  # halving alone gets from 1 to the least number in 1,075
+        )
+    )
 
 
 def _height(centreline: Contour, t: float) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.profile import Profile
-from analytic.problem.errors import InputError
+from analytic.problem.numbers import finite, pair, positive
 
 _STEEPEST = math.pi / 2 - 1e-3  # the graph of a function of x never stands upright
 
@@ -21,9 +21,18 @@ def catenary(a: float, c: float) -> Profile:
         Inverse width [1/length], positive.
     c : float
         Height of the lowest point less one unit of length [length].
+
+    Returns
+    -------
+    Profile
+        For slope angles up to 1e-3 rad from the vertical.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be.
     """
-    _positive("catenary.a", a)
-    _finite("catenary.c", c)
+    a, c = positive("profile catenary.a", a), finite("profile catenary.c", c)
     return Profile(
         xi=partial(_catenary_xi, a),
         eta=partial(_catenary_eta, a, c),
@@ -42,9 +51,18 @@ def parabola(a: float, c: float) -> Profile:
         Half the curvature at the lowest point [1/length], positive.
     c : float
         Height of the lowest point [length].
+
+    Returns
+    -------
+    Profile
+        For slope angles up to 1e-3 rad from the vertical.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be.
     """
-    _positive("parabola.a", a)
-    _finite("parabola.c", c)
+    a, c = positive("profile parabola.a", a), finite("profile parabola.c", c)
     return Profile(
         xi=partial(_parabola_xi, a),
         eta=partial(_parabola_eta, a, c),
@@ -55,20 +73,55 @@ def parabola(a: float, c: float) -> Profile:
 
 
 def circle(radius: float, lowest: tuple[float, float]) -> Profile:
-    """The lower half of a circle of `radius` [length] with its lowest point at `lowest`."""
-    _positive("circle.radius", radius)
-    return _ellipse(radius, radius, lowest, f"circle of radius {radius:g}")
+    """The lower half of a circle.
+
+    Parameters
+    ----------
+    radius : float
+        Its radius, positive [length].
+    lowest : tuple of float
+        Its lowest point (x, y) [length].
+
+    Returns
+    -------
+    Profile
+        For all slope angles from -pi/2 to pi/2.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be.
+    """
+    radius = positive("profile circle.radius", radius)
+    point = pair("profile circle.lowest", lowest)
+    return _ellipse(radius, radius, point, f"circle of radius {radius:g}")
 
 
 def ellipse(semi_axes: tuple[float, float], lowest: tuple[float, float]) -> Profile:
-    """The lower half of an ellipse with `semi_axes` (along x, along y) [length].
+    """The lower half of an ellipse whose axes are along x and y.
 
-    `lowest` is its lowest point.
+    Parameters
+    ----------
+    semi_axes : tuple of float
+        Along x and along y, positive [length].
+    lowest : tuple of float
+        Its lowest point (x, y) [length].
+
+    Returns
+    -------
+    Profile
+        For all slope angles from -pi/2 to pi/2.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be.
     """
-    across, upward = semi_axes
-    _positive("ellipse.semi_axes[0]", across)
-    _positive("ellipse.semi_axes[1]", upward)
-    return _ellipse(across, upward, lowest, f"ellipse {across:g} by {upward:g}")
+    across, upward = pair("profile ellipse.semi_axes", semi_axes)
+    positive("profile ellipse.semi_axes[0]", across)
+    positive("profile ellipse.semi_axes[1]", upward)
+    point = pair("profile ellipse.lowest", lowest)
+    return _ellipse(across, upward, point, f"ellipse {across:g} by {upward:g}")
 
 
 def two_circles(
@@ -77,17 +130,34 @@ def two_circles(
     """Two circles that share their lowest point and the tangent there; by default the paper's g3.
 
     C1 but not C2: every reading has a kink where the contact passes the lowest point.
+
+    Parameters
+    ----------
+    right_radius, left_radius : float
+        Radii of the arcs on either side of the lowest point, positive [length].
+    lowest : tuple of float
+        The lowest point (x, y) [length].
+
+    Returns
+    -------
+    Profile
+        For all slope angles from -pi/2 to pi/2.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be.
     """
-    _positive("two_circles.right_radius", right_radius)
-    _positive("two_circles.left_radius", left_radius)
-    x, y = _point("two_circles.lowest", lowest)
+    right = positive("profile two_circles.right_radius", right_radius)
+    left = positive("profile two_circles.left_radius", left_radius)
+    x, y = pair("profile two_circles.lowest", lowest)
     return Profile(
-        xi=partial(_two_circles_xi, right_radius, left_radius, x),
-        eta=partial(_two_circles_eta, right_radius, left_radius, y),
+        xi=partial(_two_circles_xi, right, left, x),
+        eta=partial(_two_circles_eta, right, left, y),
         alpha_range=(-math.pi / 2, math.pi / 2),
-        radius_of_curvature=partial(_two_circles_radius, right_radius, left_radius),
+        radius_of_curvature=partial(_two_circles_radius, right, left),
         kinks=(0.0,),
-        label=f"two circles of radius {left_radius:g} and {right_radius:g}",
+        label=f"two circles of radius {left:g} and {right:g}",
     )
 
 
@@ -100,7 +170,7 @@ def _catenary_eta(a: float, c: float, alpha: Floats) -> Floats:
 
 
 def _catenary_radius(a: float, alpha: Floats) -> Floats:
-    return 1 / (np.cos(alpha) ** 3 * a**2 * np.hypot(1.0, np.tan(alpha) / a))
+    return 1 / (np.cos(alpha) ** 3 * a * np.hypot(a, np.tan(alpha)))
 
 
 def _parabola_xi(a: float, alpha: Floats) -> Floats:
@@ -116,7 +186,7 @@ def _parabola_radius(a: float, alpha: Floats) -> Floats:
 
 
 def _ellipse(across: float, upward: float, lowest: tuple[float, float], label: str) -> Profile:
-    x, y = _point("lowest", lowest)
+    x, y = lowest
     return Profile(
         xi=partial(_ellipse_xi, across, upward, x),
         eta=partial(_ellipse_eta, across, upward, y),
@@ -132,7 +202,7 @@ def _ellipse_support(across: float, upward: float, alpha: Floats) -> Floats:
 
 
 def _ellipse_xi(across: float, upward: float, x: float, alpha: Floats) -> Floats:
-    return x + across**2 * np.sin(alpha) / _ellipse_support(across, upward, alpha)
+    return x + across * (across * np.sin(alpha) / _ellipse_support(across, upward, alpha))
 
 
 def _ellipse_eta(across: float, upward: float, y: float, alpha: Floats) -> Floats:
@@ -143,7 +213,8 @@ def _ellipse_eta(across: float, upward: float, y: float, alpha: Floats) -> Float
 
 
 def _ellipse_radius(across: float, upward: float, alpha: Floats) -> Floats:
-    return (across * upward) ** 2 / _ellipse_support(across, upward, alpha) ** 3
+    support = _ellipse_support(across, upward, alpha)
+    return np.square(across / support) * np.square(upward / support) * support
 
 
 def _two_circles_radius(right: float, left: float, alpha: Floats) -> Floats:
@@ -157,20 +228,3 @@ def _two_circles_xi(right: float, left: float, x: float, alpha: Floats) -> Float
 
 def _two_circles_eta(right: float, left: float, y: float, alpha: Floats) -> Floats:
     return y + _two_circles_radius(right, left, alpha) * 2 * np.square(np.sin(alpha / 2))
-
-
-def _positive(name: str, value: float) -> None:
-    if not (math.isfinite(value) and value > 0):
-        raise InputError(f"profile {name}", value, "positive and finite", "turn or mend the number")
-
-
-def _finite(name: str, value: float) -> None:
-    if not math.isfinite(value):
-        raise InputError(f"profile {name}", value, "finite", "mend the number")
-
-
-def _point(name: str, point: tuple[float, float]) -> tuple[float, float]:
-    x, y = point
-    if not (math.isfinite(x) and math.isfinite(y)):
-        raise InputError(f"profile {name}", point, "two finite coordinates", "mend the numbers")
-    return float(x), float(y)

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.polygon import Polygon, polygon
@@ -50,6 +49,7 @@ def mesh_section(
     InputError
         If the file cannot be read, its mesh is open or not convex, or the plane misses it.
     """
+    from scipy.spatial import ConvexHull  # slow to load, as trimesh is
     from trimesh.intersections import mesh_plane
 
     if sorted(axes) not in ([*"xy"], [*"xz"], [*"yz"]):
@@ -101,6 +101,7 @@ def _tilt(mesh: "Trimesh", across: list[int], height: float) -> float:
 
 def _load(file: Path) -> "Trimesh":
     import trimesh
+    from scipy.spatial import ConvexHull
 
     try:
         mesh: Trimesh = trimesh.load_mesh(file)

@@ -10,6 +10,7 @@ from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.contours.solid import ConvexMesh
 from analytic.problem.errors import InputError
+from analytic.problem.numbers import points_of, positive
 
 _STRAIGHT = 1e-12  # rad; vertices that turn less are dropped: they are on an edge
 
@@ -80,10 +81,13 @@ class Polygon(Contour):
 
     def offset(self, radius: float) -> "Polygon":
         """The parallel curve: the edges moved out, joined by arcs about the vertices."""
+        if radius != 0:
+            positive("radius of the parallel curve", radius)
         return replace(self, distance=self.distance + radius, solid=None)
 
     def scaled(self, factor: float) -> "Polygon":
         """The polygon enlarged by `factor` about the origin."""
+        positive("profile.scale", factor)
         return replace(
             self,
             vertices=factor * self.vertices,
@@ -131,39 +135,48 @@ def polygon(points: ArrayLike, label: str = "polygon") -> Polygon:
     label : str
         What reports call the contour.
 
+    Returns
+    -------
+    Polygon
+        Its lower side.
+
     Raises
     ------
     InputError
         If there are fewer than 3 points, one is not finite, two neighbours coincide, all lie on a
         line, the contour intersects itself, or a vertex is a dent.
     """
-    vertices = np.asarray(points, dtype=float)
-    if vertices.ndim != 2 or vertices.shape[1] != 2 or len(vertices) < 3:
-        raise InputError(
-            "polygon", f"of shape {vertices.shape}", "three or more points (x, y)", "add vertices"
-        )
-    if not np.isfinite(vertices).all():
-        i = int(np.argmin(np.isfinite(vertices).all(axis=1)))
-        raise InputError(f"polygon vertex {i}", vertices[i], "finite", "mend or drop it")
+    vertices = points_of("polygon vertex", points)
     if (vertices[0] == vertices[-1]).all():
         vertices = vertices[:-1]  # closed explicitly
     edges = np.roll(vertices, -1, axis=0) - vertices
-    short = np.hypot(*edges.T) == 0
+    short = (edges == 0).all(axis=1)
     if short.any():
         i = int(np.argmax(short))
         raise InputError(
             f"polygon vertex {i}", vertices[i], "apart from the next one", "drop one of the two"
         )
+    edges = edges / np.abs(edges).max()  # so that no product overflows or vanishes
     before = np.roll(edges, 1, axis=0)
     cross = before[:, 0] * edges[:, 1] - before[:, 1] * edges[:, 0]
     turn = np.arctan2(cross, (before * edges).sum(axis=1))
     if turn.sum() < 0:
         return polygon(vertices[::-1], label)
-    if np.abs(turn).max() > np.pi - 1e-9 or turn.sum() < np.pi:
+    if np.abs(turn).max() > np.pi - 1e-9:
+        i = int(np.argmax(np.abs(turn)))
         raise InputError(
-            "polygon", f"with a total turn of {np.rad2deg(turn.sum()):.4g} deg", "convex, 360 deg",
-            "it folds back or crosses itself: give the vertices in order",
-        )  # fmt: skip
+            f"polygon vertex {i}, ({vertices[i, 0]:.6g}, {vertices[i, 1]:.6g}),",
+            "folded back on itself",
+            "a corner of a convex polygon that is not all but flat",
+            "give the vertices in order, or make it thicker",
+        )
+    if turn.sum() < np.pi:
+        raise InputError(
+            "polygon",
+            f"with a total turn of {np.rad2deg(turn.sum()):.4g} deg",
+            "convex, 360 deg",
+            "it crosses itself: give the vertices in order",
+        )
     if turn.min() < -_STRAIGHT:
         i = int(np.argmin(turn))
         raise InputError(

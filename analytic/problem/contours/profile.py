@@ -1,17 +1,15 @@
 """A strictly convex contour, as triples (alpha, xi, eta) by slope angle."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TypeAlias
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour, ContourPoint
+from analytic.problem.contours.convexity import Curve, check_convex
 from analytic.problem.errors import InputError
-
-Curve: TypeAlias = Callable[[Floats], Floats]
+from analytic.problem.numbers import pair, positive
 
 _DIFFERENCE_STEP = 5e-3  # rad: round-off eps/h and truncation h^6 are both about 1e-13 here
 
@@ -40,8 +38,9 @@ class Profile(Contour):
     Raises
     ------
     InputError
-        If the range is empty or the triples do not describe a convex contour: the chord between
-        two contour points must have a slope angle between the tangents there.
+        If the range is empty, a function is none of arrays, or the triples do not describe a convex
+        contour: the chord between two contour points must have a slope angle between the tangents
+        there.
     """
 
     xi: Curve
@@ -52,7 +51,16 @@ class Profile(Contour):
     kinks: tuple[float, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
-        lowest, highest = self.alpha_range
+        for name in ("xi", "eta", "radius_of_curvature"):
+            curve = getattr(self, name)
+            if not (callable(curve) or (curve is None and name == "radius_of_curvature")):
+                raise InputError(
+                    f"profile.{name}",
+                    curve,
+                    "a function that maps an array of angles to an array of the same shape",
+                    "write it with NumPy functions",
+                )
+        lowest, highest = pair("profile.alpha_range", self.alpha_range)
         if not -np.pi / 2 <= lowest < highest <= np.pi / 2:
             raise InputError(
                 "profile.alpha_range",
@@ -60,7 +68,7 @@ class Profile(Contour):
                 "two angles, the smaller first, within [-pi/2, pi/2] rad",
                 "angles are in rad and grow with x along the lower side of a convex body",
             )
-        self._check_convex()
+        check_convex(self.xi, self.eta, self.alpha_range, self.radius_of_curvature, self.label)
 
     @property
     def t_range(self) -> tuple[float, float]:
@@ -93,6 +101,7 @@ class Profile(Contour):
         """The parallel curve at distance `radius` below, round the corners at the ends too."""
         if radius == 0:
             return self
+        positive("radius of the parallel curve", radius)
         return replace(
             self,
             xi=partial(_offset_xi, self, radius),
@@ -104,7 +113,7 @@ class Profile(Contour):
 
     def scaled(self, factor: float) -> "Profile":
         """The contour enlarged by `factor` about the origin, to change its unit of length."""
-        if factor == 1:
+        if positive("profile.scale", factor) == 1:
             return self
         return replace(
             self,
@@ -140,40 +149,6 @@ class Profile(Contour):
         return np.cos(centre) * _slope(self.xi, centre, h) + np.sin(centre) * _slope(
             self.eta, centre, h
         )
-
-    def _check_convex(self) -> None:
-        lowest, highest = self.alpha_range
-        inset = 1e-6 * (highest - lowest)  # open families have their poles at +-pi/2
-        alpha = np.linspace(lowest + inset, highest - inset, 129)
-        with np.errstate(all="ignore"):  # what is not finite is told below
-            xi, eta = self.xi(alpha), self.eta(alpha)
-        if np.shape(xi) != alpha.shape or np.shape(eta) != alpha.shape:
-            raise InputError(
-                "profile",
-                self.label,
-                "two callables that map an array of angles to an array of the same shape",
-                "write xi and eta with NumPy functions",
-            )
-        finite = np.isfinite(xi) & np.isfinite(eta)
-        if not finite.all():
-            raise InputError(
-                "profile",
-                f"{self.label}, not finite at alpha = {alpha[~finite][0]:.6g} rad",
-                "finite over its whole alpha_range",
-                "narrow alpha_range or mend xi and eta",
-            )
-        chord = np.arctan2(np.diff(eta), np.diff(xi))
-        slack = 1e-9
-        wrong = (chord < alpha[:-1] - slack) | (chord > alpha[1:] + slack)
-        if wrong.any():
-            i = int(np.argmax(wrong))
-            raise InputError(
-                "profile",
-                f"{self.label}, whose chord between alpha = {alpha[i]:.6g} and {alpha[i + 1]:.6g} "
-                f"rad has slope angle {chord[i]:.6g} rad",
-                "strictly convex, each chord's slope between those of the tangents at its ends",
-                "check that (xi, eta) is the point where the slope angle is alpha",
-            )
 
 
 def _slope(curve: Curve, centre: Floats, h: float) -> Floats:

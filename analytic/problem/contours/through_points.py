@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.profile import Profile
 from analytic.problem.errors import InputError
+from analytic.problem.numbers import points_of
 
 
 class _Arcs(NamedTuple):
@@ -37,20 +38,18 @@ def through_points(points: ArrayLike, label: str = "curve through points") -> Pr
     label : str
         What reports call the contour.
 
+    Returns
+    -------
+    Profile
+        From the tangent at the leftmost to that at the rightmost point.
+
     Raises
     ------
     InputError
         If there are fewer than 3 points, one is not finite or not to the right of the one before,
         or the slope of the chords does not grow from left to right.
     """
-    at = np.asarray(points, dtype=float)
-    if at.ndim != 2 or at.shape[1] != 2 or len(at) < 3:
-        raise InputError(
-            "points", f"of shape {at.shape}", "three or more points (x, y)", "add some"
-        )
-    if not np.isfinite(at).all():
-        i = int(np.argmin(np.isfinite(at).all(axis=1)))
-        raise InputError(f"point {i}", at[i], "finite", "mend or drop it")
+    at = points_of("point", points)
     if at[0, 0] > at[-1, 0]:
         at = at[::-1]
     run, rise = np.diff(at, axis=0).T

@@ -1,0 +1,156 @@
+"""Whether triples (alpha, xi, eta) are a strictly convex contour at all."""
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+
+from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.errors import InputError
+
+Curve: TypeAlias = Callable[[Floats], Floats]
+
+_COARSE = 129
+_FINE = 1024
+_SHORT = 1e-4  # rad, of the fine chords: waves of a larger period are seen one by one
+_SLACK = 1e-9  # rad
+_ROUNDING = 8 * np.finfo(float).eps  # of a difference of two coordinates, relative to their size
+_GOLDEN = (np.sqrt(5) - 1) / 2
+_LEAST_SIZE = 1e-10  # of the distance from the origin; below, rounding would be seen as corners
+
+
+def check_convex(
+    xi: Curve, eta: Curve, alpha_range: tuple[float, float], radius: Curve | None, label: str
+) -> None:
+    """Compare chords with the slope angles at their ends, over long and over short distances.
+
+    The chord between two points of a strictly convex contour has a slope angle between those of the
+    tangents there. The long chords are next to each other and miss nothing that is large. The short
+    ones begin where a golden-section sequence puts them: evenly, and in step with no wave.
+
+    Parameters
+    ----------
+    xi, eta : callable
+        Coordinates of the point with a given slope angle; arrays to arrays [length].
+    alpha_range : tuple of float
+        Smallest and largest slope angle [rad].
+    radius : callable, optional
+        Radius of curvature at a given slope angle [length].
+    label : str
+        What an error calls the contour.
+
+    Raises
+    ------
+    InputError
+        If the functions return something else, a chord has a wrong slope, the contour has a corner
+        within its range or is lost in the rounding of its coordinates, or the radius of curvature
+        is not that of the points.
+    """
+    lowest, highest = alpha_range
+    inset = 1e-6 * (highest - lowest)  # open families have their poles at +-pi/2
+    low, high = lowest + inset, highest - inset
+    long = np.linspace(low, high, _COARSE)
+    turn = min(_SHORT, (high - low) / _COARSE)
+    short = low + (high - low - turn) * (np.arange(1, _FINE + 1) * _GOLDEN % 1)
+    alpha = np.concatenate([long, short, short + turn])
+    x, y = (_values(curve, alpha, name, label) for curve, name in ((xi, "xi"), (eta, "eta")))
+
+    size = float(np.hypot(np.ptp(x), np.ptp(y)))
+    place = float(np.hypot(x, y).max())
+    if size < _LEAST_SIZE * place:
+        raise InputError(
+            "profile",
+            f"{label}, of a size of {size:.3g} at a distance of {place:.3g} from the origin",
+            f"larger than {_LEAST_SIZE:g} of that distance",
+            "enlarge it; a sharp corner is a polygon's",
+        )
+    n = _COARSE
+    _check_chords(long[:-1], long[1:], np.diff(x[:n]), np.diff(y[:n]), place, label, corners=True)
+    dx, dy = (values[n + _FINE :] - values[n : n + _FINE] for values in (x, y))
+    _check_chords(short, short + turn, dx, dy, place, label, corners=False)
+    if radius is not None:
+        middle = short + turn / 2
+        stated = _values(radius, middle, "radius_of_curvature", label)
+        _check_radius(stated, middle, np.hypot(dx, dy) / (2 * np.sin(turn / 2)), place, turn, label)
+
+
+def _values(curve: Curve, alpha: Floats, name: str, label: str) -> Floats:
+    """What a function makes of all angles at once."""
+    try:
+        with np.errstate(all="ignore"):  # what is not finite is reported below
+            values = np.asarray(curve(alpha), dtype=float)
+    except (TypeError, ValueError, ArithmeticError) as error:
+        raise InputError(
+            f"profile.{name}",
+            label,
+            "a function that maps an array of angles to an array of the same shape",
+            f"write it with NumPy functions ({error})",
+        ) from error
+    if values.shape != alpha.shape:
+        raise InputError(
+            f"profile.{name}",
+            f"of {label}, mapping shape {alpha.shape} to {values.shape}",
+            "a function that maps an array of angles to an array of the same shape",
+            "write it with NumPy functions",
+        )
+    finite = np.abs(values) < 1e150
+    if not finite.all():
+        raise InputError(
+            "profile",
+            f"{label}, {name} not finite at alpha = {alpha[~finite][0]:.6g} rad",
+            "finite over its whole alpha_range",
+            "narrow alpha_range or correct xi and eta",
+        )
+    return values
+
+
+def _check_chords(
+    begin: Floats,
+    end: Floats,
+    dx: Floats,
+    dy: Floats,
+    place: float,
+    label: str,
+    corners: bool,
+) -> None:
+    """Refuse the first chord whose slope is not between those at its ends, rounding allowed for."""
+    length = np.hypot(dx, dy)
+    slope = np.arctan2(dy, dx)
+    with np.errstate(divide="ignore"):
+        doubt = np.where(length > 0, _ROUNDING * place / length, np.inf)
+    resolved = doubt < 0.1
+    slack = np.where(resolved, _SLACK + doubt, np.inf)
+    wrong = (slope < begin - slack) | (slope > end + slack)
+    if wrong.any():
+        i = int(np.argmax(wrong))
+        raise InputError(
+            "profile",
+            f"{label}, whose chord between alpha = {begin[i]:.6g} and {end[i]:.6g} rad "
+            f"has slope angle {slope[i]:.6g} rad",
+            "strictly convex, each chord's slope between those of the tangents at its ends",
+            "check that (xi, eta) is the point where the slope angle is alpha",
+        )
+    if corners and not resolved.all():
+        i = int(np.argmin(resolved))
+        raise InputError(
+            "profile",
+            f"{label}, which does not move between alpha = {begin[i]:.6g} and {end[i]:.6g} rad",
+            "strictly convex without corners",
+            "round the corner, or use a polygon",
+        )
+
+
+def _check_radius(
+    stated: Floats, alpha: Floats, found: Floats, place: float, turn: float, label: str
+) -> None:
+    """Refuse a radius of curvature that is not that of the points, kinks allowed for."""
+    resolved: Booleans = found * turn > 1e3 * _ROUNDING * place
+    wrong = resolved & ~(np.abs(stated - found) <= 0.5 * found)
+    if (stated <= 0).any() or wrong.sum() > 0.05 * len(alpha):
+        i = int(np.argmax((stated <= 0) | wrong))
+        raise InputError(
+            "profile.radius_of_curvature",
+            f"{stated[i]:.6g} for {label} at alpha = {alpha[i]:.6g} rad",
+            f"positive and d(arc length)/d(alpha), which is {found[i]:.6g} there",
+            "correct it or leave it out",
+        )

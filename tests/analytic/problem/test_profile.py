@@ -1,0 +1,207 @@
+"""Profiles: what is a convex contour, what is none, and what no vibrissa can feel."""
+
+import numpy as np
+import pytest
+from hypothesis import given, seed, settings
+from hypothesis import strategies as st
+
+from analytic import (
+    Beam,
+    Case,
+    InputError,
+    Profile,
+    Sweep,
+    catenary,
+    certify,
+    circle,
+    ellipse,
+    find_events,
+    parabola,
+    polygon,
+    solve_sweep,
+    through_points,
+    two_circles,
+    with_friction,
+)
+
+
+def waved(radius: float, depth: float, waves: float, phase: float) -> Profile:
+    """A support function with waves: the radius of curvature is least `radius` (1 - `depth`)."""
+    size = radius * depth / (waves**2 - 1)
+
+    def height(a):  # of the tangent, below the origin
+        return radius + size * np.cos(waves * a + phase)
+
+    def slope(a):
+        return -size * waves * np.sin(waves * a + phase)
+
+    return Profile(
+        xi=lambda a: height(a) * np.sin(a) + slope(a) * np.cos(a),
+        eta=lambda a: 1.5 - height(a) * np.cos(a) + slope(a) * np.sin(a),
+        alpha_range=(-1.2, 1.2),
+    )
+
+
+@seed(11)
+@settings(max_examples=60, deadline=None)
+@given(st.floats(0.1, 3), st.floats(1.05, 3), st.floats(2, 3000), st.floats(0, 2 * np.pi))
+def test_planted_waves_are_found(radius, depth, waves, phase):
+    """Bumps of any wavelength, also those in step with evenly spaced samples."""
+    with pytest.raises(InputError, match="strictly convex"):
+        waved(radius, depth, waves, phase)
+
+
+@pytest.mark.parametrize("waves", [64, 128, 256, 512, 128 * np.pi / 1.2, 256 * np.pi / 1.2])
+def test_waves_in_step_with_the_samples(waves):
+    with pytest.raises(InputError, match="strictly convex"):
+        waved(1.0, 1.1, waves, 0.0)
+
+
+@seed(12)
+@settings(max_examples=60, deadline=None)
+@given(st.floats(0.1, 3), st.floats(0, 0.9), st.floats(2, 3000), st.floats(0, 2 * np.pi))
+def test_waves_that_leave_it_convex_pass(radius, depth, waves, phase):
+    assert waved(radius, depth, waves, phase).alpha_range == (-1.2, 1.2)
+
+
+@seed(13)
+@settings(max_examples=60, deadline=None)
+@given(
+    st.sampled_from(["catenary", "parabola", "circle", "ellipse", "two-circles"]),
+    st.floats(1e-9, 1e9),
+    st.floats(1e-9, 1e9),
+    st.floats(-10, 10),
+    st.floats(-10, 10),
+)
+def test_any_numbers_make_a_case_or_one_line(kind, one, other, x, y):
+    make = {
+        "catenary": lambda: catenary(one, y),
+        "parabola": lambda: parabola(one, y),
+        "circle": lambda: circle(one, (x, y)),
+        "ellipse": lambda: ellipse((one, other), (x, y)),
+        "two-circles": lambda: two_circles(one, other, (x, y)),
+    }[kind]
+    try:
+        case = Case(profile=make(), sweep=Sweep(stations=20))
+    except InputError as error:
+        assert "\n" not in str(error)
+    else:
+        assert np.isfinite(case.foot_x).all()
+        assert (np.diff(case.foot_x) < 0).all()
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: catenary(1e-3, -0.5), "at most 1000 L"),
+        (lambda: catenary(1e-12, -0.5), "at most 1000 L"),
+        (lambda: parabola(1e-12, 0.5), "at most 1000 L"),
+        (lambda: ellipse((1000, 1), (0, 0.5)), "at most 1000 L"),
+        (lambda: circle(1e6, (0, 0.5)), "at most 1000 L"),
+        (lambda: circle(1.0, (1e6, 0.5)), "within 10000 L"),
+        (lambda: polygon([[1e9 - 1, 0.5], [1e9 + 1, 0.5], [1e9, 2]]), "within 10000 L"),
+        (lambda: circle(1e-12, (0, 0.5)), "larger than 1e-10"),
+        (lambda: ellipse((1e6, 1e-6), (0, 0.5)), "does not move"),
+        (lambda: catenary(1e-200, -0.5), "catenary.a = 1e-200"),
+        (lambda: circle(1e300, (0, 0.5)), "circle.radius = 1e+300"),
+        (lambda: circle(True, (0, 0.5)), "circle.radius = True"),
+        (lambda: circle("1", (0, 0.5)), "circle.radius = 1"),
+        (lambda: circle(10**400, (0, 0.5)), "circle.radius"),
+        (lambda: circle(1, 0.5), "two numbers"),
+        (lambda: circle(1, "ab"), "two finite numbers"),
+        (lambda: ellipse((1, 2, 3), (0, 0.5)), "two numbers"),
+    ],
+)
+def test_what_cannot_be_felt_is_refused_when_it_is_made(make, said):
+    with pytest.raises(InputError) as refused:
+        Case(profile=make())
+    assert said in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_events_ask_the_same_of_a_contour():
+    with pytest.raises(InputError, match="at most 1000 L"):
+        find_events(circle(1e6, (0, 0.5)))
+
+
+@pytest.mark.parametrize("make", [lambda: circle(1e5, (0, 0.3)), lambda: catenary(0.004, -0.7)])
+def test_nearly_flat_objects_work(make):
+    """At the lowest point the readings depend on the height alone, eta = 0.3 - 0.005."""
+    lowest = find_events(make()).out_of_plane
+    assert lowest.moment_z * 0.295 == pytest.approx(1.19814023473559, rel=1e-9)
+    sweep = solve_sweep(Case(profile=make(), sweep=Sweep(stations=60)))
+    assert (sweep.table["phase"] != "free").sum() > 50
+    assert certify(sweep).max(axis=None) < 1e-11
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"xi": 3}, "profile.xi = 3"),
+        ({"eta": lambda a: a[0]}, "to ()"),
+        ({"eta": lambda a: float(a)}, "NumPy functions"),
+        ({"eta": lambda a: "high"}, "NumPy functions"),
+        ({"xi": lambda a: a * 1e200}, "not finite at alpha"),
+        ({"alpha_range": 1.0}, "two numbers"),
+        ({"alpha_range": (0, np.nan)}, "two finite numbers"),
+        ({"alpha_range": (-1, 2)}, "within [-pi/2, pi/2]"),
+        ({"radius_of_curvature": 1.0}, "radius_of_curvature = 1.0"),
+        ({"radius_of_curvature": lambda a: -np.ones_like(a)}, "positive"),
+        ({"radius_of_curvature": lambda a: 2 * np.ones_like(a)}, "which is 1 there"),
+        (
+            {
+                "xi": lambda a: np.sin(np.maximum(a, 0.3)),
+                "eta": lambda a: 1 - np.cos(np.maximum(a, 0.3)),
+            },
+            "does not move",
+        ),
+    ],
+)
+def test_what_is_no_profile(change, said):
+    given_ = {"xi": np.sin, "eta": lambda a: 1 - np.cos(a), "alpha_range": (-1, 1)}
+    with pytest.raises(InputError) as refused:
+        Profile(**{**given_, **change})
+    assert said in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: Case(profile=3), "case.profile = a int"),
+        (lambda: Case(beam=1.0), "case.beam = a float"),
+        (lambda: Case(sweep=200), "case.sweep = a int"),
+        (lambda: Case(name=3), "case.name = a int"),
+        (lambda: solve_sweep("catenary"), "named_case('catenary')"),
+        (lambda: with_friction("catenary", 0.1), "case = 'catenary'"),
+        (lambda: Sweep(stations=2.5), "sweep.stations = 2.5"),
+        (lambda: Sweep(stations=True), "sweep.stations = True"),
+        (lambda: Sweep(stations=10**20), "2 to 1,000,000"),
+        (lambda: Sweep(start="here"), "sweep.start = here"),
+        (lambda: Case(sweep=Sweep(start=1e308)), "sweep.start = 1e+308"),
+        (lambda: Case(sweep=Sweep(start=2.5, stop=2.5 - 1e-12)), "less than the start"),
+        (lambda: Beam(length=True), "beam.length = True"),
+        (lambda: Beam(length="1"), "beam.length = 1"),
+        (lambda: Beam(length=10**400), "beam.length"),
+        (lambda: Beam(length=1e200, radius=0), "EI/L^2"),
+        (lambda: Beam(length=1e-200, radius=0), "EI/L^2"),
+        (lambda: catenary(0.5, -0.8).scaled(0), "profile.scale = 0"),
+        (lambda: catenary(0.5, -0.8).offset(-1), "parallel curve = -1"),
+        (lambda: polygon("square"), "list of points"),
+        (lambda: polygon([[0, 0], [1], [2, 2]]), "list of points"),
+        (lambda: polygon([[0, 0], [1e200, 0], [0, 1]]), "vertex 1"),
+        (lambda: through_points(None), "of shape ()"),
+        (lambda: through_points([[0, "a"], [1, 1], [2, 2]]), "list of points"),
+    ],
+)
+def test_misuse(make, said):
+    with pytest.raises(InputError) as refused:
+        make()
+    assert said in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_numbers_of_numpy_are_numbers():
+    case = Case(Beam(np.float32(1), np.int64(1)), circle(np.float64(1), np.array([0, 0.4])))
+    assert case.beam == Beam()
+    assert Sweep(stations=np.int64(50)).stations == 50
