@@ -3,7 +3,6 @@
 import contextlib
 import io
 import json
-import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -361,14 +360,3 @@ def test_other_contours(tmp_path, profile, said):
         assert done.returncode == 2
         assert said in done.stderr
         assert done.stderr.count("\n") == 1
-
-
-@pytest.mark.parametrize("heading", ["From Python", "Gates in your own tests"])
-def test_readme_example_runs(tmp_path, heading):
-    """The README's Python blocks are executed as they stand."""
-    readme = (Path(__file__).parents[3] / "README.md").read_text()
-    code = readme.split(f"## {heading}\n")[1].split("```python\n")[1].split("```")[0]
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr

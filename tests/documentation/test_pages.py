@@ -1,0 +1,108 @@
+"""Every block of code and every command of every page is run; links lead somewhere."""
+
+import doctest
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import typer
+
+from compare.commands.main import app
+from tests.documentation.blocks import PAGES, ROOT, Block, blocks
+
+WITH_CODE = [page for page in PAGES if any(block.runs for block in blocks(page))]
+BIN = Path(sys.executable).parent
+IDS = {"ids": str}
+
+
+@pytest.fixture
+def folder(tmp_path) -> Path:
+    """A user's folder: `make` there is this project's, with the Python that runs the tests."""
+    tools = tmp_path / "bin"
+    tools.mkdir()
+    make = tools / "make"
+    make.write_text(
+        f'#!/bin/sh\nexec /usr/bin/make -s -f "{ROOT}/Makefile" BIN="{BIN}" BIN_MUJOCO3="{BIN}" '
+        '-o .venv/installed -o .venv-mujoco3/installed "$@"\n'
+    )
+    make.chmod(0o755)
+    (tmp_path / "work").mkdir()
+    return tmp_path / "work"
+
+
+def run(some: Iterable[Block], folder: Path) -> None:
+    """Run blocks in one folder, in their order; check what they print."""
+    path = f"{folder.parent / 'bin'}:{BIN}:{os.environ['PATH']}"
+    for block in some:
+        if block.file:
+            (folder / block.file).write_text(block.text)
+        if not block.runs:
+            continue
+        shell = ["bash", "-euo", "pipefail", "-c", block.text]
+        command = shell if block.language == "sh" else [sys.executable, "-c", block.text]
+        done = subprocess.run(
+            command,
+            cwd=folder,
+            env=os.environ | {"PATH": path, "PYTHONPATH": f"{folder}:{ROOT}", "COLUMNS": "120"},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, f"{block}\n{done.stdout}{done.stderr}"
+        if block.prints is not None:
+            matches = doctest.OutputChecker().check_output
+            flags = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+            assert matches(block.prints, done.stdout, flags), f"{block} prints\n{done.stdout}"
+
+
+@pytest.mark.parametrize("page", WITH_CODE, **IDS)
+def test_quick_blocks(page, folder):
+    run([block for block in blocks(page) if not block.slow], folder)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", WITH_CODE, **IDS)
+def test_the_whole_page(page, folder):
+    run(blocks(page), folder)
+
+
+def _commands(page: Path) -> list[str]:
+    """Every command in the page's text and blocks, up to the end of the line or the back quote."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    return re.findall(r"(?:^|`|\$ |/)((?:vibrissa|make)\b[^`\n#|]*)", text, re.M)
+
+
+@pytest.mark.parametrize("page", PAGES, **IDS)
+def test_commands_and_options_exist(page):
+    group: Any = typer.main.get_command(app)
+    targets = set(re.findall(r"^([a-z0-9-]+):", (ROOT / "Makefile").read_text(), re.M))
+    for command in _commands(page):
+        words = command.split()
+        if words[0] == "make":
+            asked = [w for w in words[1:] if "=" not in w and not w.endswith('"')]
+            assert set(asked) <= targets, command
+        elif len(words) > 1 and re.fullmatch("[a-z][a-z-]*", words[1]):
+            known = group.get_command(None, words[1])
+            assert known is not None, command
+            options = {name for option in known.params for name in option.opts} | {"--help"}
+            used = {w.split("=")[0] for w in words[2:] if re.match(r"\[?--?[a-z]", w)}
+            assert {w.strip("[]") for w in used} <= options, command
+
+
+@pytest.mark.parametrize("page", PAGES, **IDS)
+def test_links_lead_to_files(page):
+    text = re.sub(r"```.*?```", "", (ROOT / page).read_text(encoding="utf-8"), flags=re.S)
+    links = re.findall(r"\]\(([^)#\s]+)", text)
+    lost = [x for x in links if "://" not in x and not (ROOT / page.parent / x).exists()]
+    assert not lost
+
+
+def test_blocks_are_in_a_language_that_is_run_or_say_why_not():
+    known = {"", "python", "sh", "toml"}
+    odd = [str(b) for page in PAGES for b in blocks(page) if b.language not in known]
+    assert not odd
