@@ -28,6 +28,7 @@ _THEMED = {
     GREEN: "var(--green)",
     PINK: "var(--pink)",
 }
+_IMAGE_DPI = 180  # of what is too much to be drawn as lines
 _COLOUR = re.compile(r"#[0-9a-f]{6}\b")
 _IDENTIFIER = re.compile(r'(\bid="|href="#|url\(#)')
 _MARKDOWN = re.compile(r"[\\`*\[\]]|#(?!\d+;)|(?<!\w)_|_(?!\w)")
@@ -139,7 +140,7 @@ def inline_svg(figure: Figure, name: str, description: str) -> Markup:
     """
     with rc_context({"svg.hashsalt": name}):
         unnamed = dict.fromkeys(("Date", "Creator", "Format", "Type"))
-        text = _drawn(figure, "svg", transparent=True, metadata=unnamed).decode()
+        text = _drawn(figure, "svg", transparent=True, dpi=_IMAGE_DPI, metadata=unnamed).decode()
     text = text[text.index("<svg") :]
     text = _COLOUR.sub(lambda colour: _THEMED.get(colour[0], colour[0]), text)
     text = _IDENTIFIER.sub(rf"\g<1>{name}-", text)

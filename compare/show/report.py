@@ -13,19 +13,31 @@ from analytic.problem.files import write_whole
 from compare.comparison import Comparison
 from compare.explain.budget import UNRESOLVED, Budget
 from compare.explain.convergence import fitted_orders
+from compare.show.colophon import colophon
 from compare.show.figures.budget_bars import headline, panels, picture
 from compare.show.figures.geometry import geometry
 from compare.show.figures.order_plot import convergence_picture
+from compare.show.figures.over_foot import unit
 from compare.show.figures.phases import phase_criterion
 from compare.show.figures.readings import reading_panels, readings, snap_off_panels
 from compare.show.page import document, embedded, inline_svg, png, render, words
+from compare.show.style import PHASE_LETTERS
 from compare.show.verdict import verdict, worst_reading
 
 FIGURES = {"geometry": geometry, "readings": readings, "phases": phase_criterion}
 """Pictures that are also written as files of their own."""
 
-_VERSIONS = ("engine", "python")  # of a source's provenance; the rest are its settings
-_BULKY = ("contour", "events")
+_BULKY = ("contour", "events")  # of a source's provenance; they are drawn instead
+_LONGEST = 200  # characters of a setting
+_OF_LARGEST = "of the reading's largest magnitude"
+_LIMITED = {
+    "snap_off_window": "of the sweep's length",
+    "phase_agreement": "of the stations",
+    "transition": "L",
+    "snap_off": "L",
+    "untrusted": "of the stations",
+}
+"""What a limit is a number of; all others are of a reading's largest magnitude."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +124,11 @@ def _html(
         worst=worst_reading(comparison),
         readings=CLAMP_READINGS,
         phases=[p for p in PHASES if p in set(comparison.alignment.table["phase"])],
-        origins=[_origin(comparison.reference), _origin(comparison.candidate)],
+        letters=PHASE_LETTERS,
+        units=_units(comparison.reference),
+        recorded=_known(comparison),
+        colophon=colophon(),
+        limited={name: _LIMITED.get(name, _OF_LARGEST) for name in found["tolerances"]},
         budget=budget,
         unresolved=UNRESOLVED,
         headline=None if budget is None else headline(budget),
@@ -157,19 +173,42 @@ def _figures(
     }
 
 
-def _origin(readings: Readings) -> dict[str, Any]:
-    """What is known of a sweep, its versions apart from its settings."""
-    known = dict(readings.provenance)
-    numerics = known.pop("settings", {})
+def _units(readings: Readings) -> dict[str, float]:
+    """What the page's units are in those of the readings."""
+    beam = readings.beam
     return {
-        "source": readings.source,
-        "versions": {name: known[name] for name in _VERSIONS if name in known},
-        "settings": {
-            "vibrissa": ", ".join(
-                f"{words(name)} {value:g}" for name, value in asdict(readings.beam).items()
-            ),
-            "stations": len(readings.table),
-            **{k: v for k, v in known.items() if k not in (*_VERSIONS, *_BULKY)},
-            **{k: f"{v:g}" if isinstance(v, float) else v for k, v in numerics.items()},
-        },
+        "length": beam.length,
+        **{name: unit(readings, name) for name in CLAMP_READINGS},
     }
+
+
+def _known(comparison: Comparison) -> dict[str, dict[str, str]]:
+    """What is recorded of both sweeps: of each thing that is known, what the source says."""
+    sweeps = (_recorded(comparison.reference), _recorded(comparison.candidate))
+    names = dict.fromkeys(name for sweep in sweeps for name in sweep)
+    return {
+        name: {
+            which: sweep.get(name, "")
+            for which, sweep in zip(("reference", "candidate"), sweeps, strict=True)
+        }
+        for name in names
+    }
+
+
+def _recorded(readings: Readings) -> dict[str, str]:
+    beam = (f"{words(name)} {value:g}" for name, value in asdict(readings.beam).items())
+    provenance = dict(readings.provenance)
+    settings = provenance.pop("settings", {})
+    numerics = settings if isinstance(settings, Mapping) else {"settings": settings}
+    recorded = {
+        "vibrissa": ", ".join(beam),
+        "stations": len(readings.table),
+        **{name: value for name, value in provenance.items() if name not in _BULKY},
+        **numerics,
+    }
+    return {str(name): _value(value) for name, value in recorded.items() if value is not None}
+
+
+def _value(value: object) -> str:
+    text = f"{value:.6g}" if isinstance(value, float) else str(value)
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"

@@ -13,9 +13,9 @@ from PIL import Image
 from analytic import CLAMP_READINGS
 from analytic.problem.arrays import Integers
 from compare.show.animation.motion import Motion
-from compare.show.animation.views import CURVATURE_COLOURS, Curve, View
+from compare.show.animation.views import Curve, View
 from compare.show.page import save_figure
-from compare.show.style import CANDIDATE, INK, PHASE_COLOURS, PHASE_NAMES, label
+from compare.show.style import CANDIDATE, INK, PHASE_COLOURS, PHASE_NAMES, REFERENCE, label
 
 _SIZE, _DPI = (8.0, 6.4), 100  # inches and pixels an inch
 
@@ -79,7 +79,7 @@ class Scene:
     def _add_header(self, motions: tuple[Motion, Motion]) -> None:
         case = label(motions[0].readings.provenance.get("case", ""))
         self._figure.text(0.085, 0.955, case, fontsize=12, weight="bold")
-        line = Line2D([], [], color=CURVATURE_COLOURS(0.6), linewidth=5)
+        line = Line2D([], [], color=REFERENCE, linewidth=3)
         dots = Line2D([], [], color=CANDIDATE, marker="o", linestyle="")
         self._figure.legend(
             [line, dots],

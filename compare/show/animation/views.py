@@ -14,12 +14,13 @@ from analytic import Readings
 from analytic.problem.arrays import Floats
 from compare.show.animation.motion import Motion
 from compare.show.figures.over_foot import shade_phases
-from compare.show.style import BODY, CANDIDATE, FAINT, FOOT, GREY, INK, axis_label
+from compare.show.style import BODY, CANDIDATE, FAINT, FOOT, GREY, INK, REFERENCE, axis_label
 
 # Perceptually uniform and the same to every kind of colour vision; its palest end is left out,
 # for it would drown in the white around it.
 CURVATURE_COLOURS = ListedColormap(colormaps["viridis"](np.linspace(0.0, 0.9, 256)))
-_MARKS = 50  # of the candidate in a curve
+_MARKS = 30  # of the candidate in a curve
+_RIM = 1.6  # points, on both sides together
 _LONGEST_ARROW = 0.75  # L; the largest contact force
 _LOWEST, _HIGHEST = -0.1, 1.08  # L; the least that is shown
 
@@ -50,6 +51,10 @@ class View:
             norm=PowerNorm(0.5, 0, float(np.nanmax(reference.curvature))),
             linewidth=width, capstyle="round", zorder=3,
         )  # fmt: skip
+        # Its rim has the reference's colour, as its curves have.
+        (self._rim,) = ax.plot(
+            [], [], color=REFERENCE, linewidth=width + _RIM, solid_capstyle="round", zorder=2.9
+        )
         (self._dots,) = ax.plot(
             [], [], "o", color=CANDIDATE, markersize=dot, markeredgecolor="w",
             markeredgewidth=0.6, zorder=4,
@@ -72,7 +77,7 @@ class View:
         ax.set_ylabel("$y$ / $L$")
         self.moving: list[Artist] = [
             *([body] if follows else []),
-            self.line, self._dots, self._clamp, self._contact, self.force,
+            self._rim, self.line, self._dots, self._clamp, self._contact, self.force,
         ]  # fmt: skip
 
     def frame(self, size: tuple[float, float]) -> None:
@@ -98,6 +103,7 @@ class View:
         x, y = reference.x[station] - origin, reference.y[station]
         ends = np.column_stack([x, y])
         self.line.set_segments(list(np.stack([ends[:-1], ends[1:]], axis=1)))
+        self._rim.set_data(x, y)
         bent = reference.curvature[station]
         self.line.set_array((bent[1:] + bent[:-1]) / 2)
         beads_x, beads_y = candidate.beads(other)
@@ -119,9 +125,9 @@ class Curve:
 
     def __init__(self, ax: Axes, motions: tuple[Motion, Motion], name: str, last: bool) -> None:
         self._curves = [(motion.foot_x, motion.clamp[name]) for motion in motions]
-        (self._line,) = ax.plot([], [], color=INK, linewidth=1.6)
+        (self._line,) = ax.plot([], [], color=REFERENCE, linewidth=2.2)
         every = max(1, len(motions[1].foot_x) // _MARKS)
-        (self._dots,) = ax.plot([], [], "o", color=CANDIDATE, markersize=3.6, markevery=every)
+        (self._dots,) = ax.plot([], [], "o", color=CANDIDATE, markersize=2.6, markevery=every)
         (self._head,) = ax.plot([], [], "o", color=INK, markersize=5)
         foot_x = np.concatenate([x for x, _ in self._curves])
         values = np.concatenate([v for _, v in self._curves])

@@ -13,8 +13,8 @@ from matplotlib.patches import Circle
 from analytic import Readings, deflected_shapes, reconstruct
 from analytic.problem.arrays import Words
 from compare.comparison import Comparison
-from compare.show.figures.over_foot import foot
-from compare.show.figures.thinning import cloud
+from compare.show.figures.over_foot import foot, on_vibrissa
+from compare.show.figures.thinning import cloud, draw
 from compare.show.style import (
     BODY,
     FAINT,
@@ -98,18 +98,18 @@ def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
         xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
         ax.plot(xi, eta, color=FAINT, linewidth=3, label="object", zorder=0)
     x, y = found["contact_x"].to_numpy() / scale, found["contact_y"].to_numpy() / scale
-    drawn = cloud(x, y)
+    kept = cloud(x, y)
     if "uncertainty" in found:
         radius = found["uncertainty"].to_numpy() / scale
         circles = PatchCollection(
-            [Circle((x[i], y[i]), radius[i]) for i in drawn if np.isfinite(radius[i])],
+            [Circle((x[i], y[i]), radius[i]) for i in kept if np.isfinite(radius[i])],
             color=GREEN,
             alpha=0.08,
             linewidth=0,
         )
         ax.add_collection(circles)
         ax.plot([], [], "o", color=GREEN, alpha=0.3, markersize=9, label="95 % of cases")
-    ax.plot(x[drawn], y[drawn], ".", color=INK, markersize=3.5, label="reconstructed contact")
+    draw(ax, x, y, **_CONTACT, label="reconstructed contact")
     unit = "$L$" if scale == 1 else f"$L$ = {scale:g}"
     ax.set_xlabel(f"$x$ / ({unit})")
     ax.set_ylabel(f"$y$ / ({unit})")
@@ -146,6 +146,8 @@ def _draw_object(ax: Axes, readings: Readings, phase: Words) -> None:
         ax.fill_between(xi, eta, eta.max(), color=BODY, linewidth=0, zorder=0)
         ax.plot(xi, eta, **_OBJECT, zorder=1)
     found = reconstruct(readings)[np.isin(phase, ("tip", "tangent"))]
-    x, y = found["contact_x"].to_numpy() / scale, found["contact_y"].to_numpy() / scale
-    drawn = cloud(x, y)
-    ax.plot(x[drawn], y[drawn], **_CONTACT)
+    s, x, y = (
+        found[name].to_numpy() / scale for name in ("contact_arc_length", "contact_x", "contact_y")
+    )
+    there = np.isfinite(on_vibrissa(s))
+    draw(ax, x[there], y[there], **_CONTACT)

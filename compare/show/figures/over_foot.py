@@ -7,21 +7,23 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from analytic import CLAMP_READINGS, Readings, reconstruct
+from analytic import CLAMP_READINGS, Readings
 from analytic.problem.arrays import Floats, Words
 from compare.comparison import Comparison
+from compare.sense.phases import Classification
 from compare.show.figures.thinning import stretches
 from compare.show.style import CANDIDATE, PHASE_COLOURS, PHASE_NAMES, REFERENCE
 
-LINE: dict[str, Any] = {"color": REFERENCE, "linewidth": 1.6}
-"""How the reference is drawn."""
+LINE: dict[str, Any] = {"color": REFERENCE, "linewidth": 3.0}
+"""How the reference is drawn: so wide that dots upon it hide it nowhere."""
+_DOTS = {"color": CANDIDATE, "marker": "o", "markeredgewidth": 0, "linestyle": ""}
 _BEYOND_TIP = 1.1  # L; as far as a noisy contact is drawn
 
 
 def dots(comparison: Comparison) -> dict[str, Any]:
     """How the candidate is drawn: the smaller the more stations it has."""
-    size = 2.2 if len(comparison.candidate.table) > 100 else 4.0
-    return {"color": CANDIDATE, "marker": "o", "markersize": size, "linestyle": ""}
+    size = 2.0 if len(comparison.candidate.table) > 100 else 3.5
+    return {**_DOTS, "markersize": size}
 
 
 def foot(readings: Readings) -> Floats:
@@ -34,13 +36,15 @@ def unit(readings: Readings, name: str) -> float:
     return readings.beam.moment_unit if name == "moment_z" else readings.beam.force_unit
 
 
-def scaled(readings: Readings, name: str) -> Floats:
+def scaled(readings: Readings, judged: Classification, name: str) -> Floats:
     """A reading as it is drawn.
 
     Parameters
     ----------
     readings : Readings
         The sweep.
+    judged : Classification
+        Its phases, and the contact that they were judged by.
     name : str
         Of a clamp reading, or ``contact_arc_length`` for the reconstructed one.
 
@@ -51,8 +55,14 @@ def scaled(readings: Readings, name: str) -> Floats:
     """
     if name in CLAMP_READINGS:
         return np.where(readings.trusted, readings.values(name) / unit(readings, name), np.nan)
-    s = reconstruct(readings)[name].to_numpy(dtype=float) / readings.beam.length
-    # Without a load the noise of a rig puts it anywhere; with one, a little beyond the tip.
+    return on_vibrissa(1 - judged.shortfall)
+
+
+def on_vibrissa(s: Floats) -> Floats:
+    """Arc lengths [L] of contacts, NaN where they are no place on the vibrissa.
+
+    Without a load the noise of a rig puts a contact anywhere; with one, a little beyond the tip.
+    """
     return np.where((s > 0) & (s < _BEYOND_TIP), s, np.nan)
 
 

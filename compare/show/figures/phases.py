@@ -3,7 +3,7 @@
 from matplotlib.figure import Figure
 
 from compare.comparison import Comparison
-from compare.show.figures.over_foot import LINE, dots, foot, shade_reference
+from compare.show.figures.over_foot import LINE, dots, foot, on_vibrissa, shade_reference
 from compare.show.figures.thinning import draw
 from compare.show.style import CANDIDATE, FOOT, GREY, PAGE_WIDTH, REFERENCE, SMALL, label
 
@@ -29,7 +29,7 @@ def phase_criterion(comparison: Comparison) -> Figure:
     ):
         judged, x = comparison.judged[which], foot(readings)
         draw(axes[0], x, judged.criterion, label=label(readings.source), **style)
-        draw(axes[1], x, 1 - judged.shortfall, **style)
+        draw(axes[1], x, on_vibrissa(1 - judged.shortfall), **style)
     for ax, expected in zip(axes, (0, 1), strict=True):
         shade_reference(ax, comparison)
         ax.axhline(expected, color=GREY, linewidth=0.8, linestyle="--")

@@ -5,14 +5,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from analytic import CLAMP_READINGS, Readings
+from analytic import CLAMP_READINGS, Readings, reconstruct
 from analytic.problem.arrays import Floats
 from compare.comparison import Comparison
+from compare.show.figures.fold import with_fold
 from compare.show.figures.over_foot import (
     LINE,
     dots,
     foot,
     key,
+    on_vibrissa,
     scaled,
     shade_reference,
     unit,
@@ -30,6 +32,7 @@ from compare.show.style import (
     label,
 )
 
+_ALONE = 3.0  # points; of dots that lie on no line
 _NEAR = 0.03  # of the sweep's length: what is shown on either side of the snap-off
 
 
@@ -101,11 +104,15 @@ def _draw_reading(upper: Axes, lower: Axes, comparison: Comparison, name: str) -
     """A reading of both sweeps above, their difference below."""
     for ax in (upper, lower):
         shade_reference(ax, comparison)
-    for one, style in ((comparison.reference, LINE), (comparison.candidate, dots(comparison))):
-        draw(upper, foot(one), scaled(one, name), label=label(one.source), **style)
+    reference, candidate = comparison.reference, comparison.candidate
+    judged = comparison.judged["reference"]
+    curve = with_fold(reference, judged.phase, foot(reference), scaled(reference, judged, name))
+    draw(upper, *curve, label=label(reference.source), **LINE)
+    points = foot(candidate), scaled(candidate, comparison.judged["candidate"], name)
+    draw(upper, *points, label=label(candidate.source), **dots(comparison))
     upper.set_title(axis_label(name), fontsize=LARGE)
     lower.axhline(0, color=INK, linewidth=0.8)
-    draw(lower, *_difference(comparison, name), **dots(comparison))
+    draw(lower, *_difference(comparison, name), **dots(comparison) | {"markersize": _ALONE})
     lower.set_xlabel(FOOT)
     lower.ticklabel_format(axis="y", scilimits=(-2, 2))
 
@@ -119,8 +126,11 @@ def _difference(comparison: Comparison, name: str) -> tuple[Floats, Floats]:
         return foot_x, apart / unit(comparison.reference, name)
     if len(table) < 2:  # no sweep
         return foot_x, np.full(len(table), np.nan)
-    candidate, reference = (
-        Readings(table.rename(columns={f"{r}_{side}": r for r in CLAMP_READINGS}), beam)
+    found, expected = (
+        reconstruct(
+            Readings(table.rename(columns={f"{r}_{side}": r for r in CLAMP_READINGS}), beam)
+        )
         for side in ("candidate", "reference")
     )
-    return foot_x, scaled(candidate, name) - scaled(reference, name)
+    s, expected_s = (one[name].to_numpy() / beam.length for one in (found, expected))
+    return foot_x, on_vibrissa(s) - on_vibrissa(expected_s)

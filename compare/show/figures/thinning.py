@@ -13,11 +13,13 @@ from analytic.problem.arrays import Floats, Integers, Words
 
 _PARTS = 500  # that a long sweep is cut into, each a pixel or three wide
 _KEPT = 4  # stations of each: the first, the last, the lowest, the highest
-_CELLS = 600  # across a cloud of points; one dot a cell
+_FEW = _PARTS * _KEPT  # are all drawn
+_BEHIND = 1.9  # a dense cloud, for a line through it
+_CELLS = (500, 250)  # across and up a cloud of dots; of each cell one is drawn
 
 
 def draw(ax: Axes, x: Floats, y: Floats, **style: Any) -> Line2D:  # noqa: ANN401
-    """Plot a reading over the foot position, thinned where there are more stations than pixels.
+    """Plot a line or dots, thinned where there are more than a picture can show.
 
     Parameters
     ----------
@@ -26,15 +28,19 @@ def draw(ax: Axes, x: Floats, y: Floats, **style: Any) -> Line2D:  # noqa: ANN40
     x, y : array, shape (stations,)
         In sweep order.
     **style
-        As of `Axes.plot`.
+        As of `Axes.plot`. Dots are what has ``linestyle=""``; many become an image behind the
+        lines.
 
     Returns
     -------
     Line2D
         What was drawn.
     """
-    kept = envelope(y)
+    are_dots = style.get("linestyle") == ""
+    kept = cloud(x, y) if are_dots else envelope(y)
     (line,) = ax.plot(x[kept], y[kept], **style)
+    if are_dots and len(kept) > _FEW:
+        line.set(rasterized=True, zorder=_BEHIND)
     return line
 
 
@@ -51,7 +57,7 @@ def envelope(y: Floats) -> Integers:
     array of int
         Their indices, ascending: all of them, if they are few.
     """
-    if len(y) <= _PARTS * _KEPT:
+    if len(y) <= _FEW:
         return np.arange(len(y))
     lowest, highest = (np.where(np.isnan(y), bound, y) for bound in (np.inf, -np.inf))
     kept = [
@@ -75,11 +81,13 @@ def cloud(x: Floats, y: Floats) -> Integers:
         Their indices, ascending: all finite ones, if they are few.
     """
     finite = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
-    if len(finite) <= _PARTS * _KEPT:
+    if len(finite) <= _FEW:
         return finite
-    places = np.column_stack([x[finite], y[finite]])
-    size = np.ptp(places, axis=0).max() / _CELLS
-    _, first = np.unique(np.rint(places / (size or 1.0)), axis=0, return_index=True)
+    column, row = (
+        ((at[finite] - at[finite].min()) / (np.ptp(at[finite]) or 1.0) * cells).astype(int)
+        for at, cells in zip((x, y), _CELLS, strict=True)
+    )
+    _, first = np.unique(column * (_CELLS[1] + 1) + row, return_index=True)
     return np.sort(finite[first])
 
 

@@ -3,6 +3,7 @@
 import base64
 import re
 from dataclasses import replace
+from datetime import datetime
 
 import numpy as np
 import pytest
@@ -77,8 +78,7 @@ def test_the_verdict_comes_first(page, comparison):
 def test_the_contents_lead_somewhere(page):
     links = [a["href"].removeprefix("#") for a in page.all("a")]
     assert links == [
-        "budget", "apart", "sweep", "phases", "snap-off", "convergence", "settings", "versions",
-        "tolerances",
+        "budget", "apart", "sweep", "phases", "snap-off", "convergence", "tolerances", "settings",
     ]  # fmt: skip
     assert set(links) <= set(page.ids)
 
@@ -106,9 +106,17 @@ def test_a_nasty_name_is_text(page):
 
 
 def test_every_limit_has_its_reason(page):
-    told = page.text[page.text.index('id="tolerances"') :]
-    assert told.count("<tr>") == 1 + len(Tolerances().limits())
-    assert "like a square root" in told
+    section = page.text[page.text.index('id="tolerances"') : page.text.index('id="settings"')]
+    assert section.count("<tr>") == 1 + len(Tolerances().limits())
+    assert "like a square root" in section
+
+
+def test_it_says_what_it_was_made_with(page):
+    section = page.text[page.text.index('id="settings"') :]
+    assert f"NumPy {np.__version__}" in section
+    assert "SciPy" in section
+    assert str(datetime.now().year) in section
+    assert "mujoco" in section.lower()
 
 
 def test_measured_readings_without_budget_or_provenance(tmp_path):
@@ -116,7 +124,7 @@ def test_measured_readings_without_budget_or_provenance(tmp_path):
     bare = Readings(exact.table.drop(columns=["phase", "status"]), exact.beam)
     page = Page(write_report(compare(bare, bare), tmp_path).read_text(encoding="utf-8"))
     assert page.faults == []
-    assert "Not recorded." in page.text
+    assert "Contour not recorded" in page.text
     assert not {"budget", "convergence"} & set(page.ids)
     assert not page.all("img")
     assert not (tmp_path / "budget.json").exists()
