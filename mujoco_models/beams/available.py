@@ -3,9 +3,10 @@
 from importlib.metadata import version
 
 from analytic.problem.errors import InputError
+from mujoco_models.settings import BeamKind
 
 
-class Beams(tuple[str, ...]):
+class Beams(tuple[BeamKind, ...]):
     """The beams that there are; ``missing`` gives for each other one the reason why it is not.
 
     Attributes

@@ -1,4 +1,4 @@
-"""``make bench``: all of it, or the parts named on the command line."""
+"""``make bench``: all of it, or the parts named; ``--quick`` only tries them."""
 
 import sys
 
@@ -13,5 +13,11 @@ PARTS = {
 }
 
 if __name__ == "__main__":  # the studies start processes of their own
-    for name in sys.argv[1:] or PARTS:
-        PARTS[name]()
+    asked = [name for name in sys.argv[1:] if name != "--quick"]
+    unknown = ", ".join(sorted(set(asked) - set(PARTS)))
+    if unknown:
+        sys.exit(
+            f"bench = {unknown}: must be among {', '.join(PARTS)}; name those, or none for all"
+        )
+    for name in asked or PARTS:
+        PARTS[name]("--quick" in sys.argv)

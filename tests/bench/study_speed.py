@@ -15,8 +15,6 @@ from compare.study.work.execute import carry_out
 from compare.study.work.perform import Recipe, Result
 from tests.compare.study.studies import EVENTS_ONLY, vibrissa
 
-_RUNS = 2_000
-
 
 def spin(recipe: Recipe, run: PlannedRun) -> Result:
     """A run of a fifth of a second of work."""
@@ -30,23 +28,27 @@ def nothing(recipe: Recipe, run: PlannedRun) -> Result:
     return Result({"run": run.id, "outcome": "done"})
 
 
-def main() -> None:
+def main(quick: bool) -> None:
     console = Console()
+    equal_runs, many_runs, all_runs = (8, 16, 20) if quick else (64, 400, 2_000)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "grid.toml"
-        equal = _plan(path, 64)
+        equal = _plan(path, equal_runs)
         ratio = _seconds(equal, 1, spin) / _seconds(equal, 2, spin)
-        console.print(f"64 equal runs: two processes are {ratio:.2f} times as fast as one")
-        many = _plan(path, 400)
+        console.print(
+            f"{equal_runs} equal runs: two processes are {ratio:.2f} times as fast as one"
+        )
+        many = _plan(path, many_runs)
         _seconds(many, 2, nothing)
-        overhead = _seconds(many, 2, nothing) / 400
+        overhead = _seconds(many, 2, nothing) / many_runs
         console.print(f"scheduling: {1e3 * overhead:.2f} ms a run, the workers' start included")
-        _plan(path, _RUNS)
+        _plan(path, all_runs)
         begin = time.perf_counter()
         vibrissa("study", path, "--out", folder + "/out", cwd=folder).check_returncode()
         took = time.perf_counter() - begin
         console.print(
-            f"{_RUNS:,} analytic runs (events): {took:.0f} s, {1e3 * took / _RUNS:.1f} ms each"
+            f"{all_runs:,} analytic runs (events): {took:.0f} s, "
+            f"{1e3 * took / all_runs:.1f} ms each"
         )
 
 
