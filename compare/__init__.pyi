@@ -5,6 +5,7 @@ from .comparison import compare as compare
 from .judge.tolerances import Limit as Limit
 from .judge.tolerances import Tolerances as Tolerances
 from .read.rig import read_measured as read_measured
+from .read.rig import read_sweeps as read_sweeps
 from .sense.phases import Classification as Classification
 from .sense.phases import classify as classify
 from .testing.gates import assert_agreement as assert_agreement

@@ -1,9 +1,10 @@
 """The numerics of a MuJoCo sweep: everything that is not physics."""
 
 from dataclasses import dataclass
+from numbers import Integral, Real
 from typing import Literal, TypeAlias, get_args
 
-from pydantic import ConfigDict
+from pydantic import ConfigDict, StrictBool, StrictFloat, StrictInt
 
 from analytic.problem.errors import InputError
 
@@ -49,13 +50,13 @@ class Settings:
     __pydantic_config__ = ConfigDict(extra="forbid")  # a misspelt key in a case file is an error
 
     beam: BeamKind = "chain"
-    segments: int = 40
-    contour_points: int = 3200
-    contact_stiffness: float = 1e7
+    segments: StrictInt = 40
+    contour_points: StrictInt = 3200
+    contact_stiffness: StrictFloat = 1e7
     clamp: ClampKind = "second-order"
     obstacle: ObstacleKind = "mesh"
-    tolerance: float = 1e-8
-    planar: bool = True
+    tolerance: StrictFloat = 1e-8
+    planar: StrictBool = True
 
     def __post_init__(self) -> None:
         for name, allowed in (("beam", BEAMS), ("clamp", CLAMPS), ("obstacle", OBSTACLES)):
@@ -71,12 +72,16 @@ class Settings:
                 "true or false",
                 "false lets the beam leave the plane",
             )
-        for name, low, high, remedy in (
-            ("segments", 2, 1000, "40 is usual"),
-            ("contour_points", 8, 50_000, "3200 is usual"),
-            ("contact_stiffness", 1e3, 1e9, "1e7 is usual"),
-            ("tolerance", 1e-11, 1e-2, "1e-8 is usual"),
+        for name, kind, low, high, remedy in (
+            ("segments", Integral, 2, 1000, "40 is usual"),
+            ("contour_points", Integral, 8, 50_000, "3200 is usual"),
+            ("contact_stiffness", Real, 1e3, 1e9, "1e7 is usual"),
+            ("tolerance", Real, 1e-11, 1e-2, "1e-8 is usual"),
         ):
             value = getattr(self, name)
-            if not low <= value <= high:
-                raise InputError(f"mujoco.{name}", value, f"between {low:g} and {high:g}", remedy)
+            is_number = isinstance(value, kind) and not isinstance(value, bool)
+            if not (is_number and low <= value <= high):
+                number = "a whole number" if kind is Integral else "a number"
+                raise InputError(
+                    f"mujoco.{name}", value, f"{number} between {low:g} and {high:g}", remedy
+                )

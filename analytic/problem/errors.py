@@ -17,9 +17,16 @@ class InputError(ValueError):
     """
 
     def __init__(self, name: str, value: object, allowed: str, remedy: str) -> None:
-        self._given = name, str(value), allowed, remedy
-        line = f"{name} = {value}: must be {allowed}; {remedy}"
+        self._given = name, _written(value), allowed, remedy
+        line = f"{name} = {self._given[1]}: must be {allowed}; {remedy}"
         super().__init__(" ".join(line.split()))
 
     def __reduce__(self) -> tuple[type["InputError"], tuple[str, str, str, str]]:
         return type(self), self._given  # so that another process can hand it back
+
+
+def _written(value: object) -> str:
+    try:
+        return str(value)
+    except ValueError:  # Python refuses to write thousands of digits
+        return "an integer of thousands of digits"

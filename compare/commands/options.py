@@ -61,6 +61,10 @@ Columns = Annotated[
         metavar="NAME=COLUMN[:UNIT]", help="A column of a rig's file; repeat the option for each."
     ),
 ]
+Way = Annotated[
+    Literal["left", "right"] | None,
+    typer.Option(help="Which sweep of a rig's file with one in each direction."),
+]
 
 
 @dataclass(frozen=True)

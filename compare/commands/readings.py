@@ -13,6 +13,7 @@ from compare.commands.options import (
     BeamFile,
     Columns,
     OutFolder,
+    Way,
     number_or_auto,
 )
 from compare.commands.output import output_folder
@@ -46,6 +47,7 @@ def compare(
             "limits are widened; auto: estimate it.",
         ),
     ] = "0",
+    direction: Way = None,
     tolerances: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="TOML file whose [tolerances] table has the limits."),
@@ -63,8 +65,10 @@ def compare(
     from compare.comparison import compare as compare_readings
     from compare.read.rig import read_measured
 
-    expected = read_measured(reference, reference_beam, tuple(reference_column or ()))
-    measured = read_measured(candidate, beam, tuple(column or ()), expected.beam)
+    expected = read_measured(reference, reference_beam, reference_column or (), direction=direction)
+    measured = read_measured(candidate, beam, column or (), expected.beam, direction)
+    terminal.note_rows(expected)
+    terminal.note_rows(measured)
     comparison = compare_readings(
         expected, measured, limits, offset=given_offset, noise=given_noise
     )
@@ -83,6 +87,7 @@ def reconstruct(
     out: OutFolder = None,
     beam: BeamFile = None,
     column: Columns = None,
+    direction: Way = None,
     noise: Annotated[
         float | None,
         typer.Option(
@@ -97,7 +102,8 @@ def reconstruct(
     from compare.commands import terminal
     from compare.read.rig import read_measured
 
-    readings = read_measured(file, beam, tuple(column or ()))
+    readings = read_measured(file, beam, column or (), direction=direction)
+    terminal.note_rows(readings)
     level = None if noise is None else relative_noise(readings, noise)
     found = reconstruct_contour(readings, level)
     with output_folder(out or Path("results") / f"{file.stem}-reconstructed") as folder:

@@ -112,6 +112,29 @@ def print_sweep(readings: Readings) -> None:
     print_line(f"{readings.source}: {'; '.join(parts)}")
 
 
+def note_rows(readings: Readings) -> None:
+    """Say on standard error what was done to the rows of a rig's file, if anything was.
+
+    Parameters
+    ----------
+    readings : Readings
+        As `compare.read_measured` returns them.
+    """
+    rows = readings.provenance.get("rows", {})
+    notes = [
+        f"{count} rows {what}"
+        for name, what in (
+            ("out_of_order", "out of order were sorted by foot_x"),
+            ("averaged", "averaged with the one before, at the same foot_x"),
+        )
+        if (count := rows.get(name))
+    ]
+    if notes:
+        Console(stderr=True, highlight=False).print(
+            f"vibrissa: {readings.source}: {'; '.join(notes)}", soft_wrap=True, markup=False
+        )
+
+
 def print_reconstruction(readings: Readings, found: pd.DataFrame) -> None:
     """Print what a reconstruction found, in a line.
 

@@ -1,47 +1,158 @@
-"""Readings from a rig: other column names, units, and the vibrissa told apart."""
+"""Readings from a rig: its own files, columns and units, a vibrissa described elsewhere."""
 
-import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import TypeAlias
 
+import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike
 
-from analytic import SENSED, Beam, InputError, Readings
+from analytic import SENSED, Beam, Direction, InputError, Readings
+from analytic.problem.arrays import Floats
+from analytic.problem.table import Place, as_numbers, row_number
 from compare.read.case import read_beam
-from compare.read.units import DIMENSIONS, in_si
+from compare.read.dialect import read_text_table
+from compare.read.units import DIMENSIONS, unit_in_si
+
+Source: TypeAlias = "str | Path | pd.DataFrame | Mapping[str, ArrayLike]"
+
+_TEXTS = (".csv", ".txt", ".tsv", ".dat", ".asc")
+_TURN = 0.02  # of the stage's travel; a shorter way back is the stage's noise
+_WHOLE_SWEEP = 0.5  # of the stage's travel; what goes less far is no sweep of its own
+_OWN = "# vibrissa "
 
 
 def read_measured(
-    path: Path,
-    beam_file: Path | None = None,
+    source: Source,
+    beam: Path | Beam | None = None,
     columns: Sequence[str] = (),
-    otherwise: Beam = Beam(),  # noqa: B008  # frozen
+    otherwise: Beam | None = None,
+    direction: Direction | None = None,
 ) -> Readings:
-    """A file of readings, its columns renamed and converted, for a vibrissa from a TOML file.
+    """One sweep of a rig: its columns renamed and converted, its rows in the order of the sweep.
 
     Parameters
     ----------
-    path : Path
-        Parquet or CSV.
-    beam_file : Path, optional
-        TOML file with a ``[beam]`` table; by default the file's own metadata, or `otherwise`.
+    source : path, pandas.DataFrame or mapping
+        A Parquet or text file with any separator and decimal mark, or a table by columns.
+    beam : Path or Beam, optional
+        The vibrissa, or a TOML file with a ``[beam]`` table; by default what the file says, or
+        `otherwise`.
     columns : sequence of str
-        ``NAME=COLUMN`` or ``NAME=COLUMN:UNIT``: which of the file's columns is the sensed quantity
-        NAME, and in which unit. With units everything becomes SI, so the beam must be in units too.
-    otherwise : Beam
-        The vibrissa, if nothing tells of another one.
+        ``NAME=COLUMN`` or ``NAME=COLUMN:UNIT``: which column is the sensed quantity NAME, and in
+        which unit. With units everything becomes SI, so the beam must be in units too. Columns of
+        a file without names are called ``1``, ``2``, ...
+    otherwise : Beam, optional
+        The vibrissa, if nothing else says; ``Beam()`` by default.
+    direction : {"left", "right"}, optional
+        Which sweep, if there is one in each direction.
+
+    Returns
+    -------
+    Readings
+        Rows at one and the same foot position, one after the other, are averaged, and rows out of
+        order are sorted; ``provenance["rows"]`` counts them.
 
     Raises
     ------
     InputError
-        If the file, the beam, a column or a unit cannot be used.
+        If the file, the beam, a column or a unit cannot be used, a cell is no number, or there are
+        several sweeps.
     """
-    if not columns and beam_file is None:
-        return Readings.read(path, otherwise)
-    table = Readings.read_table(path)
+    sweeps = read_sweeps(source, beam, columns, otherwise)
+    chosen = [one for way, one in sweeps if direction in (None, way)]
+    if len(chosen) != 1:
+        ways = ", ".join(f"one to the {way}" for way, _ in sweeps)
+        raise InputError(
+            f"sweeps in {_called(source)}",
+            f"{len(sweeps)} ({ways})",
+            "one" if direction is None else f"one to the {direction}",
+            "choose its direction (--direction left, direction='left'), or split it",
+        )
+    return chosen[0]
+
+
+def read_sweeps(
+    source: Source,
+    beam: Path | Beam | None = None,
+    columns: Sequence[str] = (),
+    otherwise: Beam | None = None,
+) -> list[tuple[Direction, Readings]]:
+    """All sweeps that a file of a rig holds, as there and back.
+
+    Parameters
+    ----------
+    source, beam, columns, otherwise
+        As of `read_measured`.
+
+    Returns
+    -------
+    list of (direction, Readings)
+        In the order of the rows; a file that an engine wrote holds one. `compare.separate_lag`
+        takes the offsets of one sweep in each direction.
+
+    Raises
+    ------
+    InputError
+        As `read_measured` does.
+    """
+    given = read_beam(beam) if isinstance(beam, Path) else beam
+    if isinstance(source, str | Path) and _written_by_us(Path(source)) and not columns:
+        readings = Readings.read(source, otherwise)
+        return [(_way(readings), readings if given is None else replace(readings, beam=given))]
+    table, place = _table(source)
+    table = _renamed(table, columns, place, _called(source))
+    readings = Readings.of(table, given or otherwise, f"measured, {_called(source)}", None, place)
+    return _sweeps(readings)
+
+
+def _called(source: Source) -> str:
+    return Path(source).name if isinstance(source, str | Path) else "table"
+
+
+def _written_by_us(path: Path) -> bool:
+    if path.suffix == ".parquet":
+        return True
+    try:
+        with path.open("rb") as file:
+            return path.is_file() and file.read(len(_OWN)) == _OWN.encode()
+    except (OSError, ValueError):
+        return True  # whose reader says what is wrong
+
+
+def _table(source: Source) -> tuple[pd.DataFrame, Place]:
+    if isinstance(source, pd.DataFrame):
+        return source, row_number
+    if isinstance(source, Mapping):
+        try:
+            return pd.DataFrame(dict(source)), row_number
+        except (ValueError, TypeError) as error:
+            raise InputError(
+                "readings", "no table", "columns of one length by name", str(error)
+            ) from error
+    path = Path(source)
+    if path.suffix == ".parquet" or _written_by_us(path):
+        return Readings.read_table(path), row_number
+    if path.suffix.lower() not in _TEXTS:
+        raise InputError(
+            "readings file", path, f"named *.parquet, *{', *'.join(_TEXTS)}", "rename it"
+        )
+    found = read_text_table(path)
+    return found.frame, found.place
+
+
+def _renamed(
+    table: pd.DataFrame, columns: Sequence[str], place: Place, called: str
+) -> pd.DataFrame:
+    """The table with the sensed quantities under their own names and, with units, in SI."""
+    named: dict[str, Floats] = {}
     for text in columns:
         name, _, rest = text.partition("=")
-        column, _, unit = rest.partition(":")
+        # Names of columns may have colons, units never do.
+        column, unit = (rest, "") if rest in table else rest.rpartition(":")[::2]
+        column, unit = (column, unit) if column else (unit, "")
         if name not in SENSED or not column:
             raise InputError(
                 "--column",
@@ -49,24 +160,86 @@ def read_measured(
                 "NAME=COLUMN or NAME=COLUMN:UNIT",
                 f"NAME is one of {', '.join(SENSED)}",
             )
+        if name in named:
+            raise InputError("--column", repr(text), f"the only one for {name}", "leave one out")
         if column not in table:
+            there = ", ".join(map(str, table.columns[:20]))
             raise InputError(
-                f"column {column!r} of {path}",
-                "missing",
-                f"one of {', '.join(map(str, table.columns))}",
-                "check --column",
+                f"column {column!r} of {called}", "missing", f"one of {there}", "check --column"
             )
-        values = pd.to_numeric(table[column], errors="coerce")
-        if unit:
-            values = values * in_si(f"1 {unit}", DIMENSIONS[name])
-        table[name] = values
-    beam = otherwise if beam_file is None else _beam(beam_file)
-    return Readings(table, beam, f"measured, {path.name}")
+        numbers = as_numbers(table[column], column, place)
+        named[name] = numbers * unit_in_si(unit, DIMENSIONS[name]) if unit else numbers
+    return table.assign(**named)
 
 
-def _beam(file: Path) -> Beam:
-    try:
-        raw = tomllib.loads(file.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError("--beam", file, "a readable TOML file", f"mend it: {error}") from error
-    return read_beam(raw, file)
+def _sweeps(readings: Readings) -> list[tuple[Direction, Readings]]:
+    """The sweeps that rows in the order of time make up."""
+    foot_x = readings.values("foot_x")
+    turns = _turns(foot_x)
+    travel = np.abs(np.diff(foot_x[turns]))
+    if (travel >= _WHOLE_SWEEP * np.ptp(foot_x)).all():
+        # The row at a turn belongs to the sweep that ends there.
+        begins = [0, *(turn + 1 for turn in turns[1:-1])]
+        ends = [*(turn + 1 for turn in turns[1:-1]), len(foot_x)]
+        parts = [
+            replace(readings, table=readings.table.iloc[begin:end].reset_index(drop=True))
+            for begin, end in zip(begins, ends, strict=True)
+        ]
+        ways: list[Direction] = ["left" if foot_x[b] > foot_x[e - 1] else "right"
+                                 for b, e in zip(begins, ends, strict=True)]  # fmt: skip
+    else:  # in no order: only the side to which the vibrissa bends shows which way it was swept
+        parts, ways = [readings], ["right" if readings.bends_left else "left"]
+    return [(way, _in_order(part, way)) for part, way in zip(parts, ways, strict=True)]
+
+
+def _way(readings: Readings) -> Direction:
+    first, last = readings.values("foot_x")[[0, -1]]
+    return "left" if first > last else "right"
+
+
+def _turns(foot_x: Floats) -> list[int]:
+    """First row, rows where the stage turns for good, and last row."""
+    steps = np.diff(foot_x)
+    if (steps >= 0).all() or (steps <= 0).all():
+        return [0, len(foot_x) - 1]
+    least = _TURN * float(np.ptp(foot_x))
+    turns, way, farthest = [0], 0, 0
+    values = foot_x.tolist()
+    for i, x in enumerate(values):
+        ahead = x - values[farthest]
+        if way == 0:
+            if abs(ahead) >= least:
+                way, farthest = (1 if ahead > 0 else -1), i
+        elif ahead * way >= 0:
+            farthest = i
+        elif -ahead * way >= least:
+            turns.append(farthest)
+            way, farthest = -way, i
+    return [*turns, len(values) - 1]
+
+
+def _in_order(readings: Readings, way: Direction) -> Readings:
+    """A sweep with its rows sorted, and those at one foot position averaged."""
+    table = readings.table
+    foot_x = table["foot_x"].to_numpy()
+    sign = -1 if way == "left" else 1
+    back = int((np.diff(foot_x) * sign < 0).sum())
+    if back:
+        table = table.iloc[np.argsort(sign * foot_x, kind="stable")]
+        foot_x = table["foot_x"].to_numpy()
+    station = np.concatenate([[0], np.cumsum(np.diff(foot_x) != 0)])
+    repeated = len(table) - int(station[-1]) - 1
+    if repeated:
+        how = {
+            name: "mean" if pd.api.types.is_float_dtype(column) else "first"
+            for name, column in table.items()
+        }
+        table = table.groupby(station).agg(how)
+    if not (back or repeated):
+        return readings
+    counts = {"out_of_order": back, "averaged": repeated}
+    return replace(
+        readings,
+        table=table.reset_index(drop=True),
+        provenance={**readings.provenance, "rows": counts},
+    )

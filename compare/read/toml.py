@@ -1,23 +1,40 @@
-"""A TOML file whose errors can be told with the line they are on."""
+"""A TOML file whose errors name the line they are on."""
 
+import re
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from analytic import InputError
+from analytic.problem.errors import InputError
+from analytic.problem.files import regular_file
 
 Place: TypeAlias = Callable[[Sequence[str]], str]
 """What an error calls a key: where it is, and its name."""
+
+_LARGEST = 2_000_000  # bytes: some 50,000 points; what is slower to parse than to compute
+_DEEPEST = 32  # tables in tables
+_LONGEST = 10_000  # keys of one table
+
+# What may hold a newline or a bracket that ends no statement, else brackets and newlines.
+_TOKEN = re.compile(
+    r'"""(?:\\.|[^\\])*?"{3,5}'
+    r"|'''.*?'{3,5}"
+    r'|"(?:\\.|[^"\\\n])*"'
+    r"|'[^'\n]*'"
+    r"|#[^\n]*"
+    r"|[\[{]|[\]}]|\n",
+    re.DOTALL,
+)
 
 
 @dataclass(frozen=True)
 class TomlFile:
     """A TOML file, read and parsed.
 
-    Attributes
+    Parameters
     ----------
     path : Path
         Where it is.
@@ -33,33 +50,64 @@ class TomlFile:
 
     @classmethod
     def read(cls, path: Path, what: str) -> "TomlFile":
-        """Read `path`; errors call it `what`, as ``"case file"``.
+        """Read a file.
+
+        Parameters
+        ----------
+        path : Path
+            The file.
+        what : str
+            What errors call it, as ``"case file"``.
+
+        Returns
+        -------
+        TomlFile
+            With all its tables.
 
         Raises
         ------
         InputError
-            If it cannot be read or is not TOML; the parser's words name line and column.
+            If it cannot be read, is not TOML (the parser's words name line and column), or is
+            larger or deeper than anything that describes a case.
         """
+        regular_file(path, what, _LARGEST)
         try:
-            text = path.read_text(encoding="utf-8")
-            return cls(path, text, tomllib.loads(text))
-        except (OSError, UnicodeDecodeError) as error:
+            text = path.read_bytes().decode("utf-8")
+            tables = tomllib.loads(text)
+        except OSError as error:
+            reason = error.strerror or type(error).__name__
+            raise InputError(what, path, "readable", f"check the path ({reason})") from error
+        except UnicodeDecodeError as error:
             raise InputError(
-                what, path, "readable", f"check the path ({type(error).__name__})"
+                what, path, "text in UTF-8", f"save it as UTF-8 ({error.reason})"
             ) from error
-        except tomllib.TOMLDecodeError as error:
-            raise InputError(what, path, "valid TOML", f"mend it: {error}") from error
+        except RecursionError as error:
+            raise InputError(
+                what, path, f"at most {_DEEPEST} levels deep", "take brackets away"
+            ) from error
+        except ValueError as error:  # tomllib's own, and an integer of thousands of digits
+            raise InputError(what, path, "valid TOML", f"correct it: {error}") from error
+        _check_extent(tables, what, path)
+        return cls(path, text.replace("\r\n", "\n"), tables)
 
     def place(self, keys: Sequence[str]) -> str:
         """Where a key is, as ``"grid.toml, line 7: axes.mujoco.segments"``.
 
-        The line is that of the key itself, or of the innermost table round it that there is.
+        Parameters
+        ----------
+        keys : sequence of str
+            The key, and before it the tables that it is in.
+
+        Returns
+        -------
+        str
+            With the line of the key itself, or of the innermost table around it that there is.
         """
         line = next(
             (
                 line
                 for depth in range(len(keys), 0, -1)
-                for line, tables in self._growing
+                for line, tables in self._statements
                 if _holds(tables, keys[:depth])
             ),
             None,
@@ -67,24 +115,52 @@ class TomlFile:
         return f"{self.path}{'' if line is None else f', line {line}'}: {'.'.join(keys)}"
 
     @cached_property
-    def _growing(self) -> list[tuple[int, dict[str, Any]]]:
-        """What the file says up to the end of each of its statements, and the statement's line.
+    def _statements(self) -> list[tuple[int, dict[str, Any]]]:
+        """The line of each statement, and what the statement says by itself.
 
-        A file cut off between two statements is valid TOML, so the parser itself finds them.
+        The file is valid, so every statement is too, and the parser reads it. Those of a table are
+        nested into it.
         """
-        lines = self.text.splitlines(keepends=True)
-        found, start = [], 0
-        for end in range(1, len(lines) + 1):
-            if start == end - 1 and lines[start].strip()[:1] in ("", "#"):
-                start = end
-                continue
-            try:
-                tables = tomllib.loads("".join(lines[:end]))
-            except tomllib.TOMLDecodeError:
-                continue
-            found.append((start + 1, tables))
-            start = end
+        found = []
+        header: list[str] = []
+        for line, text in _split(self.text):
+            said = tomllib.loads(text)
+            if text.lstrip().startswith("["):
+                header = list(_only_path(said))
+            else:
+                for key in reversed(header):
+                    said = {key: said}
+            found.append((line, said))
         return found
+
+
+def _split(text: str) -> Iterator[tuple[int, str]]:
+    """The statements of a valid TOML text, each with its line; blank ones and comments are none."""
+    depth, start, line, begun = 0, 0, 1, 1
+    for token in _TOKEN.finditer(text):
+        found = token[0]
+        if found in "[{":
+            depth += 1
+        elif found in "]}":
+            depth -= 1
+        line += found.count("\n")
+        if found == "\n" and depth == 0:
+            if text[start : token.start()].strip()[:1] not in ("", "#"):
+                yield begun, text[start : token.start()]
+            start, begun = token.end(), line
+    if text[start:].strip()[:1] not in ("", "#"):
+        yield begun, text[start:]
+
+
+def _only_path(tables: Any) -> Iterator[str]:  # noqa: ANN401  # whatever a header holds
+    """The keys of a table's header, the outermost first."""
+    while tables:
+        if isinstance(tables, list):
+            tables = tables[0]
+            continue
+        (key,) = tables
+        yield key
+        tables = tables[key]
 
 
 def _holds(tables: object, keys: Sequence[str]) -> bool:
@@ -93,3 +169,26 @@ def _holds(tables: object, keys: Sequence[str]) -> bool:
             return False
         tables = tables[key]
     return True
+
+
+def _check_extent(tables: dict[str, Any], what: str, path: Path) -> None:
+    """Refuse tables that nobody wrote by hand; whoever walks through them later may recurse."""
+    level: list[Any] = [tables]
+    for _ in range(_DEEPEST):
+        for table in level:
+            if isinstance(table, dict) and len(table) > _LONGEST:
+                raise InputError(
+                    f"{what} {path}",
+                    f"with a table of {len(table)} keys",
+                    f"at most {_LONGEST} keys a table",
+                    "is it the right file?",
+                )
+        level = [
+            inner
+            for table in level
+            for inner in (table.values() if isinstance(table, dict) else table)
+            if isinstance(inner, dict | list)
+        ]
+        if not level:
+            return
+    raise InputError(what, path, f"at most {_DEEPEST} levels deep", "take brackets away")

@@ -1,30 +1,93 @@
-"""Quantities with units, as files and commands give them; SI inside."""
+"""Quantities with units, as files and commands give them; SI inside.
 
+A quantity is a number and a unit, nothing to be evaluated: ``"9**9**9 m"`` is refused.
+"""
+
+import math
+import re
 from functools import cache
+from typing import TYPE_CHECKING
 
-import pint
+from analytic.problem.errors import InputError
 
-from analytic import InputError
+if TYPE_CHECKING:
+    import pint
 
 DIMENSIONS = {"foot_x": "m", "force_x": "N", "force_y": "N", "moment_z": "N m"}
 
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
+_LONGEST = 60  # characters of a unit
+# Names, products, quotients, parentheses, and powers of at most two digits, not raised again.
+_UNIT = re.compile(
+    r"(?:[^\W\d]\w*|[²³]|[()·*/ ]|(?:\^|\*\*) ?-?\d{1,2}(?!\d| ?\^| ?\*\*)|(?<![\d.])1(?= ?/))+"
+)
+
 
 @cache
-def _registry() -> pint.UnitRegistry[float]:
+def _registry() -> "pint.UnitRegistry[float]":
+    import pint  # takes half a second to load, and most files have no units
+
     return pint.UnitRegistry()
 
 
 def in_si(text: str, dimension: str) -> float:
-    """The number of SI units in `text`, as ``in_si("50 mm", "m")``.
+    """The number of SI units in a quantity, as ``in_si("50 mm", "m")``.
+
+    Parameters
+    ----------
+    text : str
+        A number and a unit.
+    dimension : str
+        An SI unit of the dimension that it must have.
+
+    Returns
+    -------
+    float
+        Finite.
 
     Raises
     ------
     InputError
-        If the unit is unknown or of another dimension.
+        If it is anything else, or the unit is unknown or of another dimension.
     """
+    parts = _NUMBER.fullmatch(text[:200])
+    number = float(parts[1]) * unit_in_si(parts[2], dimension) if parts else math.nan
+    if not math.isfinite(number):
+        raise _refused(text, f"a finite number with a unit of {dimension}")
+    return number
+
+
+def unit_in_si(unit: str, dimension: str) -> float:
+    """How many SI units a unit is, as ``unit_in_si("mN mm", "N m")``.
+
+    Parameters
+    ----------
+    unit : str
+        Names with products, quotients, parentheses and powers.
+    dimension : str
+        An SI unit of the dimension that it must have.
+
+    Returns
+    -------
+    float
+        Positive.
+
+    Raises
+    ------
+    InputError
+        If it is unknown or of another dimension.
+    """
+    unit = unit.strip()
+    balanced = unit.count("(") == unit.count(")")
+    if not (balanced and len(unit) <= _LONGEST and _UNIT.fullmatch(unit)):
+        raise _refused(unit, f"a unit of {dimension}")
     try:
-        return float(_registry().Quantity(text).to(dimension).magnitude)
-    except (pint.PintError, TypeError, ValueError, AttributeError) as error:
-        raise InputError(
-            "quantity", repr(text), f"a number with a unit of {dimension}", "check the unit"
-        ) from error
+        found = _registry().Quantity(1.0, _registry().parse_units(unit)).to(dimension)
+    except Exception as error:  # pint has no common base of what a malformed unit raises
+        raise _refused(unit, f"a unit of {dimension}") from error
+    return found.magnitude
+
+
+def _refused(text: str, allowed: str) -> InputError:
+    shown = repr(text if len(text) <= _LONGEST else f"{text[:_LONGEST]}...")
+    return InputError("quantity", shown, allowed, "check the unit, as in '50 mm'")

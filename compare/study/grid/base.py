@@ -7,10 +7,12 @@ from typing import Any
 from pydantic import ValidationError
 
 from analytic import NAMED_PROFILES, InputError
-from compare.read.case import CaseFile, validate
+from compare.read.case import validate
+from compare.read.complaints import complaint
+from compare.read.tables import CaseFile
 from compare.read.toml import TomlFile
 from compare.study.grid.axes import Value
-from compare.study.grid.schema import CASE_TABLES, StudyFile, complaint
+from compare.study.grid.schema import CASE_TABLES, StudyFile
 from compare.study.grid.sensor import SensorNoise
 from compare.study.grid.study import BEAM, MESH, flatten
 
@@ -95,7 +97,7 @@ class Base:
             try:
                 noise = SensorNoise.model_validate(self._noise.model_dump() | {key: value})
             except ValidationError as error:
-                raise complaint(error, self._file.place, place) from error
+                raise complaint(error, SensorNoise, self._file.place, place[:-1]) from error
             return noise.model_dump()[key]
         where = self._file.place(place)
         changed = {**self._tables, table: {**self._tables.get(table, {}), key: value}}

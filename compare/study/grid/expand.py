@@ -8,10 +8,11 @@ import numpy as np
 from pydantic import ValidationError
 
 from analytic import InputError
+from compare.read.complaints import complaint
 from compare.read.toml import TomlFile
 from compare.study.grid.axes import Axis, Interval, Range, Value
 from compare.study.grid.base import Base
-from compare.study.grid.schema import StudyFile, complaint
+from compare.study.grid.schema import StudyFile
 
 _LONGEST_LIST = 10_000  # each value of a list is tried on the base case, at some milliseconds
 _RANGE_KEYS = frozenset(Range.model_json_schema()["properties"])
@@ -96,7 +97,7 @@ class _AxisReader:
         try:
             return Range.model_validate(value)
         except ValidationError as error:
-            raise complaint(error, self._file.place, _place(key)) from error
+            raise complaint(error, Range, self._file.place, _place(key)) from error
 
     def interval(self, key: str, span: Range) -> Interval:
         """A range between two numbers."""

@@ -7,10 +7,11 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from analytic import InputError
+from compare.read.complaints import complaint
 from compare.read.toml import TomlFile
 from compare.study.grid.base import Base
 from compare.study.grid.expand import expand
-from compare.study.grid.schema import StudyFile, complaint
+from compare.study.grid.schema import StudyFile
 from compare.study.grid.study import BEAM, RECORDS, Study
 
 
@@ -60,7 +61,7 @@ def _checked(file: TomlFile) -> Study:
     try:
         content = StudyFile.model_validate(tables)
     except ValidationError as error:
-        raise complaint(error, file.place) from error
+        raise complaint(error, StudyFile, file.place) from error
     base = Base(file, content)
     table = content.study
     beams = [base.values[BEAM]] if table.beams is None else table.beams

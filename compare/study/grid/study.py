@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
-from compare.read.case import CaseFile, validate
+from compare.read.case import validate
+from compare.read.tables import CaseFile
 from compare.study.grid.axes import Axis
 from compare.study.grid.sensor import SensorNoise
 

@@ -1,0 +1,267 @@
+"""The tables of a case file: what each of them may hold, and what is built from it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal, get_args
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic_core import PydanticCustomError
+
+from analytic import (
+    Beam,
+    Case,
+    Contour,
+    Direction,
+    InputError,
+    Sweep,
+    catenary,
+    circle,
+    ellipse,
+    parabola,
+    polygon,
+    through_points,
+    two_circles,
+)
+from compare.read.complaints import plain_name
+from compare.read.units import in_si
+from mujoco_models.settings import Settings
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """A validator: a number, or a text with a unit of `unit`, which becomes SI."""
+
+    unit: str
+
+    def __call__(self, value: object) -> float:
+        """The number."""
+        try:
+            if isinstance(value, int | float) and not isinstance(value, bool):
+                return float(value)
+            if isinstance(value, str):
+                return in_si(value, self.unit)
+        except (InputError, OverflowError):
+            pass
+        raise PydanticCustomError(
+            "quantity", "a number, or a text with a unit, as '50 {unit}'", {"unit": self.unit}
+        )
+
+
+_LENGTH = Dimension("m")
+Length = Annotated[float, BeforeValidator(_LENGTH)]
+PerLength = Annotated[float, BeforeValidator(Dimension("1/m"))]
+Rigidity = Annotated[float, BeforeValidator(Dimension("N m^2"))]
+Point = Annotated[tuple[Length, Length], Field(strict=False)]
+Points = list[Point]
+FileName = Annotated[str, AfterValidator(plain_name)]
+
+
+class Table(BaseModel):
+    """A table without unknown keys, whose numbers are numbers: no text, no boolean."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    @classmethod
+    def quantities(cls) -> set[str]:
+        """Keys that may have a unit."""
+        return {
+            name
+            for name, field in cls.model_fields.items()
+            if _has_dimension([*field.metadata, field.annotation])
+        }
+
+
+class BeamTable(Table):
+    """The vibrissa."""
+
+    length: Length = 1.0
+    flexural_rigidity: Rigidity = 1.0
+    radius: Length | None = None
+
+    def build(self) -> Beam:
+        """The vibrissa; its radius is by default the same share of its length as in `Beam()`."""
+        radius = Beam().radius * self.length if self.radius is None else self.radius
+        return Beam(self.length, self.flexural_rigidity, radius)
+
+
+class ProfileTable(Table):
+    """The object: a kind of contour, and the numbers that `factory` makes it from."""
+
+    factory: ClassVar[Callable[..., Contour]]
+    scale: Length = Field(default=1.0, gt=0)
+
+    def build(self, folder: Path) -> Contour:  # files are in it, if there are any
+        """The contour; a file's path is relative to `folder`."""
+        numbers = self.model_dump(exclude={"kind", "scale"})
+        return type(self).factory(**numbers).scaled(self.scale)
+
+
+class CatenaryTable(ProfileTable):
+    """See `analytic.catenary`."""
+
+    factory = staticmethod(catenary)
+    kind: Literal["catenary"]
+    a: PerLength
+    c: Length
+
+
+class ParabolaTable(ProfileTable):
+    """See `analytic.parabola`."""
+
+    factory = staticmethod(parabola)
+    kind: Literal["parabola"]
+    a: PerLength
+    c: Length
+
+
+class CircleTable(ProfileTable):
+    """See `analytic.circle`."""
+
+    factory = staticmethod(circle)
+    kind: Literal["circle"]
+    radius: Length
+    lowest: Point
+
+
+class EllipseTable(ProfileTable):
+    """See `analytic.ellipse`."""
+
+    factory = staticmethod(ellipse)
+    kind: Literal["ellipse"]
+    semi_axes: Point
+    lowest: Point
+
+
+class TwoCirclesTable(ProfileTable):
+    """See `analytic.two_circles`."""
+
+    factory = staticmethod(two_circles)
+    kind: Literal["two-circles"]
+    right_radius: Length = 2.0
+    left_radius: Length = 0.5
+    lowest: Point = (0.0, 0.5)
+
+
+class PolygonTable(ProfileTable):
+    """See `analytic.polygon`."""
+
+    factory = staticmethod(polygon)
+    kind: Literal["polygon"]
+    points: Points
+
+
+class PointsTable(ProfileTable):
+    """See `analytic.through_points`."""
+
+    factory = staticmethod(through_points)
+    kind: Literal["points"]
+    points: Points
+
+
+class MeshTable(ProfileTable):
+    """See `analytic.mesh_section`."""
+
+    kind: Literal["mesh"]
+    file: str
+    offset: Point = (0.0, 0.0)
+    height: float = 0.0
+    axes: str = "xy"
+
+    def build(self, folder: Path) -> Contour:
+        """The section of the mesh."""
+        from analytic import mesh_section  # slow to load, and few cases have a mesh
+
+        numbers = self.model_dump(exclude={"kind", "file"})
+        return mesh_section(folder / self.file, **numbers)
+
+
+class SweepTable(Table):
+    """The positions of the foot."""
+
+    stations: int = Sweep().stations
+    start: Length | None = None
+    stop: Length | None = None
+    direction: Direction = Sweep().direction
+
+    def build(self) -> Sweep:
+        """The sweep."""
+        return Sweep(self.stations, self.start, self.stop, self.direction)
+
+
+class CaseFile(Table):
+    """What a case file holds; dimensions in one system of units, SI if units are given.
+
+    Parameters
+    ----------
+    name : str, optional
+        What files and reports call the case.
+    beam, profile, sweep : table
+        The physics.
+    mujoco : Settings
+        The numerics of the simulation.
+    tolerances : table
+        How far two sweeps of the case may disagree (`compare.read.limits`).
+    """
+
+    name: FileName | None = None
+    beam: BeamTable = BeamTable()
+    profile: Annotated[
+        CatenaryTable
+        | ParabolaTable
+        | CircleTable
+        | EllipseTable
+        | TwoCirclesTable
+        | PolygonTable
+        | PointsTable
+        | MeshTable,
+        Field(discriminator="kind"),
+    ]
+    sweep: SweepTable = SweepTable()
+    mujoco: Annotated[Settings, Field(default_factory=Settings)]
+    tolerances: dict[str, Any] = {}
+
+    def physics(self, folder: Path) -> tuple[Beam, Contour]:
+        """The vibrissa and the object, without a sweep.
+
+        Parameters
+        ----------
+        folder : Path
+            What the paths of files are relative to.
+
+        Returns
+        -------
+        Beam, Contour
+            In the units of the file, or SI.
+        """
+        return self.beam.build(), self.profile.build(folder)
+
+    def case(self, folder: Path, name: str) -> Case:
+        """The whole problem.
+
+        Parameters
+        ----------
+        folder : Path
+            What the paths of files are relative to.
+        name : str
+            What the case is called if the file does not say.
+
+        Returns
+        -------
+        Case
+            The problem.
+        """
+        return Case(*self.physics(folder), self.sweep.build(), self.name or name)
+
+
+class BeamFile(Table):
+    """A file of which only the vibrissa counts."""
+
+    beam: BeamTable
+
+
+def _has_dimension(parts: list[Any]) -> bool:
+    return any(
+        isinstance(getattr(part, "func", None), Dimension) or _has_dimension(list(get_args(part)))
+        for part in parts
+    )
