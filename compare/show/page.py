@@ -31,7 +31,7 @@ _THEMED = {
 _IMAGE_DPI = 180  # of what is too much to be drawn as lines
 _COLOUR = re.compile(r"#[0-9a-f]{6}\b")
 _IDENTIFIER = re.compile(r'(\bid="|href="#|url\(#)')
-_MARKDOWN = re.compile(r"[\\`*\[\]]|#(?!\d+;)|(?<!\w)_|_(?!\w)")
+_MARKDOWN = re.compile(r"[\\`*~$\[\]]|#(?!\d+;)|(?<!\w)_|_(?!\w)")
 
 
 def short(x: float | None) -> str:

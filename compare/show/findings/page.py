@@ -1,14 +1,17 @@
 """The page and its pictures."""
 
 import io
+import re
 from itertools import groupby
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
 import numpy as np
+from markupsafe import Markup
 from PIL import Image
 
-from analytic import CLAMP_READINGS, PHASES, Readings
+from analytic import CLAMP_READINGS, PHASES, InputError, Readings
 from analytic.problem.files import write_whole
 from compare.explain.budget import UNRESOLVED
 from compare.sense.accuracy import phase_table
@@ -17,13 +20,23 @@ from compare.show.findings.records import RunRecord, read_records
 from compare.show.findings.sentences import overview, sentences
 from compare.show.page import render
 
+_MARK = "<!-- Written by `vibrissa findings`"
+_PICTURE = re.compile(r"\]\((budget-[^()/\\\s]+\.png)\)$", re.MULTILINE)
 _COLOURS = 48  # that a picture keeps, which makes it a third as large
 
 
 def write_findings(folder: Path, out: Path) -> list[Path]:
     """Write ``README.md`` and its pictures into `out`, from the runs in the folders of `folder`.
 
-    Pictures in `out` of runs that are no longer there are removed.
+    What an earlier call has written there is replaced, its pictures of runs that are gone are
+    removed, and nothing else is touched.
+
+    Parameters
+    ----------
+    folder : Path
+        With the folders of runs in it.
+    out : Path
+        Made if it is not there.
 
     Returns
     -------
@@ -33,27 +46,47 @@ def write_findings(folder: Path, out: Path) -> list[Path]:
     Raises
     ------
     InputError
-        If there is no run, or what one has left cannot be read.
+        If there is no run, what one has left cannot be read, or `out` holds a page or a picture of
+        the same name that is somebody else's.
     """
+    own = _written_before(out)
     runs = read_records(folder)
-    judged = phase_table(_recorded(runs)).to_dict("records")
     pictures = {
-        f"budget-{run.folder.name}.png": _smaller(run.folder / "budget.png")
+        f"budget-{run.folder.name}.png": run.folder / "budget.png"
         for run in runs
         if run.budget is not None
     }
-    contents = {"README.md": page(runs, judged).encode(), **pictures}
+    for name in pictures:
+        if name not in own and (out / name).exists():
+            raise _of_another(out / name)
+    judged = phase_table(_recorded(runs)).to_dict("records")
+    contents = {
+        "README.md": page(runs, judged).encode(errors="replace"),
+        **{name: _smaller(file) for name, file in pictures.items()},
+    }
     out.mkdir(parents=True, exist_ok=True)
     for name, content in contents.items():
         write_whole(out / name, content)
-    for stale in out.glob("budget-*.png"):
-        if stale.name not in contents:
-            stale.unlink()
+    for name in own - set(contents):
+        (out / name).unlink(missing_ok=True)
     return [out / name for name in contents]
 
 
 def page(runs: list[RunRecord], judged: list[dict[Any, Any]]) -> str:
-    """The findings in Markdown."""
+    """The findings as a page.
+
+    Parameters
+    ----------
+    runs : list of RunRecord
+        In the order of the page.
+    judged : list of dict
+        Rows of `compare.sense.accuracy.phase_table`; without any the page has no such section.
+
+    Returns
+    -------
+    str
+        Markdown.
+    """
     return render(
         "compare.show",
         "findings.md.j2",
@@ -62,6 +95,7 @@ def page(runs: list[RunRecord], judged: list[dict[Any, Any]]) -> str:
         judged=judged,
         readings=CLAMP_READINGS,
         phases=PHASES,
+        mark=Markup(_MARK),
         worst=_worst_transition,
         unresolved=UNRESOLVED,
         overview=overview(runs),
@@ -69,13 +103,37 @@ def page(runs: list[RunRecord], judged: list[dict[Any, Any]]) -> str:
     )
 
 
+def _written_before(out: Path) -> set[str]:
+    """Names of the files in `out` that an earlier call has written: its page names its pictures."""
+    page = out / "README.md"
+    try:
+        text = page.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return set()
+    except (OSError, ValueError):
+        raise _of_another(page) from None
+    if not text.startswith(_MARK):
+        raise _of_another(page)
+    return {"README.md", *map(unquote, _PICTURE.findall(text))}
+
+
+def _of_another(file: Path) -> InputError:
+    return InputError(
+        "--out", file, "a folder without files of that name, or with earlier findings",
+        "move the file, or choose another folder with --out",
+    )  # fmt: skip
+
+
 def _recorded(runs: list[RunRecord]) -> dict[str, list[Readings]]:
     """By case, the readings of its first run that has left them."""
     found: dict[str, list[Readings]] = {}
     for run in runs:
-        file = run.folder / f"mujoco-{run.beam}.parquet"
-        if run.case not in found and file.exists():
-            found[run.case] = [Readings.read(file)]
+        name = f"mujoco-{run.beam}.parquet"
+        if run.case in found or name not in {file.name for file in run.folder.iterdir()}:
+            continue
+        readings = Readings.read(run.folder / name)
+        if "phase" in readings.table:
+            found[run.case] = [readings]
     return found
 
 
@@ -85,8 +143,16 @@ def _worst_transition(row: dict[str, Any]) -> float:
 
 
 def _smaller(picture: Path) -> bytes:
-    with Image.open(picture) as image:
-        few = image.convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE)
+    try:
+        with Image.open(picture) as image:
+            few = image.convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE)
+    except (OSError, ValueError, Image.DecompressionBombError) as error:
+        raise InputError(
+            f"picture {picture}",
+            "missing or damaged",
+            "as a run with --budget writes it",
+            "run it again, or remove its folder",
+        ) from error
     buffer = io.BytesIO()
     few.save(buffer, "PNG", optimize=True)
     return buffer.getvalue()

@@ -1,21 +1,34 @@
 """What was found, in words: every sentence follows from the numbers by a rule."""
 
+import math
 from collections.abc import Callable, Sequence
-from typing import Any
 
 from compare.explain.budget import UNRESOLVED
-from compare.show.findings.records import RunRecord
+from compare.show.findings.records import BudgetFile, RunRecord
 from compare.show.page import short
 
 
 def overview(runs: Sequence[RunRecord]) -> str:
-    """All runs in a paragraph."""
-    worst = max(runs, key=lambda run: run.rms[run.worst])
-    said = [
-        f"{_agreeing(runs, _case_and_beam)} The largest rms is "
-        f"{short(worst.rms[worst.worst])} of the largest magnitude "
+    """All runs in a paragraph.
+
+    Parameters
+    ----------
+    runs : sequence of RunRecord
+        At least one.
+
+    Returns
+    -------
+    str
+        Plain text.
+    """
+    worst = max(runs, key=lambda run: run.error)
+    largest = (
+        f"No station could be compared in {_case_and_beam(worst)}."
+        if math.isinf(worst.error)
+        else f"The largest rms is {short(worst.error)} of the largest magnitude "
         f"({worst.worst}, {_case_and_beam(worst)})."
-    ]
+    )
+    said = [f"{_agreeing(runs, _case_and_beam)} {largest}"]
     with_budget = [run for run in runs if run.budget is not None]
     if with_budget:
         said.append(_closure(with_budget, _case_and_beam))
@@ -24,7 +37,18 @@ def overview(runs: Sequence[RunRecord]) -> str:
 
 
 def sentences(runs: Sequence[RunRecord]) -> str:
-    """The runs of one case, in two to four sentences."""
+    """The runs of one case, in two to four sentences.
+
+    Parameters
+    ----------
+    runs : sequence of RunRecord
+        At least one.
+
+    Returns
+    -------
+    str
+        Plain text.
+    """
     said = [f"{_agreeing(runs, _beam)} {_ranking(runs)}"]
     with_budget = [run for run in runs if run.budget is not None]
     if with_budget:
@@ -48,8 +72,10 @@ def _agreeing(runs: Sequence[RunRecord], named: Callable[[RunRecord], str]) -> s
 
 
 def _ranking(runs: Sequence[RunRecord]) -> str:
-    ordered = sorted(runs, key=lambda run: run.rms[run.worst])
+    ordered = sorted(runs, key=lambda run: run.error)
     best, last = ordered[0], ordered[-1]
+    if math.isinf(best.error):
+        return "No station could be compared."
     size = f"{short(best.rms[best.worst])} rms in {best.worst}"
     if len(runs) == 1:
         return f"Its worst reading is off by {size}."
@@ -62,16 +88,16 @@ def _ranking(runs: Sequence[RunRecord]) -> str:
 def _blame(runs: Sequence[RunRecord]) -> str:
     parts: dict[str, list[RunRecord]] = {}
     for run in runs:
-        parts.setdefault(_budget(run)["blame"], []).append(run)
+        parts.setdefault(_budget(run).blame, []).append(run)
     shares = [
         f"{part} for {_list([f'the {run.beam}' for run in group])} "
         f"({_span([run.part(part) or 0.0 for run in group], short)}{_order(group, part)})"
         for part, group in parts.items()
     ]
     suspects = [
-        f"in the {run.beam} {first['name']} seems {100 * first['change']:+.2f} % off"
+        f"in the {run.beam} {first.name} seems {100 * first.change:+.2f} % off"
         for run in runs
-        for first in _budget(run)["suspects"][:1]
+        for first in _budget(run).suspects[:1]
     ]
     doubt = f"; {_list(suspects)}" if suspects else ""
     return f"The largest part of the disagreement is {_list(shares)}{doubt}."
@@ -80,12 +106,12 @@ def _blame(runs: Sequence[RunRecord]) -> str:
 def _order(runs: Sequence[RunRecord], part: str) -> str:
     if part != "discretisation":
         return ""
-    return f", of observed order {_span([_budget(run)['order'] for run in runs], '{:.2f}'.format)}"
+    return f", of observed order {_span([_budget(run).order for run in runs], '{:.2f}'.format)}"
 
 
 def _closure(runs: Sequence[RunRecord], named: Callable[[RunRecord], str]) -> str:
     rest = short(max(run.part("unexplained") or 0.0 for run in runs))
-    still_open = [run for run in runs if not _budget(run)["closes"]]
+    still_open = [run for run in runs if not _budget(run).closes]
     if not still_open:
         subject = "The budget closes" if len(runs) == 1 else "Every budget closes"
         return f"{subject}: at most {rest} is unexplained."
@@ -117,7 +143,7 @@ def _events(runs: Sequence[RunRecord]) -> str:
     return f"{said}, and the clamp readings give the right phase of {share}."
 
 
-def _budget(run: RunRecord) -> dict[str, Any]:
+def _budget(run: RunRecord) -> BudgetFile:
     assert run.budget is not None
     return run.budget
 

@@ -1,16 +1,19 @@
 """The findings' page: planted numbers, and the sentences that they must lead to."""
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
 
 from analytic import CASE_NAMES, InputError
+from analytic.problem.files import write_whole
 from compare import compare
 from compare.show.findings import write_findings
-from compare.show.findings.records import RunRecord, read_records
+from compare.show.findings.records import BudgetFile, ComparisonFile, RunRecord, read_records
 from compare.show.findings.sentences import overview, sentences
-from compare.show.report import write_report
+from compare.show.page import document
+from compare.show.report import budget_files
 from tests.compare.planted import planted
 from tests.conftest import exact_sweep, simulated_sweep
 
@@ -18,7 +21,7 @@ from tests.conftest import exact_sweep, simulated_sweep
 def run(
     case="catenary", beam="chain", rms=1e-3, snap_off=1e-4, right=1.0, budget=None
 ) -> RunRecord:
-    """A run of which only what the page tells is known; force_y is its worst reading."""
+    """A run of which only what the page shows is known; force_y is its worst reading."""
     agrees = rms <= 2e-3
     comparison = {
         "verdict": "agrees" if agrees else "disagrees",
@@ -36,7 +39,11 @@ def run(
             "provenance": {"case": case, "settings": {"beam": beam, "segments": 40}},
         },
     }
-    return RunRecord(Path(f"{case}-{beam}"), comparison, budget and budget.to_dict())
+    return RunRecord(
+        Path(f"{case}-{beam}"),
+        ComparisonFile.model_validate(comparison),
+        budget and BudgetFile.model_validate(budget.to_dict()),
+    )
 
 
 @pytest.mark.parametrize(
@@ -75,9 +82,9 @@ def test_sentences(runs, said):
 
 
 def test_nothing_is_said_of_a_budget_that_there_is_not():
-    told = sentences([run()]) + overview([run()])
-    assert "budget" not in told
-    assert "unexplained" not in told
+    text = sentences([run()]) + overview([run()])
+    assert "budget" not in text
+    assert "unexplained" not in text
 
 
 def test_overview():
@@ -95,49 +102,122 @@ def test_overview():
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory) -> Path:
-    """Two runs as ``run`` leaves them, one with a budget."""
+    """Two runs as `write_report` leaves them, one with a budget."""
     made = tmp_path_factory.mktemp("runs")
     for case, budget in (("parabola", planted()), ("catenary", None)):
         exact, simulated = exact_sweep(case), simulated_sweep(case)
-        write_report(compare(exact, simulated), made / f"{case}-chain", budget)
-        simulated.write(made / f"{case}-chain" / "mujoco-chain.parquet")
+        run = made / f"{case}-chain"
+        run.mkdir()
+        contents = {"comparison.json": document(compare(exact, simulated).to_dict())}
+        if budget is not None:
+            contents |= budget_files(budget)
+        for name, content in contents.items():
+            write_whole(run / name, content)
+        if budget is None:
+            simulated.write(run / "mujoco-chain.parquet")
     (made / "a-study").mkdir()
     return made
 
 
+@pytest.fixture
+def runs(folder, tmp_path) -> Path:
+    """A copy that a test may spoil; without sweeps, so that the page is made fast."""
+    shutil.copytree(folder, tmp_path / "runs", ignore=shutil.ignore_patterns("*.parquet"))
+    return tmp_path / "runs"
+
+
 def test_page(folder, tmp_path):
-    (tmp_path / "budget-of-old.png").write_bytes(b"")
     written = write_findings(folder, tmp_path)
     assert [path.name for path in written] == ["README.md", "budget-parabola-chain.png"]
     assert {path.name for path in tmp_path.iterdir()} == {path.name for path in written}
     assert written[1].stat().st_size < 40_000  # fifteen of them stay below 1 MB
-    told = written[0].read_text(encoding="utf-8")
-    rows = [line for line in told.splitlines() if line.startswith("| catenary | chain")]
+    text = written[0].read_text(encoding="utf-8")
+    rows = [line for line in text.splitlines() if line.startswith("| catenary | chain")]
     rms = read_records(folder)[0].rms
     assert f"| 40 | {rms['force_x']:.1e}".replace("e-0", "e-") in rows[0]
     assert "not measured" in rows[0]
-    assert told.index("## catenary") < told.index("## parabola")
-    assert "](budget-parabola-chain.png)" in told
-    tables = [line.count("|") for line in told.splitlines() if line.startswith("|")]
+    assert text.index("## catenary") < text.index("## parabola")
+    assert "](budget-parabola-chain.png)" in text
+    tables = [line.count("|") for line in text.splitlines() if line.startswith("|")]
     assert set(tables) == {12, 9}  # every row has all its cells
 
 
-def test_names_are_no_markup(tmp_path):
-    name = "a|b <i>*c*</i>"
+def test_it_replaces_and_removes_only_what_it_has_written(runs, tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "budget-of-mine.png").write_bytes(b"mine")
+    write_findings(runs, out)
+    assert (out / "budget-parabola-chain.png").exists()
+    (runs / "parabola-chain").rename(runs / "odd (name) ü")
+    assert {path.name for path in write_findings(runs, out)} == {
+        "README.md", "budget-odd (name) ü.png"
+    }  # fmt: skip
+    assert not (out / "budget-parabola-chain.png").exists()
+    (runs / "odd (name) ü" / "budget.json").unlink()
+    write_findings(runs, out)
+    assert {path.name for path in out.iterdir()} == {"README.md", "budget-of-mine.png"}
+    assert (out / "budget-of-mine.png").read_bytes() == b"mine"
+
+
+@pytest.mark.parametrize("name", ["README.md", "budget-parabola-chain.png"])
+@pytest.mark.parametrize("content", [b"# My own\n", b"\xff\xfe"])
+def test_files_of_others_stay(runs, tmp_path, name, content):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(InputError, match=rf"--out = .*{name}.*: must be a folder without"):
+        write_findings(runs, tmp_path)
+    assert (tmp_path / name).read_bytes() == content
+    assert {path.name for path in tmp_path.iterdir()} == {name, "runs"}
+
+
+def test_names_settings_and_blame_are_no_markup(tmp_path):
+    nasty = "a|b <script>alert(1)</script>\n# *c* $x$"
+    plain = r"a&#124;b &#60;script&#62;alert(1)&#60;/script&#62; \# \*c\* \$x\$"
+    record = run(case=nasty, budget=planted())
+    comparison = record.comparison.model_dump()
+    comparison["candidate"]["provenance"]["settings"] = {"segments": nasty, "beam": nasty}
     (tmp_path / "odd").mkdir()
-    (tmp_path / "odd" / "comparison.json").write_text(json.dumps(run(case=name).comparison))
-    told = write_findings(tmp_path, tmp_path)[0].read_text(encoding="utf-8")
-    assert "| a&#124;b &#60;i&#62;\\*c\\*&#60;/i&#62; | chain |" in told
+    (tmp_path / "odd" / "comparison.json").write_text(json.dumps(comparison))
+    budget = planted().to_dict() | {"blame": nasty}
+    (tmp_path / "odd" / "budget.json").write_text(json.dumps(budget))
+    (tmp_path / "odd" / "budget.png").write_bytes(budget_files(planted())["budget.png"])
+    text = write_findings(tmp_path, tmp_path)[0].read_text(encoding="utf-8")
+    assert f"| {plain} | {plain} | {plain} |" in text
+    assert "script>" not in text
 
 
-def test_nothing_to_tell_of(tmp_path):
+def test_nothing_to_report(tmp_path):
     with pytest.raises(InputError, match="a folder with runs in it"):
         write_findings(tmp_path, tmp_path)
-    (tmp_path / "cut").mkdir()
-    (tmp_path / "cut" / "comparison.json").write_text('{"verdict": ')
-    with pytest.raises(InputError, match="JSON that a run has written"):
-        write_findings(tmp_path, tmp_path)
-    assert not (tmp_path / "README.md").exists()
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("file", "content"),
+    [
+        ("comparison.json", '{"verdict": '),
+        ("comparison.json", "{}"),
+        ("comparison.json", "[1]"),
+        ("comparison.json", "[" * 100_000),
+        ("comparison.json", '{"verdict": "agrees", "disagreement": {"force_x": 1}}'),
+        ("budget.json", '{"blame": 1}'),
+        ("budget.png", "no picture"),
+    ],
+)
+def test_damaged_runs_are_named(runs, tmp_path, file, content):
+    (runs / "parabola-chain" / file).write_text(content)
+    with pytest.raises(InputError, match=f"parabola-chain/{file}.*a run") as caught:
+        write_findings(runs, tmp_path / "out")
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 400
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_run_of_which_nothing_could_be_compared():
+    never = run(snap_off=None, right=None)
+    for reading in ("force_x", "force_y", "moment_z"):
+        getattr(never.comparison.disagreement, reading).rms = None
+    assert "No station could be compared." in sentences([never])
+    assert "catenary, chain" in overview([run(), never])
 
 
 def test_all_named_cases_are_made():
