@@ -1,0 +1,31 @@
+"""The pages as a site: `make docs`."""
+
+import re
+import subprocess
+import sys
+
+import pytest
+
+from tests.documentation.blocks import ROOT
+
+ASSET = re.compile(r"<(?:script|img|link|iframe)\b[^>]*?(?:src|href)=\"?(https?:[^\"\s>]+)")
+
+
+@pytest.mark.slow
+def test_the_site_is_whole_and_needs_no_net(tmp_path):
+    """No link is broken, every public name is described, and nothing is loaded from elsewhere."""
+    pytest.importorskip("mkdocs")
+    done = subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "-d", tmp_path / "site"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    pages = list((tmp_path / "site").rglob("*.html"))
+    assert {"index.html", "analytic.html", "compare.html"} <= {page.name for page in pages}
+    outside = {url for page in pages for url in ASSET.findall(page.read_text(encoding="utf-8"))}
+    assert not outside
+    reference = (tmp_path / "site" / "api" / "analytic.html").read_text(encoding="utf-8")
+    assert 'id="analytic.solver.sweep.solve_sweep"' in reference
