@@ -15,7 +15,8 @@ RUNS := $(foreach case,$(CASES),$(foreach beam,$(BEAMS),results/runs/$(case)-$(b
 FOUND = --budget --beam $(BEAM) --out $(@D) $(ARGS) || test $$? -eq 1; test -f $@
 
 .NOTPARALLEL:
-.PHONY: help install run test test-all lint bench results again studies install-mujoco3 test-mujoco3 versions clean
+.PHONY: help install run test test-slow test-all coverage lint docs wheel bench results again studies \
+  install-mujoco3 test-mujoco3 versions clean
 
 help:            ## list the targets
 	@grep -E '^[a-z0-9-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -28,14 +29,26 @@ run: install     ## sweep CASE in both models and write results/CASE/report.html
 test: install    ## the fast tests, under two minutes
 	$(BIN)/python -m pytest -n auto $(ARGS)
 
+test-slow: install   ## the slow tests alone
+	$(BIN)/python -m pytest -n auto -m slow $(ARGS)
+
 test-all: install    ## all tests, the slow ones too
 	$(BIN)/python -m pytest -n auto -m "slow or not slow" $(ARGS)
+
+coverage: install    ## how much of the code the fast tests run; ARGS='-m "slow or not slow"' for all tests
+	$(BIN)/python -m pytest -n auto --cov --cov-report=term --cov-report=html $(ARGS)
 
 lint: install    ## format, style, types, import rules
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+docs: install    ## the pages and an API reference -> site/index.html
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
+
+wheel: install   ## dist/*.whl
+	$(BIN)/python -m build --wheel --no-isolation
 
 bench: install   ## speed, side by side on one core; ARGS="analytic mujoco stepping exudyn study"
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench $(ARGS)
@@ -69,7 +82,8 @@ versions: install install-mujoco3    ## the beams of both MuJoCo versions and th
 	  $(foreach sweep,3.17/mujoco-chain 3.17/mujoco-cable 4/mujoco-chain 4/mujoco-rod,results/versions/$(sweep).parquet)
 
 clean:           ## remove what the targets above made
-	rm -rf .venv .venv-mujoco3 .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv .venv-mujoco3 .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf site htmlcov .coverage* dist results/*/
 
 results/runs/%-chain/report.html: BEAM = chain
 results/runs/%-chain/report.html: | install
@@ -85,7 +99,7 @@ results/runs/%-cable/report.html: | install-mujoco3
 
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,dask]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,dask,docs]'
 	touch $@
 
 .venv-mujoco3/installed: pyproject.toml
