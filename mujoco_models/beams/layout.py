@@ -39,21 +39,22 @@ class Layout:
 
     @classmethod
     def of(cls, joints: Floats, cells: Floats, spacing: float) -> "Layout":
-        """Beads at most `spacing` apart, and at least two to a link.
+        """Beads at most `spacing` apart, and at least two to a link, or one at each link's end.
 
         Parameters
         ----------
         joints, cells : array, shape (n_joints,)
             As in the attributes [L].
         spacing : float
-            Of the beads [L].
+            Of the beads [L]; infinite for one a link.
 
         Returns
         -------
         Layout
         """
         lengths = np.diff(joints, append=1.0)
-        counts = np.maximum(2, np.ceil(lengths / spacing - 1e-9).astype(int))
+        fewest = 1 if spacing == np.inf else 2
+        counts = np.maximum(fewest, np.ceil(lengths / spacing - 1e-9).astype(int))
         beads = [
             start + length * np.arange(1, count + 1) / count
             for start, length, count in zip(joints, lengths, counts, strict=True)

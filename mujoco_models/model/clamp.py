@@ -5,7 +5,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.problem.arrays import Booleans, Floats
 
 
 class Clamp(NamedTuple):
@@ -36,9 +36,7 @@ def by_sensors(data: mujoco.MjData) -> Clamp:
     return Clamp(float(fx), float(fy), float(mz))
 
 
-def by_contacts(
-    model: mujoco.MjModel, data: mujoco.MjData, foot: Floats, bead_of: Integers
-) -> Clamp:
+def by_contacts(model: mujoco.MjModel, data: mujoco.MjData, foot: Floats, moves: Booleans) -> Clamp:
     """The wrench at the foot that holds all contact forces.
 
     Parameters
@@ -47,8 +45,8 @@ def by_contacts(
         An evaluated configuration.
     foot : array, shape (2,)
         Position of the foot [L].
-    bead_of : array of int, shape (ngeom,)
-        The bead that each geom is, or -1.
+    moves : array of bool, shape (ngeom,)
+        Whether each geom is one of the beam's.
 
     Returns
     -------
@@ -61,7 +59,7 @@ def by_contacts(
         mujoco.mj_contactForce(model, data, i, wrench)
         contact = data.contact[i]
         force = wrench[:3] @ contact.frame.reshape(3, 3)
-        force *= 1.0 if bead_of[contact.geom[1]] >= 0 else -1.0
+        force *= 1.0 if moves[contact.geom[1]] else -1.0
         arm = contact.pos[:2] - foot
         held += [force[0], force[1], arm[0] * force[1] - arm[1] * force[0]]
     return Clamp(*(-held).tolist())

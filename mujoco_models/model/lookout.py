@@ -159,7 +159,7 @@ class Lookout:
         float or None
             The place along the contour, see `Obstacle.place`; None if there is no such bead.
         """
-        unloaded = np.setdiff1d(sorted(self.watched), contacts.bead[contacts.loaded])
+        unloaded = np.setdiff1d(sorted(self.watched), contacts.touch[contacts.loaded])
         positions = self._positions()[unloaded]
         inside = self._radius - _OVERLOOKED
         for suspect in self._obstacle.near(positions, inside):
@@ -167,6 +167,22 @@ class Lookout:
             if clearance < inside:
                 return place
         return None
+
+    def is_crossed(self, joints: Floats) -> bool:
+        """Whether a link cuts through an obstacle with corners.
+
+        Parameters
+        ----------
+        joints : array, shape (n_joints, 2)
+            Where the links begin [L].
+
+        Returns
+        -------
+        bool
+        """
+        if len(self._obstacle.corners) == 0:
+            return False
+        return self._obstacle.is_cut(np.vstack([joints, self._positions()[-1]]))
 
     def _positions(self) -> Floats:
         """Shape (n_beads, 2) [L]."""

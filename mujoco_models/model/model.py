@@ -7,7 +7,7 @@ from analytic.problem.arrays import Floats, Integers
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.errors import DivergedError
 from mujoco_models.model import clamp
-from mujoco_models.model.contacts import Contacts
+from mujoco_models.model.contacts import Contacts, Surface
 from mujoco_models.model.lookout import Lookout
 from mujoco_models.model.spec import assemble
 from mujoco_models.obstacles.protocol import Obstacle
@@ -63,24 +63,25 @@ class BeamModel:
         self.data = mujoco.MjData(self.model)
         model = self.model
         self._foot = model.body(FOOT).id
-        self.beads: Integers = np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_SPHERE)
-        self._bead_of = np.full(model.ngeom, -1)
-        self._bead_of[self.beads] = np.arange(len(self.beads))
+        outward = obstacle.corners.outward
+        self._surface = Surface.of(model, len(self.layout.joints), outward, radius)
+        self.beads: Integers = self._surface.beads
         # One of those at each of the beam's joints: a universal joint has two of MuJoCo's.
         self._joints = np.unique(model.jnt_bodyid, return_index=True)[1]
         self._set_contact_stiffness()
         self.lookout = Lookout(model, self.data, self.beads, obstacle, radius)
 
     def _set_contact_stiffness(self) -> None:
-        """The same stiffness at every bead, whatever the time step.
+        """The same stiffness at every contact, whatever the time step.
 
         At rest MuJoCo's contact force is -k/((1 - d) A) times the distance, with solref = (-k, -b),
         impedance d and A the body's `invweight0`: solved here for k.
         """
-        weight = self.model.body_invweight0[self.model.geom_bodyid[self.beads], 0]
+        geoms = np.concatenate([self._surface.beads, self._surface.sides])
+        weight = self.model.body_invweight0[self.model.geom_bodyid[geoms], 0]
         k = self.contact_stiffness * (1 - _IMPEDANCE) * weight
-        self.model.geom_solref[self.beads] = np.column_stack([-k, -2 * np.sqrt(k)])
-        self.model.geom_solimp[self.beads] = [_IMPEDANCE, _IMPEDANCE, 1e-3, 0.5, 2]
+        self.model.geom_solref[geoms] = np.column_stack([-k, -2 * np.sqrt(k)])
+        self.model.geom_solimp[geoms] = [_IMPEDANCE, _IMPEDANCE, 1e-3, 0.5, 2]
 
     def imbalance(self, foot_x: float, angles: Floats) -> Floats:
         """Moment out of balance at each joint, at rest.
@@ -204,7 +205,7 @@ class BeamModel:
         Contacts
             Loaded, or within the gap.
         """
-        return Contacts.of(self.data, self._bead_of)
+        return Contacts.of(self.data, self._surface, self.layout, self.joint_positions())
 
     def contact_curvature(self, slope: Floats) -> Floats:
         """Curvature of the contour that the beads' centres feel.
@@ -233,9 +234,9 @@ class BeamModel:
         contacts = self.contacts()
         loaded = np.minimum(contacts.distance, 0)
         rise, jacobian = np.zeros(self.model.nv), np.zeros((3, self.model.nv))
-        for bead, weight in zip(contacts.bead, loaded / loaded.sum(), strict=True):
-            geom = self.beads[bead]
-            body, place = self.model.geom_bodyid[geom], self.data.geom_xpos[geom]
+        bodies = self.model.geom_bodyid[self.data.contact.geom].max(axis=1)
+        for point, body, weight in zip(contacts.point, bodies, loaded / loaded.sum(), strict=True):
+            place = np.append(point, 0.0)
             mujoco.mj_jac(self.model, self.data, jacobian, None, place, body)
             rise += weight * jacobian[2]
         return rise
@@ -306,6 +307,6 @@ class BeamModel:
             The worst of all [EI/L^2, EI/L].
         """
         foot = self.data.xpos[self._foot, :2]
-        by_contacts = clamp.by_contacts(self.model, self.data, foot, self._bead_of)
+        by_contacts = clamp.by_contacts(self.model, self.data, foot, self._surface.moves)
         moment = float(self.elastic_moments()[0])
         return clamp.discrepancy(self.clamp(), by_contacts, float(self.layout.joints[0]), moment)

@@ -3,6 +3,8 @@
 import mujoco
 
 from mujoco_models.beams.protocol import FOOT, Beam
+from mujoco_models.model.contacts import SIDE_PREFIX
+from mujoco_models.obstacles.corners import LINKS
 from mujoco_models.obstacles.protocol import Obstacle
 
 _CONTACT_GAP = 0.01  # L; how far ahead the solver sees contacts that carry no force yet
@@ -11,10 +13,10 @@ _CONTACT_GAP = 0.01  # L; how far ahead the solver sees contacts that carry no f
 def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
     """Beam, beads, sensors and obstacle.
 
-    The beam touches the obstacle with spheres on its axis, not with capsules: the distance of a
-    point to a convex body has a continuous derivative, so an equilibrium exists at every station; a
-    capsule that lies along a facet has no single nearest point, its contact jumps from end to end,
-    and nothing comes to rest.
+    The beam touches facets with spheres on its axis, not with capsules: the distance of a point to
+    a convex body has a continuous derivative, so an equilibrium exists at every station; a capsule
+    that lies along a facet has no single nearest point, its contact jumps from end to end, and
+    nothing comes to rest. Sharp corners are what the capsules of the links touch.
 
     Parameters
     ----------
@@ -46,10 +48,22 @@ def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
             gap=_CONTACT_GAP,
             priority=1,
         )
+    if len(obstacle.corners):
+        obstacle.corners.add_to(spec)
+        _let_links_collide(beam, spec)
     spec.body(FOOT).add_site(name="clamp")
     for kind in (mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE):
         spec.add_sensor(type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="clamp")
     return spec
+
+
+def _let_links_collide(beam: Beam, spec: mujoco.MjSpec) -> None:
+    """With the edges of the obstacle's corners."""
+    for link, start in enumerate(beam.layout.joints.tolist()):
+        body, _ = beam.mount(spec, link, start)
+        (capsule,) = (g for g in body.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE)
+        capsule.name, capsule.conaffinity = f"{SIDE_PREFIX}{link}", LINKS
+        capsule.condim, capsule.priority, capsule.gap = 1, 1, _CONTACT_GAP
 
 
 def add_options(spec: mujoco.MjSpec) -> None:

@@ -20,6 +20,8 @@ _OCTAHEDRON = (
     (1, 3, 4),
     (1, 5, 3),
 )
+_FLAT = 1e-5  # rad; MuJoCo's normal of a facet is as good as that
+_POINTED = 1e12  # 1/L
 
 
 class Faceted(Obstacle):
@@ -53,8 +55,14 @@ class Faceted(Obstacle):
         return float(self._curvature.max())
 
     def curvature(self, slope: Floats) -> Floats:
-        """Mean curvature near the vertex at which the slope angle is passed."""
-        return np.asarray(self._curvature[self.vertex(slope)])
+        """Mean curvature near the vertex at which the slope angle is passed.
+
+        If it has sharp corners, 0 on a facet and next to infinite round a corner.
+        """
+        if len(self.corners) == 0:
+            return np.asarray(self._curvature[self.vertex(slope)])
+        near = np.abs(np.subtract.outer(slope, self.facet_angles)).min(axis=1)
+        return np.where(near < _FLAT, 0.0, _POINTED)
 
     def vertex(self, slope: Floats) -> Integers:
         """Number of the vertex at which each slope angle is passed.
@@ -109,6 +117,19 @@ class Faceted(Obstacle):
         inside = (edge[:, 0] * offset[:, 1] > edge[:, 1] * offset[:, 0]).all()
         facet = min(nearest, len(self.facet_angles) - 1)
         return float(-distance[nearest] if inside else distance[nearest]), float(facet)
+
+    def is_cut(self, polyline: Floats) -> bool:
+        """By Cyrus and Beck's clipping of each piece by the outline's half-planes."""
+        edge = np.roll(self.outline, -1, axis=0) - self.outline
+        inward = np.column_stack([-edge[:, 1], edge[:, 0]]) / np.hypot(*edge.T)[:, None]
+        depth = ((polyline[:, None] - self.outline) * inward).sum(axis=2)
+        begin, end = depth[:-1], depth[1:]
+        outside = ((begin <= 0) & (end <= 0)).any(axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            crossing = begin / (begin - end)
+        enters = np.where((begin < 0) & (end > 0), crossing, 0.0).max(axis=1)
+        leaves = np.where((begin > 0) & (end < 0), crossing, 1.0).min(axis=1)
+        return bool(((enters < leaves) & ~outside).any())
 
     def show(self, model: mujoco.MjModel, geoms: Integers, window: int) -> None:
         """Let the window's mesh collide."""

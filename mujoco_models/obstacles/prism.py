@@ -16,6 +16,7 @@ import numpy as np
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.contours.polygon import Polygon
+from mujoco_models.obstacles.corners import Corners
 from mujoco_models.obstacles.faceted import Faceted, add_hull, touchable
 
 _FINE = 32  # vertices at full resolution on either side of a window's centre, at least
@@ -105,6 +106,11 @@ class Prism(Faceted):
         """One a window."""
         return len(self._centres)
 
+    @cached_property
+    def corners(self) -> Corners:
+        """Those of a polygon; one that is inscribed in a smooth contour has none of its own."""
+        return Corners.of(self.vertices, _HALF_DEPTH) if self._exact else Corners.none()
+
     def place(self, slope: Floats) -> Floats:
         """The number of the vertex at which the slope angle is passed."""
         return self.vertex(slope).astype(float)
@@ -119,7 +125,7 @@ class Prism(Faceted):
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """Add one mesh a window."""
-        middle = self.vertices.mean(axis=0)
+        middle = self.outline.mean(axis=0)  # with the roof, since an underside may be flat
         for i, centre in enumerate(self._centres.tolist()):
             polygon = np.vstack([self.vertices[self._kept(centre)], self.outline[-1]])
             ends = [np.insert(polygon, 2, z, axis=1) for z in (-_HALF_DEPTH, _HALF_DEPTH)]

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
+from mujoco_models.obstacles.corners import Corners
 
 GEOM_PREFIX = "obstacle"
 TOP = 0.75 * np.pi  # rad; the lower side ends at pi/2, but a bead may touch a little above that
@@ -32,6 +33,11 @@ class Obstacle(ABC):
     @abstractmethod
     def largest_curvature(self) -> float:
         """Of the contour [1/L]."""
+
+    @property
+    def corners(self) -> Corners:
+        """The sharp edges that the sides of links touch; none if it is smooth to beads."""
+        return Corners.none()
 
     @abstractmethod
     def add_to(self, spec: mujoco.MjSpec) -> None:
@@ -120,6 +126,20 @@ class Obstacle(ABC):
         place : float
             Of the nearest point of the contour, in the measure of `place`.
         """
+
+    def is_cut(self, polyline: Floats) -> bool:
+        """Whether a piece of a polyline is inside; asked of obstacles with corners only.
+
+        Parameters
+        ----------
+        polyline : array, shape (n, 2)
+            Its vertices [L].
+
+        Returns
+        -------
+        bool
+        """
+        raise TypeError(f"{type(self).__name__} has no corners")
 
     @abstractmethod
     def place(self, slope: Floats) -> Floats:

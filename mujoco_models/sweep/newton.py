@@ -75,20 +75,25 @@ class Newton:
         curvature = self._curvature(contacts)
         layout = model.layout
         count = len(layout.joints)
-        bead, normal, distance = contacts
-        lever = model.bead_positions(bead)[:, None] - model.joint_positions()
-        carried = np.arange(count) <= layout.links[bead][:, None]
+        normal, distance, on_side = contacts.normal, contacts.distance, contacts.on_side
+        lever = contacts.point[:, None] - model.joint_positions()
+        carried = np.arange(count) <= contacts.link[:, None]
         along = (lever[:, :, 0] * normal[:, 1:] - lever[:, :, 1] * normal[:, :1]) * carried
         across = (lever[:, :, 0] * normal[:, :1] + lever[:, :, 1] * normal[:, 1:]) * carried
-        force = np.array([state.forces.get(i, 0.0) for i in bead.tolist()])
+        force = self._forces(state, contacts)
         loaded = force > 0
 
         stiffness = np.diag((1 + inertia) * model.beam.stiffness(state.angles))
         # The lever of a force turns with every joint below the outer one of two ...
         outer = np.maximum.outer(np.arange(count), np.arange(count))
-        stiffness += (force @ across)[outer]
+        at_bead = np.where(on_side, 0.0, force)
+        stiffness += (at_bead @ across)[outer]
         # ... and the normal turns as the bead slides along the contour.
-        stiffness -= (force * curvature * across.T) @ across
+        stiffness -= (at_bead * curvature * across.T) @ across
+        # A corner stays where it is and the normal turns with the link: the inner joint counts.
+        for i in np.flatnonzero(on_side & loaded):
+            n = contacts.link[i] + 1
+            stiffness[:n, :n] -= force[i] * across[i, np.minimum.outer(np.arange(n), np.arange(n))]
 
         # Loaded contacts convexify the model; their slack is zero at rest, and so is the effect.
         held, slack = along[loaded], (distance + force / model.contact_stiffness)[loaded]
@@ -97,15 +102,31 @@ class Newton:
         factor = _cholesky(stiffness, float(count))
         solved, _ = dpotrs(factor, np.column_stack([-gradient, along.T]), lower=1)
         free, compliance = solved[:, 0], solved[:, 1:]
-        softness = np.eye(len(bead)) / model.contact_stiffness
+        softness = np.eye(len(force)) / model.contact_stiffness
         forces = _unilateral(along @ compliance + softness, distance + along @ free)
         step = free + compliance @ forces
         turn = turned(step, np.zeros(count))
         return State(
             state.angles + step * min(1.0, numerics.largest_turn / max(turn, 1e-300)),
-            {int(i): float(f) for i, f in zip(bead, forces, strict=True) if f > 0},
+            {int(i): float(f) for i, f in zip(contacts.touch, forces, strict=True) if f > 0},
             state.imbalance,
         )
+
+    def _forces(self, state: State, contacts: Contacts) -> Floats:
+        """The forces of `state` at these contacts, shape (n,) [EI/L^2].
+
+        As the beam slides, a corner passes from link to link: what a link has lost, the nearest one
+        at the same corner has now.
+        """
+        touch = contacts.touch.tolist()
+        force = np.array([state.forces.get(i, 0.0) for i in touch])
+        beads, links = len(self._model.layout.beads), len(self._model.layout.joints)
+        for lost in state.forces.keys() - set(touch):
+            corner = (lost - beads) // links
+            same = np.flatnonzero((contacts.touch - beads) // links == corner)
+            if corner >= 0 and same.size:
+                force[same[np.argmin(contacts.distance[same])]] += state.forces[lost]
+        return force
 
     def _curvature(self, contacts: Contacts) -> Floats:
         """How fast each contact's normal turns as the bead slides, shape (n_contacts,) [1/L].
@@ -113,22 +134,25 @@ class Newton:
         On a faceted obstacle a bead sees a polygon: no turn along a facet, all of it within 1e-8 L
         at a vertex. Only the secant through the last two iterates sees what is at hand; with the
         contour's mean curvature Newton's method can jump for ever between a vertex's two facets.
+        Sharp corners are known to the obstacle.
         """
         angles = contacts.slope
-        places = self._model.bead_positions(contacts.bead)
-        now = {
-            bead: Touch(float(angle), place.copy())
-            for bead, angle, place in zip(contacts.bead.tolist(), angles, places, strict=True)
-        }
         found = self._model.contact_curvature(angles)
-        if self._model.obstacle.faceted:
-            for i, (bead, touch) in enumerate(now.items()):
-                before = self._last.get(bead)
-                if before is not None:
-                    turn = touch.normal_angle - before.normal_angle
-                    slid = float(np.hypot(*(touch.position - before.position)))
-                    same = abs(turn) < self._numerics.same_normal
-                    found[i] = 0.0 if same else abs(turn) / slid
+        if not self._model.obstacle.faceted or len(self._model.obstacle.corners):
+            return found
+        now = {
+            bead: Touch(float(angle), point.copy())
+            for bead, angle, point in zip(
+                contacts.touch.tolist(), angles, contacts.point, strict=True
+            )
+        }
+        for i, (bead, touch) in enumerate(now.items()):
+            before = self._last.get(bead)
+            if before is not None:
+                turn = touch.normal_angle - before.normal_angle
+                slid = float(np.hypot(*(touch.position - before.position)))
+                same = abs(turn) < self._numerics.same_normal
+                found[i] = 0.0 if same else abs(turn) / slid
         self._last = now
         return found
 

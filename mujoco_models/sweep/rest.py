@@ -50,6 +50,8 @@ def relax(
         state = replace(state, imbalance=residual)
         best = min(best, state, key=lambda s: s.imbalance)
         if residual < tolerance:
+            if contacts.passed or lookout.is_crossed(model.joint_positions()):
+                break  # a corner has gone through a link
             slopes = contacts.slope[contacts.loaded]
             if not obstacle.faces(slopes):
                 break  # pushed out through the far side of the object: no state of the sweep
@@ -111,8 +113,10 @@ def fall(model: BeamModel, foot_x: float, start: State, numerics: Numerics) -> S
 
 
 def _around(model: BeamModel, loaded: dict[int, float], reach: int) -> frozenset[int]:
-    """The loaded beads and as many on either side."""
+    """The loaded beads and as many on either side; all past corners, where they are few."""
     count = len(model.layout.beads)
+    if len(model.obstacle.corners):
+        return frozenset(range(count) if loaded else ())
     return frozenset(
         i for bead in loaded for i in range(max(0, bead - reach), min(count, bead + reach + 1))
     )

@@ -16,7 +16,7 @@ class State:
     angles : array, shape (n_joints,)
         Joint angles [rad].
     forces : dict
-        Contact force by bead [EI/L^2].
+        Contact force by what touches, see `Contacts` [EI/L^2].
     imbalance : float
         Largest moment out of balance at any joint [EI/L].
     settled : bool

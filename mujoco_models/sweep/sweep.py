@@ -8,6 +8,7 @@ from importlib.metadata import version
 from typing import Any
 
 import mujoco
+import numpy as np
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
@@ -101,7 +102,9 @@ def set_out(case: Case, settings: Settings, numerics: Numerics | None = None) ->
     if case.radius == 0:
         raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
     obstacle = place(case, settings)
-    spacing = bead_spacing(settings.segments, case.radius, obstacle.largest_curvature)
+    spacing = np.inf
+    if len(obstacle.corners) == 0:
+        spacing = bead_spacing(settings.segments, case.radius, obstacle.largest_curvature)
     beam = build(settings, spacing)
     model = BeamModel(beam, case.radius, obstacle, settings.contact_stiffness)
     kind = Walk if settings.planar else SpatialWalk

@@ -10,6 +10,7 @@ from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.rest import fall, relax
 from mujoco_models.sweep.state import State, turned
 
+_AT_TIP = 1e-9  # L
 _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
 
 
@@ -95,9 +96,9 @@ class Walk:
         x, before = self._before
         ahead = (foot_x - self._foot_x) / (self._foot_x - x)
         forces = state.forces
-        if state.forces and before.forces:
+        last = len(self.model.layout.beads) - 1
+        if state.forces and before.forces and max(*state.forces, *before.forces) <= last:
             shift = round(ahead * (state.loaded_bead - before.loaded_bead))
-            last = len(self.model.layout.beads) - 1
             forces = {min(max(i + shift, 0), last): f for i, f in forces.items()}
         return State(state.angles + ahead * (state.angles - before.angles), forces)
 
@@ -143,12 +144,12 @@ class Walk:
             raise ClampError(self._foot_x, row["discrepancy"], _DISCREPANCY)
         if loaded.any():
             weight = -contacts.distance[loaded] / -contacts.distance[loaded].sum()
-            beads, normal = contacts.bead[loaded], weight @ contacts.normal[loaded]
+            normal, s = weight @ contacts.normal[loaded], contacts.arc_length[loaded]
             x, y = weight @ model.data.contact.pos[loaded, :2]
             row |= {
-                "phase": "tip" if beads.min() == len(model.layout.beads) - 1 else "tangent",
+                "phase": "tip" if s.min() > 1 - _AT_TIP else "tangent",
                 "contact_angle": float(np.arctan2(normal[0], -normal[1])),
-                "contact_arc_length": float(weight @ model.layout.beads[beads]),
+                "contact_arc_length": float(weight @ s),
                 "contact_x": float(x),
                 "contact_y": float(y),
                 "penetration": float(-weight @ contacts.distance[loaded]),

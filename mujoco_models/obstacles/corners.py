@@ -1,0 +1,96 @@
+"""Sharp edges of an obstacle, which the sides of the beam's links touch.
+
+A bead is a fixed point of the beam: two of them hold a corner anywhere between their normals, as if
+it were rough. What really touches a corner is the beam's side, a link, whose normal is that of the
+link and turns with it. So past corners the beam has a bead at each joint, for facets, and its links
+collide with the edges: together that is all that two polygons can touch each other with.
+"""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats
+
+EDGE_PREFIX = "edge"
+LINKS = 2  # the bit of contype and conaffinity by which links and edges collide
+SHARP = 2e-3  # rad; polygons that turn less at all corners are smooth to beads, to 1e-3 of a force
+_TURN = 1e-9  # rad; what turns less is no corner
+_RADIUS = 1e-6  # L; of an edge, which MuJoCo takes for a thin capsule
+
+
+@dataclass(frozen=True, eq=False)
+class Corners:
+    """The edges that stand on the plane of the sweep.
+
+    Attributes
+    ----------
+    ends : array, shape (m, 2, 3)
+        Where each edge begins and ends [L].
+    outward : array, shape (m, 2)
+        Unit vectors half-way between the normals of the two facets.
+    """
+
+    ends: Floats
+    outward: Floats
+
+    @classmethod
+    def none(cls) -> "Corners":
+        """Those of a smooth obstacle.
+
+        Returns
+        -------
+        Corners
+            Without an edge.
+        """
+        return cls(np.zeros((0, 2, 3)), np.zeros((0, 2)))
+
+    @classmethod
+    def of(cls, vertices: Floats, half_depth: float) -> "Corners":
+        """The upright edges of a prism, if it has a sharp one.
+
+        Parameters
+        ----------
+        vertices : array, shape (n, 2)
+            Lower side of its section, from left to right; its ends are corners too [L].
+        half_depth : float
+            How far the prism reaches on either side of the plane [L].
+
+        Returns
+        -------
+        Corners
+        """
+        run, rise = np.diff(vertices, axis=0).T
+        angles = np.concatenate([[-np.pi / 2], np.arctan2(rise, run), [np.pi / 2]])
+        turn = np.diff(angles)
+        if turn[1:-1].max(initial=0.0) < SHARP and len(vertices) > 2:
+            return cls.none()
+        sharp = turn > _TURN
+        bisector = ((angles[1:] + angles[:-1]) / 2)[sharp]
+        outward = np.column_stack([np.sin(bisector), -np.cos(bisector)])
+        inset = vertices[sharp] - _RADIUS * outward
+        ends = [np.insert(inset, 2, z, axis=1) for z in (-half_depth, half_depth)]
+        return cls(np.stack(ends, axis=1), outward)
+
+    def __len__(self) -> int:
+        return len(self.ends)
+
+    def add_to(self, spec: mujoco.MjSpec) -> None:
+        """Add the edges to the world body.
+
+        Parameters
+        ----------
+        spec : mujoco.MjSpec
+            Changed in place.
+        """
+        for i, (begin, end) in enumerate(self.ends):
+            spec.worldbody.add_geom(
+                name=f"{EDGE_PREFIX}{i}",
+                type=mujoco.mjtGeom.mjGEOM_CAPSULE,
+                fromto=[*begin, *end],
+                size=[_RADIUS, 0, 0],
+                contype=LINKS,
+                conaffinity=0,
+                condim=1,
+            )
