@@ -47,15 +47,15 @@ class Corners:
         return cls(np.zeros((0, 2, 3)), np.zeros((0, 2)))
 
     @classmethod
-    def of(cls, vertices: Floats, half_depth: float) -> "Corners":
-        """The upright edges of a prism, if it has a sharp one.
+    def of(cls, vertices: Floats, edges: Floats) -> "Corners":
+        """Those of a polygon, if one is sharp.
 
         Parameters
         ----------
         vertices : array, shape (n, 2)
-            Lower side of its section, from left to right; its ends are corners too [L].
-        half_depth : float
-            How far the prism reaches on either side of the plane [L].
+            Lower side of the section, from left to right; its ends are corners too [L].
+        edges : array, shape (n, 2, 3)
+            The ends of the edge through each vertex [L].
 
         Returns
         -------
@@ -69,9 +69,8 @@ class Corners:
         sharp = turn > _TURN
         bisector = ((angles[1:] + angles[:-1]) / 2)[sharp]
         outward = np.column_stack([np.sin(bisector), -np.cos(bisector)])
-        inset = vertices[sharp] - _RADIUS * outward
-        ends = [np.insert(inset, 2, z, axis=1) for z in (-half_depth, half_depth)]
-        return cls(np.stack(ends, axis=1), outward)
+        inset = np.insert(_RADIUS * outward, 2, 0.0, axis=1)
+        return cls(edges[sharp] - inset[:, None], outward)
 
     def __len__(self) -> int:
         return len(self.ends)
@@ -94,3 +93,22 @@ class Corners:
                 conaffinity=0,
                 condim=1,
             )
+
+
+def upright(vertices: Floats, half_length: float) -> Floats:
+    """Edges along z through vertices of the section.
+
+    Parameters
+    ----------
+    vertices : array, shape (n, 2)
+        Where they stand [L].
+    half_length : float
+        How far they reach on either side of the plane [L].
+
+    Returns
+    -------
+    array, shape (n, 2, 3)
+        Their ends [L].
+    """
+    ends = [np.insert(vertices, 2, z, axis=1) for z in (-half_length, half_length)]
+    return np.stack(ends, axis=1)

@@ -3,16 +3,22 @@
 Not an extrusion of its section: above and below the plane of the sweep it is what it is.
 """
 
+from functools import cached_property
+
 import mujoco
-from scipy.spatial import ConvexHull
+import numpy as np
+from scipy.spatial import ConvexHull, KDTree
 
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.contours.solid import ConvexMesh
 from analytic.problem.errors import InputError
+from mujoco_models.obstacles.corners import Corners, upright
 from mujoco_models.obstacles.faceted import Faceted, add_hull, touchable
 
 _MOST_VERTICES = 50_000  # the hull of a round body takes MuJoCo half a second then
+_SAME_PLACE = 1e-7  # L
+_SPECK_OF_EDGE = 1e-5  # L
 _SPECK = 0.1  # of the depth at which it lies in the mesh
 
 
@@ -63,6 +69,34 @@ class FileMesh(Faceted):
         planes = ConvexHull(vertices).equations
         depth = -float((planes[:, :3] @ inner + planes[:, 3]).max())
         add_hull(spec, 0, vertices, inner, _SPECK * depth / 3)
+
+    @cached_property
+    def corners(self) -> Corners:
+        """Where the mesh's own edges cross the plane of the sweep."""
+        return Corners.of(self.vertices, self._edges())
+
+    def _edges(self) -> Floats:
+        """The edge through each vertex of the section, shape (n, 2, 3) [L].
+
+        A vertex of the mesh that lies in the plane itself is a point: a speck of an edge.
+        """
+        vertices = self._solid.vertices
+        triangles = np.asarray(ConvexHull(vertices).simplices)
+        pairs = np.sort(
+            np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]),
+            axis=1,
+        )
+        begin, end = vertices[np.unique(pairs, axis=0)].transpose(1, 0, 2)
+        across = begin[:, 2] * end[:, 2] < 0
+        begin, end = begin[across], end[across]
+        share = begin[:, 2] / (begin[:, 2] - end[:, 2])
+        crossing = begin[:, :2] + share[:, None] * (end - begin)[:, :2]
+        edges = upright(self.vertices, _SPECK_OF_EDGE)
+        if len(crossing):
+            distance, nearest = KDTree(crossing).query(self.vertices)
+            found = np.flatnonzero(np.asarray(distance) < _SAME_PLACE)
+            edges[found] = np.stack([begin, end], axis=1)[np.asarray(nearest)[found]]
+        return edges
 
     def place(self, slope: Floats) -> Floats:
         """The slope angles themselves: it is as true in one place as in any other."""

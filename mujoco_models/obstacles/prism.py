@@ -16,7 +16,7 @@ import numpy as np
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.contours.polygon import Polygon
-from mujoco_models.obstacles.corners import Corners
+from mujoco_models.obstacles.corners import Corners, upright
 from mujoco_models.obstacles.faceted import Faceted, add_hull, touchable
 
 _FINE = 32  # vertices at full resolution on either side of a window's centre, at least
@@ -27,6 +27,8 @@ _BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
 # ends, and much more than a penetration, or depths come out wrong.
 _HALF_DEPTH = 1.5
 _SPECK = 1e-4  # L
+_SPECK_REACH = 3.5e-4  # L; a little more than the speck's longest half axis
+_INWARD = 1e-2  # of the way to the middle
 
 
 class Prism(Faceted):
@@ -109,7 +111,9 @@ class Prism(Faceted):
     @cached_property
     def corners(self) -> Corners:
         """Those of a polygon; one that is inscribed in a smooth contour has none of its own."""
-        return Corners.of(self.vertices, _HALF_DEPTH) if self._exact else Corners.none()
+        if not self._exact:
+            return Corners.none()
+        return Corners.of(self.vertices, upright(self.vertices, _HALF_DEPTH))
 
     def place(self, slope: Floats) -> Floats:
         """The number of the vertex at which the slope angle is passed."""
@@ -125,13 +129,18 @@ class Prism(Faceted):
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """Add one mesh a window."""
-        middle = self.outline.mean(axis=0)  # with the roof, since an underside may be flat
         for i, centre in enumerate(self._centres.tolist()):
             polygon = np.vstack([self.vertices[self._kept(centre)], self.outline[-1]])
             ends = [np.insert(polygon, 2, z, axis=1) for z in (-_HALF_DEPTH, _HALF_DEPTH)]
-            here = self.vertices[centre]
-            inner = here + 1e-2 * (middle - here)
+            inner = self._inside(self.vertices[centre])
             add_hull(spec, i, np.concatenate(ends), np.append(inner, 0), _SPECK)
+
+    def _inside(self, here: Floats) -> Floats:
+        """A place near a vertex that is deep enough inside for the speck of a hull."""
+        inner = here + _INWARD * (self.vertices.mean(axis=0) - here)
+        if self.clearance(inner)[0] > -_SPECK_REACH:  # a flat underside has only the roof above
+            inner = here + _INWARD * (self.outline.mean(axis=0) - here)
+        return np.asarray(inner)
 
     @cached_property
     def _centres(self) -> Integers:
