@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 from matplotlib import rc_context
 from matplotlib.figure import Figure
@@ -97,7 +97,7 @@ def render(package: str, template: str, **values: Any) -> str:  # noqa: ANN401
     Parameters
     ----------
     package : str
-        Where its folder ``templates`` is, as ``compare.show``.
+        Where its folder ``templates`` is; it may include the templates of ``compare.show``.
     template : str
         Its name. All values are escaped, in ``*.md.j2`` for Markdown and else for HTML.
     **values
@@ -110,7 +110,7 @@ def render(package: str, template: str, **values: Any) -> str:  # noqa: ANN401
     """
     is_markdown = template.endswith(".md.j2")
     environment = Environment(
-        loader=PackageLoader(package),
+        loader=ChoiceLoader([PackageLoader(package), PackageLoader("compare.show")]),
         autoescape=not is_markdown,
         finalize=_as_markdown if is_markdown else None,
         undefined=StrictUndefined,

@@ -108,7 +108,9 @@ class Columns:
                 raise pa.ArrowInvalid(f"a column {name} with a text in every row is missing")
         together = pa.unify_schemas([self._all, table.schema], promote_options="permissive")
         for name, kind in self._known.items():
-            if together.field(name).type != kind:
+            found = together.field(name).type
+            # pandas writes its texts as large ones.
+            if found != kind and not (pa.types.is_string(kind) and pa.types.is_large_string(found)):
                 raise pa.ArrowTypeError(f"its column {name} is no {kind}")
         self._all = together
 

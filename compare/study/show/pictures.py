@@ -1,6 +1,5 @@
 """The pictures of a study, drawn from its table alone."""
 
-from collections.abc import Iterator
 from itertools import combinations
 from typing import Literal
 
@@ -10,13 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, NullFormatter
 
-from analytic import CLAMP_READINGS
-from compare.show.style import GREY, PHASE_COLOURS, SERIES, SYMBOLS
-from compare.study.grid.study import BEAM
-from compare.study.show import tables
-from compare.study.show.tables import WORST, StudyResults, curve, pareto_front
+from compare.show.style import FAINT, GREY, INK, LINE_STYLES, ORANGE, SERIES, SMALL, label
+from compare.study.show.questions import Question
+from compare.study.show.results import WORST, StudyResults, together
+from compare.study.show.slices import Line, lines, plane, words
+from compare.study.show.tables import pareto_front
 
 _AXES = {
     "mujoco.segments": "segments $N$",
@@ -24,140 +23,192 @@ _AXES = {
     "mujoco.contact_stiffness": "contact stiffness / ($EI/L^3$)",
     "sweep.stations": "stations of the sweep",
     "beam.radius": "radius of the vibrissa [length]",
-    "noise.relative": "noise, of each reading's largest magnitude",
+    "noise.relative": "noise / largest magnitude",
     "profile.a": "$a$ of the object [1/length]",
     "profile.c": "$c$ of the object [length]",
 }
-PANELS: dict[str, dict[str, str]] = {
-    "disagreement, rms\n(of the largest magnitude)": {
-        f"disagreement_{name}_rms": SYMBOLS[name] for name in CLAMP_READINGS
-    },
-    "shift of the snap-off [length]": {"snap_off_difference": ""},
-    "reconstruction error / $L$": {
-        "reconstruction_rms": "rms",
-        "reconstruction_max": "largest",
-    },
-    "least contact length / $L$": {"contact_length_minimum": ""},
-}
-"""What is drawn over an axis: a panel's label, its columns and what they are called."""
+_MARKED = 25  # points of a line up to which each is marked
+_MAP_FROM = 4  # values an axis from which a map shows more than lines do
 
 
-def panels(found: StudyResults) -> dict[str, dict[str, str]]:
-    """The panels that this study has numbers for; those that are zero throughout have none."""
-    there = {
-        label: {column: name for column, name in columns.items() if _varies(found.done, column)}
-        for label, columns in PANELS.items()
-    }
-    return {label: columns for label, columns in there.items() if columns}
+def axis_pictures(found: StudyResults, question: Question) -> dict[str, Figure]:
+    """Draw the number that answers a question over each axis by itself.
+
+    Parameters
+    ----------
+    found : StudyResults
+        The study.
+    question : Question
+        Which.
+
+    Returns
+    -------
+    dict of Figure
+        By the axis. A line is one beam with all other axes held; a band holds 80 % of what is
+        repeated or sampled.
+    """
+    drawn = {}
+    for axis in found.plain_axes:
+        cut = lines(found, axis, question.metric)
+        if cut:
+            drawn[axis] = _over_axis(found, question, axis, cut)
+    return drawn
 
 
-def axis_curves(found: StudyResults) -> Iterator[tuple[str, Figure]]:
-    """Each axis by itself: medians, and bands over all that varies besides."""
-    shown = panels(found)
-    for axis in found.plain_axes if shown else ():
-        figure = Figure(figsize=(1 + 3.6 * len(shown), 3.6), layout="constrained")
-        for ax, (label, columns) in zip(
-            np.atleast_1d(figure.subplots(1, len(shown))), shown.items(), strict=True
-        ):
-            for colour, (column, name) in zip(SERIES, columns.items(), strict=False):
-                line = curve(found, axis, column)
-                style = {"color": colour, "linewidth": 1.5, "marker": "o", "markersize": 3.5}
-                ax.plot(line[axis], line["median"], label=name, **style)
-                if (line["high"] > line["low"]).any():
-                    ax.fill_between(
-                        line[axis], line["low"], line["high"], color=colour, alpha=0.15, linewidth=0
-                    )
-            _place(ax, found.done[axis], "x")
-            if column == "contact_length_minimum":
-                ax.axhline(1, color=GREY, linestyle="--", linewidth=1, label="Phase B below")
-            elif _spans_decades(pd.concat([found.done[c].abs() for c in columns])):
-                ax.set_yscale("log")
-            ax.set_xlabel(_label(axis))
-            ax.set_ylabel(label)
-            if ax.get_legend_handles_labels()[0] and len(ax.lines) > 1:
-                ax.legend(fontsize=8, framealpha=0.85)
-        yield f"curves-{axis}", figure
+def maps(found: StudyResults, question: Question) -> dict[str, Figure]:
+    """Draw the number that answers a question over each pair of axes with many values.
+
+    Parameters
+    ----------
+    found : StudyResults
+        The study.
+    question : Question
+        Which.
+
+    Returns
+    -------
+    dict of Figure
+        By ``ACROSS-UP`` and the beam. Where a place has several runs the colour is their median.
+    """
+    drawn = {}
+    for beam, done in found.by_beam(question.metric):
+        many = [axis for axis in found.plain_axes if done[axis].nunique() >= _MAP_FROM]
+        for across, up in combinations(many, 2):
+            sampled = {across, up} <= set(found.sampled)
+            if not sampled and together(done, across, up):
+                continue  # zipped: the lines show it
+            figure = Figure(figsize=(5.4, 4.0), layout="constrained")
+            ax = figure.subplots()
+            held, shown = plane(found, done, (across, up), question.metric)
+            _map(ax, shown, across, up, question)
+            _dress(ax, done[across], across, "x")
+            _dress(ax, done[up], up, "y")
+            title = ", ".join(filter(None, (beam, f"at {words(held)}" if held else "")))
+            ax.set_title(label(title), fontsize=SMALL)
+            drawn["-".join(filter(None, (across, up, beam)))] = figure
+    return drawn
 
 
-def heat_maps(found: StudyResults) -> Iterator[tuple[str, Figure]]:
-    """Each pair of axes: the median of what lies at a place, as a colour."""
-    shown = [
-        (label.replace("\n", " "), next(iter(columns)) if len(columns) < 3 else WORST)
-        for label, columns in panels(found).items()
-    ]
-    for across, up in combinations(found.plain_axes, 2) if shown else ():
-        if tables.together(found.done, across, up) and tables.together(found.done, up, across):
-            continue  # zipped or each sampled: see the curves
-        figure = Figure(figsize=(1 + 4.4 * len(shown), 3.8), layout="constrained")
-        for ax, (label, column) in zip(
-            np.atleast_1d(figure.subplots(1, len(shown))), shown, strict=True
-        ):
-            _map(ax, found.done, across, up, column)
-            ax.set_title(label if column != WORST else "worst reading's " + label, fontsize=9)
-            ax.set_xlabel(_label(across))
-            ax.set_ylabel(_label(up))
-            _place(ax, found.done[across], "x")
-            _place(ax, found.done[up], "y")
-        yield f"map-{across}-{up}", figure
+def error_against_time(found: StudyResults) -> Figure | None:
+    """Draw every simulated run by its time and its error, and the front that none of them beats.
 
+    Parameters
+    ----------
+    found : StudyResults
+        The study.
 
-def error_against_time(found: StudyResults) -> Iterator[tuple[str, Figure]]:
-    """Every simulated run by its time and its error, and the front that none of them beats."""
-    done = found.done
-    if WORST not in done or not _varies(done, "seconds_candidate"):
-        return
-    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
+    Returns
+    -------
+    Figure or None
+        None if nothing was simulated and compared.
+    """
+    if WORST not in found.done or "seconds_candidate" not in found.done:
+        return None
+    done = found.done.dropna(subset=["seconds_candidate", WORST])
+    done = done[(done["seconds_candidate"] > 0) & (done[WORST] > 0)]
+    if len(done) < 2:
+        return None
+    figure = Figure(figsize=(5.6, 3.9), layout="constrained")
     ax = figure.subplots()
-    for colour, (beam, group) in zip(SERIES, done.groupby(BEAM), strict=False):
-        ax.plot(group["seconds_candidate"], group[WORST], "o", color=colour, alpha=0.6,
-                markersize=4, label=f"{beam}: {len(group)} runs")  # fmt: skip
+    for colour, (beam, group) in zip(SERIES, found.by_beam(WORST), strict=False):
+        runs = group[group.index.isin(done.index)]
+        ax.plot(runs["seconds_candidate"], runs[WORST], "o", color=colour, alpha=0.6,
+                markersize=4, label=f"{beam}: {len(runs)} runs")  # fmt: skip
     front = pareto_front(done, "seconds_candidate", WORST)
-    ax.plot(front["seconds_candidate"], front[WORST], color="k", linewidth=1.2,
+    ax.plot(front["seconds_candidate"], front[WORST], color=INK, linewidth=1.2,
             drawstyle="steps-post", label="best error for the time")  # fmt: skip
     ax.set_xscale("log")
     ax.set_yscale("log")
     ax.set_xlabel("time of the simulated sweep [s]")
-    ax.set_ylabel("worst reading's disagreement, rms\n(of its largest magnitude)")
-    ax.legend(fontsize=8, frameon=False)
-    yield "error-against-time", figure
+    ax.set_ylabel("worst reading's rms\n/ largest magnitude")
+    ax.legend(fontsize=SMALL, frameon=False)
+    return figure
 
 
-def _map(ax: Axes, done: pd.DataFrame, across: str, up: str, column: str) -> None:
-    table = done[[across, up, column]].dropna().abs()
+def _over_axis(found: StudyResults, question: Question, axis: str, cut: list[Line]) -> Figure:
+    figure = Figure(figsize=(4.6, 3.5), layout="constrained")
+    ax = figure.subplots()
+    beams = list(dict.fromkeys(line.beam for line in cut))
+    varying = next((key for key in cut[0].held if len({line.held[key] for line in cut}) > 1), None)
+    shades = list(dict.fromkeys(line.held[varying] for line in cut)) if varying else [0.0]
+    for line in cut:
+        shade = shades.index(line.held[varying]) if varying else 0
+        beam = beams.index(line.beam)
+        # Several beams: a colour each. One: a colour for each value of the other axis.
+        colour, style = (beam, shade) if len(beams) > 1 else (shade, 0)
+        value = f"{line.held[varying]:.4g}" if varying else ""
+        name = ", ".join(filter(None, (line.beam, value)))
+        shown, table = SERIES[colour % len(SERIES)], line.table
+        ax.plot(table["value"], table["median"], marker="o" if len(table) <= _MARKED else "",
+                markersize=3.5, linewidth=1.4, label=name, color=shown,
+                linestyle=LINE_STYLES[style])  # fmt: skip
+        if (table["high"] > table["low"]).any():
+            ax.fill_between(
+                table["value"], table["low"], table["high"], alpha=0.15, linewidth=0, color=shown
+            )
+    sizes = pd.concat([line.table["median"] for line in cut])
+    if question.limit is not None:
+        ax.axhline(question.limit, color=GREY, linestyle="--", linewidth=1)
+    elif _spans_decades(sizes):
+        ax.set_yscale("log")
+    _dress(ax, found.done[axis], axis, "x")
+    ax.set_ylabel(question.label)
+    ax.grid(axis="y", color=FAINT, alpha=0.35, linewidth=0.6)
+    held = {key: value for key, value in cut[0].held.items() if key != varying}
+    if held:
+        ax.set_title(f"at {label(words(held))}", fontsize=SMALL)
+    if len(cut) > 1:
+        title = _label(varying) if varying else None
+        figure.legend(
+            loc="outside lower center", ncols=3, fontsize=SMALL - 1, frameon=False,
+            title=title, title_fontsize=SMALL - 1,
+        )  # fmt: skip
+    return figure
+
+
+def _map(ax: Axes, done: pd.DataFrame, across: str, up: str, question: Question) -> None:
+    column = question.metric
+    table = done[[across, up, column]].abs()
     norm = LogNorm() if _spans_decades(table[column]) else Normalize()
+    low, high = table[column].min(), table[column].max()
+    limit = question.limit if question.limit is not None else np.inf
+    passed = low < limit < high
     drawn: ScalarMappable
     if len(table) >= table[across].nunique() * table[up].nunique():  # a grid, not a sample
         grid = table.pivot_table(values=column, index=up, columns=across, aggfunc="median")
         drawn = ax.pcolormesh(
             grid.columns, grid.index, grid, shading="nearest", norm=norm, cmap="cividis"
         )
-        if column == "contact_length_minimum" and grid.min().min() < 1 < grid.max().max():
-            ax.contour(grid.columns, grid.index, grid, levels=[1], colors=PHASE_COLOURS["tangent"])
+        if passed:
+            ax.contour(grid.columns, grid.index, grid, levels=[limit], colors=ORANGE)
     else:
         drawn = ax.scatter(
-            table[across], table[up], c=table[column], s=12, norm=norm, cmap="cividis"
+            table[across], table[up], c=table[column], s=14, norm=norm, cmap="cividis"
         )
-        if column == "contact_length_minimum" and table[column].min() < 1 < table[column].max():
-            lines = ax.tricontour(table[across], table[up], table[column], levels=[1],
-                                  colors=PHASE_COLOURS["tangent"])  # fmt: skip
-            lines.set_linewidth(2)
-    bar = ax.figure.colorbar(drawn, ax=ax)
-    if column == "contact_length_minimum":
-        bar.ax.axhline(1, color=PHASE_COLOURS["tangent"], linewidth=2)
+        if passed and len(table) > 3:
+            border = ax.tricontour(table[across], table[up], table[column],
+                                   levels=[limit], colors=ORANGE)  # fmt: skip
+            border.set_linewidth(2)
+    bar = ax.figure.colorbar(drawn, ax=ax, label=question.label.replace("\n", " "))
+    if passed:
+        bar.ax.axhline(limit, color=ORANGE, linewidth=2)
 
 
-def _place(ax: Axes, values: pd.Series, which: Literal["x", "y"]) -> None:
-    """Logarithmic where a parameter asks for it; ticks at its values where they are few."""
+def _dress(ax: Axes, values: pd.Series, axis: str, which: Literal["x", "y"]) -> None:
+    """Label an axis; logarithmic where its values ask for it, ticks at them where they are few."""
     logarithmic = values.min() > 0 and _spans_decades(values)
     if logarithmic:
         (ax.set_xscale if which == "x" else ax.set_yscale)("log")
-    place = ax.xaxis if which == "x" else ax.yaxis
+    ruler = ax.xaxis if which == "x" else ax.yaxis
+    ruler.set_label_text(_label(axis))
     ticks = np.unique(values)
     if not logarithmic:
-        place.set_major_locator(MaxNLocator(5))
+        ruler.set_major_locator(MaxNLocator(5))
     if len(ticks) <= 6:
-        place.set_ticks(ticks, [f"{tick:.4g}" for tick in ticks])
-        place.set_ticks([], minor=True)
+        ruler.set_ticks(ticks, [f"{float(f'{tick:.3g}'):g}" for tick in ticks])
+        ruler.set_ticks([], minor=True)
+    elif logarithmic and ticks[-1] / ticks[0] >= 100:
+        ruler.set_minor_formatter(NullFormatter())
 
 
 def _spans_decades(values: pd.Series) -> bool:
@@ -165,9 +216,5 @@ def _spans_decades(values: pd.Series) -> bool:
     return bool(len(values) and values.min() > 0 and values.max() / values.min() >= 7)
 
 
-def _varies(done: pd.DataFrame, column: str) -> bool:
-    return column in done and bool((done[column].fillna(0) != 0).any())
-
-
 def _label(axis: str) -> str:
-    return _AXES.get(axis, axis)
+    return _AXES.get(axis, label(axis))

@@ -11,11 +11,23 @@ from compare.show.page import inline_svg, png, render
 from compare.study.keep.reading import read_plan, read_rows
 from compare.study.keep.store import Tell
 from compare.study.show import pictures, tables
-from compare.study.show.tables import StudyResults
+from compare.study.show.questions import asked
+from compare.study.show.results import StudyResults
+from compare.study.show.sentences import headline, varied
+from compare.study.show.slices import curves, repeated
+
+_LONGEST_TABLE = 24  # rows on the page; all of them are in a file
 
 
 def write_report(folder: Path, tell: Tell) -> Path:
     """Write ``report.html``, ``report/*.png`` and ``report/*.csv`` into the folder of a study.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the study, which may be under way.
+    tell : callable
+        Takes a line about anything that is wrong with what is stored.
 
     Returns
     -------
@@ -28,27 +40,22 @@ def write_report(folder: Path, tell: Tell) -> Path:
         If there is no study in `folder`, or none of its runs is done.
     """
     rows = read_rows(folder, tell)
-    plan = read_plan(folder)
-    found = StudyResults.of(plan, rows)
+    found = StudyResults.of(read_plan(folder), rows)
     if found.done.empty:
-        raise InputError(
-            "DIR", folder, "a study with a run that is done", "see the reasons in DIR/runs"
-        )
-    drawn = {
-        name: figure
-        for draw in (pictures.axis_curves, pictures.heat_maps, pictures.error_against_time)
-        for name, figure in draw(found)
-    }
-    metrics = [column for columns in pictures.panels(found).values() for column in columns]
+        reasons = found.rows["reason"] if "reason" in found.rows else pd.Series(dtype=str)
+        reason = next((str(reason) for reason in reasons if reason), "start `vibrissa study` first")
+        raise InputError("DIR", folder, "a study with a run that is done", reason)
     numbers = {
         "outcomes": tables.outcomes(found),
         "orders": tables.orders(found),
         "phase-b-vanishes": tables.vanishing(found),
-        "curves": tables.curves(found, metrics),
+        "curves": curves(found, [question.metric for question in asked(found)]),
     }
+    drawn = _drawn(found)
     (folder / "report").mkdir(exist_ok=True)
-    for name, figure in drawn.items():
-        write_whole(folder / "report" / f"{name}.png", png(figure))
+    for section in drawn.values():
+        for name, figure in section.items():
+            write_whole(folder / "report" / f"{name}.png", png(figure))
     for name, table in numbers.items():
         if not table.empty:
             write_whole(folder / "report" / f"{name}.csv", table.to_csv(index=False).encode())
@@ -56,19 +63,46 @@ def write_report(folder: Path, tell: Tell) -> Path:
     return folder / "report.html"
 
 
-def _page(found: StudyResults, numbers: dict[str, pd.DataFrame], drawn: dict[str, Figure]) -> str:
-    titles = {
-        "outcomes": "What became of the runs",
-        "orders": "Observed orders",
-        "phase-b-vanishes": "Where Phase B vanishes",
-    }
+def _drawn(found: StudyResults) -> dict[str, dict[str, Figure]]:
+    """The pictures of every question, by the names of their files."""
+    drawn = {}
+    for question in asked(found):
+        over_axes = pictures.axis_pictures(found, question)
+        over_pairs = pictures.maps(found, question)
+        drawn[question.name] = {
+            **{f"{question.name}-{axis}": figure for axis, figure in over_axes.items()},
+            **{f"{question.name}-map-{pair}": figure for pair, figure in over_pairs.items()},
+        }
+    against_time = pictures.error_against_time(found)
+    if against_time is not None:
+        drawn["time"] = {"error-against-time": against_time}
+    return drawn
+
+
+def _page(
+    found: StudyResults, numbers: dict[str, pd.DataFrame], drawn: dict[str, dict[str, Figure]]
+) -> str:
+    questions = asked(found)
+    answers = {question.name: headline(found, question) for question in questions}
+    titles = {"orders": "Observed orders", "phase-b-vanishes": "Where Phase B vanishes"}
+    bands = sorted({axis for one in found.plain_axes for axis in repeated(found, one)})
     return render(
         "compare.study.show",
         "study.html.j2",
         study=found.plan.study,
         versions=found.plan.versions,
+        varied=varied(found),
+        answers=answers,
+        questions=questions,
+        outcomes=list(numbers["outcomes"].itertuples(index=False, name=None)),
+        bands=bands,
         done=len(found.done),
         planned=len(found.plan),
-        tables={titles[name]: numbers[name] for name in titles if not numbers[name].empty},
-        figures={name: inline_svg(figure, name, name) for name, figure in drawn.items()},
-    )
+        tables={titles[name]: (name, numbers[name].head(_LONGEST_TABLE), len(numbers[name]))
+                for name in titles if not numbers[name].empty},
+        figures={
+            section: {name: inline_svg(figure, f"p{number}-{place}", name.replace("-", " "))
+                      for place, (name, figure) in enumerate(figures.items())}
+            for number, (section, figures) in enumerate(drawn.items())
+        },
+    )  # fmt: skip

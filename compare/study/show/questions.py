@@ -1,0 +1,80 @@
+"""The questions that a study answers, each by one number of its runs."""
+
+from dataclasses import dataclass
+
+from compare.study.show.results import WORST, StudyResults
+
+
+@dataclass(frozen=True)
+class Question:
+    """A question and the number that answers it.
+
+    Attributes
+    ----------
+    name : str
+        What its pictures' files are called.
+    text : str
+        As a heading.
+    metric : str
+        A column of the runs.
+    number : str
+        What a sentence calls the number.
+    label : str
+        What a picture calls it.
+    limit : float or None
+        A value that means something, which pictures draw.
+    """
+
+    name: str
+    text: str
+    metric: str
+    number: str
+    label: str
+    limit: float | None = None
+
+
+QUESTIONS = (
+    Question(
+        "disagreement", "How far are the two models apart?", WORST,
+        "the worst reading's disagreement", "worst reading's rms\n/ largest magnitude",
+    ),
+    Question(
+        "snap-off", "How far is the snap-off shifted?", "snap_off_difference",
+        "the shift of the snap-off", "shift of the snap-off [length]",
+    ),
+    Question(
+        "reconstruction", "How well is the object reconstructed?", "reconstruction_rms",
+        "the rms reconstruction error", "rms reconstruction error / $L$",
+    ),
+    Question(
+        "phase-b", "Where is there a Phase B?", "contact_length_minimum",
+        "the least contact length", "least contact length / $L$", limit=1.0,
+    ),
+)  # fmt: skip
+
+
+def asked(found: StudyResults) -> list[Question]:
+    """Choose the questions that a study has an answer to.
+
+    Parameters
+    ----------
+    found : StudyResults
+        The study.
+
+    Returns
+    -------
+    list of Question
+        Those whose number varies over its runs; the first is the main one.
+    """
+    chosen = []
+    for question in QUESTIONS:
+        if question.metric in found.done:
+            sizes = found.done[question.metric].dropna().abs()
+            # What differs by rounding alone does not depend on anything.
+            if len(sizes) and sizes.max() > 0 and sizes.max() > (1 + 1e-9) * sizes.min():
+                chosen.append(question)
+    if chosen and chosen[0].name == "disagreement":
+        return [question for question in chosen if question.name != "phase-b"] + [
+            question for question in chosen if question.name == "phase-b"
+        ]
+    return chosen

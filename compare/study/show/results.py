@@ -1,0 +1,115 @@
+"""What is stored of a study, as its report looks at it."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import pandas as pd
+
+from analytic import CLAMP_READINGS
+from compare.study.grid.plan import Plan
+from compare.study.grid.study import BEAM
+
+WORST = "disagreement_worst_rms"
+SEED = "noise.seed"
+REFINED = ("mujoco.segments", "mujoco.contour_points", "sweep.stations")
+"""Parameters that should make the disagreement fall."""
+_FEW_POINTS = 12  # parameters that advance together in more points than these are a sample
+
+
+@dataclass(frozen=True)
+class StudyResults:
+    """The rows of a study.
+
+    Attributes
+    ----------
+    plan : Plan
+        What was to be done.
+    rows : pandas.DataFrame
+        A row a run of the plan, whatever its outcome.
+    done : pandas.DataFrame
+        Those whose numbers count, with a column `WORST`: the largest of the clamp readings' rms
+        disagreements.
+    axes : tuple of str
+        Numeric parameters that take more than one value.
+    """
+
+    plan: Plan
+    rows: pd.DataFrame
+    done: pd.DataFrame
+    axes: tuple[str, ...]
+
+    @classmethod
+    def of(cls, plan: Plan, rows: pd.DataFrame) -> "StudyResults":
+        """Take those rows that belong to a plan.
+
+        Parameters
+        ----------
+        plan : Plan
+            What was to be done.
+        rows : pandas.DataFrame
+            What is stored.
+
+        Returns
+        -------
+        StudyResults
+            The plan's rows.
+        """
+        rows = rows[rows["run"].isin({run.id for run in plan})]
+        done = rows[rows["outcome"] == "done"]
+        readings = [f"disagreement_{name}_rms" for name in CLAMP_READINGS]
+        if readings[0] in done:
+            done = done.assign(**{WORST: done[readings].max(axis=1)})
+        keys = [key for axis in plan.study.crossed for key in axis.keys]
+        numeric = done.select_dtypes("number")
+        axes = tuple(key for key in keys if key in numeric and len(numeric[key].unique()) > 1)
+        return cls(plan, rows, done, axes)
+
+    @property
+    def plain_axes(self) -> tuple[str, ...]:
+        """The axes without those whose values only repeat the run."""
+        return tuple(key for key in self.axes if key != SEED)
+
+    @property
+    def sampled(self) -> tuple[str, ...]:
+        """The axes that were sampled together."""
+        groups = [a.keys for a in self.plan.study.crossed
+                  if len(a.keys) > 1 and len(a.points) > _FEW_POINTS]  # fmt: skip
+        return tuple(key for keys in groups for key in keys if key in self.axes)
+
+    def by_beam(self, metric: str) -> Iterator[tuple[str, pd.DataFrame]]:
+        """Split the runs by beam: the median of two models is that of neither.
+
+        Parameters
+        ----------
+        metric : str
+            A column.
+
+        Yields
+        ------
+        str, pandas.DataFrame
+            The beam, ``""`` in a study without simulation, and its runs that have the metric.
+        """
+        done = self.done.dropna(subset=[metric])
+        if BEAM not in done:
+            yield "", done
+            return
+        for beam, group in done.groupby(BEAM):
+            yield str(beam), group
+
+
+def together(done: pd.DataFrame, one: str, other: str) -> bool:
+    """Say whether two axes are zipped.
+
+    Parameters
+    ----------
+    done : pandas.DataFrame
+        A row a run.
+    one, other : str
+        The axes.
+
+    Returns
+    -------
+    bool
+        Whether a value of the one goes with one value of the other.
+    """
+    return int(done.groupby(one)[other].nunique().max()) == 1
