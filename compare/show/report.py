@@ -1,6 +1,6 @@
 """The report of a comparison: one offline HTML file, and the figures beside it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -75,15 +75,15 @@ def write_report(
     Path
         Of ``report.html``.
     """
-    found = comparison.to_dict()
     drawn = {name: draw(comparison) for name, draw in FIGURES.items()}
     contents: dict[str, str | bytes] = {
         f"{name}.png": png(figure) for name, figure in drawn.items()
     }
-    contents["comparison.json"] = document(found)
+    contents["comparison.json"] = document(comparison.to_dict())
     if budget is not None:
         contents |= budget_files(budget)
-    contents["report.html"] = _html(comparison, found, drawn, budget, film)
+    figures = _figures(comparison, drawn, budget)
+    contents["report.html"] = report_page(comparison, figures, budget, film)
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in contents.items():
         write_whole(folder / name, content)
@@ -109,13 +109,31 @@ def budget_files(found: Budget, advice: Mapping[str, Any] | None = None) -> dict
     return {"budget.json": document(content), "budget.png": png(picture(found), 100)}
 
 
-def _html(
+def report_page(
     comparison: Comparison,
-    found: Mapping[str, Any],
-    drawn: Mapping[str, Figure],
-    budget: Budget | None,
-    film: Film | None,
+    figures: Mapping[str, Sequence[Markup]],
+    budget: Budget | None = None,
+    film: Film | None = None,
 ) -> str:
+    """The report as a page.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        What is reported.
+    figures : mapping
+        The page's pictures by the section they are in; a section without any has words only.
+    budget : Budget, optional
+        Of the same comparison.
+    film : Film, optional
+        Becomes part of the page.
+
+    Returns
+    -------
+    str
+        HTML that needs no other file.
+    """
+    found = comparison.to_dict()
     return render(
         "compare.show",
         "report.html.j2",
@@ -133,7 +151,7 @@ def _html(
         unresolved=UNRESOLVED,
         headline=None if budget is None else headline(budget),
         orders=fitted_orders(budget.convergence) if budget and budget.convergence else {},
-        figures=_figures(comparison, drawn, budget),
+        figures=figures,
         film=film and {"gif": embedded(film.gif), "still": embedded(film.still)},
     )
 

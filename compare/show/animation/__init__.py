@@ -15,7 +15,7 @@ from compare.show.animation.scene import Scene
 
 __all__ = ["write_animation"]
 
-_STILLS = (0.1, 0.4, 0.7, 1.0)  # of the stations in contact; the last is the eve of snap-off
+_STILLS = (0.1, 0.4, 0.7, 1.0)  # of the stations in contact; the last is just before the snap-off
 
 
 def write_animation(
@@ -58,7 +58,8 @@ def write_animation(
             f"stations in contact ({reference.source})", 0, "one or more", "sweep farther"
         )
     scene = Scene(*moving)
-    chosen = np.linspace(0, len(reference.table) - 1, frames).astype(int)
+    last = len(reference.table) - 1
+    chosen = np.linspace(0, last, min(frames, last + 1)).astype(int)
     images = list(scene.images(np.unique(chosen), advance))
     written = [save_gif(images, folder / "animation.gif")]
     for number, share in enumerate(_STILLS, start=1):

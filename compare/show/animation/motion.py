@@ -42,8 +42,8 @@ class Motion:
 
     @property
     def force(self) -> Floats:
-        """Magnitude of the contact force, shape (stations,)."""
-        return np.asarray(np.hypot(self.clamp["force_x"], self.clamp["force_y"]))
+        """Magnitude of the contact force, zero where it is not known, shape (stations,)."""
+        return np.nan_to_num(np.hypot(self.clamp["force_x"], self.clamp["force_y"]))
 
     @classmethod
     def of(cls, readings: Readings) -> "Motion":

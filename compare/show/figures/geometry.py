@@ -30,6 +30,7 @@ from compare.show.style import (
 )
 
 _SHAPES = 24  # drawn of each sweep
+_HIGHEST = 10.0  # inches, if the sweep is much shorter than the vibrissa
 _OBJECT: dict[str, Any] = {"color": GREY, "linewidth": 2.5}
 _CONTACT: dict[str, Any] = {"color": INK, "marker": "o", "markersize": 1.5, "linestyle": ""}
 
@@ -71,7 +72,8 @@ def geometry(comparison: Comparison) -> Figure:
     )
     # As high as both axes need, at equal scales, besides their labels and the legend.
     wide, high = (np.ptp(limits) for limits in (axes[0].get_xlim(), axes[0].get_ylim()))
-    figure.set_size_inches(PAGE_WIDTH, 2 * (PAGE_WIDTH - 0.8) * high / wide + 1.5)
+    height = 2 * (PAGE_WIDTH - 0.8) * high / wide + 1.5
+    figure.set_size_inches(PAGE_WIDTH, min(height, _HIGHEST))
     return figure
 
 

@@ -74,7 +74,7 @@ def snap_off_panels(comparison: Comparison) -> dict[str, Figure]:
     known = [place / comparison.reference.beam.length for place in places if place is not None]
     if not known:
         return {}
-    half = _NEAR * float(np.ptp(foot(comparison.reference)))
+    half = _NEAR * float(np.ptp(foot(comparison.reference))) or _NEAR
     figures = {name: _panel(comparison, name) for name in CLAMP_READINGS}
     for figure in figures.values():
         for ax in figure.axes:

@@ -15,7 +15,7 @@ from compare.show.findings.sentences import overview, sentences
 from compare.show.page import document
 from compare.show.report import budget_files
 from tests.compare.planted import planted
-from tests.conftest import exact_sweep, simulated_sweep
+from tests.compare.show import sweeps
 
 
 def run(
@@ -105,7 +105,7 @@ def folder(tmp_path_factory) -> Path:
     """Two runs as `write_report` leaves them, one with a budget."""
     made = tmp_path_factory.mktemp("runs")
     for case, budget in (("parabola", planted()), ("catenary", None)):
-        exact, simulated = exact_sweep(case), simulated_sweep(case)
+        exact, simulated = sweeps.exact(case), sweeps.candidate(case)
         run = made / f"{case}-chain"
         run.mkdir()
         contents = {"comparison.json": document(compare(exact, simulated).to_dict())}

@@ -8,7 +8,7 @@ from datetime import datetime
 import numpy as np
 import pytest
 from markupsafe import escape
-from PIL import Image
+from matplotlib.figure import Figure
 
 from analytic import CLAMP_READINGS, Readings
 from compare import Tolerances, compare
@@ -16,37 +16,13 @@ from compare.explain.convergence import convergence, fitted_orders
 from compare.explain.suspects import Suspect
 from compare.show.figures.budget_bars import headline, panels
 from compare.show.page import inline_svg
-from compare.show.report import Film, write_report
+from compare.show.report import report_page
 from compare.show.verdict import verdict
 from tests.compare.planted import planted
+from tests.compare.show import sweeps
 from tests.compare.show.pages import Page
-from tests.conftest import exact_sweep, simulated_sweep
 
-NASTY = 'a <b>"case"</b> & <script>alert(1)</script> {{ 7 * 7 }} ünder_score'
 ELSEWHERE = re.compile(r"(?:https?:)?//(?!www\.w3\.org/(?:1999/xlink|2000/svg)\")[a-z]")
-
-
-def named(sweep: Readings, name: str) -> Readings:
-    return replace(sweep, provenance={**sweep.provenance, "case": name})
-
-
-@pytest.fixture(scope="module")
-def film(tmp_path_factory) -> Film:
-    folder = tmp_path_factory.mktemp("film")
-    Image.new("RGB", (80, 64), "white").save(folder / "film.gif")
-    Image.new("RGB", (80, 64), "white").save(folder / "still.png")
-    return Film(folder / "film.gif", folder / "still.png")
-
-
-@pytest.fixture(scope="module")
-def comparison():
-    return compare(named(exact_sweep("parabola"), NASTY), simulated_sweep("parabola"))
-
-
-@pytest.fixture(scope="module")
-def page(comparison, film, tmp_path_factory) -> Page:
-    report = write_report(comparison, tmp_path_factory.mktemp("report"), planted(), film)
-    return Page(report.read_text(encoding="utf-8"))
 
 
 def test_tags_are_balanced_and_names_unique(page):
@@ -119,15 +95,14 @@ def test_it_says_what_it_was_made_with(page):
     assert "mujoco" in section.lower()
 
 
-def test_measured_readings_without_budget_or_provenance(tmp_path):
-    exact = exact_sweep("parabola")
+def test_measured_readings_without_budget_or_provenance():
+    exact = sweeps.exact("parabola")
     bare = Readings(exact.table.drop(columns=["phase", "status"]), exact.beam)
-    page = Page(write_report(compare(bare, bare), tmp_path).read_text(encoding="utf-8"))
+    page = Page(report_page(compare(bare, bare), {}))
     assert page.faults == []
     assert "Contour not recorded" in page.text
     assert not {"budget", "convergence"} & set(page.ids)
-    assert not page.all("img")
-    assert not (tmp_path / "budget.json").exists()
+    assert not page.all("img", "svg")
 
 
 @pytest.mark.parametrize(
@@ -187,7 +162,7 @@ def test_fitted_orders_of_a_power_law():
 
 
 def test_convergence_is_the_disagreement_at_each_number_of_segments():
-    exact = exact_sweep("parabola")
+    exact = sweeps.exact("parabola")
     runs = [
         replace(
             exact,
@@ -203,12 +178,15 @@ def test_convergence_is_the_disagreement_at_each_number_of_segments():
     assert found[20] == {"force_x": pytest.approx(0.05 / scale), "force_y": 0, "moment_z": 0}
 
 
-def test_pictures_take_the_pages_colours():
-    svg, again = (
-        inline_svg(panels(planted())["force_x"], "one", 'it says "this"') for _ in range(2)
-    )
-    assert "currentColor" in svg
-    assert "var(--orange)" in svg
-    assert "#d55e00" not in svg
+def test_pictures_take_the_pages_colours(page):
+    drawn = page.text[page.text.index("<svg") :]
+    assert "currentColor" in drawn
+    assert "var(--orange)" in drawn
+    for themed in ("#d55e00", "#0072b2", "#000000"):
+        assert themed not in drawn
+
+
+def test_the_same_picture_is_the_same_text():
+    svg, again = (inline_svg(Figure((1, 1)), "one", 'it says "this"') for _ in range(2))
     assert 'aria-label="it says &#34;this&#34;"' in svg
     assert svg == again

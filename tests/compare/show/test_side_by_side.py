@@ -58,4 +58,4 @@ def test_command(exact, tmp_path):
     assert "no.parquet" in done.stderr
     twice = vibrissa("side-by-side", "parabola", "near.parquet", "near.parquet", cwd=tmp_path)
     assert twice.returncode == 2
-    assert "different names" in twice.stderr
+    assert "each file once" in twice.stderr

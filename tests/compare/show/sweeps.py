@@ -1,0 +1,41 @@
+"""Sweeps to draw: exact ones, and candidates that are a little off. No simulator is needed."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from analytic import CLAMP_READINGS, Readings, named_case, solve_sweep
+
+STATIONS = 60
+
+
+@cache
+def exact(name: str) -> Readings:
+    case = named_case(name)
+    return solve_sweep(replace(case, sweep=replace(case.sweep, stations=STATIONS)))
+
+
+@cache
+def candidate(name: str, off: float = 1e-3) -> Readings:
+    """As a simulator would leave it: all clamp readings wave about the exact ones."""
+    sweep = exact(name)
+    wave = 1 + off * np.sin(np.arange(STATIONS))
+    table = sweep.table.assign(**{n: wave * sweep.values(n) for n in CLAMP_READINGS})
+    settings = {"beam": "chain", "segments": 40}
+    provenance = {
+        **sweep.provenance,
+        "settings": settings,
+        "engine": "MuJoCo 4.0.0",
+        "seconds": 1.0,
+    }
+    return replace(sweep, table=table, source="mujoco chain", provenance=provenance)
+
+
+def without_contact(name: str) -> Readings:
+    """A simulator that never touches."""
+    sweep = candidate(name)
+    nothing = dict.fromkeys(CLAMP_READINGS, 0.0)
+    nothing |= {column: np.nan for column in sweep.table if column.startswith(("contact", "tip_"))}
+    provenance = {**sweep.provenance, "events": {}}
+    return replace(sweep, table=sweep.table.assign(phase="free", **nothing), provenance=provenance)

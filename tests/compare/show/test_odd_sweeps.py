@@ -1,0 +1,108 @@
+"""Reports of what nobody would choose to report: whatever is compared, the page says what it is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import CLAMP_READINGS, Readings
+from compare import compare
+from compare.show.figures.geometry import geometry
+from compare.show.figures.phases import phase_criterion
+from compare.show.figures.readings import reading_panels, snap_off_panels
+from compare.show.report import report_page, write_report
+from tests.compare.show import sweeps
+from tests.compare.show.pages import Page
+
+
+def picked(stations: slice) -> tuple[Readings, Readings]:
+    return tuple(
+        replace(sweep, table=sweep.table.iloc[stations].reset_index(drop=True))
+        for sweep in (sweeps.exact("catenary"), sweeps.candidate("catenary"))
+    )
+
+
+def few(n: int) -> tuple[Readings, Readings]:
+    """Stations around the middle of the contact."""
+    return picked(slice(30, 30 + n))
+
+
+def with_gaps() -> tuple[Readings, Readings]:
+    """Every third station of the candidate is missing, and so are its last ones."""
+    sweep = sweeps.candidate("catenary")
+    table = sweep.table.copy()
+    gone = (np.arange(sweeps.STATIONS) % 3 == 0) | (np.arange(sweeps.STATIONS) > 50)
+    table.loc[gone, list(CLAMP_READINGS)] = np.nan
+    return sweeps.exact("catenary"), replace(sweep, table=table)
+
+
+def without_snap_off() -> tuple[Readings, Readings]:
+    return tuple(
+        replace(sweep, provenance={**sweep.provenance, "events": {}}) for sweep in picked(slice(40))
+    )
+
+
+def scaled() -> tuple[Readings, Readings]:
+    """A vibrissa of 50 mm in millimetres and newtons."""
+
+    def units(sweep: Readings) -> Readings:
+        beam = replace(sweep.beam, length=50.0, flexural_rigidity=3e4, radius=0.25)
+        factors = {"force_x": beam.force_unit, "force_y": beam.force_unit,
+                   "moment_z": beam.moment_unit, "foot_x": 50.0}  # fmt: skip
+        table = sweep.table[[*factors]] * factors
+        return Readings(table, beam, sweep.source)
+
+    return units(sweeps.exact("catenary")), units(sweeps.candidate("catenary"))
+
+
+def oddly_named() -> tuple[Readings, Readings]:
+    exact, found = sweeps.exact("catenary"), sweeps.candidate("catenary")
+    return (
+        replace(exact, source="_rig [/b] $$ $x_{$ \\frac <i>"),
+        replace(found, source="ütö 触覚 \x00\n" + "long " * 100),
+    )
+
+
+ODD = {
+    "two stations": lambda: few(2),
+    "three stations": lambda: few(3),
+    "eight stations": lambda: few(8),
+    "gaps": with_gaps,
+    "no snap-off": without_snap_off,
+    "millimetres": scaled,
+    "odd names": oddly_named,
+    "to the right": lambda: tuple(sweep.mirrored() for sweep in picked(slice(None))),
+}
+
+
+@pytest.mark.parametrize("pair", ODD.values(), ids=ODD)
+def test_page_and_pictures(pair):
+    found = compare(*pair())
+    page = Page(report_page(found, {}))
+    assert page.faults == []
+    assert "nan" not in page.text.split("<body>")[1]
+    for name in CLAMP_READINGS:
+        assert name in page.text
+    assert geometry(found).get_size_inches().max() <= 10
+    assert phase_criterion(found).axes
+    assert set(reading_panels(found)) >= set(CLAMP_READINGS)
+    for figure in snap_off_panels(found).values():
+        low, high = figure.axes[0].get_xlim()
+        assert low < high
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pair", ODD.values(), ids=ODD)
+def test_whole_reports(pair, tmp_path):
+    page = Page(write_report(compare(*pair()), tmp_path).read_text(encoding="utf-8"))
+    assert page.faults == []
+    assert len(page.all("svg")) >= 6
+
+
+def test_units_are_those_of_the_beam():
+    found = compare(*scaled())
+    text = report_page(found, {})
+    assert "= 50, forces in" in text
+    small = report_page(compare(*picked(slice(None))), {})
+    apart = [row.split("</tr>")[0] for row in (text, small) for row in [row.split('id="apart"')[1]]]
+    assert apart[0] == apart[1]
