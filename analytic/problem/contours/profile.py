@@ -11,7 +11,10 @@ from analytic.problem.contours.convexity import Curve, check_convex
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import pair, positive
 
-_DIFFERENCE_STEP = 5e-3  # rad: round-off eps/h and truncation h^6 are both about 1e-13 here
+# Steps of the differences: truncation goes with their 6th power, round-off with their inverse.
+_STEPS = 5e-3 / 4.0 ** np.arange(4)  # rad
+_STENCIL = np.arange(-3.0, 4.0)  # in steps
+_TO_POWERS = np.linalg.inv(np.vander(_STENCIL, increasing=True))
 
 
 @dataclass(frozen=True)
@@ -143,18 +146,26 @@ class Profile(Contour):
     def _stretch(self, alpha: Floats) -> Floats:
         if self.radius_of_curvature is not None:
             return self.radius_of_curvature(alpha)
-        lowest, highest = self.alpha_range
-        h = min(_DIFFERENCE_STEP, (highest - lowest) / 12)
-        centre = np.clip(alpha, lowest + 3 * h, highest - 3 * h)
-        return np.cos(centre) * _slope(self.xi, centre, h) + np.sin(centre) * _slope(
-            self.eta, centre, h
+        return np.cos(alpha) * self._slope(self.xi, alpha) + np.sin(alpha) * self._slope(
+            self.eta, alpha
         )
 
+    def _slope(self, curve: Curve, alpha: Floats) -> Floats:
+        """Derivative of `curve`, from polynomials through seven points within the range.
 
-def _slope(curve: Curve, centre: Floats, h: float) -> Floats:
-    """Sixth-order central difference of `curve`."""
-    near, middle, far = (curve(centre + i * h) - curve(centre - i * h) for i in (1, 2, 3))
-    return (45 * near - 9 * middle + far) / (60 * h)
+        Of several spacings it is the one that agrees best with the next finer one.
+        """
+        lowest, highest = self.alpha_range
+        h = np.minimum(_STEPS, (highest - lowest) / 12 * (_STEPS / _STEPS[0]))[:, None]
+        centre = np.minimum(np.maximum(alpha, lowest + 3 * h), highest - 3 * h)
+        at = centre[:, None] + _STENCIL[:, None] * h[:, None]
+        values = np.reshape(curve(np.clip(at, lowest, highest).ravel()), at.shape)
+        powers = np.einsum("kj,sjn->skn", _TO_POWERS, values)
+        order = np.arange(1.0, 7.0)[:, None]
+        aside = ((alpha - centre) / h)[:, None]
+        slopes = (order * aside ** (order - 1) * powers[:, 1:]).sum(axis=1) / h
+        best = np.argmin(np.abs(np.diff(slopes, axis=0)), axis=0)
+        return np.asarray(np.take_along_axis(slopes, best[None], axis=0)[0])
 
 
 def _scaled(curve: Curve, factor: float, alpha: Floats) -> Floats:
