@@ -8,6 +8,7 @@ import numpy as np
 
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
+from analytic.problem.roots import zero
 
 FARTHEST = 1e4  # L, from the origin: positions are then good to 2e-12 L
 _WIDEST = 1e3  # L; a wider object turns by less than 1e-3 rad while the vibrissa passes
@@ -102,18 +103,7 @@ def _height_one(centreline: Contour, end: float, bottom: float) -> float:
     """Where the contour passes the height 1 between its lowest point and an end, or that end."""
     if _height(centreline, end) <= 1:
         return end
-    from scipy.optimize import brentq  # slow to load, and stating a case needs none of it
-
-    bracket = min(end, bottom), max(end, bottom)
-    return float(
-        brentq(
-            lambda t: _height(centreline, t) - 1,
-            *bracket,
-            xtol=1e-300,
-            rtol=9e-16,
-            maxiter=2000,  # halving alone gets from 1 to the least number in 1,075
-        )
-    )
+    return zero(lambda t: _height(centreline, t) - 1, min(end, bottom), max(end, bottom))
 
 
 def _height(centreline: Contour, t: float) -> float:

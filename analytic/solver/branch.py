@@ -10,14 +10,16 @@ left of a foot position holds the state there.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import minimize_scalar
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
-from analytic.solver.equilibria import equilibria, tangent_contact
+from analytic.solver.contact_length import surplus
+from analytic.solver.equilibria import equilibria
+from analytic.solver.grid import along, folded
 
-_COARSE = 301  # samples of the whole contour to find the snap-off between; the fold is then exact
-_FINE = 129  # samples of the branch to start Newton's method from
+_ASIDE = 1e-3  # of a cell: next to a fold x0 is higher by far more than rounding there
+_ROUNDING = 8 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -84,77 +86,71 @@ class Branch:
         return {n: None if x is None else float(x) for n, x in zip(names, places, strict=True)}
 
     def cells(self, foot_x: Floats) -> Integers:
-        """Cell that holds the state at each foot position; they must lie on the branch."""
+        """Cell that holds the state at each foot position on the branch.
+
+        Parameters
+        ----------
+        foot_x : array, shape (n,)
+            Foot positions between first contact and snap-off [L].
+
+        Returns
+        -------
+        array of int, shape (n,)
+            Of the first cell whose end lies at or left of the foot position.
+        """
         least = np.minimum.accumulate(self.foot_x)
         end = np.searchsorted(-least, -foot_x, side="left")
         return np.clip(end, 1, len(self.t) - 1) - 1
 
 
-def trace(centreline: Contour, first: float) -> Branch:
+def trace(centreline: Contour, reach: tuple[float, float]) -> Branch:
     """Follow the equilibria along a dimensionless contour, from first contact to snap-off.
 
     Parameters
     ----------
     centreline : Contour
         Contour that the centreline feels, in units of the vibrissa's length.
-    first : float
-        Contour parameter of the first contact, as `contact_range` has it.
+    reach : tuple of float
+        Contour parameters of the last point within reach and of the first contact, as
+        `contact_range` has them.
+
+    Returns
+    -------
+    Branch
+        At least two points; all in one place if nothing but the first contact can be reached.
     """
-    last = _snap_off(centreline, first)
-    # Dense at both ends: x0 starts like a square root at first contact and folds at snap-off.
-    fraction = (1 - np.cos(np.linspace(0, np.pi, _FINE))) / 2
-    corners = centreline.breaks()
-    corners = corners[(corners > last) & (corners < first)]
-    grid = _descending(first + (last - first) * fraction, corners)
-    grid = _descending(grid, _phase_changes(centreline, grid))
-    states = equilibria(centreline, grid[1:])
-    return Branch(
-        centreline,
-        grid,
-        np.append(centreline.at(grid[:1]).xi, states.foot_x),
-        np.append(0.0, states.excess),
-        surplus(centreline, (grid[1:] + grid[:-1]) / 2) < 0,
+    last, first = reach
+    t, foot_x, excess = folded(centreline, along(centreline, first, last))
+    least = int(np.argmin(foot_x))
+    t, foot_x, excess = (values[: least + 1] for values in (t, foot_x, excess))
+    if least == 0:
+        t, foot_x, excess = (np.repeat(values, 2) for values in (t, foot_x, excess))
+    else:
+        t[-1], foot_x[-1], excess[-1] = _lowest(centreline, t[-1], (t[-2], foot_x[-1], excess[-1]))
+    return Branch(centreline, t, foot_x, excess, surplus(centreline, (t[1:] + t[:-1]) / 2) < 0)
+
+
+def _lowest(
+    centreline: Contour, at: float, found: tuple[float, float, float]
+) -> tuple[float, float, float]:
+    """The snap-off's parameter, foot position and excess rotation.
+
+    It is what was `found` where the derivative of x0 vanishes, unless that is inexact, as without a
+    radius of curvature: then x0 is lower next to it.
+    """
+    before, foot_x, excess = found
+    width = before - at
+    aside = at + _ASIDE * width * np.array([-1, 1])
+    lower = equilibria(centreline, aside).foot_x < foot_x - _ROUNDING * max(1, abs(foot_x))
+    if not lower.any():
+        return at, foot_x, excess
+
+    def place(t: float) -> float:
+        value = float(equilibria(centreline, np.array([t])).foot_x[0])
+        return foot_x + 1 if np.isnan(value) else value  # out of reach
+
+    search = minimize_scalar(
+        place, bounds=(at - width, before), method="bounded", options={"xatol": 1e-9 * width}
     )
-
-
-def surplus(centreline: Contour, t: Floats) -> Floats:
-    """1 - 1/s1 with s1 of eq. 21: negative in Phase B, and smooth through the pole of s1."""
-    states = tangent_contact(centreline.at(t))
-    straight = states.span.q == 0  # against an upright side, at first contact
-    q, root_f = np.where(straight, 1.0, states.span.q), np.where(straight, 1.0, states.root_f)
-    return np.where(straight, 1 - 1 / states.point.eta, 1 - root_f / q)
-
-
-def _phase_changes(centreline: Contour, grid: Floats) -> Floats:
-    """Contour parameters between neighbours in `grid` where s1 passes 1."""
-    tangential = surplus(centreline, grid) < 0
-    turns = np.flatnonzero(tangential[1:] != tangential[:-1])
-
-    def at(t: float) -> float:
-        return float(surplus(centreline, np.array([t]))[0])
-
-    return np.array([brentq(at, grid[i + 1], grid[i], xtol=1e-300, rtol=9e-16) for i in turns])
-
-
-def _descending(*grids: Floats) -> Floats:
-    return np.unique(np.concatenate(grids))[::-1]
-
-
-def _snap_off(centreline: Contour, first: float) -> float:
-    """The parameter of the least foot position that is reached without a gap."""
-    low = centreline.t_range[0]
-    breaks = centreline.breaks()
-    grid = _descending(np.linspace(first, low, _COARSE), breaks[(breaks > low) & (breaks < first)])
-    foot_x = equilibria(centreline, grid[1:]).foot_x
-    beyond = np.flatnonzero(np.isnan(foot_x))
-    reached = foot_x[: beyond[0]] if beyond.size else foot_x
-    least = 1 + int(np.argmin(reached))
-
-    def rate(t: float) -> float:
-        states = equilibria(centreline, np.array([t]))
-        return float(states.foot_x_rate[0]) if np.isfinite(states.excess[0]) else -1.0
-
-    before, after = grid[max(least - 1, 1)], grid[min(least + 1, len(grid) - 1)]
-    if not rate(before) > 0 > rate(after):
-        return float(grid[least])  # a corner of x0, on the grid itself
-    return float(brentq(rate, after, before, xtol=1e-300, rtol=9e-16))
+    lowest = equilibria(centreline, np.array([search.x]))
+    return float(search.x), float(lowest.foot_x[0]), float(lowest.excess[0])

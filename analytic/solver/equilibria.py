@@ -98,10 +98,28 @@ def tangent_contact(point: ContourPoint) -> Equilibria:
     return Equilibria(point, excess, loaded, root_f, np.ones_like(point.alpha, dtype=bool))
 
 
-def tip_contact(point: ContourPoint, excess: Floats) -> Equilibria:
-    """Phase A (paper, eqs. 3-13) with a known excess rotation of the tip."""
+def contact(point: ContourPoint, excess: Floats, tangent: Booleans) -> Equilibria:
+    """Contacts of known phase, and of known rotation if at the tip.
+
+    Parameters
+    ----------
+    point : ContourPoint
+        Where the centreline's contour is touched; arrays of shape (n,).
+    excess : array, shape (n,)
+        Excess rotation of the tip in Phase A [rad]; what Phase B has is known.
+    tangent : array of bool, shape (n,)
+        Phase B.
+
+    Returns
+    -------
+    Equilibria
+        Whether or not they reach the point at the tip, or fit on the vibrissa.
+    """
+    excess = np.where(tangent, np.pi / 2 - np.abs(point.alpha), excess)
     loaded = span(excess, point.alpha)
-    return Equilibria(point, excess, loaded, loaded.q, np.zeros_like(point.alpha, dtype=bool))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        root_f = np.where(tangent, frame(loaded, point.alpha).up / point.eta, loaded.q)
+    return Equilibria(point, excess, loaded, root_f, tangent)
 
 
 def equilibria(centreline: Contour, t: Floats) -> Equilibria:

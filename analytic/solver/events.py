@@ -5,18 +5,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import Contour
 from analytic.problem.reach import contact_range
-from analytic.solver.branch import surplus, trace
-from analytic.solver.elastica import frame
+from analytic.problem.roots import zeros
+from analytic.solver.branch import trace
+from analytic.solver.contact_length import surplus_and_rate
+from analytic.solver.grid import along
 from analytic.solver.equilibria import Equilibria, equilibria, tangent_contact, to_columns
-
-_GRID = 401  # samples of the contour to find the minimum of s1 between; it is then exact
-
 
 @dataclass(frozen=True)
 class Event:
@@ -72,7 +70,8 @@ def find_events(profile: Contour, beam: Beam | None = None) -> Events:
     """
     beam = Beam() if beam is None else beam
     centreline = profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
-    branch = trace(centreline, contact_range(centreline)[1])
+    reach = contact_range(centreline)
+    branch = trace(centreline, reach)
     touch = _first_touch(centreline, branch.first_contact, beam)
 
     def event(t: float) -> Event:
@@ -82,7 +81,7 @@ def find_events(profile: Contour, beam: Beam | None = None) -> Events:
     into_b, out_of_b = changes[int(starts_in_b) :: 2], changes[int(not starts_in_b) :: 2]
     starts = touch if starts_in_b else (event(into_b[0]) if into_b.size else None)
     ends = None if branch.tangent[-1] or not out_of_b.size else event(out_of_b[-1])
-    lowest = _contact_length_minimum(centreline, branch.first_contact)
+    lowest = _contact_length_minimum(centreline, reach)
     minimum = _event(tangent_contact(centreline.at(np.array([lowest]))), beam)
     return Events(
         touch,
@@ -94,35 +93,16 @@ def find_events(profile: Contour, beam: Beam | None = None) -> Events:
     )
 
 
-def _contact_length_minimum(centreline: Contour, first: float) -> float:
+def _contact_length_minimum(centreline: Contour, reach: tuple[float, float]) -> float:
     """Contour parameter at which the s1 of eq. 21 is least."""
-    grid = np.linspace(first, centreline.t_range[0], _GRID)
-    breaks = centreline.breaks()
-    grid = np.unique(np.concatenate([grid, breaks[breaks < first]]))[::-1]
-    lowest = int(np.argmin(surplus(centreline, grid)))
-    before, after = grid[max(lowest - 1, 1)], grid[min(lowest + 1, len(grid) - 2)]
-    rates = _tangent_arc_length_rate(centreline, np.array([before, after]))
-    if not rates[0] > 0 > rates[1]:
-        return float(grid[lowest])  # a corner of s1, on the grid itself
-    return float(
-        brentq(
-            lambda t: float(_tangent_arc_length_rate(centreline, np.array([t]))[0]),
-            after,
-            before,
-            xtol=1e-300,
-            rtol=9e-16,
-        )
-    )
-
-
-def _tangent_arc_length_rate(centreline: Contour, t: Floats) -> Floats:
-    """d(log s1)/dt of eq. 21, with q' = -1/C and (C sin + S cos)' = across - 1/C."""
-    point = centreline.at(t)
-    states = tangent_contact(point)
-    up, across = frame(states.span, point.alpha)
-    q, C, _ = states.span
-    by_alpha = -1 / (C * q) - (across - 1 / C) / up
-    return point.stretch * np.sin(point.alpha) / point.eta + point.turning * by_alpha
+    last, first = reach
+    grid = along(centreline, first, last)
+    value, rate = surplus_and_rate(centreline, grid)
+    dips = np.flatnonzero((rate[:-1] > 0) & (rate[1:] < 0))
+    extrema = zeros(lambda t: surplus_and_rate(centreline, t)[1], grid[dips + 1], grid[dips])
+    places = np.append(grid, extrema)
+    lowest = np.append(value, surplus_and_rate(centreline, extrema)[0])
+    return float(places[np.argmin(lowest)])
 
 
 def _event(state: Equilibria, beam: Beam) -> Event:

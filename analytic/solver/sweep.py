@@ -1,4 +1,4 @@
-"""The sweep on given foot positions, by Newton's method on both phases' closed forms."""
+"""The sweep on given foot positions: every station solved, checked and put into one table."""
 
 from dataclasses import replace
 from functools import partial
@@ -8,24 +8,19 @@ import numpy as np
 import pandas as pd
 
 from analytic.checks.certificate import certify
-from analytic.problem.arrays import Floats, Integers
+from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS
 from analytic.problem.mirror import solve_either_way
 from analytic.problem.readings import Readings
-from analytic.solver.branch import Branch, trace
-from analytic.solver.equilibria import (
-    Column,
-    Equilibria,
-    tangent_contact,
-    tip_contact,
-    tip_rates,
-    to_columns,
-)
+from analytic.solver.branch import trace
+from analytic.solver.equilibria import Column, to_columns
+from analytic.solver.residuals import residuals
+from analytic.solver.stations import solve_stations
 
-_CLOSE = 1e-9  # of a Newton step; the next one would change round-off only
-_MAX_ITERATIONS = 50
-_CERTIFIED = 1e-9  # L and EI/L; the check itself is good to 1e-12
+_SOLVED = 1e-11  # residuals of the closed form: hundreds of roundings at the sharpest bends
+_CERTIFIED = 1e-9  # L and EI/L; the integration is good to 1e-12
+_ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
 
 
 def solve_sweep(case: Case, certified: bool = False) -> Readings:
@@ -36,14 +31,18 @@ def solve_sweep(case: Case, certified: bool = False) -> Readings:
     case : Case
         The problem.
     certified : bool
-        Whether each station is to be checked by integration from the clamp (`certify`). The
-        readings then have its columns, and a station that misses by more than 1e-9 is
-        ``"diverged"``.
+        Whether each station is to be checked by integration from the clamp too (`certify`).
 
     Returns
     -------
     Readings
-        In the units of the case's beam; source ``"analytic"``.
+        In the units of the case's beam; source ``"analytic"``. The table has two more columns,
+        dimensionless and zero where the vibrissa is free. ``residual_boundary`` is the largest miss
+        of the contact's position, arc length, slope and direction of force, of the arc length
+        beyond L and of the tip's angle below the contour's; ``residual_moment`` is that of the
+        balance of moments. They come from the clamp readings by the closed form; if `certified`,
+        they are the larger ones of that and of the integration. ``status`` is ``"diverged"`` where
+        one exceeds 1e-11 by the closed form or 1e-9 by the integration, else ``"ok"``.
     """
     return solve_either_way(case, partial(_solve_leftward, certified=certified))
 
@@ -56,16 +55,17 @@ def _solve_leftward(case: Case, certified: bool) -> Readings:
     """
     beam = case.beam
     foot_x = case.foot_x / beam.length
-    branch = trace(case.centreline, case.reach[1])
+    branch = trace(case.centreline, case.reach)
     columns = _free(case.foot_x)
-    touching = (foot_x < branch.foot_x[0]) & (foot_x >= branch.foot_x[-1])
-    cells = branch.cells(foot_x)
-    for tangent, solve in ((False, _tip), (True, _tangent)):
-        here = touching & (branch.tangent[cells] == tangent)
-        if here.any():
-            solved = to_columns(solve(branch, foot_x[here], cells[here]), beam)
-            for name in COLUMNS[1:]:
-                columns[name][here] = solved[name]
+    first, snap_off = branch.foot_x[0], branch.foot_x[-1]
+    touching = (foot_x < first) & (foot_x >= snap_off - _ROUNDING * max(1.0, abs(snap_off)))
+    if touching.any():
+        solved = to_columns(solve_stations(branch, foot_x[touching]), beam)
+        for name in COLUMNS[1:]:
+            columns[name][touching] = solved[name]
+    checked = residuals(columns, beam)
+    solved_on = np.maximum(*checked.values()) <= _SOLVED
+    columns["status"] = np.where(solved_on, "ok", "diverged")
     provenance = {
         **case.provenance(),
         "engine": f"vibrissa-testbed {version('vibrissa-testbed')}",
@@ -73,74 +73,17 @@ def _solve_leftward(case: Case, certified: bool) -> Readings:
             name: None if x is None else x * beam.length for name, x in branch.events().items()
         },
     }
-    readings = Readings(pd.DataFrame(columns), beam, "analytic", provenance)
+    readings = Readings(pd.DataFrame({**columns, **checked}), beam, "analytic", provenance)
     return _with_certificate(readings) if certified else readings
 
 
 def _with_certificate(readings: Readings) -> Readings:
-    residuals = certify(readings)
-    wrong = ~(residuals.max(axis=1) <= _CERTIFIED)
+    found = certify(readings)
+    wrong = ~(found.max(axis=1) <= _CERTIFIED)
     table = readings.table.assign(status=readings.table["status"].mask(wrong, "diverged"))
-    return replace(readings, table=pd.concat([table, residuals], axis=1))
-
-
-def _tangent(branch: Branch, foot_x: Floats, cells: Integers) -> Equilibria:
-    """Phase B at the given foot positions: Newton's method on x0(t)."""
-    centreline = branch.centreline
-    t, low, high = _start(branch, foot_x, cells)
-    for _ in range(_MAX_ITERATIONS):
-        states = tangent_contact(centreline.at(t))
-        new = np.clip(t - (states.foot_x - foot_x) / states.foot_x_rate, low, high)
-        step, t = np.abs(new - t), new
-        if step.max() <= _CLOSE:
-            return tangent_contact(centreline.at(t))
-    raise _failure(foot_x, step)
-
-
-def _tip(branch: Branch, foot_x: Floats, cells: Integers) -> Equilibria:
-    """Phase A at the given foot positions: Newton's method on height and reach together.
-
-    Solving for the excess rotation with the foot position, not from the height alone, keeps all
-    digits at first contact, where the height says next to nothing about the force.
-    """
-    centreline = branch.centreline
-    t, low, high = _start(branch, foot_x, cells)
-    excess = _between(branch.excess, branch.foot_x, foot_x, cells)
-    for _ in range(_MAX_ITERATIONS):
-        states = tip_contact(centreline.at(t), excess)
-        alpha, _, eta, turning, stretch = states.point
-        height, reach = tip_rates(excess, states.span, alpha)
-        too_high = states.frame.up / states.span.q - eta
-        too_far = foot_x - states.foot_x
-        height_t = turning * height.by_alpha - stretch * np.sin(alpha)
-        reach_t = turning * reach.by_alpha - stretch * np.cos(alpha)
-        determinant = height_t * reach.by_excess - reach_t * height.by_excess
-        step_t = (too_high * reach.by_excess - too_far * height.by_excess) / determinant
-        step_w = (height_t * too_far - reach_t * too_high) / determinant
-        new = np.clip(t - step_t, low, high)
-        excess = np.maximum(excess - step_w, excess / 10)
-        step, t = np.maximum(np.abs(new - t), np.abs(step_w) / excess), new
-        if step.max() <= _CLOSE:
-            return tip_contact(centreline.at(t), excess)
-    raise _failure(foot_x, step)
-
-
-def _start(branch: Branch, foot_x: Floats, cells: Integers) -> tuple[Floats, Floats, Floats]:
-    """Where to start in each cell, and the cell's ends, a rounding inside it."""
-    inside = 8 * np.finfo(float).eps * np.abs(branch.t).max()
-    low, high = branch.t[cells + 1] + inside, branch.t[cells] - inside
-    return np.clip(_between(branch.t, branch.foot_x, foot_x, cells), low, high), low, high
-
-
-def _between(values: Floats, at: Floats, foot_x: Floats, cells: Integers) -> Floats:
-    """`values` on the branch's grid, interpolated linearly within each cell."""
-    ahead = (at[cells] - foot_x) / (at[cells] - at[cells + 1])
-    return values[cells] + ahead * (values[cells + 1] - values[cells])
-
-
-def _failure(foot_x: Floats, step: Floats) -> ArithmeticError:
-    worst = foot_x[np.argmax(step)]
-    return ArithmeticError(f"no state found at foot_x = {worst:.16g} L; please report the case")
+    for name in found:
+        table[name] = np.fmax(table[name], found[name])
+    return replace(readings, table=table)
 
 
 def _free(foot_x: Floats) -> dict[str, Column]:

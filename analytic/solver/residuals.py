@@ -1,0 +1,71 @@
+"""How well the readings of a station satisfy their conditions, from the readings alone."""
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.problem.beam import Beam
+from analytic.solver.elastica import frame, span_of_moment
+from analytic.solver.equilibria import Column
+
+
+def residuals(columns: dict[str, Column], beam: Beam) -> dict[str, Floats]:
+    """What the stations of a table of readings miss, by the closed form of their clamp readings.
+
+    The elastica that has the clamp's force and moment, up to where its curvature vanishes, is
+    compared with the contact that the table states. That is another route than the solver's, which
+    goes from the contact to the clamp; elliptic integrals are common to both (`certify` uses none).
+
+    Parameters
+    ----------
+    columns : dict of array, shape (n,)
+        Columns of `Readings.table`, of a vibrissa that bends to the right.
+    beam : Beam
+        The vibrissa.
+
+    Returns
+    -------
+    dict of array, shape (n,)
+        Dimensionless, in units of the distance from the origin where that exceeds L.
+        ``residual_boundary``: the largest of the misses of the contact's position, of its arc
+        length, of its slope (the contour's in Phase B, the tip's in Phase A) and of the force's
+        direction; of what the arc length exceeds L by; and of what the tip's angle is less than the
+        contour's by, when the vibrissa would pass through the body. ``residual_moment``:
+        M - F_y (xi - x0) + F_x eta. Zero where the vibrissa is free, NaN out of reach.
+    """
+
+    def column(name: str, unit: float) -> Floats:
+        return np.asarray(columns[name], dtype=float) / unit
+
+    force_x, force_y = (column(name, beam.force_unit) for name in ("force_x", "force_y"))
+    moment = column("moment_z", beam.moment_unit)
+    foot_x, xi, eta, arc_length = (
+        column(name, beam.length)
+        for name in ("foot_x", "contact_x", "contact_y", "contact_arc_length")
+    )
+    alpha, tip_angle = column("contact_angle", 1.0), column("tip_angle", 1.0)
+    radius = beam.radius / beam.length
+    x, y = xi + radius * np.sin(alpha) - foot_x, eta - radius * np.cos(alpha)
+    extent = np.maximum(1.0, np.abs(xi))
+    free = columns["phase"] == "free"
+    with np.errstate(divide="ignore", invalid="ignore"):  # free stations: no force, no contact
+        force = np.hypot(force_x, force_y)
+        root_f = np.sqrt(force)
+        direction = np.arctan2(-force_x, force_y)
+        loaded = span_of_moment(moment / root_f, direction)
+        up, across = frame(loaded, direction)
+        # The first integral between clamp and contact: sin(phi1 - alpha) = cos(alpha) - M^2/(2 f).
+        missed = [
+            across / root_f - x,
+            up / root_f - y,
+            loaded.q / root_f - arc_length,
+            np.cos(direction) - moment**2 / (2 * force) - np.sin(tip_angle - alpha),
+            direction - alpha,
+            np.maximum(0.0, arc_length - 1),
+            np.maximum(0.0, alpha - tip_angle),
+        ]
+        boundary = np.abs(missed).max(axis=0) / extent
+        balance = np.abs(moment - (force_y * x - force_x * y)) / np.maximum(extent, moment)
+    return {
+        "residual_boundary": np.where(free, 0.0, boundary),
+        "residual_moment": np.where(free, np.abs(moment), balance),
+    }
