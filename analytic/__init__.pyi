@@ -29,8 +29,8 @@ from .problem.named import CASE_NAMES as CASE_NAMES
 from .problem.named import NAMED_PROFILES as NAMED_PROFILES
 from .problem.named import named_case as named_case
 from .problem.readings import Readings as Readings
-from .solver.branch import surplus as surplus
 from .solver.contact import solve_contact as solve_contact
+from .solver.contact_length import surplus as surplus
 from .solver.events import Event as Event
 from .solver.events import Events as Events
 from .solver.events import find_events as find_events

@@ -23,7 +23,9 @@ def certify(readings: Readings) -> pd.DataFrame:
     pandas.DataFrame
         A row a station, dimensionless. ``residual_boundary`` is the largest of the misses of the
         contact's position, of zero curvature there, of the slope there (the contour's in Phase B,
-        the tip's in Phase A) and of the force's direction, normal to the contour;
+        the tip's in Phase A) and of the force's direction, normal to the contour; of what the arc
+        length exceeds L by; and of what the slope falls below the contour's by on the way: above it
+        the vibrissa stays below the tangent at the contact, and so outside a convex body.
         ``residual_moment`` is that of M = F_y (xi - x0) - F_x eta. Zero where the vibrissa is free,
         NaN where the readings have no contact to check.
     """
@@ -56,6 +58,8 @@ def certify(readings: Readings) -> pd.DataFrame:
             end.phi - slope[touching],
             end.kappa,
             (np.arctan2(-force_x, force_y) - alpha)[touching],
+            np.maximum(0.0, arc_length[touching] - 1),
+            np.maximum(0.0, alpha[touching] - end.least_phi),
         ]
         boundary[touching] = np.abs(misses).max(axis=0)
         balance[touching] = np.abs(moment - (force_y * x - force_x * y))[touching]

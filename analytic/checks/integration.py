@@ -1,11 +1,14 @@
 """The elastica integrated from the clamp: what the closed forms are checked against."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from analytic.problem.arrays import Floats
+
+_MARKS = np.linspace(0, 1, 17)[1:]  # parts of the span at which its slope is looked at
 
 
 class End(NamedTuple):
@@ -15,6 +18,8 @@ class End(NamedTuple):
     y: Floats
     phi: Floats
     kappa: Floats
+    least_phi: Floats
+    """Smallest slope angle on the way, at 16 places [rad]."""
 
 
 def integrate_span(
@@ -50,6 +55,38 @@ def integrate_span(
 
     start = np.concatenate([np.zeros(2 * n), np.full(n, np.pi / 2), -moment])
     found = solve_ivp(
-        rate, (0.0, 1.0), start, method="DOP853", rtol=tolerance, atol=tolerance, t_eval=[1.0]
+        rate, (0.0, 1.0), start, method="DOP853", rtol=tolerance, atol=tolerance, t_eval=_MARKS
     )
-    return End(*found.y[:, -1].reshape(4, n))
+    x, y, phi, kappa = found.y.reshape(4, n, len(_MARKS))
+    return End(x[:, -1], y[:, -1], phi[:, -1], kappa[:, -1], phi.min(axis=1))
+
+
+def march(rate: Callable[[Floats], Floats], state: Floats, length: Floats, steps: int) -> Floats:
+    """The classical Runge-Kutta method of order 4, with equal steps.
+
+    Parameters
+    ----------
+    rate : callable
+        Derivative by arc length of a state, shape (m, n).
+    state : array, shape (m, n)
+        At the beginning, of n spans.
+    length : array, shape (n,)
+        Arc length to march; negative to march back.
+    steps : int
+        How many.
+
+    Returns
+    -------
+    array, shape (steps + 1, m, n)
+        The states at the beginning and after each step.
+    """
+    h = length / steps
+    states = [state]
+    for _ in range(steps):
+        k1 = rate(state)
+        k2 = rate(state + h / 2 * k1)
+        k3 = rate(state + h / 2 * k2)
+        k4 = rate(state + h * k3)
+        state = state + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        states.append(state)
+    return np.stack(states)

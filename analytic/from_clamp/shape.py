@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from analytic.checks.integration import march
 from analytic.from_clamp.reconstruct import reconstruct
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED
@@ -39,21 +40,14 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
         kappa = -moment + force_y * x - force_x * y
         return np.stack([np.cos(phi), np.sin(phi), kappa])
 
-    step = loaded / _STEPS
-    states = [
-        np.stack([np.zeros_like(foot_x), np.zeros_like(foot_x), np.full_like(foot_x, np.pi / 2)])
-    ]
-    for _ in range(_STEPS):
-        state = states[-1]
-        k1 = rate(state)
-        k2 = rate(state + step / 2 * k1)
-        k3 = rate(state + step / 2 * k2)
-        k4 = rate(state + step * k3)
-        states.append(state + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
+    clamp = np.stack(
+        [np.zeros_like(foot_x), np.zeros_like(foot_x), np.full_like(foot_x, np.pi / 2)]
+    )
+    states = march(rate, clamp, loaded, _STEPS)
     x, y, phi = states[-1]
     rest = 1 - loaded
-    states.append(np.stack([x + rest * np.cos(phi), y + rest * np.sin(phi), phi]))
-    path = np.stack(states, axis=-1)
+    tip = np.stack([x + rest * np.cos(phi), y + rest * np.sin(phi), phi])
+    path = np.moveaxis(np.concatenate([states, tip[None]]), 0, -1)
     return (path[0] + foot_x[:, None]) * beam.length, path[1] * beam.length
 
 

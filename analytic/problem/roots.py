@@ -69,9 +69,7 @@ def zero(function: Callable[[float], float], low: float, high: float) -> float:
     float
         The zero.
     """
-    found = zeros(
-        lambda x: np.array([function(float(x[0]))]), np.array([low]), np.array([high])
-    )
+    found = zeros(lambda x: np.array([function(float(x[0]))]), np.array([low]), np.array([high]))
     return float(found[0])
 
 

@@ -42,12 +42,16 @@ class Equilibria(NamedTuple):
     @property
     def arc_length(self) -> Floats:
         """Arc length s1 of the contact."""
-        return np.where(self.tangent, self.span.q / self.root_f, 1.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            tangent = np.where(self.root_f == 0, self.point.eta, self.span.q / self.root_f)
+        return np.where(self.tangent, tangent, 1.0)
 
     @property
     def foot_x(self) -> Floats:
         """Foot position x0 (paper, eqs. 13 and 22)."""
-        return self.point.xi - self.frame.across / self.root_f
+        with np.errstate(divide="ignore", invalid="ignore"):
+            reach = np.where(self.root_f == 0, 0.0, self.frame.across / self.root_f)
+        return np.asarray(self.point.xi - reach)  # unloaded, the vibrissa is straight
 
     @property
     def foot_x_rate(self) -> Floats:

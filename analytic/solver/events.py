@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import Contour
 from analytic.problem.reach import contact_range
 from analytic.problem.roots import zeros
 from analytic.solver.branch import trace
 from analytic.solver.contact_length import surplus_and_rate
-from analytic.solver.grid import along
 from analytic.solver.equilibria import Equilibria, equilibria, tangent_contact, to_columns
+from analytic.solver.grid import along
+
 
 @dataclass(frozen=True)
 class Event:

@@ -1,15 +1,17 @@
-"""What dry friction would do to the clamp readings, which the paper's theory leaves out.
+"""What dry friction would do to the readings, which the theory of Behn et al. leaves out.
 
 Sliding on, the object holds the vibrissa back along its tangent with mu times the normal force.
-There is no closed form then: the elastica is integrated from the contact to the clamp, by the
-classical Runge-Kutta method, and three unknowns (where on the contour, how strong, and the free arc
-length or slope) are found by Newton's method from the frictionless state.
+The elastica is integrated from the contact to the clamp by the classical Runge-Kutta method, and
+three unknowns (where on the contour, how strong, and the free arc length or slope) are found by
+Newton's method from the frictionless state.
 """
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
+from analytic.checks.integration import march
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.case import Case
 from analytic.problem.columns import CLAMP_READINGS
@@ -25,6 +27,16 @@ _CLOSE = 1e-9  # L, rad; residual of the three conditions at the clamp
 _DIFFERENCE = 1e-6  # relative step of the Jacobian's differences
 
 
+class _Problem(NamedTuple):
+    """Stations to solve, n in number."""
+
+    centreline: Contour
+    radius: float
+    coefficient: float
+    foot_x: Floats
+    tangent: Booleans
+
+
 def with_friction(case: Case, coefficient: float) -> Readings:
     """The sweep with Coulomb friction between a sliding vibrissa and the object.
 
@@ -38,8 +50,10 @@ def with_friction(case: Case, coefficient: float) -> Readings:
     Returns
     -------
     Readings
-        The frictionless sweep with new clamp readings. Each station keeps its phase; where it has
-        no state with friction, its readings are NaN.
+        At the stations at which the frictionless sweep touches. ``status`` is ``"diverged"``, and
+        all but the foot position NaN or the frictionless phase, where no state was found with
+        friction. Where the vibrissa snaps off with friction is not determined, so that the
+        provenance names no events.
 
     Raises
     ------
@@ -54,8 +68,8 @@ def with_friction(case: Case, coefficient: float) -> Readings:
 def _leftward(case: Case, coefficient: float) -> Readings:
     exact = solve_sweep(case)
     beam, length = case.beam, case.beam.length
-    table = exact.table.copy()
-    touching = (table["phase"] != "free").to_numpy() & exact.trusted
+    table = exact.table.drop(columns=["residual_boundary", "residual_moment"])
+    touching = (table["phase"] != "free").to_numpy()
     tangent = (table["phase"] == "tangent").to_numpy()[touching]
 
     def known(name: str) -> Floats:
@@ -64,51 +78,84 @@ def _leftward(case: Case, coefficient: float) -> Readings:
     force = np.hypot(known("force_x"), known("force_y")) / beam.force_unit
     free = np.where(tangent, known("contact_arc_length") / length, known("tip_angle"))
     t = case.centreline.parameter(known("contact_angle"))
-    clamp = _solve(
-        case, coefficient, case.foot_x[touching] / length, tangent, np.stack([t, force, free], -1)
-    )
-    units = (beam.force_unit, beam.force_unit, beam.moment_unit)
-    for name, values, unit in zip(CLAMP_READINGS, clamp.T, units, strict=True):
-        table.loc[touching, name] = values * unit
-    return replace(exact, table=table, source=f"analytic, friction {coefficient:g}")
+    foot_x = case.foot_x[touching] / length
+    problem = _Problem(case.centreline, case.radius, coefficient, foot_x, tangent)
+    tangent, unknowns, clamp = _in_its_phase(problem, np.stack([t, force, free], -1))
+    solved = np.isfinite(clamp).all(axis=1)
+    point = case.centreline.at(unknowns[:, 0])
+    arc_length = np.where(tangent, unknowns[:, 2], 1.0)
+    columns = {
+        **dict(
+            zip(
+                CLAMP_READINGS,
+                (clamp * [beam.force_unit, beam.force_unit, beam.moment_unit]).T,
+                strict=True,
+            )
+        ),
+        "contact_angle": point.alpha,
+        "contact_arc_length": arc_length * length,
+        "contact_x": (point.xi - case.radius * np.sin(point.alpha)) * length,
+        "contact_y": (point.eta + case.radius * np.cos(point.alpha)) * length,
+        "tip_angle": np.where(tangent, point.alpha, unknowns[:, 2]),
+    }
+    for name, values in columns.items():
+        table.loc[touching, name] = np.where(solved, values, np.nan)
+    table.loc[touching, "phase"] = np.where(tangent, "tangent", "tip")
+    table.loc[touching, "status"] = np.where(solved, "ok", "diverged")
+    provenance = {name: value for name, value in exact.provenance.items() if name != "events"}
+    source = f"analytic, friction {coefficient:g}"
+    return replace(exact, table=table, source=source, provenance=provenance)
 
 
-def _solve(
-    case: Case, coefficient: float, foot_x: Floats, tangent: Booleans, unknowns: Floats
-) -> Floats:
-    """Clamp readings, shape (n, 3), NaN where Newton's method did not get there."""
+def _in_its_phase(problem: _Problem, start: Floats) -> tuple[Booleans, Floats, Floats]:
+    """Phase B, unknowns and clamp readings of each station, in the phase that it has.
 
-    def shoot(at: Floats) -> tuple[Floats, Floats]:
-        return _shoot(case.centreline, case.radius, coefficient, foot_x, tangent, at)
+    The other phase is tried where the contact lies beyond the tip, or the tip in the body.
+    """
+    tangent = problem.tangent.copy()
+    unknowns, clamp = _solve(problem, start)
+    wrong = _out_of_phase(problem, tangent, unknowns)
+    if wrong.any():
+        tangent[wrong] = ~tangent[wrong]
+        other = problem._replace(foot_x=problem.foot_x[wrong], tangent=tangent[wrong])
+        begin = unknowns[wrong]
+        begin[:, 2] = np.where(tangent[wrong], 1.0, problem.centreline.at(begin[:, 0]).alpha)
+        unknowns[wrong], clamp[wrong] = _solve(other, begin)
+        clamp[_out_of_phase(problem, tangent, unknowns)] = np.nan
+    return tangent, unknowns, clamp
 
-    missed, clamp = shoot(unknowns)
+
+def _out_of_phase(problem: _Problem, tangent: Booleans, unknowns: Floats) -> Booleans:
+    t, _, free = unknowns.T
+    sunk = free < problem.centreline.at(t).alpha - _CLOSE
+    return np.asarray(np.where(tangent, free > 1 + _CLOSE, sunk))
+
+
+def _solve(problem: _Problem, unknowns: Floats) -> tuple[Floats, Floats]:
+    """Unknowns and clamp readings, shape (n, 3); these NaN where Newton's method failed."""
+    missed, clamp = _shoot(problem, unknowns)
     for _ in range(_ITERATIONS):
         jacobian = np.empty((*unknowns.shape, 3))
         for i in range(3):
             step = np.zeros(3)
             step[i] = _DIFFERENCE
             size = np.maximum(np.abs(unknowns[:, i]), 1e-3)[:, None]
-            jacobian[:, :, i] = (shoot(unknowns + size * step)[0] - missed) / (_DIFFERENCE * size)
+            moved = _shoot(problem, unknowns + size * step)[0]
+            jacobian[:, :, i] = (moved - missed) / (_DIFFERENCE * size)
         with np.errstate(all="ignore"):
             regular = np.abs(np.linalg.det(jacobian)) > 0
             move = np.zeros_like(unknowns)
             move[regular] = np.linalg.solve(jacobian[regular], missed[regular][:, :, None])[..., 0]
         largest = 0.1 * np.maximum(1, np.abs(unknowns))
         unknowns = unknowns - np.clip(move, -largest, largest)
-        missed, clamp = shoot(unknowns)
+        missed, clamp = _shoot(problem, unknowns)
     clamp[~(np.abs(missed).max(axis=1) < _CLOSE)] = np.nan
-    return clamp
+    return unknowns, clamp
 
 
-def _shoot(
-    centreline: Contour,
-    radius: float,
-    coefficient: float,
-    foot_x: Floats,
-    tangent: Booleans,
-    unknowns: Floats,
-) -> tuple[Floats, Floats]:
+def _shoot(problem: _Problem, unknowns: Floats) -> tuple[Floats, Floats]:
     """What is missed at the clamp, and the clamp readings there; both of shape (n, 3)."""
+    centreline, radius, coefficient, foot_x, tangent = problem
     t, force, free = unknowns.T
     alpha, xi, eta, _, _ = centreline.at(t)
     push = np.stack([np.sin(alpha), -np.cos(alpha)]) + coefficient * np.stack(
@@ -116,22 +163,15 @@ def _shoot(
     )
     push *= force
     at_contact = -coefficient * radius * force  # friction acts on the surface, not on the axis
-    span = np.where(tangent, free, 1.0)
+
+    def moment(x: Floats, y: Floats) -> Floats:
+        return np.asarray(at_contact + (xi - x) * push[1] - (eta - y) * push[0])
 
     def rate(state: Floats) -> Floats:
         x, y, theta = state
-        moment = at_contact + (xi - x) * push[1] - (eta - y) * push[0]
-        return np.stack([np.cos(theta), np.sin(theta), moment])
+        return np.stack([np.cos(theta), np.sin(theta), moment(x, y)])
 
-    state = np.stack([xi, eta, np.where(tangent, alpha, free)])
-    h = -span / _STEPS
-    for _ in range(_STEPS):
-        k1 = rate(state)
-        k2 = rate(state + h / 2 * k1)
-        k3 = rate(state + h / 2 * k2)
-        k4 = rate(state + h * k3)
-        state = state + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-    x, y, theta = state
-    moment = at_contact + (xi - x) * push[1] - (eta - y) * push[0]
+    begin = np.stack([xi, eta, np.where(tangent, alpha, free)])
+    x, y, theta = march(rate, begin, -np.where(tangent, free, 1.0), _STEPS)[-1]
     missed = np.stack([x - foot_x, y, theta - np.pi / 2], axis=-1)
-    return missed, np.stack([-push[0], -push[1], -moment], axis=-1)
+    return missed, np.stack([-push[0], -push[1], -moment(x, y)], axis=-1)

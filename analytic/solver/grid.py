@@ -110,13 +110,11 @@ def _with_phase_changes(centreline: Contour, grid: Floats) -> Floats:
     grid = _descending(grid, _extrema(centreline, grid))
     below = surplus(centreline, grid) < 0
     turns = np.flatnonzero(below[1:] != below[:-1])
-    return _descending(
-        grid, zeros(lambda t: surplus(centreline, t), grid[turns + 1], grid[turns])
-    )
+    return _descending(grid, zeros(lambda t: surplus(centreline, t), grid[turns + 1], grid[turns]))
 
 
 def _extrema(centreline: Contour, grid: Floats) -> Floats:
-    """Where the surplus comes nearest to zero, between neighbours on whose tangents it passes it."""
+    """Where the surplus comes nearest to zero, in cells at whose ends the tangents pass it."""
     value, rate = surplus_and_rate(centreline, grid)
     side = np.where(value < 0, -1.0, 1.0)
     before, after = side[:-1] * value[:-1], side[:-1] * value[1:]
@@ -185,7 +183,8 @@ def _folds(centreline: Contour, samples: Floats) -> Floats:
 def _sample(centreline: Contour, t: Floats) -> Floats:
     """Contour parameter, foot position, its rate and excess rotation; NaN out of reach."""
     states = equilibria(centreline, t)
-    return np.stack([t, states.foot_x, states.foot_x_rate, states.excess])
+    with np.errstate(divide="ignore", invalid="ignore"):  # where the clamp's moment vanishes
+        return np.stack([t, states.foot_x, states.foot_x_rate, states.excess])
 
 
 def _merged(samples: Floats, more: Floats) -> Floats:

@@ -50,13 +50,14 @@ def solve_stations(branch: Branch, foot_x: Floats) -> Equilibria:
     t = high + ahead * (low - high)
     excess = branch.excess[cells] + ahead * (branch.excess[cells + 1] - branch.excess[cells])
     found = _newton(branch.centreline, foot_x, tangent, (low, high), (t, excess))
-    poor = _poor(branch.centreline, found, tangent, foot_x)
+    poor = ~(_admissible(branch.centreline, found, tangent) & (found.missed <= _EXACT))
     if poor.any():
         bounds = low[poor], high[poor]
         enclosed, tangent[poor] = _enclose(branch, foot_x[poor], bounds, cells[poor])
         start = enclosed.t, enclosed.excess
         refined = _newton(branch.centreline, foot_x[poor], tangent[poor], bounds, start)
-        better = ~_poor(branch.centreline, refined, tangent[poor], foot_x[poor])
+        better = _admissible(branch.centreline, refined, tangent[poor])
+        better &= refined.missed < enclosed.missed
         for values, one, other in zip(found, refined, enclosed, strict=True):
             values[poor] = np.where(better, one, other)
     return contact(branch.centreline.at(found.t), found.excess, tangent)
@@ -82,7 +83,7 @@ def _newton(
     for _ in range(_ITERATIONS):
         with np.errstate(all="ignore"):  # folds and first contacts: what is not finite is no step
             states = contact(centreline.at(t), excess, tangent)
-            too_high, too_far, extent = _misses(states, foot_x)
+            too_high, too_far, extent = _misses(states, foot_x, t)
             missed = np.fmax(np.abs(too_high), np.abs(too_far)) / extent
             step_t, step_w = _steps(states, too_high, too_far)
         less = missed <= best.missed
@@ -98,13 +99,15 @@ def _newton(
     return best
 
 
-def _misses(states: Equilibria, foot_x: Floats) -> tuple[Floats, Floats, Floats]:
+def _misses(states: Equilibria, foot_x: Floats, at: Floats) -> tuple[Floats, Floats, Floats]:
     """By how much the contact lies above and behind the contour's point [L]; unit of roundings."""
     height = states.frame.up / states.root_f
+    point = states.point
+    # A rounding of the parameter moves the point by the stretch times that.
     return (
-        height - states.point.eta,
+        height - point.eta,
         foot_x - states.foot_x,
-        np.maximum(1.0, np.abs(states.point.xi)),
+        np.maximum.reduce([np.ones_like(height), np.abs(point.xi), point.stretch * np.abs(at)]),
     )
 
 
@@ -124,13 +127,13 @@ def _steps(states: Equilibria, too_high: Floats, too_far: Floats) -> tuple[Float
     )
 
 
-def _poor(centreline: Contour, found: _Iterate, tangent: Booleans, foot_x: Floats) -> Booleans:
-    """Stations that miss, or whose contact is not of the phase it should be of."""
+def _admissible(centreline: Contour, found: _Iterate, tangent: Booleans) -> Booleans:
+    """Whether contacts are of the phase that they should be of."""
     point = centreline.at(found.t)
     states = contact(point, found.excess, tangent)
-    short = tangent & ~((states.root_f > 0) & (states.span.q <= states.root_f * (1 + _EXACT)))
-    sunk = ~tangent & ~(states.excess <= np.pi / 2 - np.abs(point.alpha) + _EXACT)
-    return np.asarray(~(found.missed <= _EXACT) | short | sunk)
+    fits = (states.root_f > 0) & (states.span.q <= states.root_f * (1 + _EXACT))
+    above = states.excess <= np.pi / 2 - np.abs(point.alpha) + _EXACT
+    return np.asarray(np.where(tangent, fits, above))
 
 
 def _enclose(
@@ -151,6 +154,6 @@ def _enclose(
     first = np.isnan(states.excess)
     excess = np.where(first, branch.excess[cells + 1] * 1e-3, states.excess)
     states = contact(centreline.at(t), excess, states.tangent)
-    too_high, too_far, extent = _misses(states, foot_x)
+    too_high, too_far, extent = _misses(states, foot_x, t)
     missed = np.fmax(np.abs(too_high), np.abs(too_far)) / extent
     return _Iterate(t, excess, missed), states.tangent

@@ -1,8 +1,9 @@
-"""Random contours, and what is wrong with a sweep along one: `python -m tests.fuzz.contours N SEED`.
+"""Random contours, and what is wrong with sweeps along them.
 
-Prints how many sweeps ended in an exception, were refused, or have a station that is called "ok"
-and is not: its contact is more than 1e-11 from where integration from the clamp leads, the
-vibrissa passes through the body, or an earlier equilibrium was passed over.
+`python -m tests.fuzz.contours N SEED` prints how many sweeps ended in an exception, were refused,
+or have a station that is called "ok" and is not: its contact is more than 1e-11 from where integration
+from the clamp leads, the vibrissa passes through the body, or an earlier equilibrium was passed
+over.
 """
 
 import sys
@@ -181,7 +182,7 @@ def any_polygon(rng) -> Placed:
     else:
         cloud = rng.normal(size=(rng.integers(5, 300), 2)) * [size(rng, 0.1, 3), size(rng, 0.1, 3)]
         points = cloud[ConvexHull(cloud).vertices]
-    return lambda low: polygon(points + [0, low - points[:, 1].min()])
+    return lambda low: polygon(np.add(points, [0, low - points[:, 1].min()]))
 
 
 def any_through_points(rng) -> Placed:
@@ -190,7 +191,7 @@ def any_through_points(rng) -> Placed:
     angles = np.sort(rng.uniform(left, right, rng.integers(3, 15)))
     points = np.column_stack([whole.xi(angles), whole.eta(angles)])
     bottom = through_points(points).at(np.zeros(1)).eta[0]
-    return lambda low: through_points(points + [0, low - bottom])
+    return lambda low: through_points(np.add(points, [0, low - bottom]))
 
 
 KINDS = {

@@ -42,7 +42,7 @@ OBJECTS = st.one_of(
 
 def test_table(case, exact):
     table = exact.table
-    assert tuple(table.columns) == COLUMNS
+    assert tuple(table.columns) == (*COLUMNS, "residual_boundary", "residual_moment")
     assert len(table) == case.sweep.stations == 200
     steps = np.diff(table["foot_x"])
     np.testing.assert_allclose(steps, steps[0], rtol=1e-9)
