@@ -1,9 +1,9 @@
 """Random contours, and what is wrong with sweeps along them.
 
 `python -m tests.fuzz.contours N SEED` prints how many sweeps ended in an exception, were refused,
-or have a station that is called "ok" and is not: its contact is more than 1e-11 from where integration
-from the clamp leads, the vibrissa passes through the body, or an earlier equilibrium was passed
-over.
+or have a station that is called "ok" and is not: its contact is more than 1e-11 from where the
+integration from the clamp leads, the vibrissa passes through the body, or an earlier equilibrium
+was passed over.
 """
 
 import sys
