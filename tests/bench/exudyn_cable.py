@@ -41,7 +41,7 @@ class ExudynCable:
             cable = mbs.AddObject(
                 item.ObjectANCFCable2D(
                     length=1 / elements,
-                    massPerLength=1,  # of no account at rest
+                    massPerLength=1,  # irrelevant at rest
                     bendingStiffness=1,
                     axialStiffness=AXIAL_STIFFNESS,
                     nodeNumbers=list(ends),

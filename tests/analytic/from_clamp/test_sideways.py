@@ -113,7 +113,7 @@ def test_sideways_the_rod_is_a_pendulum_whatever_its_torsional_stiffness(alpha, 
     assert found.lateral_stiffness() == pytest.approx(pendulum, rel=1e-5)
 
 
-def test_stiffness_is_told_by_the_clamp_alone():
+def test_stiffness_follows_from_the_clamp_alone():
     case = Case(profile=CIRCLE)
     exact = solve_sweep(case)
     sensed = Readings(exact.table[["foot_x", "force_x", "force_y", "moment_z"]], case.beam)

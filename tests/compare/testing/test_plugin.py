@@ -186,7 +186,7 @@ def test_what_is_no_sweep_is_said_in_a_line(pytester, given):
 
 @pytest.mark.parametrize("hidden", ["compare", "analytic", "mujoco_models"])
 def test_a_file_of_the_users_that_hides_a_package(pytester, hidden):
-    """Who does not use the plugin does not notice it; who does is told which file it is."""
+    """Who does not use the plugin does not notice it; who does learns which file it is."""
     pytester.makepyfile(**{hidden: "x = 1"})
     pytester.makepyfile(
         test_own=f"import {hidden}\ndef test_own(): assert {hidden}.x == 1",
