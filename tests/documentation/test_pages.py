@@ -7,12 +7,13 @@ import subprocess
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 import pytest
 import typer
 
 from compare.commands.main import app
+from compare.read.tables import CaseFile
 from tests.documentation.blocks import PAGES, ROOT, Block, blocks
 
 WITH_CODE = [page for page in PAGES if any(block.runs for block in blocks(page))]
@@ -100,6 +101,16 @@ def test_links_lead_to_files(page):
     links = re.findall(r"\]\(([^)#\s]+)", text)
     lost = [x for x in links if "://" not in x and not (ROOT / page.parent / x).exists()]
     assert not lost
+
+
+def test_every_kind_of_contour_and_its_keys_are_described():
+    page = (ROOT / "analytic" / "README.md").read_text(encoding="utf-8")
+    (kinds, *_) = get_args(get_type_hints(CaseFile, include_extras=True)["profile"])
+    for table in get_args(kinds):
+        (kind,) = get_args(table.model_fields["kind"].annotation)
+        (row,) = re.findall(rf"^\| `{kind}` \|.*", page, re.M)
+        keys = set(table.model_fields) - {"kind", "scale"}
+        assert keys <= set(re.findall(r"\w+", row)), row
 
 
 def test_blocks_are_in_a_language_that_is_run_or_say_why_not():
