@@ -69,7 +69,18 @@ def place(x: float | None) -> str:
 
 
 def words(name: str) -> str:
-    """An identifier as words: ``phase_b_start`` as ``Phase B start``."""
+    """An identifier as words.
+
+    Parameters
+    ----------
+    name : str
+        As ``phase_b_start``.
+
+    Returns
+    -------
+    str
+        As ``Phase B start``.
+    """
     return name.replace("_", " ").replace("phase b", "Phase B")
 
 
@@ -167,7 +178,20 @@ def png(figure: Figure, dots_per_inch: int = 150) -> bytes:
 
 
 def save_figure(figure: Figure, path: Path) -> Path:
-    """Write a PNG, whole or not at all; returns `path`."""
+    """Write a PNG, whole or not at all.
+
+    Parameters
+    ----------
+    figure : Figure
+        What is drawn.
+    path : Path
+        The file.
+
+    Returns
+    -------
+    Path
+        `path`.
+    """
     return write_whole(path, png(figure))
 
 
@@ -189,7 +213,18 @@ def embedded(file: Path) -> str:
 
 
 def document(content: Mapping[str, Any]) -> str:
-    """What a JSON file of results holds, as text."""
+    """What a JSON file of results holds, as text.
+
+    Parameters
+    ----------
+    content : mapping
+        Of plain values.
+
+    Returns
+    -------
+    str
+        JSON.
+    """
     return json.dumps(content, indent=2)
 
 

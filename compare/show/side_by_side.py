@@ -36,11 +36,14 @@ class SideBySide:
         return next(iter(self.against.values())).reference.source
 
     def table(self) -> pd.DataFrame:
-        """A row a comparison.
+        """The comparisons in numbers.
 
-        Columns ``reference``, ``candidate``, the relative rms of each clamp reading, the
-        ``snap_off`` of the candidate less that of the reference [length], and the candidate's
-        ``seconds_per_station``, NaN where it was not recorded.
+        Returns
+        -------
+        pandas.DataFrame
+            A row a comparison: ``reference``, ``candidate``, the relative rms of each clamp
+            reading, the ``snap_off`` of the candidate less that of the reference [length], and the
+            candidate's ``seconds_per_station``, NaN where it was not recorded.
         """
         rows = []
         for names, found in self._all().items():
@@ -57,7 +60,13 @@ class SideBySide:
         return pd.DataFrame(rows)
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``side-by-side.json`` holds: ``comparisons``, each as in ``comparison.json``."""
+        """What ``side-by-side.json`` holds.
+
+        Returns
+        -------
+        dict
+            ``comparisons``, each as in ``comparison.json``, with the two ``names``.
+        """
         return {
             "comparisons": [
                 {"names": list(names), **found.to_dict()} for names, found in self._all().items()
@@ -78,6 +87,11 @@ def side_by_side(reference: Readings, candidates: dict[str, Readings]) -> SideBy
     candidates : dict of Readings
         By the names that distinguish them; at least one.
 
+    Returns
+    -------
+    SideBySide
+        All comparisons.
+
     Raises
     ------
     InputError
@@ -93,13 +107,35 @@ def side_by_side(reference: Readings, candidates: dict[str, Readings]) -> SideBy
 
 
 def seconds_per_station(readings: Readings) -> float:
-    """As recorded by who made the readings; NaN if it was not."""
+    """Time of a sweep, as recorded by its source.
+
+    Parameters
+    ----------
+    readings : Readings
+        The sweep.
+
+    Returns
+    -------
+    float
+        NaN if it was not recorded.
+    """
     seconds = readings.provenance.get("seconds")
     return np.nan if seconds is None else float(seconds) / len(readings.table)
 
 
 def picture(found: SideBySide) -> Figure:
-    """Draw how far the clamp readings are from the reference's, over the foot position."""
+    """Draw how far the clamp readings are from the reference's, over the foot position.
+
+    Parameters
+    ----------
+    found : SideBySide
+        What is drawn.
+
+    Returns
+    -------
+    Figure
+        A panel for each reading.
+    """
     figure = Figure(figsize=(12, 4.2), layout="constrained")
     axes = figure.subplots(1, 3, sharex=True)
     first = next(iter(found.against.values()))

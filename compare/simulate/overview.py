@@ -20,6 +20,8 @@ from analytic import (
     named_case,
     solve_sweep,
 )
+from compare.show.figures.fold import with_fold
+from compare.show.figures.over_foot import LINE, foot, shade_phases
 from compare.show.style import (
     BODY,
     CANDIDATE,
@@ -30,7 +32,6 @@ from compare.show.style import (
     INK,
     PHASE_COLOURS,
     PHASE_NAMES,
-    REFERENCE,
     axis_label,
 )
 from mujoco_models import simulate_sweep
@@ -40,13 +41,27 @@ _ARROW = {"arrowstyle": "-|>", "color": _FORCE, "linewidth": 1.8}
 
 
 def overview(case: Case) -> Figure:
-    """The sweep with the paper's sign convention, and the readings over the foot position."""
+    """The sweep with the paper's sign convention, and the readings over the foot position.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+
+    Returns
+    -------
+    Figure
+        The sketch above, three panels below.
+    """
     exact = solve_sweep(case)
     simulated = simulate_sweep(replace(case, sweep=Sweep(stations=60)))
     figure = Figure(figsize=(11, 6.4), layout="constrained")
     grid = figure.add_gridspec(2, 3, height_ratios=[1.15, 1])
     _sketch(figure.add_subplot(grid[0, :]), exact)
-    _plots([figure.add_subplot(grid[1, i]) for i in range(3)], exact, simulated)
+    plots = [figure.add_subplot(grid[1, i]) for i in range(3)]
+    _plots(plots, exact, simulated)
+    handles, labels = plots[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False)
     return figure
 
 
@@ -70,7 +85,7 @@ def _sketch(ax: Axes, exact: Readings) -> None:
     ax.set_xlim(-3.1, 4.35)
     ax.set_ylim(-0.35, 1.12)
     ax.axis("off")
-    ax.legend(loc="upper left", fontsize=8.5, frameon=False, bbox_to_anchor=(0.42, 0.13), ncols=3)
+    ax.legend(loc="upper left", fontsize=8.5, frameon=False, bbox_to_anchor=(0.37, 0.13), ncols=3)
     _signs(ax, x0=3.3)
 
 
@@ -96,7 +111,7 @@ def _signs(ax: Axes, x0: float) -> None:
     ax.annotate("", (cx + push[0], cy + push[1]), (cx, cy), arrowprops=_ARROW)
     ax.text(cx + push[0] + 0.04, cy + push[1] - 0.02, "$f$", color=_FORCE)
     ax.annotate("", (x0 - 0.06, 0), (x0 - 0.42, 0), arrowprops=_ARROW)
-    ax.text(x0 - 0.44, 0.0, "$F_{Ax}$", color=_FORCE, ha="right", va="center")
+    ax.text(x0 - 0.44, 0.02, "$F_{Ax}$", color=_FORCE, ha="right", va="bottom")
     ax.annotate("", (x0, 0.42), (x0, 0.02), arrowprops=_ARROW)
     ax.text(x0 - 0.05, 0.36, "$F_{Ay}$", color=_FORCE, ha="right")
     ax.annotate(
@@ -110,19 +125,22 @@ def _signs(ax: Axes, x0: float) -> None:
 
 
 def _plots(axes: list[Axes], exact: Readings, simulated: Readings) -> None:
+    phase = exact.table["phase"].to_numpy(dtype=str)
     for ax, name in zip(axes, CLAMP_READINGS, strict=True):
-        ax.plot(exact.values("foot_x"), exact.values(name), color=REFERENCE, label="closed form")
+        shade_phases(ax, foot(exact), phase)
+        curve = with_fold(exact, phase, foot(exact), exact.values(name))
+        ax.plot(*curve, **LINE | {"linewidth": 1.8}, label="closed form")
         ax.plot(
-            simulated.values("foot_x"),
+            foot(simulated),
             simulated.values(name),
             "o",
             color=CANDIDATE,
-            markersize=3,
+            markersize=3.6,
+            markeredgewidth=0,
             label="MuJoCo chain, 40 segments",
         )
         ax.set_title(axis_label(name), fontsize=10)
         ax.set_xlabel(FOOT)
-    axes[1].legend(fontsize=8.5, frameon=False)
 
 
 if __name__ == "__main__":

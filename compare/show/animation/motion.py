@@ -47,7 +47,18 @@ class Motion:
 
     @classmethod
     def of(cls, readings: Readings) -> "Motion":
-        """The sweep that these readings show, in units of their beam."""
+        """The sweep that these readings show, in units of their beam.
+
+        Parameters
+        ----------
+        readings : Readings
+            The sweep.
+
+        Returns
+        -------
+        Motion
+            What is drawn.
+        """
         beam = readings.beam
         x, y = deflected_shapes(readings)
         units = (beam.force_unit, beam.force_unit, beam.moment_unit)
@@ -63,7 +74,18 @@ class Motion:
         )
 
     def beads(self, station: int) -> tuple[Floats, Floats]:
-        """Points on the centreline at equal steps of arc length."""
+        """Points on the centreline at equal steps of arc length.
+
+        Parameters
+        ----------
+        station : int
+            Of the sweep.
+
+        Returns
+        -------
+        x, y : array, shape (10,)
+            Coordinates [L].
+        """
         x, y = self.x[station], self.y[station]
         along = np.append(0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y))))
         at = np.linspace(0, along[-1], _DOTS + 1)[1:]

@@ -49,7 +49,20 @@ class Scene:
         self._moving = [*(a for part in self._parts for a in part.moving), self._phase]
 
     def images(self, stations: Integers, advance: Callable[[], None]) -> Iterator[Image.Image]:
-        """A picture of each station."""
+        """A picture of each station.
+
+        Parameters
+        ----------
+        stations : array of int
+            Of the reference.
+        advance : callable
+            Called after every picture.
+
+        Yields
+        ------
+        Image
+            In colour.
+        """
         for artist in self._moving:
             artist.set_animated(True)
         self._canvas.draw()
@@ -63,7 +76,20 @@ class Scene:
             advance()
 
     def save_still(self, station: int, path: Path) -> Path:
-        """Write a PNG of one station."""
+        """Write a PNG of one station.
+
+        Parameters
+        ----------
+        station : int
+            Of the reference.
+        path : Path
+            The file.
+
+        Returns
+        -------
+        Path
+            `path`.
+        """
         for artist in self._moving:
             artist.set_animated(False)
         self._show(station)

@@ -81,7 +81,13 @@ class View:
         ]  # fmt: skip
 
     def frame(self, size: tuple[float, float]) -> None:
-        """Choose limits that fill the axes, in a figure of `size`, and that nothing will leave."""
+        """Choose limits that fill the axes and that nothing will leave.
+
+        Parameters
+        ----------
+        size : pair of float
+            Of the figure, in inches.
+        """
         x = np.concatenate(
             [(m.x - m.foot_x[:, None] * self._follows).ravel() for m in self._motions]
         )
@@ -97,7 +103,15 @@ class View:
         self.ax.set_ylim(low - tall, high + tall)
 
     def show(self, station: int, other: int) -> None:
-        """Move to a station of the reference and the one of the candidate that is shown with it."""
+        """Move to a station.
+
+        Parameters
+        ----------
+        station : int
+            Of the reference.
+        other : int
+            Of the candidate: the one that is shown with it.
+        """
         reference, candidate = self._motions
         origin = reference.foot_x[station] if self._follows else 0.0
         x, y = reference.x[station] - origin, reference.y[station]
@@ -142,7 +156,15 @@ class Curve:
         self.moving: list[Artist] = [self._line, self._dots, self._head]
 
     def show(self, station: int, other: int) -> None:
-        """Grow up to these stations."""
+        """Grow up to a station.
+
+        Parameters
+        ----------
+        station : int
+            Of the reference.
+        other : int
+            Of the candidate: the one that is shown with it.
+        """
         (x, values), (other_x, other_values) = self._curves
         self._line.set_data(x[: station + 1], values[: station + 1])
         self._dots.set_data(other_x[: other + 1], other_values[: other + 1])

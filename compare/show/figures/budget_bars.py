@@ -15,7 +15,18 @@ _PANEL = (4.3, 3.1)  # inches
 
 
 def picture(found: Budget) -> Figure:
-    """Draw all readings side by side, under a sentence that says what they show."""
+    """Draw all readings side by side, under a sentence that says what they show.
+
+    Parameters
+    ----------
+    found : Budget
+        What is drawn.
+
+    Returns
+    -------
+    Figure
+        A panel for each reading.
+    """
     width, height = _PANEL
     figure = Figure(
         figsize=(width * len(CLAMP_READINGS) * 0.85, height + 0.4), layout="constrained"
@@ -36,7 +47,18 @@ def picture(found: Budget) -> Figure:
 
 
 def panels(found: Budget) -> dict[str, Figure]:
-    """Draw a picture for each reading."""
+    """Draw a picture for each reading.
+
+    Parameters
+    ----------
+    found : Budget
+        What is drawn.
+
+    Returns
+    -------
+    dict of Figure
+        By reading.
+    """
     figures = {}
     for reading in CLAMP_READINGS:
         figures[reading] = figure = Figure(figsize=_PANEL, layout="constrained")
@@ -45,7 +67,18 @@ def panels(found: Budget) -> dict[str, Figure]:
 
 
 def headline(found: Budget) -> str:
-    """What the picture shows, in one sentence."""
+    """What the picture shows, in one sentence.
+
+    Parameters
+    ----------
+    found : Budget
+        What is drawn.
+
+    Returns
+    -------
+    str
+        The largest part, and whether what remains matters.
+    """
     rest = short(max(part.rms for part in found.parts["unexplained"].values()))
     if found.closes:
         remains = f"at most {rest} stays unexplained, and the budget closes"

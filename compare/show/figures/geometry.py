@@ -1,9 +1,11 @@
 """The object and the vibrissa as they stand in space."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.figure import Figure
@@ -57,23 +59,19 @@ def geometry(comparison: Comparison) -> Figure:
         _draw_object(ax, readings, phase)
         ax.set_title(f"{which}: {label(readings.source)}", loc="left", fontsize=NORMAL)
         ax.set_ylabel("$y$ / $L$")
-        ax.set_aspect("equal")
         ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
     foot_x = foot(comparison.reference)
     direction = "right" if foot_x[-1] > foot_x[0] else "left"
     axes[-1].set_xlabel(f"$x$ / $L$   (the foot moves to the {direction} along $y = 0$)")
-    handles = [Line2D([], [], color=PHASE_COLOURS[p], label=PHASE_NAMES[p]) for p in PHASE_COLOURS]
-    handles += [
+    handles = [
+        *_phase_handles(),
         Line2D([], [], **_OBJECT, label="object"),
         Line2D([], [], **_CONTACT | {"markersize": 3}, label="reconstructed contact"),
     ]
     figure.legend(
         handles=handles, loc="outside lower center", ncols=5, fontsize=SMALL, frameon=False
     )
-    # As high as both axes need, at equal scales, besides their labels and the legend.
-    wide, high = (np.ptp(limits) for limits in (axes[0].get_xlim(), axes[0].get_ylim()))
-    height = 2 * (PAGE_WIDTH - 0.8) * high / wide + 1.5
-    figure.set_size_inches(PAGE_WIDTH, min(height, _HIGHEST))
+    at_equal_scales(figure, axes, PAGE_WIDTH)
     return figure
 
 
@@ -92,14 +90,15 @@ def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
     Figure
         The points, the vibrissa at some stations, and the object where the source recorded it.
     """
-    figure = Figure(figsize=(PAGE_WIDTH, 4.5), layout="constrained")
+    figure = Figure(layout="constrained")
     ax = figure.subplots()
     _draw_shapes(ax, readings, found["phase"].to_numpy(dtype=str))
     scale = readings.beam.length
     if "contour" in readings.provenance:
         xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
         ax.plot(xi, eta, color=FAINT, linewidth=3, label="object", zorder=0)
-    x, y = found["contact_x"].to_numpy() / scale, found["contact_y"].to_numpy() / scale
+    there = np.isfinite(on_vibrissa(found["contact_arc_length"].to_numpy() / scale))
+    x, y = (np.where(there, found[name] / scale, np.nan) for name in ("contact_x", "contact_y"))
     kept = cloud(x, y)
     if "uncertainty" in found:
         radius = found["uncertainty"].to_numpy() / scale
@@ -111,15 +110,42 @@ def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
         )
         ax.add_collection(circles)
         ax.plot([], [], "o", color=GREEN, alpha=0.3, markersize=9, label="95 % of cases")
-    draw(ax, x, y, **_CONTACT, label="reconstructed contact")
-    unit = "$L$" if scale == 1 else f"$L$ = {scale:g}"
-    ax.set_xlabel(f"$x$ / ({unit})")
-    ax.set_ylabel(f"$y$ / ({unit})")
-    ax.set_aspect("equal")
-    ax.set_ylim(-0.05, 1.15)
+    draw(ax, x, y, **_CONTACT | {"markersize": 2.5}, label="reconstructed contact")
+    if not kept.size:
+        ax.text(0.5, 0.5, "no contact found", transform=ax.transAxes, ha="center")
+    ax.set_xlabel(f"$x$ / $L$   ($L$ = {scale:g} of the readings' unit)")
+    ax.set_ylabel("$y$ / $L$")
     ax.axhline(0, color=FAINT, linewidth=0.8)
-    ax.legend(fontsize=SMALL, frameon=False, loc="upper center", ncols=3)
+    figure.legend(
+        handles=_phase_handles() + ax.get_legend_handles_labels()[0],
+        loc="outside lower center", ncols=3, fontsize=SMALL, frameon=False,
+    )  # fmt: skip
+    at_equal_scales(figure, [ax], PAGE_WIDTH)
     return figure
+
+
+def at_equal_scales(figure: Figure, axes: Sequence[Axes], width: float) -> None:
+    """Make a figure as high as its axes need, one above the other, at equal scales.
+
+    Parameters
+    ----------
+    figure : Figure
+        With a legend below.
+    axes : sequence of Axes
+        With one and the same range.
+    width : float
+        Of the figure, in inches.
+    """
+    wide, high = (np.ptp(limits) for limits in (axes[0].get_xlim(), axes[0].get_ylim()))
+    for ax in axes:
+        ax.set_aspect("equal")
+    around = len(axes) * 0.3 + 0.9  # titles, labels and the legend
+    height = len(axes) * (width - 0.8) * high / wide + around
+    figure.set_size_inches(width, min(height, _HIGHEST))
+
+
+def _phase_handles() -> list[Artist]:
+    return [Line2D([], [], color=PHASE_COLOURS[p], label=PHASE_NAMES[p]) for p in PHASE_COLOURS]
 
 
 def _draw_shapes(ax: Axes, readings: Readings, phase: Words) -> None:

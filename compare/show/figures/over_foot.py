@@ -21,18 +21,53 @@ _BEYOND_TIP = 1.1  # L; as far as a noisy contact is drawn
 
 
 def dots(comparison: Comparison) -> dict[str, Any]:
-    """How the candidate is drawn: the smaller the more stations it has."""
+    """How the candidate is drawn: the smaller the more stations it has.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Whose candidate is drawn.
+
+    Returns
+    -------
+    dict
+        Style of a line, as of `Axes.plot`.
+    """
     size = 2.0 if len(comparison.candidate.table) > 100 else 3.5
     return {**_DOTS, "markersize": size}
 
 
 def foot(readings: Readings) -> Floats:
-    """Foot positions [L], shape (stations,)."""
+    """Foot positions as they are drawn.
+
+    Parameters
+    ----------
+    readings : Readings
+        The sweep.
+
+    Returns
+    -------
+    array, shape (stations,)
+        [L]
+    """
     return readings.values("foot_x") / readings.beam.length
 
 
 def unit(readings: Readings, name: str) -> float:
-    """The unit that a clamp reading is drawn in."""
+    """The unit that a clamp reading is drawn in.
+
+    Parameters
+    ----------
+    readings : Readings
+        The sweep.
+    name : str
+        Of a clamp reading.
+
+    Returns
+    -------
+    float
+        In the readings' own unit.
+    """
     return readings.beam.moment_unit if name == "moment_z" else readings.beam.force_unit
 
 
@@ -59,9 +94,19 @@ def scaled(readings: Readings, judged: Classification, name: str) -> Floats:
 
 
 def on_vibrissa(s: Floats) -> Floats:
-    """Arc lengths [L] of contacts, NaN where they are no place on the vibrissa.
+    """Arc lengths of contacts, without those that are no place on the vibrissa.
 
     Without a load the noise of a rig puts a contact anywhere; with one, a little beyond the tip.
+
+    Parameters
+    ----------
+    s : array
+        Arc lengths [L].
+
+    Returns
+    -------
+    array
+        NaN where there is no contact to draw.
     """
     return np.where((s > 0) & (s < _BEYOND_TIP), s, np.nan)
 
@@ -90,12 +135,31 @@ def shade_phases(ax: Axes, foot_x: Floats, phase: Words) -> None:
 
 
 def shade_reference(ax: Axes, comparison: Comparison) -> None:
-    """The same, of a comparison's reference."""
+    """Draw the contact phases of a comparison's reference as a background.
+
+    Parameters
+    ----------
+    ax : Axes
+        Where; over foot positions [L].
+    comparison : Comparison
+        Drawn from its readings alone.
+    """
     shade_phases(ax, foot(comparison.reference), comparison.judged["reference"].phase)
 
 
 def key(ax: Axes) -> tuple[list[Artist], list[str]]:
-    """What the lines and the shades of a reading's axes mean."""
+    """What the lines and the shades of a reading's axes mean.
+
+    Parameters
+    ----------
+    ax : Axes
+        With labelled lines.
+
+    Returns
+    -------
+    handles, labels : list
+        For a legend.
+    """
     handles, labels = ax.get_legend_handles_labels()
     shades: list[Artist] = [
         Line2D([], [], color=PHASE_COLOURS[p], alpha=0.35, linewidth=7) for p in ("tip", "tangent")

@@ -1,4 +1,7 @@
-"""The paper's figures 12, 14, 15 and 16, redrawn from the solver for any case."""
+"""Figures 12, 14, 15 and 16 of Behn's group, redrawn from the solver for any case.
+
+C. Will, J. Steigenberger, C. Behn, *Quasi-static object scanning using technical vibrissae*.
+"""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,6 +16,7 @@ from analytic import (
     reconstruct_by_decision,
     surplus,
 )
+from compare.show.figures.geometry import at_equal_scales
 from compare.show.figures.over_foot import foot, unit
 from compare.show.style import (
     FAINT,
@@ -30,7 +34,20 @@ _A, _B = PHASE_COLOURS["tip"], PHASE_COLOURS["tangent"]
 
 
 def paper_figures(case: Case, readings: Readings) -> dict[str, Figure]:
-    """Figures by name: ``figure-12``, ``figure-14``, ``figure-15``, ``figure-16``."""
+    """Draw the paper's figures for a case.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+    readings : Readings
+        Its exact sweep.
+
+    Returns
+    -------
+    dict of Figure
+        ``figure-12``, ``figure-14``, ``figure-15``, ``figure-16``.
+    """
     return {
         "figure-12": contact_length(case),
         "figure-14": profile(readings),
@@ -40,7 +57,18 @@ def paper_figures(case: Case, readings: Readings) -> dict[str, Figure]:
 
 
 def contact_length(case: Case) -> Figure:
-    """Fig. 12: s1 of eq. 21 over the contour, with the limits of Phase B."""
+    """Draw fig. 12: s1 of eq. 21 over the contour, with the limits of Phase B.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+
+    Returns
+    -------
+    Figure
+        Arc length over the contour's slope angle.
+    """
     figure = Figure(figsize=(6.5, 4), layout="constrained")
     ax = figure.subplots()
     events = find_events(case.profile, case.beam)
@@ -74,8 +102,19 @@ def contact_length(case: Case) -> Figure:
 
 
 def profile(readings: Readings) -> Figure:
-    """Fig. 14: the contour, with the contacts of the sweep by phase."""
-    figure = Figure(figsize=(6.5, 3.4), layout="constrained")
+    """Draw fig. 14: the contour, with the contacts of the sweep by phase.
+
+    Parameters
+    ----------
+    readings : Readings
+        An exact sweep.
+
+    Returns
+    -------
+    Figure
+        At equal scales.
+    """
+    figure = Figure(layout="constrained")
     ax = figure.subplots()
     scale = readings.beam.length
     xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
@@ -87,13 +126,24 @@ def profile(readings: Readings) -> Figure:
     ax.set_xlabel(r"$\xi$ / $L$")
     ax.set_ylabel(r"$\eta$ / $L$")
     ax.set_title(label(readings.provenance["profile"]), fontsize=NORMAL)
-    ax.set_aspect("equal")
     figure.legend(loc="outside lower center", ncols=2, frameon=False)
+    at_equal_scales(figure, [ax], 6.5)
     return figure
 
 
 def observables(readings: Readings) -> Figure:
-    """Fig. 15: clamp force, clamp moment and the error of the reconstruction over x0."""
+    """Draw fig. 15: clamp force, clamp moment and the error of the reconstruction over x0.
+
+    Parameters
+    ----------
+    readings : Readings
+        An exact sweep.
+
+    Returns
+    -------
+    Figure
+        Four panels.
+    """
     figure = Figure(figsize=(9, 6), layout="constrained")
     axes = figure.subplots(2, 2).ravel()
     x = foot(readings)
@@ -115,7 +165,18 @@ def observables(readings: Readings) -> Figure:
 
 
 def reconstruction_error(readings: Readings) -> Figure:
-    """Fig. 16: the error of the reconstruction, by the paper's integration and in closed form."""
+    """Draw fig. 16: the error of the reconstruction, by the paper's integration and in closed form.
+
+    Parameters
+    ----------
+    readings : Readings
+        An exact sweep.
+
+    Returns
+    -------
+    Figure
+        On a logarithmic axis.
+    """
     figure = Figure(figsize=(6.5, 4), layout="constrained")
     ax = figure.subplots()
     _error(ax, readings)

@@ -37,7 +37,18 @@ _NEAR = 0.03  # of the sweep's length: what is shown on either side of the snap-
 
 
 def readings(comparison: Comparison) -> Figure:
-    """Draw clamp force, moment and reconstructed contact, and differences, side by side."""
+    """Draw clamp force, moment and reconstructed contact, and differences, side by side.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Drawn from its readings alone.
+
+    Returns
+    -------
+    Figure
+        The readings above, the differences below.
+    """
     figure = Figure(figsize=(12, 5.4), layout="constrained")
     upper, lower = figure.subplots(
         2, 4, sharex=True, height_ratios=[2.2, 1], gridspec_kw={"hspace": 0.05}
@@ -53,7 +64,18 @@ def readings(comparison: Comparison) -> Figure:
 
 
 def reading_panels(comparison: Comparison) -> dict[str, Figure]:
-    """The same, a picture for each reading."""
+    """Draw the same, a picture for each reading.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Drawn from its readings alone.
+
+    Returns
+    -------
+    dict of Figure
+        By reading.
+    """
     return {name: _panel(comparison, name) for name in SYMBOLS}
 
 

@@ -1,0 +1,145 @@
+"""What pictures are made with: curves between stations, thinned sweeps, names of any kind."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.cbook import is_math_text
+
+from analytic import CLAMP_READINGS, Readings, named_case, solve_sweep
+from compare import compare
+from compare.sense.phases import classify
+from compare.show.figures.fold import with_fold
+from compare.show.figures.over_foot import foot
+from compare.show.figures.thinning import cloud, envelope, stretches
+from compare.show.page import markdown
+from compare.show.report import write_report
+from compare.show.style import axis_label, label
+from tests.compare.show import sweeps
+from tests.conftest import exact_sweep
+
+
+@pytest.mark.parametrize("name", ["catenary", "two-circles", "tip-only"])
+def test_curve_between_the_last_stations(name):
+    sweep, case = exact_sweep(name), named_case(name)
+    phase, x = classify(sweep).phase, foot(sweep)
+    dense = solve_sweep(
+        replace(case, sweep=replace(case.sweep, stop=sweep.snap_off + 1e-6, stations=3000))
+    )
+    near = (foot(dense) > sweep.snap_off) & (foot(dense) < sweep.snap_off + 3 * (x[0] - x[1]))
+    there = foot(dense)[near]
+    for reading in CLAMP_READINGS:
+        y = sweep.values(reading)
+        curve_x, curve_y = with_fold(sweep, phase, x, y)
+        drawn = np.isfinite(curve_y)
+        expected, largest = dense.values(reading)[near], np.abs(y).max()
+        curve = np.interp(there, curve_x[drawn][::-1], curve_y[drawn][::-1])
+        straight = np.interp(there, x[::-1], y[::-1])
+        # A hundredth of the picture's height is about the width of the line.
+        assert np.abs(curve - expected).max() < 1e-2 * largest
+        assert np.abs(straight - expected).max() > 1e-2 * largest
+        at = np.searchsorted(-curve_x[drawn], -x[x > sweep.snap_off])
+        np.testing.assert_allclose(
+            curve_y[drawn][at], y[x > sweep.snap_off], atol=1e-9 * largest
+        )  # through the stations
+
+
+def test_no_curve_where_the_stations_do_not_determine_it():
+    sweep = sweeps.exact("shallow-catenary")
+    phase, x, y = classify(sweep).phase, foot(sweep), sweep.values("force_x")
+    curve_x, curve_y = with_fold(sweep, phase, x, y)
+    assert curve_x[np.isfinite(curve_y) & (curve_x > sweep.snap_off)].min() == pytest.approx(
+        x[x > sweep.snap_off].min()
+    )
+    unknown = replace(sweep, provenance={})
+    assert with_fold(unknown, phase, x, y) == (x, y)
+
+
+def test_a_mirrored_sweep_has_the_mirrored_curve():
+    sweep = exact_sweep("parabola")
+    mirrored = sweep.mirrored()
+    phase = classify(sweep).phase
+    x, y = with_fold(sweep, phase, foot(sweep), sweep.values("force_y"))
+    other_x, other_y = with_fold(mirrored, phase, foot(mirrored), mirrored.values("force_y"))
+    np.testing.assert_allclose(other_x, -x, atol=1e-12)
+    np.testing.assert_allclose(other_y, y, atol=1e-9)
+
+
+@given(st.integers(0, 2**32), st.integers(1, 20_000), st.floats(0, 0.5))
+def test_thinning_loses_no_peak(seed, n, missing):
+    rng = np.random.default_rng(seed)
+    y = rng.standard_normal(n)
+    y[rng.random(n) < missing] = np.nan
+    kept = envelope(y)
+    assert (np.diff(kept) > 0).all()
+    assert len(kept) <= 2000
+    assert {kept[0], kept[-1]} == {0, n - 1}
+    if np.isfinite(y).any():
+        assert np.nanmax(y[kept]) == np.nanmax(y)
+        assert np.nanmin(y[kept]) == np.nanmin(y)
+
+
+def test_a_thinned_cloud_looks_the_same():
+    rng = np.random.default_rng(1)
+    x, y = rng.uniform(-2, 3, 100_000), rng.standard_normal(100_000)
+    y[::7] = np.nan
+    kept = cloud(x, y)
+    assert len(kept) < 60_000
+    finite = np.isfinite(y)
+    cells = [
+        {*zip(*(np.floor((a - a[finite].min()) / np.ptp(a[finite]) * c)[i] for a, c in
+                ((x, 500), (y, 250))), strict=True)}
+        for i in (np.flatnonzero(finite), kept)
+    ]  # fmt: skip
+    assert cells[0] == cells[1]
+
+
+@pytest.mark.parametrize("n", [5, 10, 100_000])
+def test_stretches_of_phases(n):
+    phase = np.repeat(["free", "tip", "tangent", "tip", "free"], n // 5)
+    begin, end, name = stretches(phase)
+    assert list(name) == ["free", "tip", "tangent", "tip", "free"]
+    np.testing.assert_array_equal(end - begin + 1, n // 5)
+    noisy = np.where(np.random.default_rng(1).random(n) < 0.1, "tip", phase)
+    begin, end, name = stretches(noisy)
+    assert len(name) <= 500
+    assert (begin[0], end[-1]) == (0, n - 1)
+    np.testing.assert_array_equal(begin[1:], end[:-1] + 1)
+
+
+@given(st.text())
+def test_any_name_can_be_drawn(text):
+    drawn = label(text)
+    assert not is_math_text(drawn)
+    assert not drawn.startswith("_")
+    assert len(drawn.replace(r"\$", "$")) <= 61
+    assert all(c.isprintable() for c in drawn)
+
+
+@given(st.text())
+def test_any_name_is_plain_in_markdown(text):
+    written = markdown(text)
+    assert not set("<>|\n") & set(written)
+
+
+def test_labels_have_units():
+    assert axis_label("force_x") == "$F_{Ax}$ / ($EI/L^2$)"
+    assert axis_label("contact_arc_length") == "$s_1$ / $L$"
+
+
+@pytest.mark.slow
+def test_a_hundred_thousand_rows_make_a_small_page(tmp_path):
+    exact = exact_sweep("catenary")
+    x = np.linspace(*foot(exact)[[0, -1]], 100_000)
+    rng = np.random.default_rng(1)
+    columns = {"foot_x": x}
+    for name in CLAMP_READINGS:
+        values = exact.values(name)
+        noise = 0.01 * np.abs(values).max() * rng.standard_normal(len(x))
+        columns[name] = np.interp(-x, -foot(exact), values) + noise
+    rig = Readings(pd.DataFrame(columns), exact.beam)
+    report = write_report(compare(exact, rig, noise=0.01), tmp_path)
+    assert report.stat().st_size < 3e6
