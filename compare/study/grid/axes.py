@@ -5,17 +5,18 @@ from dataclasses import dataclass
 from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 from scipy.stats import qmc
 
 from analytic.problem.arrays import Floats
+from compare.read.tables import Table
 
 Value: TypeAlias = bool | int | float | str
 MOST_RUNS = 1_000_000
 """Largest number of runs of a study: an index of so many (about 300 MB) still fits in memory."""
 
 
-class Range(BaseModel):
+class Range(Table):
     """Values from one end to the other.
 
     Parameters
@@ -28,15 +29,13 @@ class Range(BaseModel):
         Equal differences, or equal ratios.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
-
     low: int | float | str = Field(alias="from")
     high: int | float | str = Field(alias="to")
     count: Annotated[int, Field(ge=2, le=MOST_RUNS)] | None = None
     spacing: Literal["linear", "log"] = "linear"
 
 
-class Sample(BaseModel):
+class Sample(Table):
     """How the ranges without a count are sampled, all together.
 
     Parameters
@@ -48,8 +47,6 @@ class Sample(BaseModel):
     seed : int
         The same seed draws the same points.
     """
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     count: int = Field(ge=1, le=MOST_RUNS)
     method: Literal["latin-hypercube", "random"] = "latin-hypercube"

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from analytic import NAMED_PROFILES, InputError
 from compare.read.case import validate
-from compare.read.complaints import complaint
+from compare.read.complaints import complaint, shown
 from compare.read.tables import CaseFile
 from compare.read.toml import TomlFile
 from compare.study.grid.axes import Value
@@ -52,6 +52,31 @@ class Base:
         if MESH in self.values:
             self.values[MESH] = self._path(self.values[MESH])
 
+    def check_key(self, key: str, place: Sequence[str]) -> None:
+        """Check that a key can vary.
+
+        Parameters
+        ----------
+        key : str
+            Dotted key.
+        place : sequence of str
+            Where the file gives it.
+
+        Raises
+        ------
+        InputError
+            If there is no such table, or the key is given elsewhere; the line is named.
+        """
+        where = self._file.place(place)
+        table, *inner = key.split(".")
+        if table not in _VARIED or len(inner) != 1:
+            raise InputError(
+                where, "an axis", f"a key of {', '.join(_VARIED)}",
+                "write it as in a case file, as beam.radius",
+            )  # fmt: skip
+        if key == BEAM and place[0] == "axes":
+            raise InputError(where, "an axis", "given as study.beams", "list the beams there")
+
     def tried(self, key: str, value: object, place: Sequence[str]) -> Value:
         """Try a value on the base case; combinations of values are not tried.
 
@@ -74,21 +99,17 @@ class Base:
         InputError
             If there is no such key or it cannot have this value; the line is named.
         """
+        self.check_key(key, place)
         where = self._file.place(place)
-        table, *inner = key.split(".")
-        if table not in _VARIED or len(inner) != 1:
-            raise InputError(
-                where, "an axis", f"a key of {', '.join(_VARIED)}",
-                "write it as in a case file, as beam.radius",
-            )  # fmt: skip
-        if key == BEAM and place[0] == "axes":
-            raise InputError(where, value, "given as study.beams", "list the beams there")
-        found = self._tried(table, inner[0], value, place)
+        table, inner = key.split(".")
+        found = self._tried(table, inner, value, place)
         if isinstance(value, bool) != isinstance(found, bool):
             allowed = "true or false" if isinstance(found, bool) else "a number or a word"
-            raise InputError(where, repr(value), allowed, "correct it")
+            raise InputError(where, shown(value), allowed, "correct it")
         if not isinstance(found, int | float | str):
-            raise InputError(where, repr(value), "one number or word", "this key cannot be an axis")
+            raise InputError(
+                where, shown(value), "one number or word", "this key cannot be an axis"
+            )
         return self._path(str(found)) if key == MESH else found
 
     def _tried(self, table: str, key: str, value: object, place: Sequence[str]) -> object:
@@ -105,7 +126,7 @@ class Base:
         try:
             self._built(checked)
         except InputError as error:
-            raise InputError(where, value, "usable", str(error)) from error
+            raise InputError(where, shown(value), "usable", str(error)) from error
         return checked.model_dump(include={table})[table][key]
 
     def _built(self, case: CaseFile) -> None:
@@ -129,7 +150,7 @@ class Base:
         else:
             raise InputError(
                 self._file.place(["study", "case"]),
-                repr(case),
+                shown(case),
                 f"one of {', '.join(NAMED_PROFILES)}, or the path of a .toml file",
                 "leave it out to describe the case here",
             )

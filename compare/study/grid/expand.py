@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from analytic import InputError
-from compare.read.complaints import complaint
+from compare.read.complaints import complaint, shown
 from compare.read.toml import TomlFile
 from compare.study.grid.axes import Axis, Interval, Range, Value
 from compare.study.grid.base import Base
@@ -44,6 +44,7 @@ def expand(file: TomlFile, content: StudyFile, base: Base) -> tuple[Axis, ...]:
     sampled: dict[str, Interval] = {}
     reader = _AxisReader(file, base)
     for key, value in reader.items(content.axes or {}):
+        base.check_key(key, _place(key))
         if isinstance(value, list):
             lists.append({key: reader.listed(key, value)})
             continue
@@ -83,7 +84,7 @@ class _AxisReader:
         """The values of a list."""
         if not values or len(set(map(repr, values))) < len(values):
             raise InputError(
-                self._named(key), _short(values), "a list of different values", "name each once"
+                self._named(key), shown(values), "a list of different values", "name each once"
             )
         if len(values) > _LONGEST_LIST:
             raise InputError(
@@ -109,7 +110,7 @@ class _AxisReader:
         if not usable or not math.isfinite(numbers[1] - numbers[0]):
             raise InputError(
                 self._named(key),
-                f"from {span.low} to {span.high}",
+                f"from {shown(span.low)} to {shown(span.high)}",
                 "two different numbers, both positive if the spacing is log",
                 "correct the range",
             )
@@ -133,7 +134,7 @@ def _zipped(
     if len(chosen) < max(2, len(keys)) or len(set(lengths)) > 1:
         raise InputError(
             file.place(["study", "zip"]),
-            _short(keys),
+            shown(keys),
             "two or more axes with equally many values, each in one list only",
             f"these have {', '.join(map(str, lengths)) or 'none'}",
         )
@@ -165,8 +166,3 @@ def _sampled(
     columns = sample.draw(len(intervals)).T
     drawn = zip(intervals.items(), columns, strict=True)
     return (Axis.of({key: interval.at(column) for (key, interval), column in drawn}),)
-
-
-def _short(values: list[Any]) -> str:
-    text = repr(values)
-    return text if len(text) < 80 else f"{text[:76]} ...]"

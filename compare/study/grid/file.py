@@ -16,7 +16,13 @@ from compare.study.grid.study import BEAM, RECORDS, Study
 
 
 def shipped_studies() -> dict[str, Path]:
-    """The files of the studies that come with the package, by name."""
+    """Find the studies that come with the package.
+
+    Returns
+    -------
+    dict of Path
+        Their files by name.
+    """
     folder = Path(str(files("compare.study") / "shipped"))
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 

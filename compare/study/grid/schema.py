@@ -2,9 +2,9 @@
 
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-from compare.read.tables import FileName
+from compare.read.tables import FileName, Table
 from compare.study.grid.axes import Sample
 from compare.study.grid.sensor import SensorNoise
 from compare.study.grid.study import Record
@@ -14,10 +14,8 @@ CASE_TABLES = ("beam", "profile", "sweep", "mujoco")
 _LONGEST = 86_400.0
 
 
-class StudyTable(BaseModel):
+class StudyTable(Table):
     """The table ``[study]``."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     name: FileName | None = None
     case: str | None = None
@@ -25,19 +23,17 @@ class StudyTable(BaseModel):
     record: Annotated[list[Record], Field(min_length=1)] | None = None
     keep_readings: bool = False
     timeout: Annotated[float, Field(gt=0, le=_LONGEST)] = 600.0
-    zip: list[list[str]] = []
+    zip: list[list[str]] = Field(default_factory=list)
 
 
-class StudyFile(BaseModel):
+class StudyFile(Table):
     """A whole study file; the tables of the case are checked as those of a case file are."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     study: StudyTable = StudyTable()
     axes: Annotated[dict[str, Any], Field(min_length=1)] | None = None
     sample: Sample | None = None
     noise: SensorNoise = SensorNoise()
-    beam: dict[str, Any] = {}
-    profile: dict[str, Any] = {}
-    sweep: dict[str, Any] = {}
-    mujoco: dict[str, Any] = {}
+    beam: dict[str, Any] = Field(default_factory=dict)
+    profile: dict[str, Any] = Field(default_factory=dict)
+    sweep: dict[str, Any] = Field(default_factory=dict)
+    mujoco: dict[str, Any] = Field(default_factory=dict)

@@ -1,12 +1,13 @@
 """The sensor of a study: noise that is added to the clamp readings of a sweep."""
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from analytic import CLAMP_READINGS, Readings
+from compare.read.tables import Table
 from compare.sense.noise import with_noise
 
 
-class SensorNoise(BaseModel):
+class SensorNoise(Table):
     """Gaussian noise of the sensor at the clamp.
 
     Parameters
@@ -16,8 +17,6 @@ class SensorNoise(BaseModel):
     seed : int
         The same seed draws the same noise, whatever the case.
     """
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     relative: float = Field(default=0.0, ge=0, lt=1)
     seed: int = Field(default=0, ge=0, lt=2**63)  # the row's column has 64 bits

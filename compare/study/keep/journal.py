@@ -77,7 +77,18 @@ class Journal:
 
 
 def list_journals(folder: Path) -> list[Path]:
-    """The journals in a folder, those of living processes too."""
+    """Find the journals in a folder, those of living processes too.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+
+    Returns
+    -------
+    list of Path
+        In the order in which they were begun.
+    """
     return sorted(folder.glob(".journal-*.jsonl"))
 
 

@@ -25,6 +25,11 @@ def lock(folder: Path) -> Iterator[None]:
     folder : Path
         The folder.
 
+    Yields
+    ------
+    None
+        While it is locked.
+
     Raises
     ------
     InputError

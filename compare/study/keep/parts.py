@@ -19,12 +19,29 @@ _DIGITS = 32  # of a digest in a part's name; names of eight are older and have 
 
 
 def list_parts(folder: Path) -> list[Path]:
-    """The part files in a folder, in the order in which they were begun."""
+    """Find the part files in a folder.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+
+    Returns
+    -------
+    list of Path
+        In the order in which they were begun.
+    """
     return sorted(folder.glob("part-*.parquet"))
 
 
 def new_name() -> str:
-    """A name that sorts by time and that no other process has."""
+    """Make a name that sorts by time and that no other process has.
+
+    Returns
+    -------
+    str
+        Nanoseconds and eight random digits.
+    """
     return f"{time.time_ns():020d}-{uuid.uuid4().hex[:8]}"
 
 

@@ -15,14 +15,14 @@ from compare.study.keep.store import PLAN_FILE
 from compare.study.work.perform import RECORDED
 
 
-def read_rows(folder: Path, tell: Callable[[str], None]) -> pd.DataFrame:
+def read_rows(folder: Path, warn: Callable[[str], None]) -> pd.DataFrame:
     """Read all that is stored of a study, also while it is under way.
 
     Parameters
     ----------
     folder : Path
         Of the study.
-    tell : callable
+    warn : callable
         Takes a line about anything that is wrong with what is stored.
 
     Returns
@@ -41,7 +41,7 @@ def read_rows(folder: Path, tell: Callable[[str], None]) -> pd.DataFrame:
     known = Columns(RECORDED)
 
     def damaged(path: Path, reason: str) -> None:
-        tell(f"{path} is damaged ({reason}): `vibrissa study` does its runs again")
+        warn(f"{path} is damaged ({reason}): `vibrissa study` does its runs again")
 
     with lock(runs):
         tables = [table for _, table in sound_parts(list_parts(runs), known, damaged)]

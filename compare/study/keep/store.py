@@ -25,7 +25,7 @@ from compare.study.work.perform import Result, columns
 PLAN_FILE = "study.json"
 ROWS_A_PART = 5000
 
-Tell: TypeAlias = Callable[[str], None]
+Warn: TypeAlias = Callable[[str], None]
 """Takes a line for the user."""
 
 
@@ -41,7 +41,7 @@ class Store:
     plan : Plan
         What is to be done; it is kept beside the results. Rows of other plans are moved to
         ``DIR/earlier``, and taken up again if a later plan asks for them.
-    tell : callable
+    warn : callable
         Takes a line about anything that is wrong with what is stored.
 
     Raises
@@ -50,14 +50,14 @@ class Store:
         If the folder cannot be written to; by the other methods too.
     """
 
-    def __init__(self, folder: Path, plan: Plan, tell: Tell) -> None:
+    def __init__(self, folder: Path, plan: Plan, warn: Warn) -> None:
         check_platform()
         self._folder = folder
         self._plan = plan
         self._shelves = Shelves(folder / "runs", folder / "earlier")
         self._columns = columns(plan.study)
         self._wanted = {run.id: number for number, run in enumerate(plan)}
-        self._tell = tell
+        self._warn = warn
         with _in_one_line(folder):
             self._shelves.runs.mkdir(parents=True, exist_ok=True)
             with lock(self._shelves.runs):
@@ -120,11 +120,11 @@ class Store:
         write_whole(self._folder / PLAN_FILE, self._plan.to_json().encode())
         moved = tidy(self._shelves, self._plan, self._wanted, self._columns, self._set_aside)
         if moved:
-            self._tell(f"{moved} runs of another plan are kept in {self._shelves.earlier}")
+            self._warn(f"{moved} runs of another plan are kept in {self._shelves.earlier}")
 
     def _set_aside(self, path: Path, reason: str) -> None:
         path.rename(path.with_name(f".damaged-{path.name.lstrip('.')}"))
-        self._tell(f"{path} is damaged ({reason}) and set aside: its runs are done again")
+        self._warn(f"{path} is damaged ({reason}) and set aside: its runs are done again")
 
 
 @contextmanager

@@ -34,7 +34,13 @@ class Shelves:
     earlier: Path
 
     def parts(self) -> list[Path]:
-        """All parts, in the order in which they were begun."""
+        """Find all parts.
+
+        Returns
+        -------
+        list of Path
+            In the order in which they were begun.
+        """
         parts = [*list_parts(self.runs), *list_parts(self.earlier)]
         return sorted(parts, key=lambda path: path.name)
 

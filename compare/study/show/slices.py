@@ -12,7 +12,7 @@ from compare.study.show.results import REFINED, SEED, StudyResults, together
 _BAND = (0.1, 0.9)  # quantiles over repetitions and samples
 _ROUNDING = 1e-9
 _BINS = 20  # that a sampled axis is cut into
-_LINES = {1: 5, 2: 3}  # lines a beam, by the number of beams; more cannot be told apart
+_LINES = {1: 5, 2: 3}  # lines a beam, by the number of beams; more cannot be distinguished
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from analytic import InputError
 from analytic.problem.files import write_whole
 from compare.show.page import inline_svg, png, render
 from compare.study.keep.reading import read_plan, read_rows
-from compare.study.keep.store import Tell
+from compare.study.keep.store import Warn
 from compare.study.show import pictures, tables
 from compare.study.show.questions import asked
 from compare.study.show.results import StudyResults
@@ -19,14 +19,14 @@ from compare.study.show.slices import curves, repeated
 _LONGEST_TABLE = 24  # rows on the page; all of them are in a file
 
 
-def write_report(folder: Path, tell: Tell) -> Path:
+def write_report(folder: Path, warn: Warn) -> Path:
     """Write ``report.html``, ``report/*.png`` and ``report/*.csv`` into the folder of a study.
 
     Parameters
     ----------
     folder : Path
         Of the study, which may be under way.
-    tell : callable
+    warn : callable
         Takes a line about anything that is wrong with what is stored.
 
     Returns
@@ -39,7 +39,7 @@ def write_report(folder: Path, tell: Tell) -> Path:
     InputError
         If there is no study in `folder`, or none of its runs is done.
     """
-    rows = read_rows(folder, tell)
+    rows = read_rows(folder, warn)
     found = StudyResults.of(read_plan(folder), rows)
     if found.done.empty:
         reasons = found.rows["reason"] if "reason" in found.rows else pd.Series(dtype=str)

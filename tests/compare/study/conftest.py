@@ -26,7 +26,7 @@ def command(tmp_path, monkeypatch, capsys) -> Callable[..., subprocess.Completed
         monkeypatch.setattr(sys, "argv", ["vibrissa", *map(str, arguments)])
         with pytest.raises(SystemExit) as ended:
             main()
-        told = capsys.readouterr()
-        return subprocess.CompletedProcess(arguments, ended.value.code, told.out, told.err)
+        said = capsys.readouterr()
+        return subprocess.CompletedProcess(arguments, ended.value.code, said.out, said.err)
 
     return run

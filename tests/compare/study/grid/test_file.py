@@ -1,5 +1,7 @@
 """Study files: what they expand to, and what is said about those that are wrong."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ from analytic import CASE_NAMES, InputError, named_case
 from compare.study.grid.file import load_study, shipped_studies
 from compare.study.grid.plan import Plan
 from compare.study.grid.study import case_file
+from compare.study.work.perform import columns
 from tests.compare.study.studies import EVENTS_ONLY
 
 
@@ -99,7 +102,7 @@ def test_a_plan_survives_its_file(plan_of):
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "stated"),
     [
         ("[axes]\nbeam.radis = [1]\n", ["line 3", "axes.beam.radis", "did you mean radius"]),
         ("[axes]\nbeam.radius = [\n  0.01,\n  -1,\n]\n", ["line 3", "axes.beam.radius", "-1"]),
@@ -117,20 +120,43 @@ def test_a_plan_survives_its_file(plan_of):
         ("[nois]\nrelative = 0\n", ["line 2", "did you mean noise"]),
         ("[beam]\nlength = 0\n", ["line 3", "beam.length"]),
         ("[axes\n", ["line 2", "valid TOML"]),
+        ("axes = {}\n", ["line 2", "axes", "at least 1"]),
+        ("[axes]\nbeam = {}\n", ["line 3", "a key of"]),
+        ("[axes]\nbeam.radius = {}\n", ["line 3", "axes.beam.radius", "missing"]),
+        ("[axes]\nbeam.radius.x = [1]\n", ["line 3", "beam.radius"]),
+        ("[axes]\n'beam.radius' = [1e-3]\nbeam.radius = [2e-3]\n", ["given once"]),
+        ("[axes]\nbeam.radius = [true]\n", ["line 3", "True"]),
+        ("[axes]\nsweep.stations = [true, 20]\n", ["line 3", "True"]),
+        ("[axes]\nbeam.radius = { from = true, to = 1e-2, count = 3 }\n", ["line 3", "True"]),
+        ("[axes]\nbeam.radius = { from = 1e-3, to = 1e-2, count = true }\n", ["line 3", "True"]),
+        ("[axes]\nmujoco.planar = [true, 1]\n", ["line 3"]),
+        ("[axes]\nmujoco.clamp = { from = 'naive', to = 'second-order', count = 2 }\n",
+         ["line 3", "two different numbers"]),
+        ("[axes]\nprofile.a = { from = 1e-300, to = 1e300, count = 3, spacing = 'log' }\n",
+         ["line 3"]),
+        ("[axes]\nnoise.seed = [1e9]\n", ["line 3", "1000000000.0"]),
+        ("[axes]\nnoise.seed = [99999999999999999999]\n", ["line 3", "less than"]),
+        ("[axes]\nbeam.radius = { from = 0, to = 1e-3, count = 1000000000 }\n",
+         ["line 3", "1000000"]),
+        ("[axes]\nsweep.stations = [1000000000]\n", ["line 3", "1000000000"]),
+        ("[sweep]\nstations = 1000000000\n", ["line 3", "1000000000"]),
+        ("[sample]\ncount = true\n", ["line 3", "True"]),
+        ("[noise]\nrelative = true\n", ["line 3", "True"]),
+        ("[noise]\nrelative = nan\n", ["line 3", "nan"]),
     ],
 )  # fmt: skip
-def test_errors_point_at_the_line(tmp_path, text, told):
+def test_errors_point_at_the_line(tmp_path, text, stated):
     path = tmp_path / "grid.toml"
     path.write_text('study = { case = "catenary" }\n' + text)
     with pytest.raises(InputError) as caught:
         load_study(str(path))
     assert "\n" not in str(caught.value)
-    for words in told:
+    for words in stated:
         assert words in str(caught.value)
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "stated"),
     [
         ('[study]\ncase = "catenry"\n', ["line 2", "catenry"]),
         ('[study]\ncase = "catenary"\ntimeout = -1\n', ["line 3", "timeout"]),
@@ -139,13 +165,44 @@ def test_errors_point_at_the_line(tmp_path, text, told):
         ('[study]\ncase = "catenary"\nzip = [["beam.radius", "profile.a"]]\n', ["line 3", "axes"]),
     ],
 )
-def test_errors_in_the_study_table(tmp_path, text, told):
+def test_errors_in_the_study_table(tmp_path, text, stated):
     path = tmp_path / "grid.toml"
     path.write_text(text)
     with pytest.raises(InputError) as caught:
         load_study(str(path))
-    for words in told:
+    for words in stated:
         assert words in str(caught.value)
+
+
+def test_a_long_list_is_refused_before_it_is_tried(tmp_path):
+    path = tmp_path / "grid.toml"
+    numbers = ", ".join(f"{1e-3 + 1e-7 * i:.7f}" for i in range(10_001))
+    path.write_text(f'study.case = "catenary"\naxes.beam.radius = [{numbers}]\n')
+    with pytest.raises(InputError, match="10001 values"):
+        load_study(str(path))
+
+
+def test_true_and_false_are_an_axis_where_they_mean_something(plan_of):
+    plan = plan_of("""
+        study.case = "catenary"
+        axes.mujoco.planar = [true, false]
+    """)
+    assert [run["mujoco.planar"] for run in parameters(plan)] == [True, False]
+    assert columns(plan.study)["mujoco.planar"] == "bool"
+    assert list(Plan.from_json(plan.to_json())) == list(plan)
+
+
+def test_a_plan_is_reached_anywhere_at_once(plan_of):
+    plan = plan_of(EVENTS_ONLY)
+    assert [plan[index] for index in range(len(plan))] == list(plan)
+    with pytest.raises(IndexError):
+        plan[len(plan)]
+
+
+def test_edited_sources_are_other_runs(plan_of):
+    plan = plan_of(EVENTS_ONLY)
+    edited = replace(plan, versions=plan.versions | {"sources": "0" * 12})
+    assert not {run.id for run in plan} & {run.id for run in edited}
 
 
 def test_shipped_studies_are_valid():

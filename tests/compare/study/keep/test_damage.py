@@ -60,8 +60,8 @@ def stored(plan):
     return {run.id: perform(recipe, run) for run in plan}
 
 
-def fill(folder, plan, results, told):
-    with Store(folder, plan, told.append) as store:
+def fill(folder, plan, results, warned):
+    with Store(folder, plan, warned.append) as store:
         for result in results:
             store.add(result)
 
@@ -97,15 +97,15 @@ def target(folder, what):
 
 def check_recovery(folder, plan, stored):
     """Reading and going on work; rows that are there are as they were, others are done again."""
-    told = []
-    read_rows(folder, told.append)
+    warned = []
+    read_rows(folder, warned.append)
     with suppress(InputError):
         read_plan(folder)
-    with Store(folder, plan, told.append) as store:
+    with Store(folder, plan, warned.append) as store:
         missing = stored.keys() - store.done()
         for run in missing:
             store.add(stored[run])
-    assert not any("\n" in line for line in told)
+    assert not any("\n" in line for line in warned)
     rows = pd.read_parquet(folder / "runs").set_index("run")
     assert set(rows.index) == set(stored)
     assert not rows.index.duplicated().any()
@@ -113,7 +113,7 @@ def check_recovery(folder, plan, stored):
         for name, value in result.row.items():
             if name != "run":
                 assert rows.loc[run, name] == value
-    return missing, told
+    return missing, warned
 
 
 @pytest.mark.parametrize("trials", [8, pytest.param(300, marks=pytest.mark.slow)])
@@ -128,10 +128,10 @@ def test_random_damage(what, trials, plan, stored, as_part, as_journal, tmp_path
         content = path.read_bytes()
         damaged = chance.choice(DAMAGES)(content, chance)
         path.write_bytes(damaged)
-        missing, told = check_recovery(folder, plan, stored)
+        missing, warned = check_recovery(folder, plan, stored)
         if what == "part":
-            assert bool(missing) == bool(told) == (damaged != content)
-        noticed += bool(told)
+            assert bool(missing) == bool(warned) == (damaged != content)
+        noticed += bool(warned)
     assert noticed or what == "plan"
 
 
@@ -141,9 +141,9 @@ def test_one_damaged_line_costs_one_run(plan, stored, as_journal, tmp_path):
     lines = path.read_bytes().split(b"\n")
     lines[2] = lines[2].replace(b"done", b"dome")
     path.write_bytes(b"\n".join(lines))
-    missing, told = check_recovery(folder, plan, stored)
+    missing, warned = check_recovery(folder, plan, stored)
     assert len(missing) == 1
-    assert "1 of 8 lines" in told[-1]
+    assert "1 of 8 lines" in warned[-1]
     assert list((folder / "runs").glob(".damaged-journal*"))
 
 
@@ -166,17 +166,17 @@ def test_a_foreign_part_is_set_aside(plan, stored, as_part, tmp_path, change):
     folder = shutil.copytree(as_part, tmp_path / "copy")
     table = pq.read_table(target(folder, "part"))
     pq.write_table(change(table), folder / "runs" / "part-0-foreign.parquet")
-    missing, told = check_recovery(folder, plan, stored)
+    missing, warned = check_recovery(folder, plan, stored)
     assert not missing
-    assert "part-0-foreign" in told[-1]
+    assert "part-0-foreign" in warned[-1]
 
 
 def test_a_folder_in_the_place_of_a_part(plan, stored, as_part, tmp_path):
     folder = shutil.copytree(as_part, tmp_path / "copy")
     (folder / "runs" / "part-0-folder.parquet").mkdir()
-    missing, told = check_recovery(folder, plan, stored)
+    missing, warned = check_recovery(folder, plan, stored)
     assert not missing
-    assert "part-0-folder" in told[-1]
+    assert "part-0-folder" in warned[-1]
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from tests.compare.study.studies import EVENTS_ONLY
 
 
 @pytest.fixture
-def told():
+def warned():
     return []
 
 
@@ -30,41 +30,41 @@ def stored(plan):
     return [perform(recipe, run) for run, _ in zip(plan, range(6), strict=False)]
 
 
-def fill(folder, plan, results, told):
-    with Store(folder, plan, told.append) as store:
+def fill(folder, plan, results, warned):
+    with Store(folder, plan, warned.append) as store:
         for result in results:
             store.add(result)
 
 
-def test_what_is_stored_is_read(tmp_path, plan, stored, told):
-    fill(tmp_path, plan, stored, told)
-    rows = read_rows(tmp_path, told.append)
+def test_what_is_stored_is_read(tmp_path, plan, stored, warned):
+    fill(tmp_path, plan, stored, warned)
+    rows = read_rows(tmp_path, warned.append)
     assert set(rows["run"]) == {result.row["run"] for result in stored}
     by_run = rows.set_index("run")
     for result in stored:
         assert by_run.loc[result.row["run"], "event_snap_off"] == result.row["event_snap_off"]
-    assert not told
+    assert not warned
 
 
-def test_any_reader_of_the_folder_sees_each_run_once(tmp_path, plan, stored, told):
-    fill(tmp_path, plan, [Result(stored[0].row | {"outcome": "failed"}), *stored[1:3]], told)
-    fill(tmp_path, plan, [stored[0], *stored[2:]], told)
+def test_any_reader_of_the_folder_sees_each_run_once(tmp_path, plan, stored, warned):
+    fill(tmp_path, plan, [Result(stored[0].row | {"outcome": "failed"}), *stored[1:3]], warned)
+    fill(tmp_path, plan, [stored[0], *stored[2:]], warned)
     frame = pd.read_parquet(tmp_path / "runs")
     assert len(frame) == len(stored)
     assert set(frame["outcome"]) == {"done"}
 
 
-def test_only_what_is_done_is_not_done_again(tmp_path, plan, stored, told):
+def test_only_what_is_done_is_not_done_again(tmp_path, plan, stored, warned):
     failed = Result(stored[0].row | {"outcome": "failed"})
-    fill(tmp_path, plan, [failed, stored[1]], told)
-    with Store(tmp_path, plan, told.append) as store:
+    fill(tmp_path, plan, [failed, stored[1]], warned)
+    with Store(tmp_path, plan, warned.append) as store:
         assert store.done() == {stored[1].row["run"]}
 
 
-def test_a_row_is_there_before_its_part_is(tmp_path, plan, stored, told):
-    with Store(tmp_path, plan, told.append) as store:
+def test_a_row_is_there_before_its_part_is(tmp_path, plan, stored, warned):
+    with Store(tmp_path, plan, warned.append) as store:
         store.add(stored[0])
-        assert len(read_rows(tmp_path, told.append)) == 1
+        assert len(read_rows(tmp_path, warned.append)) == 1
         assert not list_parts(tmp_path / "runs")
 
 
@@ -77,7 +77,7 @@ def abandon(folder, plan, results):
     os._exit(9)
 
 
-def test_the_journal_of_a_dead_process_is_adopted(tmp_path, plan, stored, told):
+def test_the_journal_of_a_dead_process_is_adopted(tmp_path, plan, stored, warned):
     process = multiprocessing.get_context("spawn").Process(
         target=abandon, args=(tmp_path, plan, stored)
     )
@@ -85,77 +85,77 @@ def test_the_journal_of_a_dead_process_is_adopted(tmp_path, plan, stored, told):
     process.join()
     (left,) = (tmp_path / "runs").glob(".journal-*")
     left.write_bytes(left.read_bytes() + b'{"run": "cut o')  # as a full disk leaves it
-    with Store(tmp_path, plan, told.append) as store:
+    with Store(tmp_path, plan, warned.append) as store:
         assert store.done() == {result.row["run"] for result in stored}
         assert not left.exists()
 
 
-def test_a_living_process_keeps_its_journal(tmp_path, plan, stored, told):
-    with Store(tmp_path, plan, told.append) as one:
+def test_a_living_process_keeps_its_journal(tmp_path, plan, stored, warned):
+    with Store(tmp_path, plan, warned.append) as one:
         one.add(stored[0])
-        with Store(tmp_path, plan, told.append) as other:
+        with Store(tmp_path, plan, warned.append) as other:
             assert other.done() == {stored[0].row["run"]}
             other.add(stored[0])
             other.add(stored[1])
         one.add(stored[2])
     assert len(pd.read_parquet(tmp_path / "runs")) == 3
-    assert not told
+    assert not warned
 
 
-def test_many_parts_become_one(tmp_path, plan, stored, told, monkeypatch):
+def test_many_parts_become_one(tmp_path, plan, stored, warned, monkeypatch):
     monkeypatch.setattr("compare.study.keep.store.ROWS_A_PART", 2)
-    fill(tmp_path, plan, stored, told)
+    fill(tmp_path, plan, stored, warned)
     assert len(list_parts(tmp_path / "runs")) == 1
     assert len(pd.read_parquet(tmp_path / "runs")) == len(stored)
 
 
 @pytest.mark.parametrize("damage", ["cut", "flipped", "empty"])
-def test_a_damaged_part_is_told_and_its_runs_done_again(tmp_path, plan, stored, told, damage):
-    fill(tmp_path, plan, stored, told)
+def test_a_damaged_part_is_reported_and_its_runs_done_again(tmp_path, plan, stored, warned, damage):
+    fill(tmp_path, plan, stored, warned)
     (part,) = list_parts(tmp_path / "runs")
     content = bytearray(part.read_bytes())
     if damage == "flipped":
         content[200] ^= 0xFF
     part.write_bytes({"cut": content[:-50], "flipped": content, "empty": b""}[damage])
-    with Store(tmp_path, plan, told.append) as store:
+    with Store(tmp_path, plan, warned.append) as store:
         assert store.done() == set()
         store.add(stored[0])
-    (line,) = told
+    (line,) = warned
     assert part.name in line
     assert "damaged" in line
     assert "\n" not in line
     assert len(pd.read_parquet(tmp_path / "runs")) == 1
 
 
-def test_a_new_axis_adds_a_column(tmp_path, plan, plan_of, stored, told):
-    fill(tmp_path, plan, stored[:1], told)
+def test_a_new_axis_adds_a_column(tmp_path, plan, plan_of, stored, warned):
+    fill(tmp_path, plan, stored[:1], warned)
     wider = plan_of(EVENTS_ONLY + "profile.c = [-0.8, -0.7]\n")
     recipe = Recipe.of(wider.study)
-    fill(tmp_path, wider, [perform(recipe, next(iter(wider)))], told)
+    fill(tmp_path, wider, [perform(recipe, next(iter(wider)))], warned)
     frame = pd.read_parquet(tmp_path / "runs")
     # The same problem, though it is one of a larger study: one run.
     assert len(frame) == 1
     assert frame["profile.c"].tolist() == [-0.8]
 
 
-def test_a_file_where_the_folder_should_be(tmp_path, plan, told):
+def test_a_file_where_the_folder_should_be(tmp_path, plan, warned):
     (tmp_path / "out").write_text("")
     with pytest.raises(InputError, match="--out"):
-        Store(tmp_path / "out", plan, told.append)
+        Store(tmp_path / "out", plan, warned.append)
 
 
-def test_a_full_disk_loses_nothing(tmp_path, plan, stored, told, monkeypatch):
+def test_a_full_disk_loses_nothing(tmp_path, plan, stored, warned, monkeypatch):
     def full(self, row):
         raise OSError(28, "No space left on device")
 
     with (
         pytest.raises(InputError, match="No space left on device"),
-        Store(tmp_path, plan, told.append) as store,
+        Store(tmp_path, plan, warned.append) as store,
     ):
         store.add(stored[0])
         store.add(stored[1])
         monkeypatch.setattr(journal.Journal, "add", full)
         store.add(stored[2])
     monkeypatch.undo()
-    with Store(tmp_path, plan, told.append) as store:
+    with Store(tmp_path, plan, warned.append) as store:
         assert store.done() == {stored[0].row["run"], stored[1].row["run"]}

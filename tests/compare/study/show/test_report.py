@@ -140,13 +140,13 @@ def test_a_page_of_an_unfinished_study(plan_of, tmp_path):
         tmp_path / "runs" / "part-0-old.parquet", index=False
     )
     (tmp_path / "study.json").write_text(plan.to_json())
-    told = []
-    page = write_report(tmp_path, told.append).read_text()
+    warned = []
+    page = write_report(tmp_path, warned.append).read_text()
     assert "4 of 8 runs are done" in page
     assert "<script>" not in page
     assert page.index("runs are done") < page.index("<svg")
     assert "3" in page[page.index("not done yet") :][:60]
-    assert not told
+    assert not warned
 
 
 def test_nothing_done_says_why(plan_of, tmp_path):

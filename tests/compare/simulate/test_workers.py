@@ -1,0 +1,75 @@
+"""Worker processes: they start or it is said why not, and none outlives its leader."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from analytic import InputError
+from compare.simulate.workers import Workers, available_cores
+
+LEADER = """
+import os, sys, time
+from compare.simulate.workers import Workers
+
+def busy(seconds):
+    print(os.getpid(), flush=True)
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        pass
+
+if __name__ == "__main__":
+    with Workers(2) as workers:
+        busies = [workers.submit(busy, 200) for _ in range(2)]
+        for one in busies:
+            one.result()
+"""
+
+
+def alive(process):
+    try:
+        return Path(f"/proc/{process}/stat").read_text().split()[2] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("way", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+def test_workers_end_with_their_leader_however_that_ends(tmp_path, way):
+    (tmp_path / "leader.py").write_text(LEADER)
+    command = [sys.executable, "leader.py"]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
+    with subprocess.Popen(command, cwd=tmp_path, text=True, **pipes) as leader:
+        processes = [int(leader.stdout.readline()) for _ in range(2)]
+        assert all(map(alive, processes))
+        leader.send_signal(way)
+        begin = time.monotonic()
+        assert leader.wait(timeout=60) != 0
+    while any(map(alive, processes)):
+        assert time.monotonic() < begin + 60  # each would be busy for 200 s
+        time.sleep(0.1)
+
+
+@pytest.mark.slow
+def test_work_is_done_and_errors_come_through():
+    with Workers(2) as workers:
+        assert sorted(workers.map(abs, [-1, 2, -3])) == [1, 2, 3]
+        with pytest.raises(ZeroDivisionError):
+            workers.submit(divmod, 1, 0).result()
+
+
+def test_workers_that_cannot_start_are_one_line(monkeypatch):
+    """A worker that dies before its first task, as one does that cannot import what it needs."""
+    monkeypatch.setattr(sys.modules["__main__"], "__file__", "/nowhere/broken.py", raising=False)
+    monkeypatch.setattr(sys.modules["__main__"], "__spec__", None)
+    with pytest.raises(InputError, match="the first one did not start") as caught:
+        Workers(2)
+    assert "\n" not in str(caught.value)
+
+
+def test_there_is_a_core():
+    assert 1 <= available_cores() <= os.cpu_count()
