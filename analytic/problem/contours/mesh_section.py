@@ -2,20 +2,19 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
+from analytic.problem.contours.mesh_file import Body, read_body
 from analytic.problem.contours.polygon import Polygon, polygon
 from analytic.problem.contours.solid import ConvexMesh
 from analytic.problem.errors import InputError
+from analytic.problem.numbers import finite, is_finite_number, pair, positive
 
-if TYPE_CHECKING:
-    from trimesh import Trimesh
-
-_ROUNDING = 1e-5  # of the volume: files hold single precision
-_IN_PLANE = 1e-6  # of the mesh's extent: likewise
+_IN_PLANE = 1e-6  # of the mesh's extent: files hold single precision
+_SAME = 1e-9  # of the section's extent; corners closer than that are one
+_STRAIGHT = 1e-9  # rad; corners that turn less are what rounding leaves of an edge
 
 
 def mesh_section(
@@ -24,17 +23,21 @@ def mesh_section(
     offset: tuple[float, float] = (0.0, 0.0),
     height: float = 0.0,
     axes: str = "xy",
+    hull: bool = False,
+    tolerance: float = 0.0,
 ) -> Polygon:
     """The polygon in which the plane of the sweep cuts a convex mesh.
 
     It knows the mesh that it is cut from (``solid``), and how far the mesh's normals leave the
     plane there (``solid.tilt``): a bead of radius r touches a face that is tilted by t at the
-    distance r/cos(t) from the section, and is pushed out of the plane.
+    distance r/cos(t) from the section, and is pushed out of the plane. ``solid.gap(r)`` is what
+    that amounts to; where it is not small the section is another problem than the body.
 
     Parameters
     ----------
-    file : path
-        STL, OBJ or PLY.
+    file : str or Path
+        STL, OBJ, PLY, OFF, GLB or glTF. Vertices at one place are merged; a body of more than
+        50,000 vertices is simplified, and its label says by how much.
     scale : float
         From the file's unit of length to the case's.
     offset : tuple of float
@@ -43,23 +46,34 @@ def mesh_section(
         Of the plane along the third axis, in the file's unit.
     axes : str
         The mesh's axes that become x and y of the sweep: ``"xy"``, ``"xz"``, ``"zy"``, ...
+    hull : bool
+        Whether to take the convex hull of a mesh that is open or dented.
+    tolerance : float
+        How far the file's vertices may lie outside the body, so that it has fewer, in the file's
+        unit; 0 keeps all that are on the hull.
+
+    Returns
+    -------
+    Polygon
+        The lower side of the section.
 
     Raises
     ------
     InputError
-        If the file cannot be read, its mesh is open or not convex, or the plane misses it.
+        If a number cannot be, the file cannot be read, its mesh is flat, open or not convex, or the
+        plane misses it.
     """
-    from scipy.spatial import ConvexHull  # slow to load, as trimesh is
-    from trimesh.intersections import mesh_plane
-
-    if sorted(axes) not in ([*"xy"], [*"xz"], [*"yz"]):
+    if not isinstance(axes, str) or sorted(axes) not in ([*"xy"], [*"xz"], [*"yz"]):
         raise InputError("mesh axes", repr(axes), "two of x, y and z", "'xy' is usual")
-    mesh = _load(Path(file))
+    scale = positive("mesh scale", scale)
+    shift = np.array(pair("mesh offset", offset))
+    height = finite("mesh height", height)
+    if not (is_finite_number(tolerance) and tolerance >= 0):
+        raise InputError("mesh tolerance", tolerance, "finite and not negative", "0 keeps all")
+    body, name = read_body(file, hull, tolerance), Path(file).name
     third = ({"x", "y", "z"} - set(axes)).pop()
     across = ["xyz".index(axis) for axis in (*axes, third)]
-    normal, origin = np.zeros(3), np.zeros(3)
-    normal[across[2]], origin[across[2]] = 1.0, height
-    low, high = mesh.bounds[:, across[2]]
+    low, high = (float(end(body.vertices[:, across[2]])) for end in (np.min, np.max))
     if not low < height < high:
         raise InputError(
             f"height {height:g} of the plane through {file}",
@@ -67,13 +81,56 @@ def mesh_section(
             f"where the mesh is, between its ends along {third}",
             "move the plane",
         )
-    cut: Floats = mesh_plane(mesh, normal, origin)  # type: ignore[no-untyped-call]
-    section = cut.reshape(-1, 3)[:, across[:2]]
-    hull = section[ConvexHull(section).vertices]
-    outline = polygon(hull * scale + np.asarray(offset), f"section of {Path(file).name}")
-    placed = (mesh.vertices - origin)[:, across] * [1, 1, _handedness(across)]
-    solid = ConvexMesh(placed * scale + [*offset, 0], _tilt(mesh, across, height), Path(file).name)
-    return replace(outline, solid=solid)
+    points = (body.vertices[:, across] - [0, 0, height]) * [1, 1, _handedness(across)]
+    corners = _corners(_cut(points, body.faces) * scale + shift)
+    if len(corners) < 3:
+        raise InputError(
+            f"height {height:g} of the plane through {file}",
+            "where it only touches the mesh",
+            "where it cuts the mesh",
+            "move the plane",
+        )
+    label = f"section of {name}"
+    if body.miss > 0:
+        label += f", simplified within {body.miss * scale:.1e}"
+    solid = ConvexMesh(points * scale + [*shift, 0], _tilt(body, points, across), name)
+    return replace(polygon(corners, label), solid=solid)
+
+
+def _cut(points: Floats, faces: Integers) -> Floats:
+    """Where the edges pass z = 0, and the vertices there, shape (n, 2)."""
+    edges = np.unique(np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)), axis=0)
+    one, other = edges[points[edges, 2].prod(axis=1) < 0].T
+    share = (points[one, 2] / (points[one, 2] - points[other, 2]))[:, None]
+    crossing = points[one, :2] + share * (points[other, :2] - points[one, :2])
+    return np.concatenate([crossing, points[points[:, 2] == 0, :2]])
+
+
+def _corners(points: Floats) -> Floats:
+    """Those of the convex hull of points of the plane, in order; fewer than 3 if they have none.
+
+    What rounding leaves of points that lie on an edge is dropped.
+    """
+    from scipy.spatial import ConvexHull, QhullError  # slow to load
+
+    extent = float(np.ptp(points, axis=0).max()) if len(points) > 2 else 0.0
+    if extent == 0:
+        return points[:0]
+    try:
+        corners = points[ConvexHull((points - points.mean(axis=0)) / extent).vertices]
+    except QhullError:
+        return points[:0]
+    while len(corners) >= 3:
+        ahead = np.roll(corners, -1, axis=0) - corners
+        behind = np.roll(ahead, 1, axis=0)
+        turn = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
+        straight = turn <= _SAME**2 * extent**2
+        straight |= turn <= _STRAIGHT * np.hypot(*ahead.T) * np.hypot(*behind.T)
+        if not straight.any():
+            break
+        first = int(np.argmin(np.where(straight, turn, np.inf)))  # one at a time: both ends of a
+        corners = np.delete(corners, first, axis=0)  # short edge may be straight
+    return corners
 
 
 def _handedness(across: list[int]) -> int:
@@ -81,49 +138,21 @@ def _handedness(across: list[int]) -> int:
     return round(float(np.linalg.det(np.eye(3)[across])))
 
 
-def _tilt(mesh: "Trimesh", across: list[int], height: float) -> float:
+def _tilt(body: Body, points: Floats, across: list[int]) -> float:
     """Largest component of the normals across the plane, along the lower side of the section.
 
     An edge in the plane has all normals between those of its two faces; the least tilted counts.
+
+    `points` are the body's vertices, `across` its axes in the frame of the section.
     """
-    _, up, third = across
-    above = mesh.vertices[:, third] - height
-    above[np.abs(above) < _IN_PLANE * mesh.scale] = 0
-    sides = above[mesh.faces]
-    normals = mesh.face_normals
-    cut = (sides.min(axis=1) < 0) & (sides.max(axis=1) > 0) & (normals[:, up] < 0)
-    rim = normals[mesh.face_adjacency[(above[mesh.face_adjacency_edges] == 0).all(axis=1)]]
-    rim = rim[rim[:, :, up].sum(axis=1) < 0][:, :, third]
-    one_way = rim.prod(axis=1) > 0
-    tilts = [*np.abs(normals[cut, third]), *np.abs(rim[one_way]).min(axis=1)]
+    up, third = body.normals[:, across[1:]].T
+    above = np.where(np.abs(points[:, 2]) < _IN_PLANE * np.ptp(points), 0, points[:, 2])
+    sides = above[body.faces]
+    cut = (sides.min(axis=1) < 0) & (sides.max(axis=1) > 0) & (up < 0)
+    ends = sides[:, [[1, 2], [2, 0], [0, 1]]]  # of the edge across from each vertex
+    face, edge = np.nonzero((ends == 0).all(axis=2))
+    pairs = np.column_stack([face, body.neighbours[face, edge]])
+    pairs = pairs[up[pairs].sum(axis=1) < 0]
+    one_way = third[pairs].prod(axis=1) > 0
+    tilts = [*np.abs(third[cut]), *np.abs(third[pairs[one_way]]).min(axis=1)]
     return float(max(tilts, default=0.0))
-
-
-def _load(file: Path) -> "Trimesh":
-    import trimesh
-    from scipy.spatial import ConvexHull
-
-    try:
-        mesh: Trimesh = trimesh.load_mesh(file)
-    except (OSError, ValueError, KeyError, IndexError, TypeError, NotImplementedError) as error:
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise InputError(
-            "mesh file", file, "a readable STL, OBJ or PLY", f"check it ({reason})"
-        ) from error
-    if len(mesh.faces) < 4 or not np.isfinite(mesh.vertices).all():
-        raise InputError(
-            f"mesh {file}", f"{len(mesh.faces)} faces", "a solid of finite vertices", "check it"
-        )
-    if not mesh.is_watertight:
-        raise InputError(f"mesh {file}", "open", "watertight", "close its holes, or merge vertices")
-    filled = mesh.volume / ConvexHull(mesh.vertices).volume
-    if filled < 1 - _ROUNDING:
-        dent = int(np.argmax(mesh.face_adjacency_projections))
-        x, y, z = mesh.vertices[mesh.face_adjacency_edges[dent, 0]]
-        raise InputError(
-            f"mesh {file}",
-            f"filling {filled:.2%} of its convex hull, dented at ({x:.4g}, {y:.4g}, {z:.4g})",
-            "convex",
-            "take the hull or one convex part",
-        )
-    return mesh

@@ -1,0 +1,168 @@
+"""A convex body from a mesh file: read, merged, checked, and made no finer than it need be."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from analytic.problem.arrays import Floats, Integers
+from analytic.problem.contours.simplify import thinned
+from analytic.problem.errors import InputError
+from analytic.problem.files import regular_file
+
+if TYPE_CHECKING:
+    from trimesh import Trimesh
+
+SUFFIXES = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf")
+_LARGEST = 256_000_000  # bytes; an STL file of 5 million faces
+_ROUNDING = 1e-5  # of the volume: files hold single precision
+_FLAT = 1e-7  # of the extent: likewise
+_MOST_VERTICES = 50_000  # the hull of a round body takes MuJoCo half a second then
+
+
+class Body(NamedTuple):
+    """A convex body in a file's own unit and axes."""
+
+    vertices: Floats
+    """Shape (n, 3)."""
+    faces: Integers
+    """Triangles of vertices, shape (m, 3)."""
+    normals: Floats
+    """Outward unit normals, shape (m, 3); exactly alike on triangles of one plane."""
+    neighbours: Integers
+    """The triangle across the edge that faces each vertex of a triangle, shape (m, 3)."""
+    miss: float = 0.0
+    """How far vertices of the file that were left out lie outside."""
+
+
+class _Read(NamedTuple):
+    mesh: "Trimesh"
+    """In units of `size`, about `middle`; vertices at one place are one."""
+    middle: Floats
+    size: float
+
+
+def read_body(file: str | Path, hull: bool, tolerance: float) -> Body:
+    """The convex body in a mesh file.
+
+    Vertices at one place are merged whatever their texture or normals, inside-out meshes are turned
+    and vertices inside the hull are dropped. A body of more than 50,000 vertices is thinned to that
+    number at most.
+
+    Parameters
+    ----------
+    file : str or Path
+        STL, OBJ, PLY, OFF, GLB or glTF.
+    hull : bool
+        Whether to take the convex hull of an open or dented mesh.
+    tolerance : float
+        How far vertices may lie outside the body, in the file's unit, so that it has fewer.
+
+    Returns
+    -------
+    Body
+        What may be touched.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, its mesh is flat or, unless `hull`, open or dented, or no 50,000
+        vertices are as near as `tolerance`.
+    """
+    from scipy.spatial import QhullError  # slow to load, as trimesh is
+
+    file = Path(file)
+    read = _load(file)
+    mesh, middle, size = read
+    if not hull and not mesh.is_watertight:
+        raise InputError(
+            f"mesh {file}", "open", "watertight", "close its holes, or take its hull (hull = true)"
+        )
+    try:
+        kept, miss = thinned(np.asarray(mesh.vertices), tolerance / size, _MOST_VERTICES)
+        body, volume = _hull(kept)
+    except QhullError as error:
+        raise InputError(f"mesh {file}", "flat", "a solid", "check it") from error
+    if 0 < tolerance < miss * size:
+        raise InputError(
+            "mesh tolerance",
+            tolerance,
+            f"{miss * size:.3g} or more",
+            f"{file} has too many vertices",
+        )
+    if not hull:
+        _check_convex(read, volume, file)
+    return body._replace(vertices=middle + size * body.vertices, miss=miss * size)
+
+
+def _check_convex(read: _Read, hull: float, file: Path) -> None:
+    """Refuse a mesh that fills less than the volume of its hull."""
+    mesh, middle, size = read
+    if mesh.is_winding_consistent:
+        volume = abs(float(mesh.volume))
+    else:  # then by cones from the middle, whichever way the faces look
+        corners = mesh.triangles - mesh.vertices.mean(axis=0)
+        volume = float(np.abs(np.linalg.det(corners)).sum()) / 6
+    if volume < (1 - _ROUNDING) * hull:
+        dent = int(np.argmax(mesh.face_adjacency_projections * np.sign(mesh.volume)))
+        x, y, z = middle + size * mesh.vertices[mesh.face_adjacency_edges[dent, 0]]
+        raise InputError(
+            f"mesh {file}",
+            f"filling {volume / hull:.2%} of its convex hull, dented at "
+            f"({x:.4g}, {y:.4g}, {z:.4g})",
+            "convex",
+            "take the hull (hull = true) or one convex part",
+        )
+
+
+def _load(file: Path) -> _Read:
+    if file.suffix.lower() not in SUFFIXES:
+        raise InputError(
+            "mesh file", file, f"named {', '.join(f'*{s}' for s in SUFFIXES)}", "convert it"
+        )
+    regular_file(file, "mesh file", _LARGEST)
+    import trimesh
+
+    options = {"skip_materials": True} if file.suffix.lower() == ".obj" else {}
+    try:
+        with np.errstate(all="ignore"):
+            found: trimesh.Trimesh = trimesh.load_mesh(file, process=False, **options)
+            points = np.asarray(found.vertices, dtype=float).reshape(-1, 3)
+            faces = np.asarray(found.faces).reshape(-1, 3)
+            size = float(np.ptp(points[faces], axis=(0, 1)).max()) if len(faces) else 0.0
+    except Exception as error:  # a parser of foreign bytes may raise anything
+        reason = " ".join(str(error).split())[:120] or type(error).__name__
+        raise InputError(
+            "mesh file", file, "a readable STL, OBJ, PLY, OFF, GLB or glTF", f"check it ({reason})"
+        ) from error
+    if len(faces) < 4 or not np.isfinite(size):
+        raise InputError(
+            f"mesh {file}", f"of {len(faces)} faces", "a solid of finite vertices", "check it"
+        )
+    if not 1e-90 < size < 1e90:
+        raise InputError(
+            f"mesh {file}", f"of size {size:.3g}", "between 1e-90 and 1e90", "change its unit"
+        )
+    middle = points[faces].mean(axis=(0, 1))
+    mesh = trimesh.Trimesh((points - middle) / size, faces, process=False)
+    mesh.remove_unreferenced_vertices()
+    mesh.merge_vertices()  # with an absolute tolerance: hence in units of its size
+    mesh.update_faces(mesh.nondegenerate_faces())
+    return _Read(mesh, middle, size)
+
+
+def _hull(points: Floats) -> tuple[Body, float]:
+    """The convex hull of points, and its volume."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    if spread[-1] < _FLAT * spread[0]:
+        raise QhullError
+    found = ConvexHull(points)
+    body = Body(
+        points[found.vertices],
+        np.searchsorted(found.vertices, found.simplices),
+        found.equations[:, :3],
+        found.neighbors,
+    )
+    return body, float(found.volume)

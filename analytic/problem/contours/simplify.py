@@ -1,0 +1,88 @@
+"""Fewer vertices for a finely meshed convex body, and what that costs."""
+
+import numpy as np
+
+from analytic.problem.arrays import Floats, Integers
+
+_START = 16  # cells along an edge of the cube
+_ROUNDS = 8  # the number of points about doubles in each
+_NEAREST = 6  # faces that are asked whether a vertex lies outside of them
+_ROUNDING = 1e-12  # of the body's size; as far outside is on the surface
+
+
+def thinned(points: Floats, tolerance: float, most: int) -> tuple[Floats, float]:
+    """Points of a convex surface such that their hull is nearly that of all.
+
+    It begins with the point farthest out in each of some 1,500 ranges of directions. Then, round
+    by round, each face of the hull gets the point that is farthest outside of it.
+
+    Parameters
+    ----------
+    points : array, shape (n, 3)
+        On the surface, or inside [length].
+    tolerance : float
+        Allowed distance [length]; 0 keeps all if they are few enough.
+    most : int
+        How many points may remain, whatever the tolerance.
+
+    Returns
+    -------
+    kept : array, shape (m, 3)
+        Some of `points`; all of them if they are few enough and none can be spared.
+    miss : float
+        How far the others lie outside of the hull of these, measured from the planes of the faces
+        nearest to them [length].
+    """
+    if tolerance == 0 and len(points) <= most:
+        return points, 0.0
+    allowed = max(tolerance, _ROUNDING * float(np.ptp(points, axis=0).max()))
+    kept = _farthest(points)
+    for _ in range(_ROUNDS):
+        outside, face = _outside(points, points[kept])
+        miss = float(outside.max())
+        if miss <= allowed or len(kept) == most:
+            break
+        order = np.lexsort((-outside, face))
+        worst = order[np.append(True, np.diff(face[order]) > 0)]
+        worst = worst[outside[worst] > allowed]
+        worst = worst[np.argsort(-outside[worst])][: most - len(kept)]
+        kept = np.union1d(kept, worst)
+    if miss > allowed and len(points) <= most:
+        return points, 0.0
+    return points[kept], miss if miss > allowed or tolerance > 0 else 0.0
+
+
+def _farthest(points: Floats) -> Integers:
+    """The point farthest out in each cell of a grid on each side of a cube."""
+    middle = (points.max(axis=0) + points.min(axis=0)) / 2
+    seen = (points - middle) / np.ptp(points, axis=0)  # a needle has as many cells all round
+    side = np.argmax(np.abs(seen), axis=1)
+    along = np.take_along_axis(seen, side[:, None], axis=1)
+    others = np.take_along_axis(seen, np.array([[1, 2], [0, 2], [0, 1]])[side], axis=1)
+    share = others / np.where(along == 0, 1, np.abs(along))
+    cell = np.clip(((share + 1) / 2 * _START).astype(int), 0, _START - 1)
+    key = ((2 * side + (along[:, 0] > 0)) * _START + cell[:, 0]) * _START + cell[:, 1]
+    order = np.lexsort((-np.linalg.norm(seen, axis=1), key))
+    return np.asarray(order[np.append(True, np.diff(key[order]) > 0)])
+
+
+def _outside(points: Floats, kept: Floats) -> tuple[Floats, Integers]:
+    """How far points lie outside of the hull of `kept`, and of which of its faces.
+
+    Raises
+    ------
+    scipy.spatial.QhullError
+        If `kept` lie in a plane.
+    """
+    from scipy.spatial import ConvexHull, KDTree  # slow to load
+
+    middle, size = kept.mean(axis=0), np.ptp(kept, axis=0).max()
+    hull = ConvexHull((kept - middle) / size)
+    centres = KDTree(hull.points[hull.simplices].mean(axis=1))
+    scaled = (points - middle) / size
+    near = np.asarray(centres.query(scaled, k=min(_NEAREST, len(hull.simplices)))[1])
+    planes = hull.equations[near]
+    distance = np.einsum("nkd,nd->nk", planes[..., :3], scaled) + planes[..., 3]
+    worst = np.argmax(distance, axis=1)
+    each = np.arange(len(points))
+    return np.maximum(distance[each, worst], 0) * size, near[each, worst]

@@ -1,0 +1,260 @@
+"""Sections of mesh files: whatever programs write, and whatever damage does to it."""
+
+import zipfile
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import HealthCheck, given, seed, settings
+from hypothesis import strategies as st
+from scipy.spatial import ConvexHull
+
+from analytic import Beam, Case, InputError, Sweep, circle, find_events, mesh_section, solve_sweep
+from analytic.problem.contours.polygon import Polygon
+
+FORMATS = ["stl", "obj", "ply", "off", "glb"]
+
+
+def refusal(*args, **kwargs) -> str:
+    with pytest.raises(InputError) as refused:
+        mesh_section(*args, **kwargs)
+    assert "\n" not in str(refused.value)
+    return str(refused.value)
+
+
+def seamed_box(path, extent=1.0):
+    """A box as programs with textures write it: a corner of its own for every face."""
+    box = trimesh.creation.box((extent,) * 3)
+    corners = "".join(f"v {x} {y} {z}\n" for x, y, z in box.vertices)
+    texture = "".join(f"vt {i / 40} {i % 7 / 7}\n" for i in range(36))
+    faces = "".join(
+        "f " + " ".join(f"{vertex + 1}/{3 * i + k + 1}" for k, vertex in enumerate(face)) + "\n"
+        for i, face in enumerate(box.faces)
+    )
+    path.write_text(corners + texture + faces)
+    return path
+
+
+def beyond(body, points):
+    """How far points lie outside of the planes of the hull of a body."""
+    planes = ConvexHull(body).equations
+    return (points @ planes[:, :3].T + planes[:, 3]).max(axis=1)
+
+
+def assert_square(section: Polygon, half: float) -> None:
+    np.testing.assert_allclose(section.vertices, [[-half, -half], [half, -half]], atol=1e-7 * half)
+    assert section.solid.tilt == 0
+    assert len(section.solid.vertices) == 8
+
+
+def test_seams_are_merged(tmp_path):
+    assert_square(mesh_section(seamed_box(tmp_path / "seams.obj")), 0.5)
+    split = trimesh.creation.box()
+    split.unmerge_vertices()  # as glTF has it, for flat shading
+    split.export(tmp_path / "split.glb")
+    assert_square(mesh_section(tmp_path / "split.glb"), 0.5)
+
+
+@pytest.mark.parametrize("size", [1e-38, 1e-9, 1e9, 1e37])
+@pytest.mark.parametrize("suffix", ["stl", "ply"])
+def test_any_unit_of_length(tmp_path, suffix, size):
+    file = tmp_path / f"box.{suffix}"
+    trimesh.creation.box((size,) * 3).export(file)
+    assert_square(mesh_section(file), size / 2)
+
+
+def test_inside_out_and_mixed_faces(tmp_path):
+    box = trimesh.creation.box()
+    box.invert()
+    box.export(tmp_path / "inverted.stl")
+    assert_square(mesh_section(tmp_path / "inverted.stl"), 0.5)
+    box.faces[::2] = box.faces[::2][:, ::-1]
+    box.export(tmp_path / "mixed.stl")
+    assert_square(mesh_section(tmp_path / "mixed.stl"), 0.5)
+
+
+def test_hull_on_request(tmp_path):
+    ring = tmp_path / "ring.stl"
+    trimesh.creation.annulus(0.5, 1.0, 1.0).export(ring)
+    assert "hull = true" in refusal(ring)
+    full = tmp_path / "full.stl"
+    trimesh.creation.cylinder(1.0, 1.0, sections=32).export(full)
+    np.testing.assert_allclose(
+        mesh_section(ring, hull=True).vertices, mesh_section(full).vertices, atol=1e-6
+    )
+    open_box = trimesh.creation.box()
+    open_box.update_faces(np.arange(12) > 1)
+    open_box.export(tmp_path / "open.stl")
+    assert "hull = true" in refusal(tmp_path / "open.stl")
+    assert_square(mesh_section(tmp_path / "open.stl", hull=True), 0.5)
+
+
+def test_simplified_within_a_tolerance(tmp_path):
+    """All vertices of the file stay within the stated distance of the body that is left."""
+    ball = trimesh.creation.icosphere(4)
+    ball.export(tmp_path / "ball.stl")
+    section = mesh_section(tmp_path / "ball.stl", tolerance=1e-2)
+    assert len(section.solid.vertices) < len(ball.vertices) / 4
+    assert 0 < beyond(section.solid.vertices, ball.vertices).max() <= 1e-2
+    assert "simplified within" in section.label
+
+
+@pytest.mark.slow
+def test_flat_sides_however_fine_are_their_corners(tmp_path):
+    """98,306 vertices, all but 8 of them on flat sides: nothing is lost."""
+    box = trimesh.creation.box()
+    for _ in range(7):
+        box = box.subdivide()
+    box.export(tmp_path / "fine.stl")
+    assert_square(mesh_section(tmp_path / "fine.stl"), 0.5)
+
+
+def test_a_section_is_that_of_the_body(tmp_path):
+    """A sphere cut beside its middle: a circle to the accuracy of its facets, tilted all round."""
+    trimesh.creation.icosphere(5).export(tmp_path / "ball.ply")
+    section = mesh_section(tmp_path / "ball.ply", offset=(0, 1.3), height=0.6)
+    radius = np.hypot(section.vertices[:, 0], section.vertices[:, 1] - 1.3)
+    np.testing.assert_allclose(radius, 0.8, atol=1e-3)
+    assert section.solid.tilt == pytest.approx(0.6, abs=0.03)
+    assert section.solid.gap(0.01) == pytest.approx(0.01 * (1 / 0.8 - 1), rel=0.1)
+    found = find_events(section).snap_off.foot_x
+    assert found == pytest.approx(find_events(circle(0.8, (0.0, 0.5))).snap_off.foot_x, abs=1e-2)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.2, 0.5])
+def test_tilt_of_a_tilted_prism(tmp_path, angle):
+    """A box turned about the x-axis: the normal of its lower side leaves the plane by the angle."""
+    box = trimesh.creation.box((1.0, 0.5, 3.0))
+    box.apply_transform(trimesh.transformations.rotation_matrix(angle, [1, 0, 0]))
+    box.export(tmp_path / "tilted.ply")
+    section = mesh_section(tmp_path / "tilted.ply")
+    assert section.solid.tilt == pytest.approx(np.sin(angle), abs=1e-6)
+    assert section.solid.gap(0.005) == pytest.approx(0.005 * (1 / np.cos(angle) - 1), abs=1e-8)
+
+
+def test_what_is_not_opened(tmp_path):
+    with zipfile.ZipFile(tmp_path / "m.zip", "w") as archive:
+        archive.writestr("m.stl", "solid")
+    for name in ("m.zip", "m.3mf", "m.xaml", "m.dxf", "m"):
+        (tmp_path / name).touch()
+        assert "*.stl" in refusal(tmp_path / name)
+    (tmp_path / "endless.stl").symlink_to("/dev/zero")
+    assert "regular file" in refusal(tmp_path / "endless.stl")
+    assert "check the path" in refusal(tmp_path / "missing.stl")
+
+
+@pytest.mark.parametrize(
+    ("numbers", "said"),
+    [
+        ({"scale": 0}, "mesh scale = 0"),
+        ({"scale": True}, "mesh scale = True"),
+        ({"offset": (0, np.nan)}, "mesh offset"),
+        ({"offset": 1}, "two numbers"),
+        ({"height": np.inf}, "mesh height = inf"),
+        ({"height": 0.5}, "between its ends"),
+        ({"tolerance": -1}, "mesh tolerance = -1"),
+        ({"axes": "xx"}, "'xx'"),
+        ({"axes": None}, "mesh axes = None"),
+    ],
+)
+def test_numbers_that_cannot_be(tmp_path, numbers, said):
+    trimesh.creation.box().export(tmp_path / "box.stl")
+    assert said in refusal(tmp_path / "box.stl", **numbers)
+
+
+def test_a_mesh_far_away_is_refused_when_the_case_is_made(tmp_path):
+    trimesh.creation.box().export(tmp_path / "box.ply")
+    section = mesh_section(tmp_path / "box.ply", offset=(1e6, 0.9))
+    with pytest.raises(InputError, match="within 10000 L"):
+        Case(profile=section)
+
+
+BODIES = {
+    "ball": lambda: trimesh.creation.icosphere(2),
+    "box": trimesh.creation.box,
+    "cylinder": lambda: trimesh.creation.cylinder(0.5, 1.0, sections=24),
+    "capsule": lambda: trimesh.creation.capsule(1.0, 0.4, count=[8, 8]),
+    "cone": lambda: trimesh.creation.cone(0.5, 1.0, sections=12),
+}
+
+
+@seed(21)
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(
+    st.sampled_from(sorted(BODIES)),
+    st.sampled_from(FORMATS),
+    st.tuples(*[st.floats(0.3, 3)] * 3),
+    st.tuples(*[st.floats(0, 1)] * 3),
+    st.floats(-6, 6),
+    st.floats(-0.4, 0.4),
+)
+def test_any_body_anyhow_turned_has_its_section(
+    tmp_path_factory, name, suffix, stretch, turn, size, height
+):
+    """Stretched, turned, in any unit: convex, on the body's hull, and swept without a word."""
+    file = tmp_path_factory.mktemp("mesh") / f"body.{suffix}"
+    body = BODIES[name]()
+    body.apply_scale(stretch)
+    body.apply_transform(trimesh.transformations.random_rotation_matrix(np.array(turn)))
+    body.apply_scale(10**size)
+    body.export(file)
+    deep = body.extents[2]
+    extent = body.extents.max()
+    place = float(body.bounds[:, 2].mean() + height * deep)
+    section = mesh_section(file, scale=1 / extent, height=place)
+    corners = np.insert(section.vertices, 2, place / extent, axis=1)
+    # Files hold single precision, or six digits.
+    assert np.abs(beyond(body.vertices / extent, corners)).max() < 1e-5
+    lowest = section.vertices[:, 1].min()
+    moved = mesh_section(file, scale=1 / extent, height=place, offset=(0, 0.4 - lowest))
+    assert np.isfinite(Case(profile=moved, sweep=Sweep(stations=10)).foot_x).all()
+
+
+@seed(22)
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(st.data())
+def test_any_damage_to_a_mesh_file_is_one_line(tmp_path_factory, data):
+    suffix = data.draw(st.sampled_from(FORMATS))
+    file = tmp_path_factory.mktemp("mesh") / f"damaged.{suffix}"
+    BODIES[data.draw(st.sampled_from(["box", "cone"]))]().export(file)
+    content = bytearray(file.read_bytes())
+    for _ in range(data.draw(st.integers(1, 3))):
+        at = data.draw(st.integers(0, len(content)))
+        match data.draw(st.sampled_from(["change", "cut", "double", "insert"])):
+            case "change" if at < len(content):
+                content[at] = data.draw(st.integers(0, 255))
+            case "cut":
+                del content[at : at + data.draw(st.integers(1, 200))]
+            case "double":
+                content[at:at] = content[: data.draw(st.integers(1, 400))]
+            case _:
+                content[at:at] = data.draw(st.binary(max_size=30))
+    file.write_bytes(content)
+    try:
+        section = mesh_section(file, hull=data.draw(st.booleans()))
+    except InputError as error:
+        assert "\n" not in str(error)
+    else:
+        assert np.isfinite(section.at(np.linspace(*section.t_range, 20)).xi).all()
+
+
+def test_a_lying_stl_does_not_fill_memory(tmp_path):
+    """A header that promises four billion faces."""
+    trimesh.creation.box().export(tmp_path / "box.stl")
+    content = bytearray((tmp_path / "box.stl").read_bytes())
+    content[80:84] = b"\xff\xff\xff\xff"
+    (tmp_path / "lying.stl").write_bytes(content)
+    assert "readable" in refusal(tmp_path / "lying.stl")
+
+
+def test_the_vibrissa_of_a_cube_from_a_file(tmp_path):
+    """The cube's corner is a corner: while the contact stays there only its angle moves."""
+    box = trimesh.creation.box()
+    box.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 4, [0, 0, 1]))
+    box.export(tmp_path / "cube.ply")
+    section = mesh_section(tmp_path / "cube.ply", offset=(0, 0.5**0.5 + 0.4))
+    table = solve_sweep(Case(Beam(radius=0.0), section, Sweep(stations=100))).table
+    touching = table[table["phase"] != "free"]
+    at_corner = touching["contact_x"].abs() < 1e-6
+    assert at_corner.sum() > 10
+    assert np.ptp(touching["contact_angle"][at_corner]) > 0.5
