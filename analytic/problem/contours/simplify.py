@@ -4,8 +4,8 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 
-_START = 16  # cells along an edge of the cube
-_ROUNDS = 8  # the number of points about doubles in each
+_START = 4  # cells along an edge of the cube
+_ROUNDS = 12  # the number of points about doubles in each
 _NEAREST = 6  # faces that are asked whether a vertex lies outside of them
 _ROUNDING = 1e-12  # of the body's size; as far outside is on the surface
 
@@ -13,7 +13,7 @@ _ROUNDING = 1e-12  # of the body's size; as far outside is on the surface
 def thinned(points: Floats, tolerance: float, most: int) -> tuple[Floats, float]:
     """Points of a convex surface such that their hull is nearly that of all.
 
-    It begins with the point farthest out in each of some 1,500 ranges of directions. Then, round
+    It begins with the point farthest out in each of some hundred ranges of directions. Then, round
     by round, each face of the hull gets the point that is farthest outside of it.
 
     Parameters
