@@ -1,21 +1,30 @@
 """The comparison of two sweeps: measured, judged by limits, and explained."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import Any, Literal
+from html import escape
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from analytic import PHASES, Readings
-from compare.explain.causes import likely_cause
+from analytic import PHASES, InputError, Readings
+from compare.explain.likely import likely_cause
 from compare.judge.allowance import NoiseAllowance, noise_allowance
-from compare.judge.failures import failures
+from compare.judge.failures import Failure, failures
 from compare.judge.tolerances import Tolerances
 from compare.measure.measurement import Measurement, measure
 from compare.sense.noise import checked_level, noise_level
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-@dataclass(frozen=True)
+_SHOWN = 6  # failures in the short form
+
+
+@dataclass(frozen=True, repr=False)
 class Comparison(Measurement):
     """A measurement with its limits: what exceeds them, and what that looks like.
 
@@ -31,22 +40,38 @@ class Comparison(Measurement):
     noise: NoiseAllowance
 
     @cached_property
+    def exceeded(self) -> tuple[Failure, ...]:
+        """Every limit that is exceeded."""
+        return tuple(failures(self, self.tolerances, self.noise))
+
+    @property
     def failures(self) -> tuple[str, ...]:
         """Every limit that is exceeded, in a sentence each."""
-        return tuple(failures(self, self.tolerances, self.noise))
+        return tuple(str(failure) for failure in self.exceeded)
+
+    @property
+    def worst(self) -> Failure | None:
+        """The limit that is exceeded most; None if the sweeps agree."""
+        return max(self.exceeded, key=lambda failure: failure.excess, default=None)
 
     @cached_property
     def likely(self) -> str | None:
         """What the disagreement looks like; None if it agrees, or matches no known cause."""
-        return None if self.agrees else likely_cause(self, self.tolerances.snap_off_window)
+        return None if self.agrees else likely_cause(self, self.tolerances, self.noise)
 
     @property
     def agrees(self) -> bool:
         """Whether no tolerance is exceeded."""
-        return not self.failures
+        return not self.exceeded
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``comparison.json`` holds; lengths in the beam's unit, the rest relative."""
+        """What ``comparison.json`` holds.
+
+        Returns
+        -------
+        dict
+            Lengths in the beam's unit, the rest relative; JSON can hold it.
+        """
         agreement = self.phase_agreement()
         return {
             "verdict": "agrees" if self.agrees else "disagrees",
@@ -62,15 +87,56 @@ class Comparison(Measurement):
                     which: {"phases": list(PHASES), "counts": table.to_numpy().tolist()}
                     for which, table in self.confusion.items()
                 },
-                "transitions": {name: place.to_dict() for name, place in self.transitions.items()},
+                "transitions": {name: event.to_dict() for name, event in self.transitions.items()},
             },
             "snap_off": self.snap_off.to_dict(),
             "stations": self.alignment.counts,
+            "records": {which: record.to_dict() for which, record in self.records.items()},
             "tolerances": {name: float(x) for name, x in self.tolerances.limits().items()},
             "tolerance_reasons": {n: x.reason for n, x in self.tolerances.limits().items()},
             "reference": _origin(self.reference),
             "candidate": _origin(self.candidate),
         }
+
+    def plot(self) -> Figure:
+        """The readings of both sweeps over the foot position, and their differences.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A notebook shows it; ``figure.savefig("picture.png")`` writes it.
+        """
+        from compare.show.figures import readings  # matplotlib is slow to load
+
+        return readings(self)
+
+    def __repr__(self) -> str:
+        """The verdict, the disagreement of each reading, and what failed."""
+        return "\n".join(self._lines())
+
+    def _repr_html_(self) -> str:
+        """The same for a notebook."""
+        return "<pre>" + "<br>".join(escape(line) for line in self._lines()) + "</pre>"
+
+    def _lines(self) -> Iterator[str]:
+        verdict = "agrees with" if self.agrees else "disagrees with"
+        compared = self.alignment.counts["compared"]
+        yield (
+            f"{self.candidate.source} {verdict} {self.reference.source} "
+            f"({compared} of {len(self.candidate.table)} stations compared)"
+        )
+        for name, d in self.disagreement.items():
+            limit = self.tolerances.of_sweep(name)
+            yield f"  {name:9} rms {d.rms:.1e}  max {d.max:.1e}  allowed {limit:.1e} rms"
+        for name, event in {**self.transitions, "snap_off": self.snap_off}.items():
+            if event.difference is not None:
+                yield f"  {name:13} {event.reference:.5g} {event.difference:+.1e}"
+        for failure in self.exceeded[:_SHOWN]:
+            yield f"  failed: {failure.clause}"
+        if len(self.exceeded) > _SHOWN:
+            yield f"  and {len(self.exceeded) - _SHOWN} more, see .failures"
+        if self.likely is not None:
+            yield f"  likely: {self.likely}"
 
 
 def compare(
@@ -90,12 +156,12 @@ def compare(
     tolerances : Tolerances, optional
         Limits for the verdict.
     offset : float or "auto"
-        By how much the candidate's ``foot_x`` exceeds the reference's for one and the same place
+        By how much the candidate's ``foot_x`` exceeds the reference's for one foot position
         [length]; ``"auto"`` estimates it from the readings.
     noise : float or "auto"
         Standard deviation of the clamp readings' noise over their largest magnitude. The limits are
-        widened by what such noise does. ``"auto"`` estimates it from both sweeps, and takes
-        everything for noise that jumps from station to station.
+        widened by what such noise does. ``"auto"`` estimates it from both sweeps, and takes for
+        noise all that jumps from station to station.
 
     Returns
     -------
@@ -105,16 +171,29 @@ def compare(
     Raises
     ------
     InputError
-        If the sweeps are of different beams or have no common stretch, the offset is ambiguous, or
-        the noise is no share of the largest magnitude.
+        If the sweeps are of different beams or have no common stretch, the reference never touches
+        or its rows are out of order, the offset is ambiguous, or the noise is no share of the
+        largest magnitude.
     """
-    tolerances = Tolerances() if tolerances is None else tolerances
+    for name, given, kind in (
+        ("reference", reference, Readings),
+        ("candidate", candidate, Readings),
+        ("tolerances", tolerances, Tolerances | None),
+    ):
+        if not isinstance(given, kind):
+            raise InputError(
+                name,
+                f"a {type(given).__name__}",
+                "Readings" if kind is Readings else "Tolerances",
+                "wrap a table as Readings(table, beam)" if kind is Readings else "see its fields",
+            )
+    tolerances = (Tolerances() if tolerances is None else tolerances).suited_to(candidate)
     found = measure(reference, candidate, tolerances.snap_off_window, offset)
     level = noise_level(reference, found.candidate) if noise == "auto" else checked_level(noise)
     allowance = noise_allowance(reference, level)
     widened = {
-        name: replace(place, uncertainty=place.uncertainty + allowance.transitions.get(name, 0.0))
-        for name, place in found.transitions.items()
+        name: replace(event, uncertainty=event.uncertainty + allowance.transitions.get(name, 0.0))
+        for name, event in found.transitions.items()
     }
     return Comparison(
         **(vars(found) | {"transitions": widened}), tolerances=tolerances, noise=allowance

@@ -1,19 +1,22 @@
 """How far apart the origins of two sweeps' foot positions are."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
+from compare.align.stations import interpolant
+from compare.sense.noise import MEDIAN_OF_NORMAL, scales
 from compare.sense.phases import Classification
 from compare.sense.transitions import locate_transitions
 
 _FEWEST = 8  # stations that a fit is worth something with
 _FOLD = 2  # last stations before a snap-off: the readings' slope grows without bound there
 _SCAN = 4  # trial offsets a station of the reference
+_MOST = 4000  # trial offsets, and stations that they are tried on
 _HUBER = 2.5  # standard deviations; stations that are farther off count by their sign only
 _ROUND_OFF = 1e-13  # of the largest magnitude
 _USELESS = 0.05  # L; a less certain offset blurs whole phases
@@ -23,7 +26,7 @@ _PLAIN, _ITERATIONS = 10, 30  # at most, of least squares and of Huber's estimat
 
 @dataclass(frozen=True)
 class Offset:
-    """By how much the candidate's ``foot_x`` exceeds the reference's for one and the same place.
+    """By how much the candidate's ``foot_x`` exceeds the reference's for one foot position.
 
     Attributes
     ----------
@@ -33,7 +36,7 @@ class Offset:
         The true one lies within `value` +- `uncertainty` in 95 % of all cases [length]; 0 where
         the offset was given. From the residual of the fit and its correlation between stations, so
         that a model's smooth deviation widens it; what of that deviation looks exactly like an
-        offset cannot be told from one.
+        offset cannot be distinguished from one.
     """
 
     value: float
@@ -44,7 +47,7 @@ def separate_lag(left: Offset, right: Offset) -> tuple[Offset, Offset]:
     """Offset of the stage and lag of the readings, from a sweep in each direction.
 
     Readings that lag behind a stage of constant speed seem displaced along the motion: to the left
-    in a sweep to the left. One sweep cannot tell that from an offset, two can.
+    in a sweep to the left. One sweep cannot distinguish that from an offset, two can.
 
     Parameters
     ----------
@@ -54,8 +57,8 @@ def separate_lag(left: Offset, right: Offset) -> tuple[Offset, Offset]:
     Returns
     -------
     offset, lag : Offset
-        Half the sum, and half the difference: the lag as the way that the stage goes meanwhile
-        [length]; over its speed that is a time.
+        Half the sum, and half the difference: the lag as the distance that the stage travels
+        meanwhile [length]; divide by its speed for a time.
     """
     uncertainty = float(np.hypot(left.uncertainty, right.uncertainty)) / 2
     return (
@@ -65,7 +68,20 @@ def separate_lag(left: Offset, right: Offset) -> tuple[Offset, Offset]:
 
 
 def without_offset(readings: Readings, offset: float) -> Readings:
-    """The readings with `offset` taken from every place along x that they and their events name."""
+    """The readings with `offset` subtracted from every position along x, events and contour too.
+
+    Parameters
+    ----------
+    readings : Readings
+        One sweep.
+    offset : float
+        [length]
+
+    Returns
+    -------
+    Readings
+        The same sweep, moved to the left by the offset.
+    """
     table = readings.table
     moved = {name: table[name] - offset for name in ("foot_x", "contact_x") if name in table}
     provenance: dict[str, Any] = dict(readings.provenance)
@@ -92,6 +108,18 @@ def estimate_offset(
     the reference, the last two before its snap-off left out. The variance is Newey and West's with
     Andrews' lag window, the interval Kiefer and Vogelsang's, who account for the window's width.
 
+    Parameters
+    ----------
+    reference, candidate : Readings
+        Two sweeps of the same beam.
+    reference_phase, candidate_phase : Classification
+        Their phases.
+
+    Returns
+    -------
+    Offset
+        With half of its 95 % interval.
+
     Raises
     ------
     InputError
@@ -103,9 +131,7 @@ def estimate_offset(
     for name, number in (("reference", curve.stations), ("candidate", int(loaded.sum()))):
         if number < _FEWEST:
             raise _ambiguous(f"{number} trusted stations of the {name} in contact")
-    scale = np.array(
-        [np.abs(reference.values(name)[reference.trusted]).max() for name in CLAMP_READINGS]
-    )
+    scale = np.array([*scales(reference).values()])
     seen = np.stack([candidate.values(name) for name in CLAMP_READINGS]) / scale[:, None]
     x, length = candidate.values("foot_x"), reference.beam.length
     starts = _scan(curve, x, seen, loaded, candidate.trusted, scale)
@@ -134,7 +160,7 @@ class _Fit(NamedTuple):
 class _Curve:
     """The reference's clamp readings over the foot position, smooth pieces and the whole."""
 
-    pieces: list[tuple[float, float, CubicSpline]]
+    pieces: list[tuple[float, float, Callable[..., Any]]]
     x: Floats
     values: Floats
     """Shape (3, stations), by ascending `x`; zero where free."""
@@ -160,7 +186,7 @@ class _Curve:
             if len(here) < 4 or len(kept) < 2:
                 continue
             order = here[np.argsort(x[here])]
-            spline = CubicSpline(x[order], values[:, order], axis=1)
+            spline = interpolant(x[order], values[:, order])
             pieces.append((float(x[kept].min()), float(x[kept].max()), spline))
         order = np.argsort(x)
         ends = (x[touching].min(), x[touching].max()) if touching.any() else (0.0, 0.0)
@@ -169,7 +195,7 @@ class _Curve:
             x[order],
             np.where(touching, values, 0.0)[:, order],
             int(touching.sum()),
-            float(np.median(np.abs(np.diff(x)))),
+            float(np.median(np.abs(np.diff(x)))) or float(np.ptp(x)) / len(x),
             (float(ends[0]), float(ends[1])),
         )
 
@@ -196,18 +222,21 @@ def _scan(
     low, high = x[loaded].min(), x[loaded].max()
     first, last = curve.ends
     half = min(high - low, last - first) / 2
-    count = int(_SCAN * (high - low + last - first - 2 * half) / curve.spacing) + 2
+    way = high - low + last - first - 2 * half
+    count = int(min(_SCAN * way / curve.spacing, _MOST)) + 2 if way > 0 else 2
     trials = np.linspace(low - last + half, high - first - half, count)
-    felt = np.where(loaded, seen, 0.0)[:, trusted]
+    stride = -(-int(trusted.sum()) // _MOST)
+    tried = np.flatnonzero(trusted)[::stride]
+    felt = np.where(loaded, seen, 0.0)[:, tried]
     misfit = np.full(count, np.inf)
     for i, trial in enumerate(trials):
-        there = x[trusted] - trial
+        there = x[tried] - trial
         known = (there >= curve.x[0]) & (there <= curve.x[-1])
-        common = known & (there >= first) & (there <= last) & loaded[trusted]
-        if common.sum() < min(loaded.sum(), curve.stations) / 2:
+        common = known & (there >= first) & (there <= last) & loaded[tried]
+        if common.sum() * stride < min(loaded.sum(), curve.stations) / 2:
             continue
-        told = np.stack([np.interp(there[known], curve.x, row) for row in curve.values])
-        misfit[i] = np.mean((felt[:, known] - told / scale[:, None]) ** 2)
+        due = np.stack([np.interp(there[known], curve.x, row) for row in curve.values])
+        misfit[i] = np.mean((felt[:, known] - due / scale[:, None]) ** 2)
     padded = np.concatenate([[np.inf], misfit, [np.inf]])
     minima = np.flatnonzero(np.isfinite(misfit) & (misfit <= padded[:-2]) & (misfit <= padded[2:]))
     return [float(trials[i]) for i in minima[np.argsort(misfit[minima])][:3]]
@@ -217,19 +246,19 @@ def _fit(curve: _Curve, x: Floats, seen: Floats, start: float, scale: Floats) ->
     """Gauss and Newton's method from `start`; None where it leads out of the reference.
 
     Plain least squares first, each reading over its largest magnitude: the scatter that the
-    readings are then weighed by can be told only near the best offset.
+    readings are then weighed by is known only near the best offset.
     """
     value, inside = start, curve.inside(x - start)
     for iteration in range(_PLAIN + _ITERATIONS):
         plain = iteration < _PLAIN
-        # Towards the end the same stations, lest they come and go.
+        # Towards the end the same stations, so that none comes and goes.
         settled = iteration >= _PLAIN + _ITERATIONS // 2
         inside = curve.inside(x - value) & (inside if settled else True)
         if inside.sum() < _FEWEST:
             return None
         miss = seen[:, inside] - curve.smooth(x[inside] - value) / scale[:, None]
         slope = curve.smooth(x[inside] - value, 1) / scale[:, None]
-        scatter = np.median(np.abs(miss), axis=1, keepdims=True) / 0.6745 + _ROUND_OFF
+        scatter = np.median(np.abs(miss), axis=1, keepdims=True) / MEDIAN_OF_NORMAL + _ROUND_OFF
         scatter = np.ones_like(scatter) if plain else scatter
         robust = np.clip(miss / scatter, -_HUBER, _HUBER)
         linear = np.abs(miss / scatter) < _HUBER
@@ -267,6 +296,8 @@ def _half_width(score: Floats, information: float) -> float:
 
 def _ambiguous(found: str) -> InputError:
     return InputError(
-        "offset", f"ambiguous ({found})", "told by the readings", "sweep more of the contact, or "
-        "give the offset as a number",
-    )  # fmt: skip
+        "offset",
+        f"ambiguous ({found})",
+        "determined by the readings",
+        "sweep more of the contact, or give the offset as a number",
+    )

@@ -1,28 +1,32 @@
 """Two sweeps brought to the same foot positions, phase by phase."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, make_interp_spline
 
 from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Floats, Integers, Words
 from compare.sense.phases import Classification
 
 _SAME_STATION = 1e-9  # L; nearer foot positions are one and the same
+_CUBIC = 4  # stations that a cubic spline needs
+_APART = 1e-12  # of the stretch; between nearer stations a cubic spline swings out
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Alignment:
     """Where both sweeps are in contact, and why the candidate's other stations are left out.
 
     Attributes
     ----------
     table : pandas.DataFrame
-        A row a compared station of the candidate: ``foot_x``, ``phase`` (the reference's),
-        ``contact_arc_length`` (the reference's at its nearest station, told from the clamp) and for
-        each clamp reading ``<name>_reference`` and ``<name>_candidate``.
+        A row a compared station of the candidate: ``station`` (its row), ``foot_x``, ``phase``
+        (the reference's), ``contact_arc_length`` (the reference's at its nearest station, from the
+        clamp) and for each clamp reading ``<name>_reference`` and ``<name>_candidate``.
     counts : dict
         Every station of the candidate in one of: ``compared``; ``free`` (in both); ``one_free``
         (contact in one sweep only, as between two snap-offs); ``untrusted`` (the candidate says so
@@ -32,6 +36,11 @@ class Alignment:
 
     table: pd.DataFrame
     counts: dict[str, int]
+
+    def __repr__(self) -> str:
+        """How many stations are compared, and how many are not."""
+        counted = ", ".join(f"{n} {reason}" for reason, n in self.counts.items() if n)
+        return f"Alignment({counted})"
 
 
 def align(
@@ -44,6 +53,18 @@ def align(
 
     A reference station at the same foot position is taken as it is. Otherwise the reference is
     interpolated by a cubic spline through one uninterrupted stretch of one phase.
+
+    Parameters
+    ----------
+    reference, candidate : Readings
+        Two sweeps of the same beam.
+    reference_phase, candidate_phase : Classification
+        Their phases.
+
+    Returns
+    -------
+    Alignment
+        The compared stations; none, if the candidate never touches where the reference does.
 
     Raises
     ------
@@ -81,37 +102,31 @@ def align(
         [
             candidate_phase.phase == "",
             outside,
-            same & (state == ""),
             covering < 0,
+            state == "",
             (state == "free") & (candidate_phase.phase == "free"),
             (state == "free") | (candidate_phase.phase == "free"),
         ],
-        ["untrusted", "outside", "reference_untrusted", "between_phases", "free", "one_free"],
+        ["untrusted", "outside", "between_phases", "reference_untrusted", "free", "one_free"],
         "compared",
     )
     compared = reasons == "compared"
     columns = {
+        "station": np.flatnonzero(compared),
         "foot_x": x[compared],
         "phase": state[compared],
         "contact_arc_length": length * (1 - reference_phase.shortfall[nearest][compared]),
     }
+    groups = _groups(np.where(compared & ~same, covering, -1))
     for name in CLAMP_READINGS:
         values = reference.values(name)
         there = values[nearest]
-        for one in np.unique(covering[compared & ~same]):
-            on = stretch == one
-            here = compared & ~same & (covering == one)
+        for one, here in groups:
+            on = slice(*np.searchsorted(stretch, [one, one + 1]))
             there[here] = _interpolate(x_ref[on], values[on], x[here])
         columns[f"{name}_reference"] = there[compared]
         columns[f"{name}_candidate"] = candidate.values(name)[compared]
     counts = {reason: int((reasons == reason).sum()) for reason in _REASONS}
-    if counts["compared"] == 0:
-        raise InputError(
-            "stations in contact in both readings",
-            ", ".join(f"{n} {reason}" for reason, n in counts.items() if n),
-            "at least one",
-            "sweep a stretch where both touch, or see why stations are not trusted",
-        )
     return Alignment(pd.DataFrame(columns), counts)
 
 
@@ -154,12 +169,23 @@ def _stretches(
 
 
 def _covering(x_ref: Floats, stretch: Integers, x: Floats) -> Integers:
-    """The stretch with stations on both sides of each `x`; -1 where there is none."""
+    """The stretch with stations on both sides of each `x`, the last of several; -1 for none."""
+    starts = np.flatnonzero(np.diff(stretch, prepend=-1))
+    low, high = np.minimum.reduceat(x_ref, starts), np.maximum.reduceat(x_ref, starts)
+    order = np.argsort(x, kind="stable")
+    first, last = np.searchsorted(x[order], low), np.searchsorted(x[order], high, side="right")
     covering = np.full(x.shape, -1)
-    for one in np.unique(stretch):
-        ends = x_ref[stretch == one]
-        covering[(x >= ends.min()) & (x <= ends.max())] = one
+    for one in np.flatnonzero(first < last):
+        covering[order[first[one] : last[one]]] = one
     return covering
+
+
+def _groups(covering: Integers) -> list[tuple[int, Integers]]:
+    """The stations that each stretch covers, by its number."""
+    order = np.argsort(covering, kind="stable")
+    numbers, starts = np.unique(covering[order], return_index=True)
+    parts = np.split(order, starts[1:])
+    return [(int(n), part) for n, part in zip(numbers, parts, strict=True) if n >= 0]
 
 
 def _stretch_phase(
@@ -172,7 +198,38 @@ def _stretch_phase(
 
 
 def _interpolate(x_ref: Floats, values: Floats, x: Floats) -> Floats:
-    order = np.argsort(x_ref)
-    if len(order) < 4:
-        return np.interp(x, x_ref[order], values[order])
-    return np.asarray(CubicSpline(x_ref[order], values[order])(x), dtype=float)
+    return np.asarray(interpolant(x_ref, values)(x), dtype=float)
+
+
+def interpolant(x: Floats, values: Floats) -> Callable[..., Any]:
+    """A cubic spline through the values at increasing or decreasing, possibly repeated `x`.
+
+    Values at one and the same `x` count by their mean. Fewer than four places are joined by
+    straight lines.
+
+    Parameters
+    ----------
+    x : array, shape (stations,)
+        In any order.
+    values : array, shape (..., stations)
+        The last axis belongs to `x`.
+
+    Returns
+    -------
+    callable
+        Of places, and of the order of the derivative (0 by default).
+    """
+    places, which, counts = np.unique(x, return_inverse=True, return_counts=True)
+    if len(places) < len(x):
+        order = np.argsort(which, kind="stable")
+        starts = np.append(0, np.cumsum(counts)[:-1])
+        values = np.add.reduceat(values[..., order], starts, axis=-1) / counts
+    else:
+        values = values[..., np.argsort(x)]
+    if len(places) == 1:
+        return lambda at, order=0: np.broadcast_to(
+            0.0 * values if order else values, (*values.shape[:-1], len(at))
+        )
+    if len(places) < _CUBIC or np.diff(places).min() < _APART * np.ptp(places):
+        return make_interp_spline(places, values, k=1, axis=-1)
+    return CubicSpline(places, values, axis=-1)

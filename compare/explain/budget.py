@@ -13,7 +13,8 @@ from compare.explain.convergence import convergence
 from compare.explain.suspects import Suspect, suspects
 from compare.explain.variations import shifted_inward, stretched
 from compare.judge.tolerances import Tolerances
-from compare.measure.disagreement import Place, before_snap_off
+from compare.measure.disagreement import Occurrence, before_snap_off
+from compare.sense.noise import scales
 
 PARTS = (
     "discretisation",
@@ -30,6 +31,8 @@ _SAFETY = 1.25
 _ORDERS = (1.0, 2.0)  # what a chain can have: of a naive clamp, and of one at mid-cell
 UNRESOLVED = 5e-5
 """What may stay unexplained in any case, of a reading's largest magnitude."""
+_LEFT, _UNSURE = 0.1, 1 / 3
+"""What may stay unexplained of a disagreement that counts as explained, and how uncertain it is."""
 
 
 @dataclass(frozen=True)
@@ -49,13 +52,18 @@ class Budget:
     parts : dict
         `Part` by name and reading.
     disagreement : dict
-        Root mean square by reading.
+        Root mean square by reading, over the stations in contact and trusted in all sweeps: fewer
+        than a comparison's, where some of them failed to settle.
     by_phase : dict
         Root mean square by part, reading and phase.
     order : float
         Observed order of convergence in the number of segments.
     closes : bool
-        Whether what is unexplained lies within the uncertainty of the parts.
+        Whether what is unexplained lies within the uncertainty of the parts, and both are small
+        against the disagreement or against `UNRESOLVED`.
+    cannot_tell : bool
+        Whether it lies within an uncertainty that is not small: then the budget neither closes
+        nor shows that something is missing.
     blame : str
         The part that dominates.
     suspects : tuple of Suspect
@@ -79,9 +87,16 @@ class Budget:
     stations: int
     convergence: dict[int, dict[str, float]]
     checks: dict[str, dict[str, float]]
+    cannot_tell: bool = False
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``budget.json`` holds."""
+        """What ``budget.json`` holds.
+
+        Returns
+        -------
+        dict
+            JSON can hold it.
+        """
         return asdict(self)
 
 
@@ -107,6 +122,11 @@ def budget(
     tolerances : Tolerances, optional
         Only its window before the snap-off is used, where readings grow without bound.
 
+    Returns
+    -------
+    Budget
+        The parts, and what they come to.
+
     Raises
     ------
     InputError
@@ -119,9 +139,7 @@ def budget(
         raise InputError(
             "stations common to all sweeps of the budget", 0, "some", "see their status"
         )
-    scale = {
-        name: float(np.abs(exact.values(name)[exact.trusted]).max()) for name in CLAMP_READINGS
-    }
+    scale = scales(exact)
 
     def signal(readings: Readings) -> Floats:
         return np.stack([readings.values(name)[kept] / scale[name] for name in CLAMP_READINGS])
@@ -154,6 +172,12 @@ def budget(
     }
     uncertainty["unexplained"] = np.sqrt(np.sum([u**2 for u in uncertainty.values()], axis=0))
     unresolved = np.hypot(uncertainty["unexplained"], UNRESOLVED)
+    within = bool((rms["unexplained"] <= unresolved).all())
+    whole = _rms(total)
+    resolved = bool(
+        (rms["unexplained"] <= np.hypot(UNRESOLVED, _LEFT * whole)).all()
+        and (uncertainty["unexplained"] <= np.hypot(UNRESOLVED, _UNSURE * whole)).all()
+    )
     phase = exact.table["phase"].to_numpy()[kept]
     shifted = shifted_inward(
         signatures, base.values("penetration")[kept] / beam.length, beam.radius / beam.length
@@ -178,19 +202,33 @@ def budget(
             for name, part in signals.items()
         },
         order,
-        bool((rms["unexplained"] <= unresolved).all()),
+        within and resolved,
         max(PARTS, key=lambda name: float(np.linalg.norm(rms[name]))),
         suspects(signals["unexplained"], signatures, float(np.linalg.norm(unresolved))),
         int(kept.sum()),
         convergence(exact, [runs[name] for name in ("stiff", "two", "four")], kept),
         {name: _by_reading(check) for name, check in checks.items()},
+        within and not resolved,
     )
 
 
 def largest_rms(
     exact: Readings, candidate: Readings, tolerances: Tolerances | None = None
 ) -> float:
-    """The largest of the three readings' disagreements, as a budget counts it."""
+    """The largest of the three readings' disagreements, as a budget counts it.
+
+    Parameters
+    ----------
+    exact, candidate : Readings
+        Over the same stations.
+    tolerances : Tolerances, optional
+        Only its window before the snap-off is used.
+
+    Returns
+    -------
+    float
+        Root mean square, relative to the reading's largest magnitude.
+    """
     window = (Tolerances() if tolerances is None else tolerances).snap_off_window
     kept = _common(exact, [candidate], window)
     (errors,) = convergence(exact, [candidate], kept).values()
@@ -204,7 +242,7 @@ def _common(exact: Readings, runs: list[Readings], window: float) -> Booleans:
     for readings in (exact, *runs):
         kept &= readings.trusted & (readings.table["phase"] != "free").to_numpy()
     if exact.snap_off is not None:
-        kept &= ~before_snap_off(exact, foot_x, Place(exact.snap_off, None), window)
+        kept &= ~before_snap_off(exact, foot_x, Occurrence(exact.snap_off, None), window)
     return kept
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from analytic import CLAMP_READINGS, Readings
 from analytic.problem.arrays import Booleans
+from compare.sense.noise import scales
 
 
 def convergence(
@@ -19,7 +20,7 @@ def convergence(
         The reference.
     runs : iterable of Readings
         Sweeps over the same stations that differ in their segments alone; one whose provenance
-        does not tell its segments is left out.
+        does not record its segments is left out.
     kept : array of bool, shape (stations,)
         Stations that count.
 
@@ -30,14 +31,14 @@ def convergence(
         magnitude.
     """
     found = {}
+    scale = scales(exact)
     for readings in runs:
         segments = readings.provenance.get("settings", {}).get("segments")
         if segments is None:
             continue
         errors = {}
         for name in CLAMP_READINGS:
-            scale = np.abs(exact.values(name)[exact.trusted]).max()
-            error = (readings.values(name) - exact.values(name))[kept] / scale
+            error = (readings.values(name) - exact.values(name))[kept] / scale[name]
             errors[name] = float(np.sqrt(np.mean(error**2)))
         found[int(segments)] = errors
     return found
@@ -48,6 +49,16 @@ def fitted_orders(found: Mapping[int, Mapping[str, float]]) -> dict[str, float]:
 
     It falls short of the beam's own order where something else than its segments, as the facets of
     the obstacle, is what is left at the finest ones.
+
+    Parameters
+    ----------
+    found : mapping
+        As `convergence` returns it.
+
+    Returns
+    -------
+    dict
+        By reading.
     """
     n = np.log(list(found))
     return {

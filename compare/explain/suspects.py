@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from compare.explain.fit import fitted
 from compare.explain.variations import STEP
 
 _CONVINCING = 0.8  # share of the unexplained that a suspect must account for
@@ -37,16 +38,18 @@ def suspects(
     signatures : mapping
         What each quantity does to the readings, of the same shape, for a change of `STEP`.
     unresolved : float
-        Norm of what may stay unexplained; below, nobody is suspected.
+        Norm of what may stay unexplained; below, nothing is suspected.
+
+    Returns
+    -------
+    tuple of Suspect
+        Empty if none explains enough.
     """
     if np.linalg.norm(np.sqrt(np.mean(unexplained**2, axis=-1))) <= unresolved:
         return ()
     found = []
     for name, signature in signatures.items():
-        known = np.isfinite(signature).all(axis=0)
-        s, u = signature[:, known].ravel(), unexplained[:, known].ravel()
-        size = float(s @ u / (s @ s))
-        share = float(1 - np.sum((u - size * s) ** 2) / np.sum(u**2))
+        size, _, share = fitted(unexplained, signature)
         if share >= _CONVINCING:
             found.append(Suspect(name, size * STEP, share))
     return tuple(sorted(found, key=lambda suspect: -suspect.share))

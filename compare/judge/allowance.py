@@ -1,18 +1,19 @@
 """What noise of the readings adds to the limits of agreement."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from analytic import CLAMP_READINGS, Readings
 from compare.sense.noise import with_noise
 from compare.sense.phases import classify, confusion
 from compare.sense.transitions import TRANSITIONS, locate_transitions
 
-_RISK = 1e-3  # of calling a sweep off that is not, for each limit that noise widens
+_RISK = 1e-3  # of a false alarm, for each limit that noise widens
 _REPLICAS = 24  # of the reference, each with noise of its own
+_STATIONS = 2000  # that a replica has at most: a longer sweep is thinned out for this alone
 _SIGMAS = 3
 
 
@@ -27,7 +28,7 @@ class NoiseAllowance:
     transitions : mapping
         How far noise may move each transition that is located from the clamp [length].
     phase_agreement : float
-        Share of stations whose phase can still be told; 1 without noise.
+        Share of stations whose phase can still be determined; 1 without noise.
     """
 
     level: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(CLAMP_READINGS, 0.0))
@@ -35,14 +36,44 @@ class NoiseAllowance:
     phase_agreement: float = 1.0
 
     def rms(self, limit: float, reading: str, stations: int) -> float:
-        """The rms that a sweep at the limit still shows with noise, but for one case in 1000."""
+        """The rms that a sweep at the limit still shows with noise, but for one case in 1000.
+
+        Parameters
+        ----------
+        limit : float
+            Without noise, relative to the reading's largest magnitude.
+        reading : str
+            Name of the clamp reading.
+        stations : int
+            How many the rms is over.
+
+        Returns
+        -------
+        float
+            The widened limit.
+        """
         square = self.level[reading] ** 2
         spread = np.sqrt((2 * square**2 + 4 * square * limit**2) / max(stations, 1))
-        return float(np.sqrt(limit**2 + square + norm.isf(_RISK) * spread))
+        return float(np.sqrt(limit**2 + square - ndtri(_RISK) * spread))
 
     def max(self, limit: float, reading: str, stations: int) -> float:
-        """The same for the largest difference of so many stations."""
-        return float(limit + norm.isf(_RISK / 2 / max(stations, 1)) * self.level[reading])
+        """The largest difference that a sweep at the limit still shows with noise.
+
+        Parameters
+        ----------
+        limit : float
+            Without noise, relative to the reading's largest magnitude.
+        reading : str
+            Name of the clamp reading.
+        stations : int
+            How many there are.
+
+        Returns
+        -------
+        float
+            The widened limit.
+        """
+        return float(limit - ndtri(_RISK / 2 / max(stations, 1)) * self.level[reading])
 
 
 def noise_allowance(reference: Readings, level: Mapping[str, float]) -> NoiseAllowance:
@@ -54,22 +85,31 @@ def noise_allowance(reference: Readings, level: Mapping[str, float]) -> NoiseAll
         The sweep without it.
     level : mapping
         As in `NoiseAllowance`.
+
+    Returns
+    -------
+    NoiseAllowance
+        What it adds to the limits.
     """
     if not any(level.values()):
         return NoiseAllowance()
+    stride = -(-len(reference.table) // _STATIONS)
+    thinned = reference.table.iloc[::stride].reset_index(drop=True)
+    reference = replace(reference, table=thinned) if stride > 1 else reference
     calm = locate_transitions(reference, classify(reference))
     moved: dict[str, list[float]] = {name: [] for name in TRANSITIONS}
     shares = []
     for seed in range(_REPLICAS):
         noisy = with_noise(reference, level, seed)
         judged = classify(noisy)
-        for name, place in locate_transitions(noisy, judged).items():
+        for name, found in locate_transitions(noisy, judged).items():
             expected = calm[name]
-            if place is not None and expected is not None:
-                moved[name].append(place - expected)
+            if found is not None and expected is not None:
+                moved[name].append(found - expected)
         if "phase" in noisy.table:
             table = confusion(judged, noisy).to_numpy()
-            shares.append(np.trace(table) / table.sum())
+            if table.sum():
+                shares.append(np.trace(table) / table.sum())
     share = float(np.mean(shares) - _SIGMAS * np.std(shares)) if shares else 1.0
     return NoiseAllowance(
         level,

@@ -1,6 +1,8 @@
 """What exceeds the limits of agreement, in sentences that say where, by how much and why so."""
 
+import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from compare.judge.allowance import NoiseAllowance
 from compare.judge.tolerances import Limit, Tolerances
@@ -8,74 +10,215 @@ from compare.measure.disagreement import Disagreement
 from compare.measure.measurement import Measurement
 
 
-def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> Iterator[str]:
-    """Every limit that is exceeded: what, where, how much, how much is allowed, and why so."""
+@dataclass(frozen=True)
+class Failure:
+    """One limit that is exceeded.
+
+    Attributes
+    ----------
+    name : str
+        The reading, event or part of the record that it is about.
+    found : str
+        What was found, with its number.
+    clause : str
+        The same as part of a sentence: what is wrong, with its number and what is allowed.
+    allowed : str
+        What is allowed, with the reason.
+    excess : float
+        How many times what is allowed; infinite for what must not be at all.
+    """
+
+    name: str
+    found: str
+    clause: str
+    allowed: str
+    excess: float = math.inf
+
+    def __str__(self) -> str:
+        """The whole sentence."""
+        return f"{self.name}: {self.found}; {self.allowed}"
+
+
+def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> Iterator[Failure]:
+    """Every limit that is exceeded: what, where, how much, how much is allowed, and why so.
+
+    Parameters
+    ----------
+    found : Measurement
+        What the sweeps differ by.
+    limits : Tolerances
+        How far they may differ.
+    noise : NoiseAllowance
+        What noise adds to that.
+
+    Yields
+    ------
+    Failure
+        Record and contact first, then the readings, the phases, the events and the stations.
+    """
+    yield from _record(found)
+    yield from _contact(found)
     for name, d in found.disagreement.items():
         yield from _reading(name, d, limits, noise)
     yield from _phases(found, limits, noise)
-    yield from _places(found, limits)
+    yield from _events(found, limits)
     yield from _stations(found, limits)
+
+
+def _record(found: Measurement) -> Iterator[Failure]:
+    record = found.records["candidate"]
+    if found.order.note is not None:
+        wrong, _, compared = found.order.note.partition("; ")
+        steps = f" ({record.retreats} of {len(record.missing) - 1} steps lead back)"
+        yield Failure(
+            "order",
+            wrong + (steps if record.retreats else "") + f"; {compared}",
+            f"its {wrong}",
+            "write the rows in the order of the motion",
+        )
+    if found.order.opposite:
+        yield Failure(
+            "direction",
+            "foot_x and moment_z of the candidate run opposite to the reference's",
+            "it was swept in the opposite direction",
+            "compare with a reference swept the same way (`[sweep] direction`), or with the mirror "
+            "image (`Readings.mirrored`) if the object is symmetric",
+        )
+
+
+def _contact(found: Measurement) -> Iterator[Failure]:
+    counts = found.alignment.counts
+    compared = next(iter(found.disagreement.values())).stations
+    if compared:
+        return
+    if counts["compared"]:
+        yield Failure(
+            "contact",
+            f"all {counts['compared']} stations in contact in both sweeps lie in the window before "
+            "the snap-off",
+            "no station can be compared but just before the snap-off",
+            "sweep more stations",
+        )
+        return
+    touching = int((found.judged["reference"].phase != "free").sum())
+    if not (found.judged["candidate"].phase == "").all() and counts["one_free"]:
+        yield Failure(
+            "contact",
+            f"the candidate touches at none of the {touching} stations where the reference does",
+            f"it touches at none of the {touching} stations where the reference does",
+            "it must touch where the reference touches",
+        )
+        return
+    reasons = ", ".join(f"{n} {reason}" for reason, n in counts.items() if n)
+    yield Failure(
+        "contact",
+        f"no station in contact in both sweeps ({reasons})",
+        f"no station can be compared ({reasons})",
+        "sweep a stretch where both touch, or see why stations are not trusted",
+    )
 
 
 def _reading(
     name: str, d: Disagreement, limits: Tolerances, noise: NoiseAllowance
-) -> Iterator[str]:
+) -> Iterator[Failure]:
     limit = limits.of_sweep(name)
-    if d.rms > noise.rms(limit, name, sum(d.stations_by_phase.values())):
+    widened = noise.rms(limit, name, d.stations)
+    if d.rms > widened:
         worst = max(d.rms_by_phase, key=lambda phase: d.rms_by_phase[phase])
-        yield (
-            f"{name}: rms {d.rms:.2e} of its largest magnitude, most in phase {worst} "
-            f"({d.rms_by_phase[worst]:.2e}); {_allowed(limit, noise.level[name])}"
+        yield Failure(
+            name,
+            f"rms {d.rms:.2e} of its largest magnitude, most in phase {worst} "
+            f"({d.rms_by_phase[worst]:.2e})",
+            f"{name} is off by {d.rms:.1e} rms{_where(limit, noise.level[name])}, most in phase "
+            f"{worst}",
+            _allowed(limit, noise.level[name]),
+            _ratio(d.rms, widened),
         )
     for phase, rms in d.rms_by_phase.items():
         asked = limits.of_phase(name, phase)
-        if asked is not None and rms > noise.rms(asked, name, d.stations_by_phase[phase]):
-            yield (
-                f"{name}: rms {rms:.2e} of its largest magnitude in phase {phase}; "
-                f"{_allowed(asked, noise.level[name])}"
+        if asked is None:
+            continue
+        widened = noise.rms(asked, name, d.stations_by_phase[phase])
+        if rms > widened:
+            yield Failure(
+                name,
+                f"rms {rms:.2e} of its largest magnitude in phase {phase}",
+                f"{name} is off by {rms:.1e} rms in phase {phase}"
+                f"{_where(asked, noise.level[name])}",
+                _allowed(asked, noise.level[name]),
+                _ratio(rms, widened),
             )
     for phase, peak in d.peaks.items():
         limit = limits.of_reading("max", name, phase)
-        if peak.size > noise.max(limit, name, sum(d.stations_by_phase.values())):
-            yield (
-                f"{name}: off by {peak.size:.2e} of its largest magnitude at foot_x = "
-                f"{peak.at:.6g} in phase {phase}, the contact at arc length {peak.arc_length:.4g}; "
-                f"{_allowed(limit, noise.level[name])}"
+        widened = noise.max(limit, name, d.stations)
+        if peak.size > widened:
+            yield Failure(
+                name,
+                f"off by {peak.size:.2e} of its largest magnitude at foot_x = {peak.at:.6g} in "
+                f"phase {phase}, the contact at arc length {peak.arc_length:.4g}",
+                f"{name} is off by {peak.size:.1e} at foot_x = {peak.at:.6g}"
+                f"{_where(limit, noise.level[name])}",
+                _allowed(limit, noise.level[name]),
+                _ratio(peak.size, widened),
             )
 
 
-def _phases(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> Iterator[str]:
+def _phases(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> Iterator[Failure]:
     limit = limits.limits()["phase_agreement"]
     for which, share in found.phase_agreement().items():
         if share < limit * noise.phase_agreement:
-            yield (
-                f"phases of the {which}: {share:.1%} judged rightly from the clamp, "
-                f"asked {float(limit):.1%} ({limit.reason})"
+            yield Failure(
+                f"phases of the {which}",
+                f"{share:.1%} judged rightly from the clamp",
+                f"{share:.1%} of the {which}'s phases follow from its clamp readings where "
+                f"{float(limit):.1%} must",
+                f"asked {float(limit):.1%} ({limit.reason})",
+                _ratio(1 - share, 1 - limit * noise.phase_agreement),
             )
 
 
-def _places(found: Measurement, tolerances: Tolerances) -> Iterator[str]:
+def _events(found: Measurement, tolerances: Tolerances) -> Iterator[Failure]:
     limits, length = tolerances.limits(), found.reference.beam.length
-    places = {name: (place, limits["transition"]) for name, place in found.transitions.items()}
-    places["snap_off"] = found.snap_off, limits["snap_off"]
-    for name, (place, limit) in places.items():
-        if not place.agrees(limit * length):
-            wide = f" +- {place.uncertainty:.1e}" if place.uncertainty else ""
-            apart = "" if place.difference is None else f", {place.difference:+.2e}{wide} apart"
-            yield (
-                f"{name}: at foot_x = {_told(place.candidate)} instead of "
-                f"{_told(place.reference)}{apart}; {_allowed(Limit(limit * length, limit.reason))}"
+    events = {name: (event, limits["transition"]) for name, event in found.transitions.items()}
+    events["snap_off"] = found.snap_off, limits["snap_off"]
+    for name, (event, limit) in events.items():
+        if event.agrees(limit * length):
+            continue
+        allowed = _allowed(Limit(limit * length, limit.reason))
+        if event.difference is None:
+            which = "candidate" if event.candidate is None else "reference"
+            yield Failure(
+                name,
+                f"at foot_x = {_position(event.candidate)} instead of {_position(event.reference)}",
+                f"{name} is missing in the {which}",
+                allowed,
             )
+            continue
+        wide = f" +- {event.uncertainty:.1e}" if event.uncertainty else ""
+        yield Failure(
+            name,
+            f"at foot_x = {_position(event.candidate)} instead of {_position(event.reference)}, "
+            f"{event.difference:+.2e}{wide} apart",
+            f"{name} is {event.difference:+.1e} away{_where(Limit(limit * length))}",
+            allowed,
+            _ratio(abs(event.difference), limit * length + event.uncertainty),
+        )
 
 
-def _stations(found: Measurement, limits: Tolerances) -> Iterator[str]:
+def _stations(found: Measurement, limits: Tolerances) -> Iterator[Failure]:
     limit = limits.limits()["untrusted"]
     untrusted, all_ = found.alignment.counts["untrusted"], len(found.candidate.table)
-    if untrusted > limit * all_:
-        yield (
-            f"stations: {untrusted} of {all_} of the candidate are not to be trusted, "
-            f"allowed {float(limit):.1%} ({limit.reason})"
-        )
+    if untrusted <= limit * all_:
+        return
+    missing = int(found.records["candidate"].missing.sum())
+    why = f" ({missing} of them lack a number)" if missing else ""
+    yield Failure(
+        "stations",
+        f"{untrusted} of {all_} of the candidate are not to be trusted{why}",
+        f"{untrusted} of its {all_} stations are not to be trusted{why}{_share(limit)}",
+        f"allowed {float(limit):.1%} ({limit.reason})",
+        _ratio(untrusted, limit * all_),
+    )
 
 
 def _allowed(limit: Limit, noise: float = 0.0) -> str:
@@ -83,5 +226,18 @@ def _allowed(limit: Limit, noise: float = 0.0) -> str:
     return f"allowed {float(limit):.2e}{beside} ({limit.reason})"
 
 
-def _told(x: float | None) -> str:
+def _where(limit: Limit, noise: float = 0.0) -> str:
+    beside = f" beside noise of {noise:.1e}" if noise else ""
+    return f" where {float(limit):.1e} is allowed{beside}"
+
+
+def _share(limit: Limit) -> str:
+    return f" where {float(limit):.1%} may be"
+
+
+def _ratio(found: float, allowed: float) -> float:
+    return float(found / allowed) if allowed > 0 else math.inf
+
+
+def _position(x: float | None) -> str:
     return "nowhere" if x is None else f"{x:.6g}"

@@ -2,15 +2,18 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Literal, TypeAlias
 
-from analytic import CLAMP_READINGS, PHASES, InputError
+import numpy as np
+
+from analytic import CLAMP_READINGS, PHASES, InputError, Readings
 
 Kind: TypeAlias = Literal["rms", "max"]
 
 CONTACT_PHASES = PHASES[1:]
 _KINDS = ("rms", "max")
+_CORNER = 0.2  # rad; what a smooth contour of 181 points turns by at none of them
 
 
 class Limit(float):
@@ -40,6 +43,9 @@ class Limit(float):
 class Tolerances:
     """Limits of agreement; the defaults are for a chain of 40 segments against the closed form.
 
+    Past an object with corners, or for another source as a rig, nothing stands behind the defaults
+    but convention, and `suited_to` has the reasons say so.
+
     Plain numbers become `Limit` whose reason is that the caller asked for them.
 
     Parameters
@@ -49,11 +55,11 @@ class Tolerances:
     max : float
         The same at any one station.
     snap_off_window : float
-        Stretch before snap-off, of the sweep's length, where `max` is not asked.
+        Stretch before snap-off, of the sweep's length, where neither is asked.
     phase_agreement : float
         Share of stations whose phase, judged from the clamp, is the true contact's.
     transition, snap_off : float
-        Of each place [L].
+        Of each event's foot position [L].
     untrusted : float
         Share of the candidate's stations that may have failed to settle.
     special : mapping
@@ -100,33 +106,135 @@ class Tolerances:
                     f"READING.KIND, PHASE.KIND or READING.PHASE.KIND, a reading of "
                     f"{', '.join(CLAMP_READINGS)}, a phase of {', '.join(CONTACT_PHASES)}, a kind "
                     f"of {', '.join(_KINDS)}",
-                    "mend the name",
+                    "correct the name",
                 )
         special = {name: _limit(name, value) for name, value in self.special.items()}
         object.__setattr__(self, "special", special)
 
+    def suited_to(self, candidate: Readings) -> "Tolerances":
+        """The same limits, with reasons that hold for the source that they are applied to.
+
+        Parameters
+        ----------
+        candidate : Readings
+            Whoever made it.
+
+        Returns
+        -------
+        Tolerances
+            Limits that were asked for keep their reasons.
+        """
+        if is_smooth_model(candidate):
+            return self
+        plain = {
+            name: Limit(limit, reason)
+            for name, reason in _CONVENTIONS.items()
+            if (limit := getattr(self, name)).reason == getattr(Tolerances, name).reason
+        }
+        return replace(self, **plain)
+
     def of_reading(self, kind: Kind, reading: str, phase: str) -> Limit:
-        """The limit at one station: the most special that there is."""
+        """The limit at one station: the most special that there is.
+
+        Parameters
+        ----------
+        kind : str
+            ``"rms"`` or ``"max"``.
+        reading : str
+            Name of the clamp reading.
+        phase : str
+            ``"tip"`` or ``"tangent"``.
+
+        Returns
+        -------
+        Limit
+            With its reason.
+        """
         for name in (f"{reading}.{phase}.{kind}", f"{reading}.{kind}", f"{phase}.{kind}"):
             if name in self.special:
                 return _limit(name, self.special[name])
         return _limit(kind, getattr(self, kind))
 
     def of_sweep(self, reading: str) -> Limit:
-        """The limit of a reading's rms over all phases."""
+        """The limit of a reading's rms over all phases.
+
+        Parameters
+        ----------
+        reading : str
+            Name of the clamp reading.
+
+        Returns
+        -------
+        Limit
+            With its reason.
+        """
         return _limit("rms", self.special.get(f"{reading}.rms", self.rms))
 
     def of_phase(self, reading: str, phase: str) -> Limit | None:
-        """The limit of a reading's rms in one phase; None if none was asked for."""
+        """The limit of a reading's rms in one phase.
+
+        Parameters
+        ----------
+        reading : str
+            Name of the clamp reading.
+        phase : str
+            ``"tip"`` or ``"tangent"``.
+
+        Returns
+        -------
+        Limit or None
+            None if none was asked for.
+        """
         for name in (f"{reading}.{phase}.rms", f"{phase}.rms"):
             if name in self.special:
                 return _limit(name, self.special[name])
         return None
 
     def limits(self) -> dict[str, Limit]:
-        """All limits by name, the special ones by their dotted names."""
+        """All limits by name, the special ones by their dotted names.
+
+        Returns
+        -------
+        dict of Limit
+            Each with its reason.
+        """
         named = {name: getattr(self, name) for name in GENERAL} | dict(self.special)
         return {name: _limit(name, value) for name, value in named.items()}
+
+
+_OTHER = "the default, a convention for this source: give a limit of your own with its reason"
+_CONVENTIONS = {
+    "rms": _OTHER,
+    "max": "ten times the default rms, a convention for this source",
+    "transition": "the default, a hundredth of the length",
+    "snap_off": _OTHER,
+    "phase_agreement": "the default: one station of a hundred may fall beside a transition",
+    "untrusted": "the default: one station of 200 may lack a number",
+}
+"""Reasons of the default limits for sources other than the one that they were made for."""
+
+
+def is_smooth_model(readings: Readings) -> bool:
+    """Whether a sweep is of a beam in segments past a smooth contour, as far as it says.
+
+    Parameters
+    ----------
+    readings : Readings
+        Its provenance counts.
+
+    Returns
+    -------
+    bool
+        False for all that does not record its segments, as a rig.
+    """
+    settings = readings.provenance.get("settings")
+    if not (isinstance(settings, Mapping) and "segments" in settings):
+        return False
+    contour = np.asarray(readings.provenance.get("contour", []), dtype=float)
+    if contour.ndim != 2 or contour.shape[1] < 3:
+        return True
+    way = np.unwrap(np.arctan2(*np.diff(contour)[::-1]))
+    return bool(np.abs(np.diff(way)).max() < _CORNER)
 
 
 GENERAL = tuple(f.name for f in fields(Tolerances) if f.name != "special")
@@ -144,7 +252,7 @@ def _limit(name: str, value: float) -> Limit:
     if isinstance(value, Limit):
         return value
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InputError(f"tolerances.{name}", repr(value), "a number", "mend it")
+        raise InputError(f"tolerances.{name}", repr(value), "a number", "correct it")
     if not (math.isfinite(value) and value >= 0):
-        raise InputError(f"tolerances.{name}", value, "finite, 0 or more", "mend it")
+        raise InputError(f"tolerances.{name}", value, "finite, 0 or more", "correct it")
     return Limit(value)

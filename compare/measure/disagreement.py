@@ -1,12 +1,14 @@
-"""How far apart two aligned sweeps are: reading by reading, phase by phase, place by place."""
+"""How far apart two aligned sweeps are: reading by reading, phase by phase, event by event."""
 
 from dataclasses import asdict, dataclass
 
 import numpy as np
 import pandas as pd
 
-from analytic import CLAMP_READINGS, Readings
+from analytic import Readings
 from analytic.problem.arrays import Booleans, Floats
+from compare.sense.noise import scales
+from compare.sense.record import direction
 
 
 @dataclass(frozen=True)
@@ -25,10 +27,27 @@ class Peak:
 class Disagreement:
     """How far one clamp reading of the candidate is off, relative to its largest magnitude.
 
-    `rms` is over all compared stations, `max` over those outside the window before snap-off, `at`
-    its foot position [length] and `phase` its phase; `max_before_snap_off` is over those inside
-    (NaN if there are none). `rms_by_phase`, `stations_by_phase` and `peaks`, the largest outside
-    the window, are over the reference's phases.
+    Attributes
+    ----------
+    rms : float
+        Over the compared stations outside the window before snap-off, as are all the following
+        but one; NaN if there are none.
+    max : float
+        The largest difference.
+    at : float
+        Its foot position [length].
+    phase : str
+        Its phase.
+    max_before_snap_off : float
+        The largest difference inside the window; NaN if no station is.
+    rms_by_phase : dict
+        By the reference's phases.
+    scale : float
+        What the differences are relative to, in the reading's unit.
+    stations_by_phase : dict
+        How many stations there are of each phase.
+    peaks : dict of Peak
+        The largest difference of each phase.
     """
 
     rms: float
@@ -41,9 +60,14 @@ class Disagreement:
     stations_by_phase: dict[str, int]
     peaks: dict[str, Peak]
 
+    @property
+    def stations(self) -> int:
+        """How many stations `rms` and `max` are over."""
+        return sum(self.stations_by_phase.values())
+
 
 @dataclass(frozen=True)
-class Place:
+class Occurrence:
     """Where something happens in both sweeps [length]; None where it does not."""
 
     reference: float | None
@@ -58,7 +82,18 @@ class Place:
         return self.candidate - self.reference
 
     def agrees(self, tolerance: float) -> bool:
-        """Whether both are absent, or within `tolerance` and what the stations can resolve."""
+        """Whether it happens in neither sweep, or at nearly the same foot position in both.
+
+        Parameters
+        ----------
+        tolerance : float
+            By how much they may differ beside what the stations can resolve [length].
+
+        Returns
+        -------
+        bool
+            Whether they agree.
+        """
         if self.difference is None:
             return self.reference is None and self.candidate is None
         return abs(self.difference) <= tolerance + self.uncertainty
@@ -69,30 +104,50 @@ class Place:
 
 
 def disagreements(
-    reference: Readings, table: pd.DataFrame, snap: Place, window: float
+    reference: Readings, table: pd.DataFrame, snap: Occurrence, window: float
 ) -> dict[str, Disagreement]:
-    """By clamp reading, over the stations that `align` paired; `snap` is where contact ends."""
+    """How far the readings are apart at the stations that `align` paired.
+
+    Parameters
+    ----------
+    reference : Readings
+        Its largest magnitudes are what the differences are relative to.
+    table : pandas.DataFrame
+        Of an `Alignment`.
+    snap : Occurrence
+        Where contact ends.
+    window : float
+        Stretch before the snap-off that does not count, of the sweep's length.
+
+    Returns
+    -------
+    dict of Disagreement
+        By clamp reading.
+    """
     foot_x = table["foot_x"].to_numpy()
-    phase = table["phase"].to_numpy()
     near = before_snap_off(reference, foot_x, snap, window)
-    arc_length = table["contact_arc_length"].to_numpy()
+    phase = table["phase"].to_numpy()[~near]
+    arc_length = table["contact_arc_length"].to_numpy()[~near]
     found = {}
-    for name in CLAMP_READINGS:
-        scale = float(np.abs(reference.values(name)[reference.trusted]).max())
+    for name, scale in scales(reference).items():
         error = (table[f"{name}_candidate"] - table[f"{name}_reference"]).to_numpy() / scale
-        outside = np.where(near, 0.0, np.abs(error))
-        worst = {str(p): int(np.argmax(outside * (phase == p))) for p in np.unique(phase)}
+        inside, error = error[near], error[~near]
+        worst = {
+            str(p): int(np.argmax(np.where(phase == p, np.abs(error), -1.0)))
+            for p in np.unique(phase)
+        }
         peaks = {
-            p: Peak(float(outside[i]), float(foot_x[i]), float(arc_length[i]))
+            p: Peak(abs(float(error[i])), float(foot_x[~near][i]), float(arc_length[i]))
             for p, i in worst.items()
         }
-        highest = max(peaks, key=lambda p: peaks[p].size)
+        highest = max(peaks, key=lambda p: peaks[p].size, default=None)
+        peak = peaks[highest] if highest is not None else Peak(np.nan, np.nan, np.nan)
         found[name] = Disagreement(
             rms=_rms(error),
-            max=peaks[highest].size,
-            at=peaks[highest].at,
-            phase=highest,
-            max_before_snap_off=float(np.abs(error[near]).max()) if near.any() else np.nan,
+            max=peak.size,
+            at=peak.at,
+            phase=highest or "",
+            max_before_snap_off=float(np.abs(inside).max()) if near.any() else np.nan,
             rms_by_phase={p: _rms(error[phase == p]) for p in peaks},
             scale=scale,
             stations_by_phase={p: int((phase == p).sum()) for p in peaks},
@@ -101,8 +156,12 @@ def disagreements(
     return found
 
 
-def before_snap_off(reference: Readings, foot_x: Floats, snap: Place, window: float) -> Booleans:
-    """Whether each foot position lies in the window before either sweep's snap-off, or past it.
+def before_snap_off(
+    reference: Readings, foot_x: Floats, snap: Occurrence, window: float
+) -> Booleans:
+    """Whether each foot position lies within the window at the earlier one of two snap-offs.
+
+    There the readings grow without bound. What both sweeps still read far beyond it does count.
 
     Parameters
     ----------
@@ -110,19 +169,23 @@ def before_snap_off(reference: Readings, foot_x: Floats, snap: Place, window: fl
         Its direction and length are the sweep's.
     foot_x : array, shape (n,)
         Foot positions [length].
-    snap : Place
+    snap : Occurrence
         The snap-offs.
     window : float
         Of the sweep's length.
+
+    Returns
+    -------
+    array of bool, shape (n,)
+        False throughout without a snap-off.
     """
     ends = [x for x in (snap.reference, snap.candidate) if x is not None]
     if not ends:
         return np.zeros(len(foot_x), dtype=bool)
-    swept = reference.values("foot_x")
-    way = np.sign(swept[-1] - swept[0])
+    way = direction(reference)
     ahead = min(way * np.array(ends)) - way * foot_x
-    return np.asarray(ahead < window * np.ptp(swept))
+    return np.asarray(np.abs(ahead) < window * np.ptp(reference.values("foot_x")))
 
 
 def _rms(error: Floats) -> float:
-    return float(np.sqrt(np.mean(error**2)))
+    return float(np.sqrt(np.mean(error**2))) if error.size else np.nan

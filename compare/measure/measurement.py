@@ -7,22 +7,28 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 
-from analytic import Readings
+from analytic import SENSED, InputError, Readings
 from compare.align.offset import Offset, estimate_offset, without_offset
+from compare.align.order import Order, in_order
 from compare.align.stations import Alignment, align
-from compare.measure.disagreement import Disagreement, Place, disagreements
+from compare.measure.disagreement import Disagreement, Occurrence, disagreements
+from compare.sense.noise import scales
 from compare.sense.phases import Classification, classify, confusion
+from compare.sense.record import Record, inspect_record
 from compare.sense.transitions import TRANSITIONS, locate_transitions, snap_off
 
+_LARGEST = 1e40  # of the beam's units; a sixth power still is a number
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Measurement:
     """What two sweeps differ by, before anyone judges it.
 
     Attributes
     ----------
     reference, candidate : Readings
-        The sweeps; the candidate's ``foot_x`` without the offset.
+        The sweeps; the candidate's rows in the order of the motion, its ``foot_x`` without the
+        offset.
     alignment : Alignment
         The compared stations, and why the others are not.
     disagreement : dict of Disagreement
@@ -31,12 +37,16 @@ class Measurement:
         The phases that the clamp readings show, of ``"reference"`` and ``"candidate"``.
     confusion : dict of pandas.DataFrame
         Those against the contact truth, where the source recorded it.
-    transitions : dict of Place
+    transitions : dict of Occurrence
         ``first_contact``, ``phase_b_start``, ``phase_b_end``.
-    snap_off : Place
+    snap_off : Occurrence
         The end of contact.
     offset : Offset
         What was taken from the candidate's ``foot_x`` before anything else.
+    records : dict of Record
+        Defects of the records, of ``"reference"`` and ``"candidate"``.
+    order : Order
+        How the candidate's rows follow the motion.
     """
 
     reference: Readings
@@ -45,16 +55,32 @@ class Measurement:
     disagreement: dict[str, Disagreement]
     judged: dict[str, Classification]
     confusion: dict[str, pd.DataFrame]
-    transitions: dict[str, Place]
-    snap_off: Place
+    transitions: dict[str, Occurrence]
+    snap_off: Occurrence
     offset: Offset
+    records: dict[str, Record]
+    order: Order
 
     def phase_agreement(self) -> dict[str, float]:
-        """Share of stations whose judged phase is the true one, by sweep."""
+        """Share of stations whose judged phase is the true one.
+
+        Returns
+        -------
+        dict
+            Of those of ``"reference"`` and ``"candidate"`` that recorded the contact.
+        """
         return {
             which: float(np.trace(table) / table.to_numpy().sum())
             for which, table in self.confusion.items()
+            if table.to_numpy().sum()
         }
+
+    def __repr__(self) -> str:
+        """The sweeps, and how far they are apart."""
+        far = ", ".join(f"{name} {d.rms:.1e}" for name, d in self.disagreement.items())
+        return (
+            f"{type(self).__name__}({self.candidate.source} against {self.reference.source}: {far})"
+        )
 
 
 def measure(
@@ -70,10 +96,10 @@ def measure(
     reference, candidate : Readings
         Two sweeps of the same beam.
     window : float
-        Stretch before the snap-off, of the sweep's length, that the largest differences leave out:
+        Stretch before the snap-off, of the sweep's length, that the differences leave out:
         there the readings grow without bound.
     offset : float or "auto"
-        By how much the candidate's ``foot_x`` exceeds the reference's for one and the same place
+        By how much the candidate's ``foot_x`` exceeds the reference's for one foot position
         [length]; ``"auto"`` estimates it from the readings.
 
     Returns
@@ -84,20 +110,33 @@ def measure(
     Raises
     ------
     InputError
-        If the sweeps are of different beams or have no common stretch, or the offset is ambiguous.
+        If the sweeps are of different beams or have no common stretch, the reference never touches,
+        a number is too large to be a reading, or the offset is ambiguous.
     """
+    for which, sweep in (("reference", reference), ("candidate", candidate)):
+        _check_size(which, sweep)
+    scales(reference)
+    records = {"reference": inspect_record(reference)}
+    if records["reference"].retreats:
+        raise InputError(
+            f"rows of the reference ({reference.source})",
+            next(records["reference"].defects()),
+            "in the order of the motion",
+            "sort them by foot_x, or compare one sweep at a time",
+        )
+    candidate, records["candidate"], order = in_order(reference, candidate)
     judged = {"reference": classify(reference), "candidate": classify(candidate)}
     shift = (
         estimate_offset(reference, candidate, judged["reference"], judged["candidate"])
         if offset == "auto"
-        else Offset(offset)
+        else Offset(_finite(offset))
     )
     candidate = without_offset(candidate, shift.value)
     alignment = align(reference, candidate, judged["reference"], judged["candidate"])
     ends = snap_off(reference, judged["reference"]), snap_off(candidate, judged["candidate"])
-    snap = Place(ends[0][0], ends[1][0], ends[0][1] + ends[1][1] + shift.uncertainty)
+    snap = Occurrence(ends[0][0], ends[1][0], ends[0][1] + ends[1][1] + shift.uncertainty)
     sweeps: Mapping[str, Readings] = {"reference": reference, "candidate": candidate}
-    places = {which: locate_transitions(sweep, judged[which]) for which, sweep in sweeps.items()}
+    events = {which: locate_transitions(sweep, judged[which]) for which, sweep in sweeps.items()}
     return Measurement(
         reference,
         candidate,
@@ -110,9 +149,35 @@ def measure(
             if "phase" in sweep.table
         },
         {
-            name: Place(places["reference"][name], places["candidate"][name], shift.uncertainty)
+            name: Occurrence(
+                events["reference"][name], events["candidate"][name], shift.uncertainty
+            )
             for name in TRANSITIONS
         },
         snap,
         shift,
+        records,
+        order,
     )
+
+
+def _finite(offset: float) -> float:
+    if isinstance(offset, bool | str) or not np.isfinite(offset):
+        raise InputError("offset", repr(offset), "'auto' or a finite number", "give a length")
+    return float(offset)
+
+
+def _check_size(which: str, sweep: Readings) -> None:
+    """Raise InputError for numbers whose squares and cubes would overflow."""
+    beam = sweep.beam
+    units = (beam.length, beam.force_unit, beam.force_unit, beam.moment_unit)
+    for name, unit in zip(SENSED, units, strict=True):
+        values = sweep.values(name)[sweep.trusted]
+        largest = np.abs(values).max(initial=0.0)
+        if not largest / unit < _LARGEST:
+            raise InputError(
+                f"{name} of the {which} ({sweep.source})",
+                f"{largest:.3g}",
+                f"less than {_LARGEST:g} of the beam's units ({unit:.3g})",
+                "check the units, and the beam",
+            )

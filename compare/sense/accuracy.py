@@ -1,4 +1,4 @@
-"""How well the contact phases are told from the clamp: counts by case, engine and noise."""
+"""How well the contact phases are determined from the clamp: counts by case, engine and noise."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -80,7 +80,19 @@ def _row(case: str, sweep: Readings, level: float, seeds: Sequence[int]) -> dict
 
 
 def true_transitions(sweep: Readings) -> dict[str, float | None]:
-    """Where the phases that the source recorded change, half-way between two stations [length]."""
+    """Where the phases that the source recorded change.
+
+    Parameters
+    ----------
+    sweep : Readings
+        With its ``phase``.
+
+    Returns
+    -------
+    dict
+        By the names in `TRANSITIONS`, half-way between two stations [length]; None where there is
+        no such change.
+    """
     phase, foot_x = sweep.table["phase"].to_numpy(), sweep.values("foot_x")
     touching = np.flatnonzero(phase != "free")
     tangent = np.flatnonzero(phase == "tangent")

@@ -11,6 +11,9 @@ from analytic.problem.arrays import Floats
 _DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # kills cubics: what is left is noise
 _ROUND_OFF = 1e-14  # of the largest magnitude: no reading is better than that
 
+MEDIAN_OF_NORMAL = 0.6745
+"""Median of |x| for a standard normal x: turns a median deviation into a standard deviation."""
+
 
 def reading_noise(readings: Readings) -> dict[str, float]:
     """Standard deviation of each clamp reading's noise, in the reading's unit.
@@ -18,6 +21,11 @@ def reading_noise(readings: Readings) -> dict[str, float]:
     The median of the absolute fourth differences between neighbouring trusted stations: robust
     against the few stations where a phase begins or ends, and blind to anything smooth, so a
     model's bias is not taken for noise.
+
+    Parameters
+    ----------
+    readings : Readings
+        One sweep.
 
     Returns
     -------
@@ -31,51 +39,151 @@ def reading_noise(readings: Readings) -> dict[str, float]:
 
 
 def scatter(values: Floats) -> float:
-    """Standard deviation of what jumps from one of the values to the next, shape (stations,)."""
+    """Standard deviation of what jumps from one value to the next.
+
+    Parameters
+    ----------
+    values : array, shape (stations,)
+        In sweep order.
+
+    Returns
+    -------
+    float
+        In the unit of the values; at least their round-off, and 0 for fewer than five.
+    """
     if len(values) < len(_DIFFERENCE):
         return 0.0
     differences = np.convolve(values, _DIFFERENCE, mode="valid")
-    # 0.6745: median of |x| for a standard normal x; sqrt(70): the difference's gain on white noise.
-    noise = np.median(np.abs(differences)) / 0.6745 / np.linalg.norm(_DIFFERENCE)
+    # The norm, sqrt(70), is the difference's gain on white noise.
+    noise = np.median(np.abs(differences)) / MEDIAN_OF_NORMAL / np.linalg.norm(_DIFFERENCE)
     return float(max(noise, _ROUND_OFF * np.abs(values).max()))
 
 
+def scales(reference: Readings) -> dict[str, float]:
+    """Largest magnitude of each clamp reading, which all disagreements are relative to.
+
+    Parameters
+    ----------
+    reference : Readings
+        Only its trusted stations count.
+
+    Returns
+    -------
+    dict
+        ``force_x``, ``force_y`` [force], ``moment_z`` [force length]. For a reading that is zero
+        throughout it is what the largest force makes of it, at the length as lever.
+
+    Raises
+    ------
+    InputError
+        If no reading differs from zero.
+    """
+    values = {name: readings_of(reference, name) for name in CLAMP_READINGS}
+    largest = {name: float(np.abs(x).max(initial=0.0)) for name, x in values.items()}
+    force = max(largest["force_x"], largest["force_y"])
+    moment = max(largest["moment_z"], force * reference.beam.length)
+    if not moment > 0:
+        raise InputError(
+            f"contact of the reference ({reference.source})",
+            "none",
+            "at some stations, with a load in the clamp",
+            "sweep the reference past the object, or check its columns",
+        )
+    force = force or moment / reference.beam.length
+    instead = {"force_x": force, "force_y": force, "moment_z": moment}
+    return {name: largest[name] or instead[name] for name in CLAMP_READINGS}
+
+
+def readings_of(readings: Readings, name: str) -> Floats:
+    """One clamp reading at the trusted stations.
+
+    Parameters
+    ----------
+    readings : Readings
+        One sweep.
+    name : str
+        Of the reading.
+
+    Returns
+    -------
+    array, shape (trusted stations,)
+        In the reading's unit.
+    """
+    return np.asarray(readings.values(name)[readings.trusted])
+
+
 def noise_level(reference: Readings, candidate: Readings) -> dict[str, float]:
-    """Noise of the two sweeps together, estimated, relative to the reference's largest magnitudes.
+    """Noise of the two sweeps together, estimated.
 
     Anything that jumps from station to station counts, as the facets of a coarse mesh do.
+
+    Parameters
+    ----------
+    reference, candidate : Readings
+        The sweeps.
+
+    Returns
+    -------
+    dict
+        By clamp reading, relative to its largest magnitude in the reference.
     """
-    one, other = reading_noise(reference), reading_noise(candidate)
-    return {
-        name: float(np.hypot(one[name], other[name]))
-        / float(np.abs(reference.values(name)[reference.trusted]).max())
-        for name in CLAMP_READINGS
-    }
+    one, other, scale = reading_noise(reference), reading_noise(candidate), scales(reference)
+    return {name: float(np.hypot(one[name], other[name])) / scale[name] for name in CLAMP_READINGS}
 
 
 def checked_level(level: float) -> dict[str, float]:
     """The same relative noise for all readings.
+
+    Parameters
+    ----------
+    level : float
+        Standard deviation over each reading's largest magnitude.
+
+    Returns
+    -------
+    dict
+        By clamp reading.
 
     Raises
     ------
     InputError
         If it is no share of the largest magnitude.
     """
-    if not 0 <= level < 1:
+    if isinstance(level, bool | str) or not 0 <= level < 1:
         raise InputError(
-            "noise", level, "between 0 and 1", "it is relative to each reading's largest magnitude"
+            "noise",
+            level,
+            "'auto', or between 0 and 1",
+            "it is relative to each reading's largest magnitude",
         )
     return dict.fromkeys(CLAMP_READINGS, float(level))
 
 
 def with_noise(readings: Readings, level: Mapping[str, float], seed: int) -> Readings:
-    """The readings with white noise, relative to each reading's largest magnitude, on top."""
+    """The readings with white noise added.
+
+    Parameters
+    ----------
+    readings : Readings
+        One sweep.
+    level : mapping
+        Standard deviation by clamp reading, relative to its largest magnitude.
+    seed : int
+        Of the noise.
+
+    Returns
+    -------
+    Readings
+        The same but for the noise.
+    """
     rng = np.random.default_rng(seed)
     noisy = {
         name: readings.values(name)
-        + share
-        * np.nanmax(np.abs(readings.values(name)))
-        * rng.standard_normal(len(readings.table))
+        + share * _largest(readings.values(name)) * rng.standard_normal(len(readings.table))
         for name, share in level.items()
     }
     return replace(readings, table=readings.table.assign(**noisy))
+
+
+def _largest(values: Floats) -> float:
+    return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))

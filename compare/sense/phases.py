@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from analytic import PHASES, Readings, reconstruct
+from analytic import PHASES, SENSED, Readings, reconstruct
 from analytic.problem.arrays import Floats, Words
 from compare.sense.noise import reading_noise
 
@@ -13,7 +13,7 @@ _SIGMAS = 5  # a force below so many standard deviations of its noise is none
 _UNLOADED = 1e-9  # of EI/L^2: the same for noise-free readings
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Classification:
     """Phases of one sweep, judged from foot position, clamp force and clamp moment.
 
@@ -29,6 +29,8 @@ class Classification:
         1 - s1/L of the reconstructed contact: zero in Phase A.
     shortfall_tolerance : array
         Its standard deviation.
+    contact : pandas.DataFrame
+        The contact as `analytic.reconstruct` finds it, a row a station.
     """
 
     phase: Words
@@ -36,6 +38,15 @@ class Classification:
     criterion_tolerance: Floats
     shortfall: Floats
     shortfall_tolerance: Floats
+    contact: pd.DataFrame
+
+    def __repr__(self) -> str:
+        """How many stations there are of each phase."""
+        names, counts = np.unique(self.phase, return_counts=True)
+        found = ", ".join(
+            f"{n} {name or 'untrusted'}" for name, n in zip(names, counts, strict=True)
+        )
+        return f"Classification({found})"
 
 
 def classify(readings: Readings) -> Classification:
@@ -45,6 +56,21 @@ def classify(readings: Readings) -> Classification:
     the other way round. Each deviation is measured in standard deviations, which the noise of the
     readings gives; the smaller one wins. So no tolerance has to be chosen, and readings that are
     all a little off, as a coarse beam's are, still fall on the right side.
+
+    Parameters
+    ----------
+    readings : Readings
+        One sweep; only the four sensed columns and ``status`` are used.
+
+    Returns
+    -------
+    Classification
+        The phase of each station, and what it was decided by.
+
+    References
+    ----------
+    C. Will, J. Steigenberger, C. Behn, *Quasi-static object scanning using technical vibrissae*,
+    eq. 26, for the criterion.
     """
     beam = readings.beam
     force_x = readings.values("force_x") / beam.force_unit
@@ -64,8 +90,12 @@ def classify(readings: Readings) -> Classification:
     criterion_tolerance = np.sqrt(
         (by_x * noise_x) ** 2 + (by_y * noise_y) ** 2 + (by_m * noise_m) ** 2
     )
-    shortfall = np.where(loaded, _shortfall(readings), np.nan)
-    shortfall_tolerance = _propagated(readings, shortfall, noise)
+    contact, moved = _contacts(readings, noise)
+    shortfall = np.where(loaded, _shortfall(contact, beam.length), np.nan)
+    variance = np.zeros_like(shortfall)
+    for there in moved:
+        variance += np.nan_to_num(_shortfall(there, beam.length) - shortfall) ** 2
+    shortfall_tolerance = np.sqrt(variance)
 
     with np.errstate(divide="ignore", invalid="ignore"):
         tangent = np.abs(criterion) / criterion_tolerance < np.abs(shortfall) / shortfall_tolerance
@@ -73,11 +103,27 @@ def classify(readings: Readings) -> Classification:
     tangent = np.where(shortfall <= 0, False, np.where(criterion <= 0, True, tangent))
     phase = np.where(loaded, np.where(tangent, "tangent", "tip"), "free")
     phase = np.where(readings.trusted, phase, "")
-    return Classification(phase, criterion, criterion_tolerance, shortfall, shortfall_tolerance)
+    return Classification(
+        phase, criterion, criterion_tolerance, shortfall, shortfall_tolerance, contact
+    )
 
 
 def confusion(judged: Classification, truth: Readings) -> pd.DataFrame:
-    """Stations counted by judged phase (columns) and contact truth (rows)."""
+    """Stations counted by judged phase and by true phase.
+
+    Parameters
+    ----------
+    judged : Classification
+        As the clamp readings show it.
+    truth : Readings
+        The same sweep, whose source recorded the ``phase``.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Shape (3, 3), rows the truth and columns what was judged, both ``free``, ``tip``,
+        ``tangent``.
+    """
     known = (judged.phase != "") & truth.trusted
     return pd.crosstab(
         pd.Categorical(truth.table["phase"][known], categories=list(PHASES)),
@@ -88,16 +134,17 @@ def confusion(judged: Classification, truth: Readings) -> pd.DataFrame:
     )
 
 
-def _shortfall(readings: Readings) -> Floats:
-    arc_length = reconstruct(readings)["contact_arc_length"].to_numpy(dtype=float)
-    return 1 - arc_length / readings.beam.length
+def _contacts(
+    readings: Readings, noise: dict[str, float]
+) -> tuple[pd.DataFrame, list[pd.DataFrame]]:
+    """The contact of the readings, and of the readings each moved by its noise."""
+    sensed = readings.table[list(SENSED)]
+    moved = [sensed.assign(**{name: sensed[name] + size}) for name, size in noise.items()]
+    together = pd.concat([sensed, *moved], ignore_index=True)
+    found = reconstruct(Readings(together, readings.beam, readings.source))
+    parts = [found.iloc[i : i + len(sensed)] for i in range(0, len(found), len(sensed))]
+    return parts[0], parts[1:]
 
 
-def _propagated(readings: Readings, shortfall: Floats, noise: dict[str, float]) -> Floats:
-    """Standard deviation of the shortfall: each reading is moved by its noise."""
-    variance = np.zeros_like(shortfall)
-    for name, deviation in noise.items():
-        moved = readings.table.assign(**{name: readings.table[name] + deviation})
-        there = Readings(moved, readings.beam, readings.source)
-        variance += np.nan_to_num(_shortfall(there) - shortfall) ** 2
-    return np.sqrt(variance)
+def _shortfall(contact: pd.DataFrame, length: float) -> Floats:
+    return 1 - contact["contact_arc_length"].to_numpy(dtype=float) / length

@@ -10,6 +10,7 @@ from compare.sense.phases import Classification
 
 TRANSITIONS = ("first_contact", "phase_b_start", "phase_b_end")
 _FIT = 3  # stations on either side that a parabola is laid through
+_TINY = 1e-290  # values that differ by less cannot be scaled for the fit
 
 
 def locate_transitions(readings: Readings, judged: Classification) -> Mapping[str, float | None]:
@@ -20,6 +21,18 @@ def locate_transitions(readings: Readings, judged: Classification) -> Mapping[st
     is extrapolated to zero from outside, and the shortfall of the contact, which is zero outside,
     from inside; the limit is half-way between the two results. First contact is where the clamp
     moment, extrapolated from the first loaded stations, vanishes.
+
+    Parameters
+    ----------
+    readings : Readings
+        One sweep.
+    judged : Classification
+        Its phases.
+
+    Returns
+    -------
+    mapping
+        By the names in `TRANSITIONS`.
 
     See Also
     --------
@@ -48,6 +61,20 @@ def snap_off(readings: Readings, judged: Classification) -> tuple[float | None, 
 
     The source's own value where it located one; else half-way between the last station in contact
     and the free one after it, give or take half a step. None if the sweep ends in contact.
+
+    Parameters
+    ----------
+    readings : Readings
+        One sweep.
+    judged : Classification
+        Its phases.
+
+    Returns
+    -------
+    foot_x : float or None
+        [length]
+    uncertainty : float
+        [length]
     """
     if readings.snap_off is not None:
         return readings.snap_off, 0.0
@@ -81,7 +108,7 @@ def _zero(foot_x: Floats, values: Floats, stations: Integers, one: int, other: i
     # Foot position as a polynomial in the value: its constant term is the zero.
     order = len(stations) - 1
     monotone = np.all(np.diff(values[stations]) > 0) or np.all(np.diff(values[stations]) < 0)
-    if order == 0 or not monotone:
+    if order == 0 or not monotone or np.ptp(values[stations]) < _TINY:
         return float(low + high) / 2
     zero = np.polynomial.Polynomial.fit(values[stations], foot_x[stations], order)(0.0)
     return float(np.clip(zero, low, high))

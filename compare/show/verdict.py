@@ -7,42 +7,73 @@ from compare.show.page import short
 
 
 def worst_reading(comparison: Comparison) -> str:
-    """The clamp reading whose rms disagreement goes farthest beyond its limit, or nearest to it."""
+    """The clamp reading whose rms disagreement goes farthest beyond its limit, or nearest to it.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Of two sweeps.
+
+    Returns
+    -------
+    str
+        Its name.
+    """
     limit = comparison.tolerances.of_sweep
     return max(CLAMP_READINGS, key=lambda name: comparison.disagreement[name].rms - limit(name))
 
 
 def verdict(comparison: Comparison, budget: Budget | None = None) -> str:
-    """How far the candidate can be used, and what would make it better."""
-    name = worst_reading(comparison)
-    found, allowed = comparison.disagreement[name], comparison.tolerances.of_sweep(name)
+    """How far the candidate can be used, and what would make it better.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Of two sweeps.
+    budget : Budget, optional
+        Of the candidate's disagreement.
+
+    Returns
+    -------
+    str
+        One sentence: the limit that is exceeded most, with its number, or the worst reading.
+    """
     candidate, reference = comparison.candidate.source, comparison.reference.source
-    if comparison.agrees:
+    if comparison.worst is None:
+        name = worst_reading(comparison)
+        found, allowed = comparison.disagreement[name], comparison.tolerances.of_sweep(name)
         beside = "" if found.rms <= allowed else " beside the noise"
         said = (
             f"Readings of {candidate} can be used in place of {reference} to within "
             f"{short(found.rms)} rms ({name}, the worst; {short(allowed)} is allowed{beside})"
         )
-    elif found.rms > allowed:
-        phase = max(found.rms_by_phase, key=lambda phase: found.rms_by_phase[phase])
-        said = (
-            f"Do not use readings of {candidate} in place of {reference} yet: {name} is off by "
-            f"{short(found.rms)} rms where {short(allowed)} is allowed, most in phase {phase}"
-        )
     else:
+        others = len(comparison.exceeded) - 1
+        more = f" ({_count(others)} more limit{'s' * (others > 1)} exceeded)" if others else ""
         said = (
-            f"Do not use readings of {candidate} in place of {reference} yet: they exceed "
-            f"{_count(len(comparison.failures))} of the tolerances, though not that of the rms "
-            f"({name}, the worst, {short(found.rms)})"
+            f"Do not use readings of {candidate} in place of {reference} yet: "
+            f"{comparison.worst.clause}{more}"
         )
     if budget is not None:
-        rest = short(max(part.rms for part in budget.parts["unexplained"].values()))
-        told = budget.closes or budget.blame == "unexplained"
-        doubt = "" if told else f", but {rest} stays unexplained"
-        return f"{said}; {_advice(comparison, budget)}{doubt}."
+        return f"{said}; {_advice(comparison, budget)}{_doubt(comparison, budget)}."
     if comparison.agrees or "settings" not in comparison.candidate.provenance:
         return f"{said}."
-    return f"{said}; a budget would tell why."
+    return f"{said}; a budget would show why."
+
+
+def _doubt(comparison: Comparison, budget: Budget) -> str:
+    """What the budget leaves open, and where it is about fewer stations than the comparison."""
+    said = ""
+    if budget.cannot_tell or not (budget.closes or budget.blame == "unexplained"):
+        parts = budget.parts["unexplained"].values()
+        rest, unsure = (short(max(getattr(p, n) for p in parts)) for n in ("rms", "uncertainty"))
+        said = f", but {rest} stays unexplained"
+        if budget.cannot_tell:
+            said = f", but the budget cannot tell: {rest} +- {unsure} stays unexplained"
+    compared = next(iter(comparison.disagreement.values())).stations
+    if budget.stations < compared:
+        said += f" (over the {budget.stations} of {compared} stations that all its sweeps share)"
+    return said
 
 
 def _advice(comparison: Comparison, budget: Budget) -> str:
@@ -56,6 +87,8 @@ def _advice(comparison: Comparison, budget: Budget) -> str:
             f"the numerics do not explain it, but {first.name} does if it is "
             f"{first.change:+.2%} off in {comparison.candidate.source}: check it"
         )
+    if budget.blame == "unexplained" and budget.cannot_tell:
+        return "the numerics are too uncertain to explain it: refine them"
     if budget.blame == "unexplained":
         return "neither the numerics nor a known fault of the physics explains it: look for one"
     if budget.blame == "discretisation" and "segments" in settings:

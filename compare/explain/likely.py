@@ -1,0 +1,192 @@
+"""What a disagreement looks like: the record first, then known mistakes and faults."""
+
+import numpy as np
+import pandas as pd
+
+from analytic import CLAMP_READINGS
+from analytic.problem.arrays import Floats
+from compare.explain.causes import causes
+from compare.explain.fit import Explanation, fitted
+from compare.explain.wiring import misread
+from compare.judge.allowance import NoiseAllowance
+from compare.judge.tolerances import Tolerances
+from compare.measure.disagreement import before_snap_off
+from compare.measure.measurement import Measurement
+from compare.sense.noise import scatter
+
+_CONVINCING = 0.9  # share of the disagreement, its scatter apart, that one cause must explain
+_DISTINCT = 2.0  # the next cause must leave so many times the square that the best one leaves
+_BETTER = 6.0  # the same, for three constants to be preferred to one cause of one size
+_SCATTERED = 0.5  # share of the disagreement's square that jumps from station to station
+_UNSURE = 1.3  # times the scatter's square, to be on the safe side of its estimate
+_FEWEST = 10  # stations
+_ROUND_OFF = 1e-12  # of the largest magnitude; nothing below has a cause
+
+
+def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> str | None:
+    """What explains nearly all of a disagreement; None if nothing stands out.
+
+    Defects of the record come first: if the readings agree at the stations without one, they are
+    the whole cause. Else the one known mistake or fault is named that explains nearly all of the
+    disagreement at those stations, if the next one explains clearly less. Unrest is recognised by
+    the candidate's own ``residual``, facets and noise by differences that jump from station to
+    station, everything else by fitting the size of each fault's signature.
+
+    Parameters
+    ----------
+    found : Measurement
+        What the sweeps differ by.
+    limits : Tolerances
+        How far they may differ.
+    noise : NoiseAllowance
+        What noise adds to that.
+
+    Returns
+    -------
+    str or None
+        The cause, in a few words.
+    """
+    if found.order.opposite:
+        return "opposite direction of travel: foot_x and moment_z run opposite to the reference's"
+    notes = [note] if (note := found.order.note) else []
+    notes += [x for x in found.records["candidate"].defects() if not x.startswith("rows out of")]
+    if not found.alignment.counts["compared"]:
+        return "; ".join(notes) or _untouched(found)
+    table = found.alignment.table
+    window = before_snap_off(
+        found.reference, table["foot_x"].to_numpy(), found.snap_off, limits.snap_off_window
+    )
+    sound = found.records["candidate"].sound[table["station"].to_numpy()]
+    table = table[~window & sound].reset_index(drop=True)
+    if len(table) < _FEWEST or (notes and _agrees(found, table, limits, noise)):
+        return "; ".join(notes) or None
+    cause = _cause(found, table)
+    return (
+        "; ".join([*notes, f"beside that {cause}" if notes else cause] if cause else notes) or None
+    )
+
+
+def _untouched(found: Measurement) -> str | None:
+    phase = found.judged["candidate"].phase
+    if (phase == "free").sum() < (phase != "").sum():
+        return None
+    return "the candidate never touches: its clamp reads no load at any station"
+
+
+def _agrees(
+    found: Measurement, table: pd.DataFrame, limits: Tolerances, noise: NoiseAllowance
+) -> bool:
+    """Whether the readings agree at the stations of `table`."""
+    scale = _scale(found)
+    error = (_values(table, "candidate") - _values(table, "reference")) / scale[:, None]
+    rms = np.sqrt(np.mean(error**2, axis=1))
+    allowed = [noise.rms(limits.of_sweep(name), name, len(table)) for name in CLAMP_READINGS]
+    return bool((rms <= allowed).all())
+
+
+def _cause(found: Measurement, table: pd.DataFrame) -> str | None:
+    scale = _scale(found)
+    true, seen = (_values(table, which) / scale[:, None] for which in ("reference", "candidate"))
+    error = seen - true
+    if np.sqrt(np.mean(error**2)) < _ROUND_OFF:
+        return None
+    jumps = np.array([scatter(row) for row in error])
+    return (
+        _unrest(found, error)
+        or _scattered(found, error, jumps, scale)
+        or _fitting(found, table, true, seen, scale, jumps)
+    )
+
+
+def _unrest(found: Measurement, error: Floats) -> str | None:
+    candidate = found.candidate
+    residual = candidate.values("residual")[candidate.trusted]
+    if not np.isfinite(residual).any():
+        return None
+    typical = float(np.sqrt(np.nanmean(residual**2)))
+    moment = found.disagreement["moment_z"].scale / candidate.beam.moment_unit
+    if typical / moment < float(np.sqrt(np.mean(error**2))):
+        return None
+    return f"unrest: the stations are out of balance by {typical:.1e} EI/L (rms of `residual`)"
+
+
+def _scattered(found: Measurement, error: Floats, jumps: Floats, scale: Floats) -> str | None:
+    if np.sum(jumps**2) < _SCATTERED * np.sum(np.mean(error**2, axis=1)):
+        return None
+    size = f"differences jump from station to station by {jumps.max():.1e}"
+    if "segments" not in found.candidate.provenance.get("settings", {}):
+        return f"noise: {size}; see `noise`"
+    free = found.judged["candidate"].phase == "free"
+    if free.sum() < 2:
+        return f"facets of a coarse mesh, or noise: {size}"
+    idle = np.stack([found.candidate.values(n)[free] for n in CLAMP_READINGS])
+    resting = np.median(np.abs(idle / scale[:, None]), axis=1)
+    if (resting > jumps / 3).all():
+        return f"noise: {size}, and without contact they do too; see `noise`"
+    return f"facets of a coarse mesh: {size}, but not without contact"
+
+
+def _fitting(
+    found: Measurement,
+    table: pd.DataFrame,
+    true: Floats,
+    seen: Floats,
+    scale: Floats,
+    jumps: Floats,
+) -> str | None:
+    """The one mistake or fault that fits clearly best, over the stations where all are known."""
+    faults = list(causes(found, table, true, scale))
+    known = np.isfinite([fault.signature for fault in faults]).all(axis=(0, 1))
+    if known.sum() < _FEWEST:
+        return None
+    true, seen = true[:, known], seen[:, known]
+    error = seen - true
+    tried = list(misread(true, seen, scale, found.reference.beam.length))
+    for fault in faults:
+        size, left, _ = fitted(error, fault.signature[:, known])
+        if fault.lowest <= size <= fault.highest:
+            tried.append(Explanation(fault.text.format(size=size), left))
+    tried.append(_constant(error))
+    return _best(tried, float(np.sum(error**2)), float(np.sum(jumps**2) * known.sum()))
+
+
+def _constant(error: Floats) -> Explanation:
+    zero = error.mean(axis=1)
+    sizes = ", ".join(f"{name} {x:+.1e}" for name, x in zip(CLAMP_READINGS, zero, strict=True))
+    return Explanation(
+        f"constant load at all stations ({sizes} of their largest magnitudes): gravity or zero of "
+        "the sensor, not taken off",
+        float(np.sum((error - zero[:, None]) ** 2)),
+        len(zero),
+    )
+
+
+def _best(tried: list[Explanation], all_: float, noise: float) -> str | None:
+    """The explanation that leaves least, if it is convincing and the next one leaves clearly more.
+
+    One of several sizes has to leave less by far than those of one, and then is compared with its
+    like alone.
+    """
+    tried = sorted(tried, key=lambda one: one.left)
+    simple = [one for one in tried if one.sizes <= 1]
+    best, next_ = simple[0], simple[1].left
+    for one in tried:
+        if one.sizes > 1 and _beyond(one, noise) * _BETTER < _beyond(best, noise):
+            best, next_ = one, best.left
+    if all_ - best.left < _CONVINCING * (all_ - noise):
+        return None
+    if next_ - _UNSURE * noise <= _DISTINCT * _beyond(best, noise):
+        return None
+    return best.text
+
+
+def _beyond(one: Explanation, noise: float) -> float:
+    return max(one.left - _UNSURE * noise, 0.0)
+
+
+def _scale(found: Measurement) -> Floats:
+    return np.array([found.disagreement[name].scale for name in CLAMP_READINGS])
+
+
+def _values(table: pd.DataFrame, which: str) -> Floats:
+    return np.stack([table[f"{name}_{which}"].to_numpy() for name in CLAMP_READINGS])

@@ -1,0 +1,133 @@
+"""Mistakes of a sensor's wiring, mounting and units: what they make of true readings."""
+
+from collections.abc import Iterator
+from itertools import product
+
+import numpy as np
+
+from analytic import CLAMP_READINGS
+from analytic.problem.arrays import Floats
+from compare.explain.fit import Explanation, fitted
+
+_UNITS = {
+    1000.0: "a thousandth of the unit, as mN or N mm",
+    0.001: "a thousand of the unit, as kN",
+    100.0: "a hundredth of the unit, as N cm",
+    9.80665: "kgf, or its moment, taken for N",
+    1 / 9.80665: "N, or its moment, taken for kgf",
+    101.9716: "gf taken for N",
+    1 / 101.9716: "N taken for gf",
+    4.448222: "N taken for lbf",
+    1 / 4.448222: "lbf taken for N",
+    25.4: "mm taken for inches",
+    1 / 25.4: "inches taken for mm",
+}
+_SAME_UNIT = 0.02  # of the factor; as far as a model's own error may move it
+_DEAD = 0.01  # of the reading's variance: what of it a dead channel still shows
+_TURN = np.radians(60)  # beyond, it is a swap of axes
+
+
+def misread(true: Floats, seen: Floats, scale: Floats, length: float) -> Iterator[Explanation]:
+    """Every mistake that needs no contour, with what it leaves unexplained.
+
+    Parameters
+    ----------
+    true, seen : array, shape (3, stations)
+        Reference and candidate, relative to each reading's largest magnitude.
+    scale : array, shape (3,)
+        Those magnitudes.
+    length : float
+        Of the vibrissa.
+
+    Yields
+    ------
+    Explanation
+        Swapped and negated axes, a turned or displaced sensor, other units, a dead channel.
+    """
+    yield from _axes(true, seen, scale)
+    yield from _turned(true, seen, scale)
+    yield from _displaced(true, seen, scale, length)
+    yield from _units(true, seen)
+    yield from _dead(true, seen)
+
+
+def _axes(true: Floats, seen: Floats, scale: Floats) -> Iterator[Explanation]:
+    """Signs and the order of the two forces."""
+    ratio = scale[1] / scale[0]
+    swapped = np.stack([true[1] * ratio, true[0] / ratio, true[2]])
+    for axes, swap in ((true, False), (swapped, True)):
+        for signs in product((1, -1), repeat=3):
+            if not swap and signs == (1, 1, 1):
+                continue
+            left = float(np.sum((seen - np.array(signs)[:, None] * axes) ** 2))
+            yield Explanation(_axes_text(signs, swap), left, 0)
+
+
+def _axes_text(signs: tuple[int, ...], swap: bool) -> str:
+    negated = [name for name, sign in zip(CLAMP_READINGS, signs, strict=True) if sign < 0]
+    if swap:
+        turned = " (the sensor is turned by 90 degrees)" if signs[0] * signs[1] < 0 else ""
+        beside = f", {' and '.join(negated)} with the opposite sign" if negated else ""
+        return f"force_x and force_y swapped{beside}{turned}"
+    if len(negated) == len(CLAMP_READINGS):
+        return (
+            "all three readings have the opposite sign: the vibrissa's action on the clamp instead "
+            "of the clamp's on the vibrissa"
+        )
+    return f"opposite sign of {' and '.join(negated)}"
+
+
+def _turned(true: Floats, seen: Floats, scale: Floats) -> Iterator[Explanation]:
+    """A sensor that is turned about z: forces in its axes instead of the world's."""
+    x, y = true[:2] * scale[:2, None]
+    a, b = seen[:2] * scale[:2, None]
+    angle = float(np.arctan2(np.sum(a * y - b * x), np.sum(a * x + b * y)))
+    if abs(angle) > _TURN:
+        return
+    c, s = np.cos(angle), np.sin(angle)
+    turned = np.stack([(c * x + s * y) / scale[0], (c * y - s * x) / scale[1], true[2]])
+    text = f"sensor turned by {np.degrees(angle):+.3g} degrees about z: force_x and force_y mix"
+    yield Explanation(text, float(np.sum((seen - turned) ** 2)))
+
+
+def _displaced(true: Floats, seen: Floats, scale: Floats, length: float) -> Iterator[Explanation]:
+    """A moment about a point off the clamp: along the vibrissa, or across it."""
+    for force, sign, where in ((0, 1.0, "along the vibrissa"), (1, -1.0, "across the vibrissa")):
+        signature = np.zeros_like(true)
+        signature[2] = sign * true[force] * scale[force] * length / scale[2]
+        size, left, _ = fitted(seen - true, signature)
+        if abs(size) <= 0.5:
+            text = (
+                f"sensor {size:+.3g} L {where} off the clamp: moment_z is taken about another point"
+            )
+            yield Explanation(text, left)
+
+
+def _units(true: Floats, seen: Floats) -> Iterator[Explanation]:
+    """One reading, both forces, or all of them, larger by a factor that units differ by."""
+    for rows in ([0], [1], [2], [0, 1], [0, 1, 2]):
+        factor = float(np.sum(true[rows] * seen[rows]) / np.sum(true[rows] ** 2))
+        unit = min(_UNITS, key=lambda known: abs(np.log(abs(factor) / known)) if factor else 1.0)
+        if abs(factor / unit - 1) > _SAME_UNIT:
+            continue
+        scaled = true.copy()
+        scaled[rows] *= factor
+        names = " and ".join(CLAMP_READINGS[i] for i in rows) if len(rows) < 3 else "all readings"
+        text = f"{names} in another unit: {factor:.4g} times what is due ({_UNITS[unit]}?)"
+        yield Explanation(text, float(np.sum((seen - scaled) ** 2)))
+
+
+def _dead(true: Floats, seen: Floats) -> Iterator[Explanation]:
+    """A reading that does not follow the load."""
+    for i, name in enumerate(CLAMP_READINGS):
+        still = float(np.mean(seen[i]))
+        if np.var(seen[i]) > _DEAD * np.var(true[i]) or abs(still) > 1:
+            continue
+        constant = true.copy()
+        constant[i] = still
+        at = (
+            f"stays at {still:.2g} of its largest magnitude"
+            if abs(still) > 0.05
+            else "stays at zero"
+        )
+        yield Explanation(f"dead channel: {name} {at}", float(np.sum((seen - constant) ** 2)))

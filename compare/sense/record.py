@@ -1,0 +1,193 @@
+"""What is wrong with a record as such: numbers that are missing, repeated, stuck or cut off."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic import SENSED, Readings
+from analytic.problem.arrays import Booleans, Floats
+from compare.sense.noise import scales
+
+_FEWEST = 3  # equal extremes that are no accident
+_PILED = 3  # times more stations at the extreme than at any other one value: not quantisation
+_LOADED = 0.02  # of the largest magnitude; a reading that should be larger is not zero by chance
+_WIDE = 5  # times the median step: a gap
+_BACK = (10, 0.01)  # median steps, and share of the travel, that the foot may retreat by jitter
+
+
+@dataclass(frozen=True, repr=False)
+class Record:
+    """Defects of one sweep's record, by station.
+
+    Attributes
+    ----------
+    missing : array of bool, shape (stations,)
+        A sensed value is no finite number, and no status explains why.
+    repeated : array of bool, shape (stations,)
+        All four sensed values are those of the station before.
+    dropped : array of bool, shape (stations,)
+        A clamp reading is exactly zero, though it is not on either side.
+    clipped : array of bool, shape (stations,)
+        A clamp reading is at its extreme, as many others are: it was cut off there.
+    where_clipped : tuple of str
+        The readings that are cut off.
+    gaps : int
+        Steps of the foot that are more than five times as long as the median one.
+    widest : float
+        The longest step [length].
+    retreats : int
+        Steps of the foot against its direction of travel, if they lead so far back that the rows
+        are not in the order of the motion; else 0.
+    """
+
+    missing: Booleans
+    repeated: Booleans
+    dropped: Booleans
+    clipped: Booleans
+    where_clipped: tuple[str, ...]
+    gaps: int
+    widest: float
+    retreats: int
+
+    @property
+    def sound(self) -> Booleans:
+        """Stations without a defect, shape (stations,)."""
+        return ~(self.missing | self.repeated | self.dropped | self.clipped)
+
+    def defects(self) -> Iterator[str]:
+        """What is wrong, most serious first, in a few words each."""
+        rows = len(self.missing)
+        if self.retreats:
+            yield f"rows out of order: {self.retreats} of {rows - 1} steps of foot_x lead back"
+        for name, what in (
+            ("missing", "lack a number"),
+            ("dropped", "are filled with zeros amid contact"),
+            ("clipped", f"are cut off at the extreme of {' and '.join(self.where_clipped)}"),
+            ("repeated", "repeat the row before"),
+        ):
+            count = int(getattr(self, name).sum())
+            if count:
+                yield f"{count} of {rows} rows {what}"
+
+    def to_dict(self) -> dict[str, int | float]:
+        """What ``comparison.json`` holds: counts of stations, and the widest step [length]."""
+        return {
+            **{
+                name: int(getattr(self, name).sum())
+                for name in ("missing", "dropped", "clipped", "repeated")
+            },
+            "retreats": self.retreats,
+            "gaps": self.gaps,
+            "widest_step": self.widest,
+        }
+
+    def __repr__(self) -> str:
+        """The defects, or that there are none."""
+        return f"Record({'; '.join(self.defects()) or 'sound'})"
+
+
+def inspect_record(readings: Readings) -> Record:
+    """Look for defects that no contact can cause.
+
+    Parameters
+    ----------
+    readings : Readings
+        One sweep.
+
+    Returns
+    -------
+    Record
+        The defects.
+    """
+    values = readings.table[list(SENSED)].to_numpy(dtype=float)
+    finite = np.isfinite(values).all(axis=1)
+    failed = np.zeros(len(values), dtype=bool)
+    if "status" in readings.table:
+        failed = (readings.table["status"] != "ok").to_numpy()
+    repeated = np.append(False, (values[1:] == values[:-1]).all(axis=1)) & finite
+    dropped = np.zeros(len(values), dtype=bool)
+    clipped = np.zeros(len(values), dtype=bool)
+    cut = []
+    if (values[finite & ~failed][:, 1:] != 0).any():
+        kept = readings.trusted & ~repeated
+        still = np.append(False, (values[1:, 1:] == values[:-1, 1:]).all(axis=1))
+        moving = kept & ~(still | np.append(still[1:], False))  # not a clamp at rest
+        for name, scale in scales(readings).items():
+            column = readings.values(name)
+            dropped |= kept & _dropped(np.where(kept, column, np.nan), _LOADED * scale)
+            at_limit = moving & _clipped(column, moving, _LOADED * scale)
+            if at_limit.any():
+                cut.append(name)
+            clipped |= at_limit
+    foot_x = readings.values("foot_x")
+    steps = np.abs(np.diff(foot_x))
+    median = float(np.median(steps))
+    return Record(
+        missing=~finite & ~failed,
+        repeated=repeated,
+        dropped=dropped & ~clipped,
+        clipped=clipped,
+        where_clipped=tuple(cut),
+        gaps=int((steps > _WIDE * median).sum()) if median > 0 else 0,
+        widest=float(steps.max()),
+        retreats=_retreats(readings, median),
+    )
+
+
+def direction(readings: Readings) -> float:
+    """Sign of the foot's motion along x, from the order of the rows.
+
+    Parameters
+    ----------
+    readings : Readings
+        One sweep.
+
+    Returns
+    -------
+    float
+        1 to the right, -1 to the left.
+    """
+    foot_x = readings.values("foot_x")
+    rows = np.arange(len(foot_x)) - (len(foot_x) - 1) / 2
+    return 1.0 if rows @ (foot_x - foot_x.mean()) > 0 else -1.0
+
+
+def _dropped(column: Floats, loaded: float) -> Booleans:
+    """Zeros between two values that are both well away from it, on the same side."""
+    known = np.flatnonzero(np.isfinite(column) & (column != 0))
+    found = np.zeros(len(column), dtype=bool)
+    if len(known) < 2:
+        return found
+    zeros = np.flatnonzero(column == 0)
+    after = np.searchsorted(known, zeros)
+    zeros, after = (x[(after > 0) & (after < len(known))] for x in (zeros, after))
+    before, behind = column[known[after - 1]], column[known[after]]
+    alike = (np.sign(before) == np.sign(behind)) & (
+        np.minimum(np.abs(before), np.abs(behind)) > loaded
+    )
+    found[zeros[alike]] = True
+    return found
+
+
+def _clipped(column: Floats, moving: Booleans, loaded: float) -> Booleans:
+    """Stations at the largest or the smallest value, if too many are to be there by chance."""
+    found = np.zeros(len(column), dtype=bool)
+    values, counts = np.unique(column[moving], return_counts=True)
+    if len(values) < _FEWEST:
+        return found
+    others = counts[1:-1].max(initial=1)
+    for at, side in ((0, -1), (-1, 1)):
+        piled = counts[at] >= max(_FEWEST, _PILED * others)
+        if piled and side * values[at] > loaded:
+            found |= column == values[at]
+    return found
+
+
+def _retreats(readings: Readings, median: float) -> int:
+    """Steps back, if the rows are not in the order of a motion to one side."""
+    x = direction(readings) * readings.values("foot_x")
+    back = float(np.max(np.maximum.accumulate(x) - x))
+    if back <= max(_BACK[0] * median, _BACK[1] * float(np.ptp(x))):
+        return 0
+    return int((np.diff(x) < 0).sum())
