@@ -23,7 +23,10 @@ from analytic import (
     through_points,
 )
 from compare import classify, compare
-from mujoco_models import simulate_sweep
+from compare.explain.budget import budget
+from compare.explain.variations import variations
+from compare.simulate.controlled import measure_budget
+from mujoco_models import Settings, simulate_sweep
 from tests.conftest import simulated_sweep
 
 RIGHT = Sweep(direction="right")
@@ -180,3 +183,39 @@ def test_bad_sweeps(sweep, said):
 def test_bad_direction():
     with pytest.raises(InputError, match=r"sweep.direction = 'up': must be one of left, right"):
         Sweep(direction="up")
+
+
+def test_the_budget_of_a_mirrored_case_is_the_same():
+    """From readings alone: sweeps that differ from the exact one as a simulator's would."""
+    case = replace(named_case("two-circles"), sweep=Sweep(stations=60))
+
+    def found(of: Case):
+        exact = solve_sweep(of)
+        runs = {}
+        for name, gain in (
+            ("base", 3e-3), ("calm", 3e-3), ("smooth", 2.5e-3), ("stiff", 2.2e-3), ("two", 5.5e-4),
+            ("four", 1.4e-4),
+        ):  # fmt: skip
+            columns = {r: exact.values(r) * (1 + gain) for r in CLAMP_READINGS}
+            columns |= {"extension": 0.0, "penetration": 1e-6, "discrepancy": 1e-9}
+            runs[name] = replace(exact, table=exact.table.assign(**columns))
+        return budget(exact, runs, variations(of))
+
+    one, other = found(case), found(case.mirrored())
+    assert one.stations == other.stations
+    assert one.stations > 40
+    for name, by_reading in one.parts.items():
+        for reading, part in by_reading.items():
+            assert other.parts[name][reading].rms == pytest.approx(part.rms, rel=1e-6, abs=1e-12)
+
+
+@pytest.mark.slow
+def test_the_measured_budget_of_a_mirrored_case_is_the_same():
+    case = replace(named_case("two-circles"), sweep=Sweep(stations=40))
+    (one, _), (other, _) = (
+        measure_budget(c, Settings(segments=10)) for c in (case, case.mirrored())
+    )
+    assert one.stations == other.stations
+    for name, by_reading in one.parts.items():
+        for reading, part in by_reading.items():
+            assert other.parts[name][reading].rms == pytest.approx(part.rms, rel=1e-3, abs=1e-8)

@@ -1,4 +1,4 @@
-"""The cheapest settings that reach a wanted tolerance, foretold from a budget."""
+"""The cheapest settings that reach a wanted tolerance, predicted from a budget."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -37,7 +37,7 @@ class Advice:
 
 
 def advise(found: Budget, runs: Mapping[str, Readings], coarser: Readings, target: float) -> Advice:
-    """Foretell error and time at other settings, and choose the cheapest that reach `target`.
+    """Predict error and time at other settings, and choose the cheapest that reach `target`.
 
     Each part follows a power law, with the observed order of the segments and the observed fall
     of the facets' part; the parts add as squares. Time is a power of the segments, and for a mesh
@@ -53,6 +53,11 @@ def advise(found: Budget, runs: Mapping[str, Readings], coarser: Readings, targe
         The base on a mesh with fewer points; see `compare.explain.changes.coarser_mesh`.
     target : float
         Largest rms of any reading that is wanted, relative to its largest magnitude.
+
+    Returns
+    -------
+    Advice
+        The cheapest settings, and what to expect of them.
 
     Raises
     ------
@@ -100,7 +105,18 @@ def advise(found: Budget, runs: Mapping[str, Readings], coarser: Readings, targe
 
 
 def check_target(target: float) -> None:
-    """Raise InputError unless `target` can be an error relative to a reading's magnitude."""
+    """Check that `target` can be an error relative to a reading's magnitude.
+
+    Parameters
+    ----------
+    target : float
+        Largest rms of any reading that is wanted.
+
+    Raises
+    ------
+    InputError
+        If it is not between 0 and 1.
+    """
     if not 0 < target < 1:
         raise InputError("--target", target, "between 0 and 1", "1e-3 is usual")
 
@@ -116,7 +132,18 @@ def _facets(mesh: Readings, smooth: Readings) -> np.ndarray:
 
 
 def seconds_a_station(readings: Readings) -> float:
-    """What the simulation of a sweep took a station [s]."""
+    """What the simulation of a sweep took a station.
+
+    Parameters
+    ----------
+    readings : Readings
+        With its ``seconds`` in its provenance.
+
+    Returns
+    -------
+    float
+        [s]
+    """
     return float(readings.provenance["seconds"]) / len(readings.table)
 
 

@@ -61,7 +61,7 @@ class Budget:
     closes : bool
         Whether what is unexplained lies within the uncertainty of the parts, and both are small
         against the disagreement or against `UNRESOLVED`.
-    cannot_tell : bool
+    undecided : bool
         Whether it lies within an uncertainty that is not small: then the budget neither closes
         nor shows that something is missing.
     blame : str
@@ -87,7 +87,7 @@ class Budget:
     stations: int
     convergence: dict[int, dict[str, float]]
     checks: dict[str, dict[str, float]]
-    cannot_tell: bool = False
+    undecided: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """What ``budget.json`` holds.

@@ -26,6 +26,11 @@ def controlled_changes(settings: Settings, smooth: bool = True) -> dict[str, Set
     smooth : bool
         Whether the contour is; if it has corners, its facets are no error.
 
+    Returns
+    -------
+    dict of Settings
+        By name.
+
     Raises
     ------
     InputError
@@ -51,5 +56,16 @@ def controlled_changes(settings: Settings, smooth: bool = True) -> dict[str, Set
 
 
 def coarser_mesh(settings: Settings) -> Settings:
-    """The base on a coarser mesh: tells how its facets' part falls with their number."""
+    """The base on a coarser mesh: shows how its facets' part falls with their number.
+
+    Parameters
+    ----------
+    settings : Settings
+        Of the base.
+
+    Returns
+    -------
+    Settings
+        The same but for the points of the contour.
+    """
     return replace(settings, contour_points=max(8, settings.contour_points // COARSER))

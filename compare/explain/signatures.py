@@ -10,7 +10,7 @@ from analytic.problem.arrays import Floats
 
 _STEP = 1e-3  # L; the change that a signature is taken from
 _STATIONS = 1000  # of the sweeps between which it is interpolated
-_BEYOND = 0.02  # L; what a slightly longer vibrissa would reach, beyond the contour that is told
+_BEYOND = 0.02  # L; what a slightly longer vibrissa would reach, beyond the contour that is known
 _SAME = 1e-3  # of the largest magnitude; the contour must reproduce the reference so well (rms)
 
 
@@ -21,11 +21,18 @@ def contour_signatures(reference: Readings, foot_x: Floats) -> dict[str, Floats]
     of the length that is rigid at the clamp. Shape (3, stations) each, NaN where one of the sweeps
     is free or in another phase.
 
+    Parameters
+    ----------
+    reference : Readings
+        Whose contour is in its provenance.
+    foot_x : array, shape (stations,)
+        [length]
+
     Returns
     -------
     dict or None
-        None if the reference does not tell its contour, or a smooth contour through the points that
-        it tells cannot be solved or does not reproduce its readings.
+        None if the reference does not record its contour, or a smooth contour through the points
+        that it records cannot be solved or does not reproduce its readings.
     """
     contour = reference.provenance.get("contour")
     if contour is None:
@@ -49,18 +56,18 @@ def contour_signatures(reference: Readings, foot_x: Floats) -> dict[str, Floats]
         changed = {name: solve_sweep(varied) for name, varied in cases.items()}
     except (InputError, ArithmeticError):
         return None
-    told = _at(base, foot_x)
+    seen = _at(base, foot_x)
     known = np.stack(
         [np.interp(foot_x, *_sorted(swept, reference.values(n))) for n in CLAMP_READINGS]
     )
-    miss = (told - known) / np.abs(known).max(axis=1, keepdims=True)
+    miss = (seen - known) / np.abs(known).max(axis=1, keepdims=True)
     if not np.sqrt(np.nanmean(miss**2)) < _SAME:
         return None
     # Past the rigid part the clamp's force acts at its end, while the moment is taken at its foot.
     lifted = changed["clamp"]
     moment = lifted.values("moment_z") - step * lifted.values("force_x")
     changed["clamp"] = replace(lifted, table=lifted.table.assign(moment_z=moment))
-    return {name: (_at(sweep_, foot_x) - told) / _STEP for name, sweep_ in changed.items()}
+    return {name: (_at(sweep_, foot_x) - seen) / _STEP for name, sweep_ in changed.items()}
 
 
 def _extended(points: Floats, beyond: float) -> Floats:

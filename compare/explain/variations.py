@@ -17,6 +17,16 @@ def variations(case: Case) -> dict[str, Readings]:
 
     ``flexural_rigidity``, ``length`` and ``radius`` are larger by a thousandth, ``foot_x`` is by a
     thousandth of the length, and ``friction`` is the coefficient of a thousandth.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+
+    Returns
+    -------
+    dict of Readings
+        By name.
     """
     beam, length = case.beam, case.beam.length
     start, stop = (float(x) for x in case.foot_x[[0, -1]])
@@ -40,7 +50,20 @@ def variations(case: Case) -> dict[str, Readings]:
 
 
 def on_polygon(case: Case, points: int) -> Readings:
-    """The exact sweep past the polygon that a mesh of so many points of the contour is."""
+    """The exact sweep past the polygon that a mesh of so many points of the contour is.
+
+    Parameters
+    ----------
+    case : Case
+        The problem, with a smooth contour.
+    points : int
+        Of the contour.
+
+    Returns
+    -------
+    Readings
+        Over the case's stations.
+    """
     left, right = case.reach
     length = case.beam.length
     vertices = length * case.profile.scaled(1 / length).outline(left, right, points)
@@ -60,10 +83,28 @@ def shifted_inward(signatures: Mapping[str, Floats], penetration: Floats, radius
         [L]
     radius : float
         Of the vibrissa [L].
+
+    Returns
+    -------
+    array, shape (3, stations)
+        What it adds to the readings, relative to their largest magnitudes.
     """
     return -signatures["radius"] * penetration / (STEP * radius)
 
 
 def stretched(signatures: Mapping[str, Floats], extension: Floats) -> Floats:
-    """What a vibrissa does that is longer by `extension`, shape (stations,), over its length."""
+    """What a vibrissa does that is stretched.
+
+    Parameters
+    ----------
+    signatures : mapping
+        What each of `variations` does to the readings, shape (3, stations).
+    extension : array, shape (stations,)
+        [L]
+
+    Returns
+    -------
+    array, shape (3, stations)
+        What it adds to the readings, relative to their largest magnitudes.
+    """
     return np.asarray(signatures["length"] * extension / STEP)

@@ -99,7 +99,13 @@ class Occurrence:
         return abs(self.difference) <= tolerance + self.uncertainty
 
     def to_dict(self) -> dict[str, float | None]:
-        """What ``comparison.json`` holds."""
+        """What ``comparison.json`` holds.
+
+        Returns
+        -------
+        dict
+            The foot positions and their difference [length].
+        """
         return {**asdict(self), "difference": self.difference}
 
 

@@ -78,8 +78,11 @@ def scales(reference: Readings) -> dict[str, float]:
     InputError
         If no reading differs from zero.
     """
-    values = {name: readings_of(reference, name) for name in CLAMP_READINGS}
-    largest = {name: float(np.abs(x).max(initial=0.0)) for name, x in values.items()}
+    trusted = reference.trusted
+    largest = {
+        name: float(np.abs(reference.values(name)[trusted]).max(initial=0.0))
+        for name in CLAMP_READINGS
+    }
     force = max(largest["force_x"], largest["force_y"])
     moment = max(largest["moment_z"], force * reference.beam.length)
     if not moment > 0:
@@ -92,24 +95,6 @@ def scales(reference: Readings) -> dict[str, float]:
     force = force or moment / reference.beam.length
     instead = {"force_x": force, "force_y": force, "moment_z": moment}
     return {name: largest[name] or instead[name] for name in CLAMP_READINGS}
-
-
-def readings_of(readings: Readings, name: str) -> Floats:
-    """One clamp reading at the trusted stations.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep.
-    name : str
-        Of the reading.
-
-    Returns
-    -------
-    array, shape (trusted stations,)
-        In the reading's unit.
-    """
-    return np.asarray(readings.values(name)[readings.trusted])
 
 
 def noise_level(reference: Readings, candidate: Readings) -> dict[str, float]:

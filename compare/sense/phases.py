@@ -93,8 +93,9 @@ def classify(readings: Readings) -> Classification:
     contact, moved = _contacts(readings, noise)
     shortfall = np.where(loaded, _shortfall(contact, beam.length), np.nan)
     variance = np.zeros_like(shortfall)
-    for there in moved:
-        variance += np.nan_to_num(_shortfall(there, beam.length) - shortfall) ** 2
+    with np.errstate(over="ignore", invalid="ignore"):  # a load of next to nothing has no contact
+        for there in moved:
+            variance += np.nan_to_num(_shortfall(there, beam.length) - shortfall) ** 2
     shortfall_tolerance = np.sqrt(variance)
 
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -13,7 +13,8 @@ _FEWEST = 3  # equal extremes that are no accident
 _PILED = 3  # times more stations at the extreme than at any other one value: not quantisation
 _LOADED = 0.02  # of the largest magnitude; a reading that should be larger is not zero by chance
 _WIDE = 5  # times the median step: a gap
-_BACK = (10, 0.01)  # median steps, and share of the travel, that the foot may retreat by jitter
+_JITTER = 10  # median steps that the foot may retreat by the jitter of its reading, ...
+_BACK = (0.01, 0.1)  # ... and at least and at most this share of its travel
 
 
 @dataclass(frozen=True, repr=False)
@@ -56,7 +57,13 @@ class Record:
         return ~(self.missing | self.repeated | self.dropped | self.clipped)
 
     def defects(self) -> Iterator[str]:
-        """What is wrong, most serious first, in a few words each."""
+        """What is wrong, most serious first.
+
+        Yields
+        ------
+        str
+            A few words each, with how many rows.
+        """
         rows = len(self.missing)
         if self.retreats:
             yield f"rows out of order: {self.retreats} of {rows - 1} steps of foot_x lead back"
@@ -71,7 +78,13 @@ class Record:
                 yield f"{count} of {rows} rows {what}"
 
     def to_dict(self) -> dict[str, int | float]:
-        """What ``comparison.json`` holds: counts of stations, and the widest step [length]."""
+        """What ``comparison.json`` holds.
+
+        Returns
+        -------
+        dict
+            Counts of stations, and the widest step [length].
+        """
         return {
             **{
                 name: int(getattr(self, name).sum())
@@ -188,6 +201,6 @@ def _retreats(readings: Readings, median: float) -> int:
     """Steps back, if the rows are not in the order of a motion to one side."""
     x = direction(readings) * readings.values("foot_x")
     back = float(np.max(np.maximum.accumulate(x) - x))
-    if back <= max(_BACK[0] * median, _BACK[1] * float(np.ptp(x))):
+    if back <= np.clip(_JITTER * median, *(share * float(np.ptp(x)) for share in _BACK)):
         return 0
     return int((np.diff(x) < 0).sum())

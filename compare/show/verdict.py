@@ -5,6 +5,8 @@ from compare.comparison import Comparison
 from compare.explain.budget import Budget
 from compare.show.page import short
 
+_NEARLY_ALL = 0.95  # of the compared stations: with fewer, the budget is about another disagreement
+
 
 def worst_reading(comparison: Comparison) -> str:
     """The clamp reading whose rms disagreement goes farthest beyond its limit, or nearest to it.
@@ -64,14 +66,14 @@ def verdict(comparison: Comparison, budget: Budget | None = None) -> str:
 def _doubt(comparison: Comparison, budget: Budget) -> str:
     """What the budget leaves open, and where it is about fewer stations than the comparison."""
     said = ""
-    if budget.cannot_tell or not (budget.closes or budget.blame == "unexplained"):
+    if budget.undecided or not (budget.closes or budget.blame == "unexplained"):
         parts = budget.parts["unexplained"].values()
         rest, unsure = (short(max(getattr(p, n) for p in parts)) for n in ("rms", "uncertainty"))
         said = f", but {rest} stays unexplained"
-        if budget.cannot_tell:
-            said = f", but the budget cannot tell: {rest} +- {unsure} stays unexplained"
+        if budget.undecided:
+            said = f", but the budget is undecided: {rest} +- {unsure} stays unexplained"
     compared = next(iter(comparison.disagreement.values())).stations
-    if budget.stations < compared:
+    if budget.stations < _NEARLY_ALL * compared:
         said += f" (over the {budget.stations} of {compared} stations that all its sweeps share)"
     return said
 
@@ -87,7 +89,7 @@ def _advice(comparison: Comparison, budget: Budget) -> str:
             f"the numerics do not explain it, but {first.name} does if it is "
             f"{first.change:+.2%} off in {comparison.candidate.source}: check it"
         )
-    if budget.blame == "unexplained" and budget.cannot_tell:
+    if budget.blame == "unexplained" and budget.undecided:
         return "the numerics are too uncertain to explain it: refine them"
     if budget.blame == "unexplained":
         return "neither the numerics nor a known fault of the physics explains it: look for one"

@@ -35,14 +35,14 @@ def hits(name: str, stations: int, level: float, seeds: range) -> list[bool]:
     sweep = solve_sweep(replace(named_case(name), sweep=Sweep(stations=stations)))
     reference = exact_sweep(name)
     judged = classify(reference)
-    told = []
+    within = []
     for seed in seeds:
         noisy = with_noise(sweep, dict.fromkeys(CLAMP_READINGS, level), seed)
         planted = PLANTED[seed % len(PLANTED)]
         offset = estimate_offset(reference, displaced(noisy, planted), judged, classify(noisy))
         assert offset.uncertainty < {1e-3: 1e-2, 1e-2: 2e-2}[level]
-        told.append(abs(offset.value - planted) <= offset.uncertainty)
-    return told
+        within.append(abs(offset.value - planted) <= offset.uncertainty)
+    return within
 
 
 @pytest.mark.parametrize("level", [1e-3, 1e-2])
@@ -58,13 +58,13 @@ def test_the_interval_covers_all_cases(stations):
 
     Of 400 independent samples of a true 95 % interval 92 % to 98 % hit in 99 % of all cases.
     """
-    told = [
+    within = [
         hit
         for name in CASE_NAMES
         for level in (1e-3, 1e-2)
         for hit in hits(name, stations, level, range(40))
     ]
-    assert 0.92 <= np.mean(told) <= 0.98
+    assert 0.92 <= np.mean(within) <= 0.98
 
 
 @pytest.mark.parametrize("planted", PLANTED)
@@ -134,7 +134,7 @@ def test_offset_and_lag_from_two_sweeps():
         (lambda table: table.assign(status="unsettled"), "0 trusted stations"),
     ],
 )
-def test_an_offset_that_the_readings_do_not_tell_is_an_error(spoilt, said):
+def test_an_offset_that_the_readings_do_not_determine_is_an_error(spoilt, said):
     exact = exact_sweep("catenary")
     spoilt = replace(exact, table=spoilt(exact.table).reset_index(drop=True))
     with pytest.raises(InputError, match=said):

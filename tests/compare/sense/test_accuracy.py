@@ -1,4 +1,4 @@
-"""How well phases are told from the clamp, measured for both models."""
+"""How well phases are determined from the clamp, measured for both models."""
 
 import pytest
 

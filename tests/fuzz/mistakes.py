@@ -1,0 +1,324 @@
+"""Mistakes of a rig or a simulator, planted in random sweeps: how often each is named rightly.
+
+``python -m tests.fuzz.mistakes SEEDS`` prints a row a mistake: how often its own name was given,
+how often none, and which wrong ones. Every sweep is past a contour of its own, with the smooth
+error that a chain has and white noise of up to 0.5 %.
+"""
+
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+
+from analytic import (
+    CLAMP_READINGS,
+    SENSED,
+    Case,
+    Readings,
+    Sweep,
+    catenary,
+    circle,
+    ellipse,
+    parabola,
+    solve_sweep,
+    two_circles,
+)
+from compare import compare
+from compare.sense.noise import with_noise
+
+_OWN_ERROR = (3e-4, 1.2e-3)  # of a reading's largest magnitude: a chain of 40 segments and more
+_NOISE = 5e-3
+_SEGMENTS = 40
+
+
+def random_case(rng: np.random.Generator) -> Case:
+    """A smooth contour, and a sweep past it."""
+    height = rng.uniform(0.35, 0.65)
+    contour = (
+        lambda: catenary(rng.uniform(0.3, 1.0), height - 1),
+        lambda: parabola(rng.uniform(0.2, 1.0), height),
+        lambda: circle(rng.uniform(0.3, 2.0), (0.0, height)),
+        lambda: ellipse((rng.uniform(0.5, 2.0), rng.uniform(0.5, 1.5)), (0.0, height)),
+        lambda: two_circles(rng.uniform(0.5, 2.0), rng.uniform(0.5, 2.0), (0.0, height)),
+    )[rng.integers(5)]
+    return Case(profile=contour(), sweep=Sweep(int(rng.integers(100, 260))))
+
+
+def with_own_error(sweep: Readings, rng: np.random.Generator, size: float) -> Readings:
+    """The readings of a model that is a little off, smoothly, and from segment to segment."""
+    progress = np.linspace(0, 1, len(sweep.table))
+    columns = {}
+    for name in CLAMP_READINGS:
+        values = sweep.values(name)
+        waves = sum(
+            rng.normal() * np.cos(k * np.pi * progress + rng.uniform(0, 2 * np.pi))
+            for k in range(1, 5)
+        )
+        steps = np.sin(2 * np.pi * _SEGMENTS * progress + rng.uniform(0, 2 * np.pi))
+        shape = np.where(values != 0, waves + 0.5 * steps, 0.0)
+        scale = size * np.abs(values).max() / np.sqrt(np.mean(shape**2))
+        columns[name] = values + scale * shape
+    return replace(sweep, table=sweep.table.assign(**columns))
+
+
+def _other(**change: float) -> Callable[[Case, np.random.Generator], Readings]:
+    """The sweep of another vibrissa over the same stations, which claims to be the case's."""
+
+    def swept(case: Case, rng: np.random.Generator) -> Readings:
+        beam = replace(case.beam, **{n: getattr(case.beam, n) * (1 + x) for n, x in change.items()})
+        start, stop = (float(x) for x in case.foot_x[[0, -1]])
+        start += 0.05  # clear of the object for a longer vibrissa too
+        wrong = solve_sweep(
+            replace(case, beam=beam, sweep=replace(case.sweep, start=start, stop=stop))
+        )
+        return replace(wrong, beam=case.beam)
+
+    return swept
+
+
+def _between(rng: np.random.Generator, low: float, high: float) -> float:
+    """A size of either sign."""
+    return float(rng.uniform(low, high) * rng.choice([-1, 1]))
+
+
+def _beam(name: str, low: float, high: float) -> Callable[[Case, np.random.Generator], Readings]:
+    def swept(case: Case, rng: np.random.Generator) -> Readings:
+        return _other(**{name: _between(rng, low, high)})(case, rng)
+
+    return swept
+
+
+def _nearer(case: Case, rng: np.random.Generator) -> Readings:
+    return _other(radius=rng.uniform(1.5, 5))(case, rng)
+
+
+def _columns(sweep: Readings, **columns: np.ndarray) -> Readings:
+    return replace(sweep, table=sweep.table.assign(**columns))
+
+
+def _one(act: Callable[[np.ndarray, np.random.Generator], np.ndarray]) -> "Sensor":
+    """A mistake in one reading, drawn at random."""
+
+    def made(sweep: Readings, rng: np.random.Generator) -> Readings:
+        name = str(rng.choice(CLAMP_READINGS))
+        return _columns(sweep, **{name: act(sweep.values(name), rng)})
+
+    return made
+
+
+def _largest(values: np.ndarray) -> float:
+    return float(np.abs(values).max())
+
+
+def _offset(sweep: Readings, rng: np.random.Generator) -> Readings:
+    return _columns(sweep, foot_x=sweep.values("foot_x") + _between(rng, 0.01, 0.03))
+
+
+def _tare(sweep: Readings, rng: np.random.Generator) -> Readings:
+    return _columns(
+        sweep,
+        **{
+            name: sweep.values(name) + _between(rng, 0.03, 0.1) * _largest(sweep.values(name))
+            for name in CLAMP_READINGS
+        },
+    )
+
+
+def _swapped(sweep: Readings, rng: np.random.Generator) -> Readings:
+    return _columns(sweep, force_x=sweep.values("force_y"), force_y=sweep.values("force_x"))
+
+
+def _negated(sweep: Readings, rng: np.random.Generator) -> Readings:
+    return _columns(sweep, **{name: -sweep.values(name) for name in CLAMP_READINGS})
+
+
+def _turned(sweep: Readings, rng: np.random.Generator) -> Readings:
+    angle = np.radians(_between(rng, 3, 10))
+    x, y, c, s = sweep.values("force_x"), sweep.values("force_y"), np.cos(angle), np.sin(angle)
+    return _columns(sweep, force_x=c * x + s * y, force_y=c * y - s * x)
+
+
+def _displaced(sweep: Readings, rng: np.random.Generator) -> Readings:
+    lever = _between(rng, 0.03, 0.1)
+    return _columns(sweep, moment_z=sweep.values("moment_z") + lever * sweep.values("force_x"))
+
+
+def _all_units(sweep: Readings, rng: np.random.Generator) -> Readings:
+    factor = rng.choice([1000.0, 9.80665, 1 / 9.80665])
+    return _columns(sweep, **{name: factor * sweep.values(name) for name in CLAMP_READINGS})
+
+
+def _opposite(case: Case, rng: np.random.Generator) -> Readings:
+    return solve_sweep(replace(case, sweep=Sweep(case.sweep.stations, direction="right")))
+
+
+def _rows(sweep: Readings, rows: Iterable[int]) -> Readings:
+    return replace(sweep, table=sweep.table.iloc[list(rows)].reset_index(drop=True))
+
+
+def _reversed(sweep: Readings, rng: np.random.Generator) -> Readings:
+    return _rows(sweep, range(len(sweep.table))[::-1])
+
+
+def _shuffled(sweep: Readings, rng: np.random.Generator) -> Readings:
+    return _rows(sweep, rng.permutation(len(sweep.table)))
+
+
+def _repeated(sweep: Readings, rng: np.random.Generator) -> Readings:
+    rows = len(sweep.table)
+    return _rows(sweep, np.sort(np.append(np.arange(rows), rng.choice(rows, rows // 10, False))))
+
+
+def _stretch(sweep: Readings, rng: np.random.Generator) -> slice:
+    """Amid contact, 5 to 15 % of the sweep."""
+    rows = len(sweep.table)
+    begin = int(rng.uniform(0.25, 0.6) * rows)
+    return slice(begin, begin + int(rng.uniform(0.05, 0.15) * rows))
+
+
+def _lost(value: float) -> "Sensor":
+    def made(sweep: Readings, rng: np.random.Generator) -> Readings:
+        here = _stretch(sweep, rng)
+        columns = {name: sweep.values(name).copy() for name in CLAMP_READINGS}
+        for column in columns.values():
+            column[here] = value
+        return _columns(sweep, **columns)
+
+    return made
+
+
+def _clipped(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    limit = np.quantile(np.abs(values), rng.uniform(0.7, 0.9))
+    return np.clip(values, -limit, limit)
+
+
+def _free(sweep: Readings, rng: np.random.Generator) -> Readings:
+    return _columns(sweep, **{name: 0 * sweep.values(name) for name in CLAMP_READINGS})
+
+
+def _two(sweep: Readings, rng: np.random.Generator) -> Readings:
+    """Two gains and a zero that have nothing to do with each other."""
+    x, m = sweep.values("force_x"), sweep.values("moment_z")
+    return _columns(sweep, force_x=1.08 * x, moment_z=m + 0.06 * _largest(m))
+
+
+def _coarse(sweep: Readings, rng: np.random.Generator) -> Readings:
+    return with_own_error(sweep, rng, rng.uniform(0.01, 0.03))
+
+
+def _loud(sweep: Readings, rng: np.random.Generator) -> Readings:
+    level = dict.fromkeys(CLAMP_READINGS, float(rng.uniform(0.02, 0.04)))
+    return with_noise(sweep, level, int(rng.integers(1 << 30)))
+
+
+Sensor = Callable[[Readings, np.random.Generator], Readings]
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """What is planted, and the words that name it; none where nothing should be named.
+
+    `swept` is a sweep that is wrong itself, `sensed` what the sensor makes of it before its noise,
+    and `recorded` what the file makes of that.
+    """
+
+    named: str | None
+    swept: Callable[[Case, np.random.Generator], Readings] | None = None
+    sensed: Sensor | None = None
+    recorded: Sensor | None = None
+
+
+MISTAKES: dict[str, Mistake] = {
+    "flexural rigidity": Mistake("flexural rigidity", _beam("flexural_rigidity", 0.03, 0.3)),
+    "length": Mistake("length of the vibrissa", _beam("length", 0.01, 0.03)),
+    "radius": Mistake("radius of the vibrissa", _nearer),
+    "offset of the stage": Mistake("foot_x", sensed=_offset),
+    "gain": Mistake("gain of", sensed=_one(lambda v, rng: v * (1 + _between(rng, 0.05, 0.3)))),
+    "zero": Mistake(
+        "zero of", sensed=_one(lambda v, rng: v + _between(rng, 0.03, 0.1) * _largest(v))
+    ),
+    "gravity": Mistake("constant load", sensed=_tare),
+    "drift": Mistake(
+        "drift of",
+        sensed=_one(
+            lambda v, rng: v + _between(rng, 0.05, 0.2) * _largest(v) * np.linspace(0, 1, len(v))
+        ),
+    ),
+    "axes swapped": Mistake("force_x and force_y swapped", sensed=_swapped),
+    "one sign": Mistake("opposite sign of", sensed=_one(lambda v, rng: -v)),
+    "all signs": Mistake("all three readings have the opposite sign", sensed=_negated),
+    "sensor turned": Mistake("sensor turned by", sensed=_turned),
+    "sensor displaced": Mistake("along the vibrissa off the clamp", sensed=_displaced),
+    "unit of one": Mistake(
+        "in another unit",
+        sensed=_one(lambda v, rng: v * rng.choice([1000.0, 0.001, 9.80665, 1 / 9.80665])),
+    ),
+    "unit of all": Mistake("all readings in another unit", sensed=_all_units),
+    "dead channel": Mistake("dead channel", sensed=_one(lambda v, rng: 0 * v)),
+    "opposite direction": Mistake("opposite direction of travel", _opposite),
+    "reversed rows": Mistake("rows reversed", recorded=_reversed),
+    "shuffled rows": Mistake("rows out of order", recorded=_shuffled),
+    "repeated rows": Mistake("repeat the row before", recorded=_repeated),
+    "gap": Mistake("lack a number", recorded=_lost(np.nan)),
+    "dropout": Mistake("filled with zeros", recorded=_lost(0.0)),
+    "saturation": Mistake("cut off at the extreme", recorded=_one(_clipped)),
+    "no contact": Mistake("never touches", recorded=_free),
+    "noise": Mistake("noise: differences jump", sensed=_loud),
+    "nothing known: two at once": Mistake(None, sensed=_two),
+    "nothing known: a coarse model": Mistake(None, sensed=_coarse),
+}
+
+
+def named(mistake: Mistake, seed: int) -> str | None:
+    """What the comparison calls a mistake planted at random; None if it names nothing."""
+    rng = np.random.default_rng(seed)
+    case = random_case(rng)
+    reference = solve_sweep(case)
+    sweep = reference if mistake.swept is None else mistake.swept(case, rng)
+    sweep = with_own_error(sweep, rng, rng.uniform(*_OWN_ERROR))
+    noise = dict.fromkeys(CLAMP_READINGS, float(rng.uniform(0, _NOISE)) * rng.integers(2))
+    if mistake.sensed is not None:
+        sweep = mistake.sensed(sweep, rng)
+    sweep = with_noise(sweep, noise, seed)
+    if mistake.recorded is not None:
+        sweep = mistake.recorded(sweep, rng)
+    candidate = Readings(sweep.table[list(SENSED)], case.beam, "rig")
+    found = compare(reference, candidate)
+    return found.likely or "; ".join(found.records["candidate"].defects()) or None
+
+
+def confusion(seeds: Iterable[int]) -> pd.DataFrame:
+    """A row a mistake: how often it was named rightly, not at all, and wrongly, and as what."""
+    rows = []
+    for kind, mistake in MISTAKES.items():
+        right, silent, wrong = 0, 0, Counter[str]()
+        for seed in seeds:
+            said = named(mistake, seed)
+            if said is None:
+                silent += 1
+            elif mistake.named is not None and mistake.named in said:
+                right += 1
+            else:
+                wrong[f"{seed}: {said[:60]}"] += 1
+        rows.append((kind, right, silent, wrong.total(), "; ".join(wrong)))
+    return pd.DataFrame(rows, columns=["mistake", "right", "silent", "wrong", "as"])
+
+
+def main() -> None:
+    """Print the table, and the shares."""
+    seeds = int(sys.argv[1]) if len(sys.argv) > 1 else 10
+    table = confusion(range(seeds))
+    print(table.to_string(index=False, max_colwidth=None))
+    known = [mistake.named is not None for mistake in MISTAKES.values()]
+    trials = seeds * sum(known)
+    print(f"named rightly: {table[known]['right'].sum() / trials:.1%} of {trials}")
+    print(
+        f"named wrongly: {table['wrong'].sum() / (seeds * len(table)):.1%} of {seeds * len(table)}"
+    )
+
+
+if __name__ == "__main__":
+    main()
