@@ -49,6 +49,7 @@ class Classification:
         return f"Classification({found})"
 
 
+@np.errstate(divide="ignore", over="ignore", invalid="ignore")  # next to no load: no contact
 def classify(readings: Readings) -> Classification:
     """Decide each station's phase by which phase's own condition its readings meet better.
 
@@ -82,24 +83,21 @@ def classify(readings: Readings) -> Classification:
     f = np.hypot(force_x, force_y)
     loaded = f > max(_SIGMAS * np.hypot(noise_x, noise_y), _UNLOADED)
 
-    with np.errstate(divide="ignore", invalid="ignore"):
-        criterion = np.where(loaded, (2 * force_y - moment**2) / (2 * f), np.nan)
-        by_x = criterion * force_x / f**2
-        by_y = 1 / f - criterion * force_y / f**2
-        by_m = moment / f
+    criterion = np.where(loaded, (2 * force_y - moment**2) / (2 * f), np.nan)
+    by_x = criterion * force_x / f**2
+    by_y = 1 / f - criterion * force_y / f**2
+    by_m = moment / f
     criterion_tolerance = np.sqrt(
         (by_x * noise_x) ** 2 + (by_y * noise_y) ** 2 + (by_m * noise_m) ** 2
     )
     contact, moved = _contacts(readings, noise)
     shortfall = np.where(loaded, _shortfall(contact, beam.length), np.nan)
     variance = np.zeros_like(shortfall)
-    with np.errstate(over="ignore", invalid="ignore"):  # a load of next to nothing has no contact
-        for there in moved:
-            variance += np.nan_to_num(_shortfall(there, beam.length) - shortfall) ** 2
+    for there in moved:
+        variance += np.nan_to_num(_shortfall(there, beam.length) - shortfall) ** 2
     shortfall_tolerance = np.sqrt(variance)
 
-    with np.errstate(divide="ignore", invalid="ignore"):
-        tangent = np.abs(criterion) / criterion_tolerance < np.abs(shortfall) / shortfall_tolerance
+    tangent = np.abs(criterion) / criterion_tolerance < np.abs(shortfall) / shortfall_tolerance
     # A negative deviation belongs to neither phase: it is noise about zero, evidence for its own.
     tangent = np.where(shortfall <= 0, False, np.where(criterion <= 0, True, tangent))
     phase = np.where(loaded, np.where(tangent, "tangent", "tip"), "free")
