@@ -106,7 +106,7 @@ class Comparison(Measurement):
         matplotlib.figure.Figure
             A notebook shows it; ``figure.savefig("picture.png")`` writes it.
         """
-        from compare.show.figures import readings  # matplotlib is slow to load
+        from compare.show.figures.readings import readings  # matplotlib is slow to load
 
         return readings(self)
 

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -126,7 +126,7 @@ class Tolerances:
         """
         if is_smooth_model(candidate):
             return self
-        plain = {
+        plain: dict[str, Any] = {
             name: Limit(limit, reason)
             for name, reason in _CONVENTIONS.items()
             if (limit := getattr(self, name)).reason == getattr(Tolerances, name).reason

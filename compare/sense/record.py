@@ -201,6 +201,7 @@ def _retreats(readings: Readings, median: float) -> int:
     """Steps back, if the rows are not in the order of a motion to one side."""
     x = direction(readings) * readings.values("foot_x")
     back = float(np.max(np.maximum.accumulate(x) - x))
-    if back <= np.clip(_JITTER * median, *(share * float(np.ptp(x)) for share in _BACK)):
+    least, most = (share * float(np.ptp(x)) for share in _BACK)
+    if back <= min(max(_JITTER * median, least), most):
         return 0
     return int((np.diff(x) < 0).sum())

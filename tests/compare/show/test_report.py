@@ -134,7 +134,8 @@ def test_verdicts_of_a_disagreement(comparison):
     assert "force_x is off by" in verdict(compare(exact, off))
     assert "Do not use" in verdict(compare(exact, off))
     strict = compare(exact, comparison.candidate, Tolerances(max=1e-6))
-    assert "of the tolerances, though not that of the rms" in verdict(strict)
+    assert "where 1.0e-06 is allowed" in verdict(strict)
+    assert "more limits exceeded" in verdict(strict)
 
 
 def test_what_the_budget_says():
