@@ -9,7 +9,7 @@ from analytic.problem.arrays import Floats
 
 
 class Solution(NamedTuple):
-    """What the boundary value problem tells of one contact, dimensionless."""
+    """The solution of the boundary value problem of one contact, dimensionless."""
 
     force: float
     moment: float
@@ -33,6 +33,11 @@ def boundary_value_problem(
         Phase B, the slope given and the arc length unknown; else Phase A.
     tolerance : float
         Of the collocation's relative residual.
+
+    Returns
+    -------
+    Solution
+        Force, clamp moment and contact.
 
     Raises
     ------

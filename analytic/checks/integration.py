@@ -25,7 +25,9 @@ class End(NamedTuple):
 def integrate_span(
     force_x: Floats, force_y: Floats, moment: Floats, length: Floats, tolerance: float = 1e-13
 ) -> End:
-    """March from the clamp along the loaded span (paper, eqs. 4 and 15), no elliptic integral used.
+    """March from the clamp along the loaded span (Will et al., eqs. 4 and 15).
+
+    No elliptic integral is used.
 
     The initial value problem of section 5 takes kappa from a square root that vanishes at the
     contact, where its solution is not unique; kappa' = f cos(phi - alpha) is smooth throughout.

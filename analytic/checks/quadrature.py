@@ -15,6 +15,11 @@ def tip_angle_by_quadrature(alpha: float, eta: float) -> float:
     ----------
     alpha, eta : float
         Slope angle [rad] and height [L] of the contact.
+
+    Returns
+    -------
+    float
+        [rad]
     """
 
     def height_missed(phi_1: float) -> float:

@@ -7,7 +7,7 @@ from scipy.special import ellipj, ellipkinc
 
 
 def tip_angle_by_shooting(alpha: float, eta: float) -> float:
-    """Tip angle phi_1 in Phase A by the paper's shooting method [rad].
+    """Tip angle phi_1 in Phase A by the shooting method of Will et al. [rad].
 
     phi(s) comes from the inverse of H_A (after eq. 12), y(1) from numerical quadrature of sin(phi).
 
@@ -15,6 +15,11 @@ def tip_angle_by_shooting(alpha: float, eta: float) -> float:
     ----------
     alpha, eta : float
         Slope angle [rad] and height [L] of the contact.
+
+    Returns
+    -------
+    float
+        [rad]
     """
 
     def height_missed(phi_1: float) -> float:

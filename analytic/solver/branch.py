@@ -73,7 +73,15 @@ class Branch:
         return np.asarray(self.t[1:-1][self.tangent[1:] != self.tangent[:-1]])
 
     def events(self) -> dict[str, float | None]:
-        """Foot positions of first contact, limits of Phase B and of the plane, snap-off [L]."""
+        """Where what happens along the branch happens.
+
+        Returns
+        -------
+        dict
+            Foot positions [L] of the first contact, of the first start and the last end of Phase B,
+            of the last equilibrium that is stable in space, and of the snap-off; None where there
+            is none.
+        """
         change = np.append(self.tangent[1:] != self.tangent[:-1], False)
         at, into_b = self.foot_x[1:][change], self.tangent[1:][change[:-1]]
         starts, ends = at[into_b], at[~into_b]

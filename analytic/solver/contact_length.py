@@ -8,7 +8,7 @@ from analytic.solver.equilibria import tangent_contact
 
 
 def surplus(centreline: Contour, t: Floats) -> Floats:
-    """1 - 1/s1 with s1 of eq. 21 (Behn et al.): negative in Phase B, smooth at the pole of s1.
+    """1 - 1/s1 with s1 of eq. 21 (Will et al.): negative in Phase B, smooth at the pole of s1.
 
     Parameters
     ----------

@@ -3,7 +3,8 @@
 Everything is dimensionless: lengths in L, forces in EI/L^2, moments in EI/L. The loaded span runs
 from the clamp (slope pi/2) to the contact, where the frictionless contour of slope angle alpha
 presses with force f. With theta = phi - alpha its first integral is kappa^2 = 2 f (sin theta -
-sin theta_1), theta_1 the value at the contact (paper, eqs. 6 and 17), so that the span depends on
+sin theta_1), theta_1 the value at the contact (Will, Steigenberger and Behn, *Quasi-static object
+scanning using technical vibrissae*, 2014, eqs. 6 and 17), so that the span depends on
 alpha and on the rotation u = pi/2 - phi_1 of its end alone:
 
     q = sqrt(f) * span length
@@ -52,6 +53,11 @@ def span(excess: Floats, alpha: Floats) -> Span:
         w >= 0 [rad]; pi/2 - |alpha| is tangential contact (Phase B).
     alpha : array
         Slope angle of the contour at the contact [rad], same shape.
+
+    Returns
+    -------
+    Span
+        Dimensionless, of the same shape.
     """
     w, sharp = excess, np.abs(alpha)
     k, k_ = np.sin((w + sharp) / 2), np.cos((w + sharp) / 2)
@@ -61,7 +67,17 @@ def span(excess: Floats, alpha: Floats) -> Span:
 def span_of_moment(C: Floats, alpha: Floats) -> Span:
     """Integrals of the span whose clamp moment is C sqrt(f): what reconstruction starts from.
 
-    NaN where the moment is too large for the force: k^2 = sin^2(alpha/2) + C^2/4 exceeds 1.
+    Parameters
+    ----------
+    C : array
+        Clamp moment over the root of the force, dimensionless.
+    alpha : array
+        Slope angle of the contour at the contact [rad], same shape.
+
+    Returns
+    -------
+    Span
+        NaN where the moment is too large for the force: k^2 = sin^2(alpha/2) + C^2/4 exceeds 1.
     """
     k = np.hypot(np.sin(alpha / 2), C / 2)
     with np.errstate(invalid="ignore"):
@@ -77,12 +93,36 @@ def _span(C: Floats, k: Floats, k_: Floats, alpha: Floats) -> Span:
 
 
 def least_rotation(alpha: Floats) -> Floats:
-    """Rotation from which the excess is counted: u = w + max(0, -2 alpha) [rad]."""
+    """Rotation from which the excess w is counted: u = w + max(0, -2 alpha).
+
+    Parameters
+    ----------
+    alpha : array
+        Slope angle of the contour at the contact [rad].
+
+    Returns
+    -------
+    array
+        The least rotation of the span's end [rad], same shape.
+    """
     return np.maximum(0.0, -2 * alpha)
 
 
 def frame(span: Span, alpha: Floats) -> Frame:
-    """The span's end in the world frame: up = sqrt(f) y, across = sqrt(f) (x - x0)."""
+    """The span's end in the world frame.
+
+    Parameters
+    ----------
+    span : Span
+        Its integrals, or their derivatives at fixed `alpha`.
+    alpha : array
+        Slope angle of the contour at the contact [rad], same shape.
+
+    Returns
+    -------
+    Frame
+        up = sqrt(f) y and across = sqrt(f) (x - x0), dimensionless.
+    """
     sin, cos = np.sin(alpha), np.cos(alpha)
     return Frame(span.C * sin + span.S * cos, span.C * cos - span.S * sin)
 
@@ -91,6 +131,20 @@ def span_by_excess(span: Span, excess: Floats, alpha: Floats) -> Span:
     """Derivatives of `span` with respect to the excess rotation, at fixed alpha.
 
     From dF/dk, dE/dk and d(psi_0)/dk (Byrd and Friedman, 710.07 and 710.09).
+
+    Parameters
+    ----------
+    span : Span
+        The integrals.
+    excess : array
+        Excess rotation of the span's end [rad], same shape.
+    alpha : array
+        Slope angle of the contour at the contact [rad], same shape.
+
+    Returns
+    -------
+    Span
+        Derivatives [1/rad].
     """
     q, C, S = span
     angle = excess + np.abs(alpha)  # pi/2 - theta_1
@@ -108,6 +162,18 @@ def span_by_alpha(span: Span, by_excess: Span, alpha: Floats) -> Span:
 
     Both limits of the integrals move. The upper one, pi/2 - alpha, contributes the integrand at
     the clamp; the lower one, theta_1 = pi/2 - w - |alpha|, what the excess does.
+
+    Parameters
+    ----------
+    span, by_excess : Span
+        The integrals, and their derivatives with respect to the excess rotation.
+    alpha : array
+        Slope angle of the contour at the contact [rad], same shape.
+
+    Returns
+    -------
+    Span
+        Derivatives [1/rad].
     """
     side = np.where(alpha < 0, -1.0, 1.0)
     return Span(

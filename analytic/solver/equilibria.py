@@ -48,7 +48,7 @@ class Equilibria(NamedTuple):
 
     @property
     def foot_x(self) -> Floats:
-        """Foot position x0 (paper, eqs. 13 and 22)."""
+        """Foot position x0 (Will et al., eqs. 13 and 22) [L]."""
         with np.errstate(divide="ignore", invalid="ignore"):
             reach = np.where(self.root_f == 0, 0.0, self.frame.across / self.root_f)
         return np.asarray(self.point.xi - reach)  # unloaded, the vibrissa is straight
@@ -80,7 +80,22 @@ class Rates(NamedTuple):
 
 
 def tip_rates(excess: Floats, loaded: Span, alpha: Floats) -> tuple[Rates, Rates]:
-    """Derivatives of the tip's height y(1) and reach x(1) - x0 by alpha and excess rotation."""
+    """Derivatives of the tip's height y(1) and reach x(1) - x0 by alpha and excess rotation.
+
+    Parameters
+    ----------
+    excess : array, shape (n,)
+        Excess rotation of the tip [rad].
+    loaded : Span
+        Integrals of the vibrissa, loaded all along.
+    alpha : array, shape (n,)
+        Slope angle of the contour at the tip [rad].
+
+    Returns
+    -------
+    height, reach : Rates
+        [L/rad]
+    """
     up, across = frame(loaded, alpha)
     by_excess = span_by_excess(loaded, excess, alpha)
     by_alpha = span_by_alpha(loaded, by_excess, alpha)
@@ -95,7 +110,18 @@ def tip_rates(excess: Floats, loaded: Span, alpha: Floats) -> tuple[Rates, Rates
 
 
 def tangent_contact(point: ContourPoint) -> Equilibria:
-    """Phase B (paper, eqs. 18-22), whether or not its arc length fits on the vibrissa."""
+    """Phase B (Will et al., eqs. 18-22), whether or not its arc length fits on the vibrissa.
+
+    Parameters
+    ----------
+    point : ContourPoint
+        Where the centreline's contour is touched; arrays of shape (n,).
+
+    Returns
+    -------
+    Equilibria
+        Of n contacts.
+    """
     excess = np.pi / 2 - np.abs(point.alpha)
     loaded = span(excess, point.alpha)
     root_f = frame(loaded, point.alpha).up / point.eta
@@ -135,6 +161,11 @@ def equilibria(centreline: Contour, t: Floats) -> Equilibria:
         Contour that the centreline feels, in units of the vibrissa's length.
     t : array, shape (n,)
         Contour parameters.
+
+    Returns
+    -------
+    Equilibria
+        Of n contacts.
     """
     point = centreline.at(t)
     tangential = tangent_contact(point)
@@ -152,7 +183,20 @@ Column: TypeAlias = Floats | Words
 
 
 def to_columns(states: Equilibria, beam: Beam) -> dict[str, Column]:
-    """The readings of `states`, column by column, in the units of `beam`."""
+    """The readings of `states`, column by column.
+
+    Parameters
+    ----------
+    states : Equilibria
+        Of n contacts.
+    beam : Beam
+        The vibrissa, whose units the columns are in.
+
+    Returns
+    -------
+    dict of array, shape (n,)
+        The columns of `Readings.table` by name.
+    """
     alpha, xi, eta = states.point[:3]
     force = states.root_f**2
     radius = beam.radius / beam.length

@@ -1,4 +1,7 @@
-"""What happens in a sweep, and where: first contact, phase limits, snap-off (paper, section 4)."""
+"""What happens in a sweep, and where: first contact, phase limits, snap-off.
+
+Will, Steigenberger and Behn, section 4.
+"""
 
 import math
 from dataclasses import dataclass
@@ -62,6 +65,11 @@ def find_events(profile: Contour, beam: Beam | None = None) -> Events:
         The body's contour [length].
     beam : Beam, optional
         The vibrissa; ``Beam()`` if not given.
+
+    Returns
+    -------
+    Events
+        In the units of `beam`.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What dry friction would do to the readings, which the theory of Behn et al. leaves out.
+"""What dry friction would do to the readings, which the theory of Will et al. leaves out.
 
 Sliding on, the object holds the vibrissa back along its tangent with mu times the normal force.
 The elastica is integrated from the contact to the clamp by the classical Runge-Kutta method, and

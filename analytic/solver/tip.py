@@ -9,13 +9,35 @@ _MAX_ITERATIONS = 60  # bisection alone would halve the bracket to round-off in 
 
 
 def tip_height(excess: Floats, alpha: Floats) -> Floats:
-    """Height of a loaded tip above the foot line, given its excess rotation."""
+    """Height of a loaded tip above the foot line.
+
+    Parameters
+    ----------
+    excess, alpha : array, shape (n,)
+        Excess rotation of the tip and slope angle of the contour there [rad].
+
+    Returns
+    -------
+    array, shape (n,)
+        [L]
+    """
     loaded = span(excess, alpha)
     return frame(loaded, alpha).up / loaded.q
 
 
 def greatest_height(alpha: Floats) -> Floats:
-    """Height of the tip whose excess rotation is zero: contour points above are out of reach."""
+    """Height of the tip whose excess rotation is zero: contour points above are out of reach.
+
+    Parameters
+    ----------
+    alpha : array, shape (n,)
+        Slope angle of the contour [rad].
+
+    Returns
+    -------
+    array, shape (n,)
+        [L]
+    """
     bent = np.minimum(alpha, -1e-300)  # for alpha >= 0 the vibrissa is straight, of height 1
     return np.where(alpha < 0, tip_height(np.zeros_like(bent), bent), 1.0)
 
@@ -36,7 +58,7 @@ def tip_excess(alpha: Floats, eta: Floats) -> Floats:
     Returns
     -------
     array, shape (n,)
-        NaN where the point is out of reach: no vibrissa that bends one way ends there.
+        [rad]; NaN where the point is out of reach: no vibrissa that bends one way ends there.
     """
     sag = np.sqrt(np.maximum(1 - eta, 0.0))
     low = np.zeros_like(alpha)
