@@ -63,8 +63,8 @@ def test_the_load_grows_with_the_way_from_first_contact(closer):
     touch = find_events(profile, THIN).first_contact
     sweep = Sweep(2, stop=touch.foot_x - closer)
     last = solve_sweep(Case(THIN, profile, sweep)).table.iloc[-1]
-    # A deflection d at the tip takes 3 d; foot_x itself is rounded to 2e-16.
-    assert -last["force_x"] == pytest.approx(3 * (touch.foot_x - last["foot_x"]), abs=1e-15)
+    # A deflection d at the tip takes 3 d; positions are good to 64 roundings, 1.4e-14.
+    assert -last["force_x"] == pytest.approx(3 * (touch.foot_x - last["foot_x"]), abs=5e-14)
 
 
 def test_a_needle_is_touched_within_the_vibrissa():
