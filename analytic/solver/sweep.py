@@ -1,7 +1,7 @@
 """The sweep on given foot positions: every station solved, checked and put into one table."""
 
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from importlib.metadata import version
 
 import numpy as np
@@ -68,13 +68,18 @@ def _solve_leftward(case: Case, certified: bool) -> Readings:
     columns["status"] = np.where(solved_on, "ok", "diverged")
     provenance = {
         **case.provenance(),
-        "engine": f"vibrissa-testbed {version('vibrissa-testbed')}",
+        "engine": _engine(),
         "events": {
             name: None if x is None else x * beam.length for name, x in branch.events().items()
         },
     }
     readings = Readings(pd.DataFrame({**columns, **checked}), beam, "analytic", provenance)
     return _with_certificate(readings) if certified else readings
+
+
+@cache
+def _engine() -> str:
+    return f"vibrissa-testbed {version('vibrissa-testbed')}"
 
 
 def _with_certificate(readings: Readings) -> Readings:
