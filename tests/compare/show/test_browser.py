@@ -138,7 +138,7 @@ def test_screenshot(look, report, name, scheme, options):
         pixels = np.asarray(image.convert("RGB")).astype(int)
     page = pixels[2, 2]
     assert (page.min() > 240) if scheme == "light" else (page.max() < 40)
-    # Text and figures are there all the way down, and are easily told from the page.
+    # Text and figures are there all the way down, and stand out from the page.
     bands = np.array_split(np.abs(pixels - page).max(axis=2) > 130, 8)
     assert min(band.mean() for band in bands) > 0.003
     blamed = np.abs(pixels - ORANGE[scheme]).max(axis=2) < 12

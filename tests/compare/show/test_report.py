@@ -66,7 +66,7 @@ def test_links_inside_pictures_stay_inside(page):
     assert set(used) <= set(page.ids)
 
 
-def test_those_who_cannot_see_are_told(page):
+def test_those_who_cannot_see_get_a_description(page):
     assert page.all("html")[0]["lang"] == "en"
     assert all(img.get("alt") for img in page.all("img"))
     assert all(svg.get("aria-label") and svg.get("role") == "img" for svg in page.all("svg"))
