@@ -24,6 +24,7 @@ _UNITS = {
 }
 _SAME_UNIT = 0.02  # of the factor; as far as a model's own error may move it
 _DEAD = 0.01  # of the reading's variance: what of it a dead channel still shows
+_FOLLOWS = 0.5  # share of a small reading's variance that follows the load, if it is alive
 _TURN = np.radians(60)  # beyond, it is a swap of axes
 
 
@@ -123,6 +124,9 @@ def _dead(true: Floats, seen: Floats) -> Iterator[Explanation]:
         still = float(np.mean(seen[i]))
         if np.var(seen[i]) > _DEAD * np.var(true[i]) or abs(still) > 1:
             continue
+        follows = float(np.mean((seen[i] - still) * (true[i] - true[i].mean()))) ** 2
+        if follows > _FOLLOWS * np.var(seen[i]) * np.var(true[i]):
+            continue  # small, as in another unit, but alive
         constant = true.copy()
         constant[i] = still
         at = (
