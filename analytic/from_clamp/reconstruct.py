@@ -8,7 +8,9 @@ import pandas as pd
 
 from analytic.checks.integration import integrate_span
 from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.beam import Beam
 from analytic.problem.columns import CLAMP_READINGS, SENSED
+from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
 from analytic.problem.table import mirrored_table
 from analytic.solver.elastica import frame, span, span_of_moment
@@ -17,6 +19,7 @@ _UNLOADED = 1e-9  # of EI/L^2: below, a force has no direction to speak of
 _SIGMAS = 5.0  # the same, in standard deviations of the force's noise
 _SAMPLES = 400  # of the noise, a station
 _COVERAGE = 0.95
+_LONGEST = 1.1  # L; a tip contact seen through a few percent of noise may seem as long
 _NEARLY_ONE = 1e-6  # L; by how much a contact may miss the tip and still be called a tip contact
 
 
@@ -52,8 +55,10 @@ def reconstruct(
     -------
     pandas.DataFrame
         A row a station: ``contact_x``, ``contact_y``, ``contact_arc_length`` [length], on the
-        body's surface; ``phase``; ``contact_angle`` [rad]. NaN and ``"free"`` where no force acts,
-        NaN and ``"unexplained"`` where no elastica has such a force and moment. With `noise` also
+        body's surface; ``phase``; ``contact_angle`` [rad]; ``status``. NaN and ``"free"`` where no
+        force acts, NaN and ``"unexplained"`` where the force and moment are of no such vibrissa:
+        ``status`` is then ``"no elastica"``, or ``"longer than the vibrissa"`` where the contact
+        would be beyond 1.1 L. It is ``"gap"`` where one of the four is NaN. With `noise` also
         ``uncertainty``: the true contact point lies within this distance of the stated one in 95 %
         of all cases [length]; infinite where the noise allows readings that no elastica has.
     """
@@ -74,8 +79,36 @@ def _bent_right(readings: Readings, noise: Mapping[str, float] | None, seed: int
     phase = np.where(contact.arc_length < 1 - _NEARLY_ONE, "tangent", "tip")
     found = _table(readings, contact, loaded, phase)
     if noise is not None:
-        found["uncertainty"] = _uncertainty(readings, noise, loaded, contact, seed) * beam.length
+        radius = _uncertainty(readings, noise, loaded, contact, seed) * beam.length
+        found["uncertainty"] = np.where(found["phase"] == "unexplained", np.inf, radius)
     return found
+
+
+def require_beam(found: pd.DataFrame, readings: Readings) -> None:
+    """Ask for the vibrissa if none was given and the readings cannot be of the default one.
+
+    Parameters
+    ----------
+    found : pandas.DataFrame
+        What `reconstruct` made of the readings.
+    readings : Readings
+        With the default beam if nobody named another.
+
+    Raises
+    ------
+    InputError
+        If the beam is the default one, and most stations with a force have contacts beyond its
+        length or no elastica at all.
+    """
+    loaded = ~found["status"].isin(["free", "gap"])
+    wrong = int((found["status"][loaded] != "ok").sum())
+    if readings.beam == Beam() and 2 * wrong > loaded.sum():
+        raise InputError(
+            "beam",
+            "the default one (length 1, flexural rigidity 1)",
+            f"the one that was measured: {wrong} of {loaded.sum()} contacts cannot be of this one",
+            "give its length and flexural rigidity in the units of the readings",
+        )
 
 
 def reconstruct_by_decision(readings: Readings, tolerance: float = 1e-6) -> pd.DataFrame:
@@ -147,14 +180,25 @@ def _surface(contact: Contact, radius: float) -> tuple[Floats, Floats]:
 def _table(readings: Readings, contact: Contact, loaded: Booleans, phase: Floats) -> pd.DataFrame:
     beam = readings.beam
     x, y = _surface(contact, beam.radius / beam.length)
-    explained = np.isfinite(contact.arc_length)
+    measured = np.isfinite(_dimensionless(readings)).all(axis=0)
+    too_long = contact.arc_length > _LONGEST
+    explained = np.isfinite(contact.arc_length) & ~too_long
+
+    def where_explained(values: Floats, unit: float) -> Floats:
+        return np.where(explained, values * unit, np.nan)
+
     return pd.DataFrame(
         {
-            "contact_x": x * beam.length,
-            "contact_y": y * beam.length,
-            "contact_arc_length": contact.arc_length * beam.length,
+            "contact_x": where_explained(x, beam.length),
+            "contact_y": where_explained(y, beam.length),
+            "contact_arc_length": where_explained(contact.arc_length, beam.length),
             "phase": np.where(explained, phase, np.where(loaded, "unexplained", "free")),
             "contact_angle": contact.alpha,
+            "status": np.select(
+                [~measured, explained, ~loaded, too_long],
+                ["gap", "ok", "free", "longer than the vibrissa"],
+                "no elastica",
+            ),
         }
     )
 
@@ -185,7 +229,20 @@ def _uncertainty(
 
 
 def relative_noise(readings: Readings, level: float) -> dict[str, float]:
-    """Noise of `level` times each clamp reading's largest magnitude, as `reconstruct` takes it."""
+    """Noise in proportion to each clamp reading's largest magnitude, as `reconstruct` takes it.
+
+    Parameters
+    ----------
+    readings : Readings
+        Whose magnitudes count.
+    level : float
+        Standard deviation over largest magnitude.
+
+    Returns
+    -------
+    dict
+        Standard deviation by column, in the column's unit.
+    """
     return {
         name: level * float(np.nanmax(np.abs(readings.values(name)))) for name in CLAMP_READINGS
     }

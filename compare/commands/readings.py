@@ -98,7 +98,7 @@ def reconstruct(
 ) -> int:
     """Find the object from the clamp readings alone."""
     from analytic import reconstruct as reconstruct_contour
-    from analytic import relative_noise
+    from analytic import relative_noise, require_beam
     from compare.commands import terminal
     from compare.read.rig import read_measured
 
@@ -106,6 +106,7 @@ def reconstruct(
     terminal.note_rows(readings)
     level = None if noise is None else relative_noise(readings, noise)
     found = reconstruct_contour(readings, level)
+    require_beam(found, readings)
     with output_folder(out or Path("results") / f"{file.stem}-reconstructed") as folder:
         from analytic.problem.files import write_whole
         from compare.show.figures.geometry import reconstruction

@@ -2,14 +2,18 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, seed, settings
+from hypothesis import strategies as st
 
 from analytic import (
     Beam,
+    InputError,
     Readings,
     named_case,
     reconstruct,
     reconstruct_by_decision,
     relative_noise,
+    require_beam,
     solve_sweep,
 )
 
@@ -57,8 +61,8 @@ def test_uncertainty_covers_the_error(exact, level):
     """95 % of the contacts of 30 noisy sweeps lie within what is stated: 5,000, so +-1 %."""
     noise = relative_noise(exact, level)
     covered = counted = 0
-    for seed in range(30):
-        found = reconstruct(noisy(exact, noise, seed), noise, seed + 1000)
+    for number in range(30):
+        found = reconstruct(noisy(exact, noise, number), noise, number + 1000)
         sure = np.isfinite(found["uncertainty"]) & exact.table["contact_x"].notna()
         error = missed(found, exact.table)
         covered += int((error <= found["uncertainty"])[sure].sum())
@@ -82,3 +86,59 @@ def test_readings_that_no_elastica_has():
     touching = sweep.table["phase"] != "free"
     assert (found["phase"][touching] == "unexplained").all()
     assert found["contact_x"].isna().all()
+
+
+def test_no_contact_lies_beyond_the_vibrissa():
+    """Readings in other units than the beam's: NaN with the reason, and the beam is asked for."""
+    sweep = solve_sweep(named_case("catenary"))
+    weak = {name: sweep.values(name) * 1e-4 for name in ("force_x", "force_y")}
+    table = sweep.table.assign(**weak, moment_z=sweep.values("moment_z") * 1e-2)
+    readings = Readings(table)
+    found = reconstruct(readings)
+    touching = (sweep.table["phase"] != "free").to_numpy()
+    assert set(found["status"][touching]) == {"longer than the vibrissa"}
+    assert (
+        found.loc[touching, ["contact_x", "contact_y", "contact_arc_length"]].isna().all(axis=None)
+    )
+    with pytest.raises(InputError, match="beam = the default one"):
+        require_beam(found, readings)
+    long = Readings(table, Beam(100.0, 1.0, 0.5))
+    assert (reconstruct(long)["status"][touching] == "ok").all()
+    require_beam(reconstruct(long), long)
+
+
+def test_exact_readings_ask_for_nothing(exact):
+    found = reconstruct(exact)
+    require_beam(found, exact)
+    assert set(found["status"]) == {"free", "ok"}
+
+
+def test_gaps_and_odd_numbers():
+    """NaN, repeated and whole-numbered positions, a moment next to nothing: never an exception."""
+    readings = Readings.of(
+        {
+            "foot_x": [2, 1, 1, 0, -1],
+            "force_x": [0, -1.921052132207935, np.nan, 1e-320, -0.5],
+            "force_y": [0, 5.278047354836458, 1.0, 1.0, 1e300],
+            "moment_z": [0, 3.249014421278077, 0.9, 1e-320, 1e-320],
+        }
+    )
+    found = reconstruct(readings)
+    assert found["status"].tolist()[:3] == ["free", "ok", "gap"]
+    length = found["contact_arc_length"].dropna()
+    assert ((length >= 0) & (length <= 1.1)).all()
+
+
+NUMBERS = st.floats(-1e6, 1e6) | st.floats(allow_infinity=False)
+
+
+@seed(31)
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.tuples(NUMBERS, NUMBERS, NUMBERS), min_size=2, max_size=8))
+def test_any_numbers_give_a_contact_on_the_vibrissa_or_a_reason(rows):
+    columns = dict(zip(("force_x", "force_y", "moment_z"), zip(*rows, strict=True), strict=True))
+    with np.errstate(all="ignore"):
+        found = reconstruct(Readings.of({"foot_x": range(len(rows)), **columns}))
+    good = found["status"] == "ok"
+    assert found.loc[good, "contact_arc_length"].between(0, 1.1).all()
+    assert found.loc[~good, "contact_x"].isna().all()
