@@ -20,6 +20,7 @@ _RISE = 0.15  # the largest change of the height, relative
 _TRUST = 0.05  # by how much a mean slope may lie outside those at the ends, of the larger one
 _FLAT = 1e-12  # L; changes of the foot position and the surplus that are rounding, or nearly
 _LEVELS = 40  # of halving: a cell is rounding then
+_MOST = 2000  # points more: beyond, derivatives are lost in rounding, as next to an upright side
 
 
 def along(centreline: Contour, first: float, last: float) -> Floats:
@@ -98,13 +99,14 @@ def doubtful(t: Floats, value: Floats, rate: Floats) -> Booleans:
 
 
 def _with_phase_changes(centreline: Contour, grid: Floats) -> Floats:
+    most = _MOST + len(grid)
     for _ in range(_LEVELS):
         value, rate = surplus_and_rate(centreline, grid)
         # How near the surplus can come to zero, if it goes on as steeply as at either end.
         steepest = np.fmax(np.abs(rate[1:]), np.abs(rate[:-1])) * -np.diff(grid)
         near = np.minimum(np.abs(value[1:]), np.abs(value[:-1])) < 2 * steepest
         new = middles(grid, doubtful(grid, value, rate) & near)
-        if new.size == 0:
+        if not 0 < new.size <= most - len(grid):
             break
         grid = _descending(grid, new)
     grid = _descending(grid, _extrema(centreline, grid))
@@ -154,7 +156,7 @@ def folded(centreline: Contour, grid: Floats) -> Floats:
     for _ in range(_LEVELS):
         t, foot_x, rate, _ = samples
         new = middles(t, doubtful(t, foot_x, rate))
-        if new.size == 0:
+        if not 0 < new.size <= _MOST + len(grid) - t.size:
             break
         samples = _merged(samples, _sample(centreline, new))
     samples = _merged(samples, _sample(centreline, _folds(centreline, samples)))
@@ -173,9 +175,9 @@ def _folds(centreline: Contour, samples: Floats) -> Floats:
     lowest = foot_x[:-1] - before * (t[:-1] - t[1:])
     turns = np.flatnonzero(reached & (before > 0) & (after < 0) & (lowest < least))
 
-    def rates(t: Floats) -> Floats:
-        found = _sample(centreline, t)[2]
-        return np.where(np.isnan(found), -1.0, found)
+    def rates(at: Floats) -> Floats:
+        found = _sample(centreline, at)[2]
+        return np.where(at == t[0], 1.0, np.where(np.isnan(found), -1.0, found))
 
     return zeros(rates, t[turns + 1], t[turns])
 

@@ -68,7 +68,8 @@ def tip_excess(alpha: Floats, eta: Floats) -> Floats:
     p = np.minimum(np.sqrt(np.sin(np.minimum(guess, 1.0) / 2)), high)
 
     excess = np.full_like(alpha, np.nan)
-    active = np.flatnonzero(eta < greatest_height(alpha))
+    # Against an upright side (high = 0) the vibrissa is straight and carries no load.
+    active = np.flatnonzero((eta < greatest_height(alpha)) & (high > 0))
     for _ in range(_MAX_ITERATIONS):
         if active.size == 0:
             break
