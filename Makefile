@@ -15,7 +15,7 @@ RUNS := $(foreach case,$(CASES),$(foreach beam,$(BEAMS),results/runs/$(case)-$(b
 FOUND = --budget --beam $(BEAM) --out $(@D) $(ARGS) || test $$? -eq 1; test -f $@
 
 .NOTPARALLEL:
-.PHONY: help install run test test-slow test-all coverage lint docs wheel bench results again studies \
+.PHONY: help install run test test-slow test-all coverage lint docs wheel fuzz bench results again studies \
   install-mujoco3 test-mujoco3 versions clean
 
 help:            ## list the targets
@@ -49,6 +49,9 @@ docs: install    ## the pages and an API reference -> site/index.html
 
 wheel: install   ## dist/*.whl
 	$(BIN)/python -m build --wheel --no-isolation
+
+fuzz: install    ## bad input to all commands; ARGS="N SEED"
+	$(BIN)/python -m tests.fuzz.inputs $(or $(ARGS),10000 1)
 
 bench: install   ## speed, side by side on one core; ARGS="analytic mujoco stepping exudyn study"
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench $(ARGS)

@@ -5,6 +5,7 @@ import reprlib
 from collections.abc import Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
+from types import NoneType
 from typing import Annotated, Any, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
@@ -119,8 +120,8 @@ def _walk(schema: object, location: Sequence[int | str]) -> tuple[list[str], lis
             keys.append(str(part))
             allowed = list(_fields(table)) or allowed
             table = _fields(table).get(str(part))
-            while get_origin(table) is Annotated:
-                table = get_args(table)[0]
+            while get_origin(table) is Annotated or NoneType in get_args(table):
+                table = get_args(table)[0]  # of what may be missing, too
     return keys, allowed
 
 

@@ -62,7 +62,8 @@ def read_measured(
         several sweeps.
     """
     sweeps = read_sweeps(source, beam, columns, otherwise)
-    chosen = [one for way, one in sweeps if direction in (None, way)]
+    several = len(sweeps) > 1
+    chosen = [one for way, one in sweeps if not several or direction in (None, way)]
     if len(chosen) != 1:
         ways = ", ".join(f"one to the {way}" for way, _ in sweeps)
         raise InputError(
