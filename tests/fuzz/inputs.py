@@ -28,7 +28,13 @@ from typer.main import get_command
 
 from analytic import Sweep, named_case, solve_sweep
 from analytic.problem.case import Case
+from compare import compare
 from compare.commands.main import app, main
+from compare.show.report import write_report
+from compare.study import Plan, load_study
+from compare.study.keep.store import Store
+from compare.study.work.perform import Recipe
+from compare.study.work.perform import perform as perform_run
 
 CPU_SECONDS = 60
 MEGABYTES = 2000
@@ -259,7 +265,7 @@ class Maker:
         for name in self.some(sorted(files), 2) or [sorted(files)[0]]:
             files[name] = self._damaged(files[name])
         words = self.pick(["findings", "runs"], ["findings", "runs", "--out", "page"],
-                          ["study-report", "small"], ["study", "small/study.toml"],
+                          ["study-report", "small"], ["study", "small/study.toml", "--dry-run"],
                           ["compare", "runs/one/analytic.parquet", "runs/one/mujoco.parquet"],
                           ["reconstruct", "runs/one/mujoco.parquet"],
                           ["side-by-side", "catenary", "runs/one/mujoco.parquet"])  # fmt: skip
@@ -407,13 +413,11 @@ def outputs() -> tuple[tuple[str, bytes], ...]:
         (place / "runs/one").mkdir(parents=True)
         for name in ("analytic", "mujoco"):
             sweep.write(place / f"runs/one/{name}.parquet")
-        both = [f"runs/one/{name}.parquet" for name in ("analytic", "mujoco")]
-        for words in (
-            ["compare", *both, "--out", "runs/one"],
-            ["study", "small/study.toml", "--out", "small", "--workers", "1"],
-        ):
-            done = _in_process(Trial("setting up", words), place)
-            assert done.code == 0, done.error
+        write_report(compare(sweep, sweep), place / "runs/one")
+        plan = Plan.of(load_study(str(place / "small/study.toml")))
+        with Store(place / "small", plan, print) as store:
+            for run in plan:
+                store.add(perform_run(Recipe.of(plan.study), run))
         return tuple(
             (str(path.relative_to(place)), path.read_bytes())
             for path in sorted(place.rglob("*"))
