@@ -1,0 +1,107 @@
+"""Case files: what they may not hold, and where it stands."""
+
+import time
+
+import pytest
+
+from analytic import InputError
+from compare.read.case import load_job
+from compare.read.toml import TomlFile
+from mujoco_models import Settings
+
+CIRCLE = '[profile]\nkind = "circle"\nradius = 1.0\nlowest = [0.0, 0.4]\n'
+
+
+def refused(tmp_path, content) -> str:
+    path = tmp_path / "case.toml"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    with pytest.raises(InputError) as error:
+        load_job(str(path))
+    message = str(error.value)
+    assert "\n" not in message
+    assert len(message) < 600
+    return message
+
+
+@pytest.mark.parametrize(
+    ("extra", "said"),
+    [
+        ("[beam]\nlength = true\n", "line 6: beam.length = True"),
+        ("[sweep]\nstations = true\n", "line 6: sweep.stations = True"),
+        ('[sweep]\nstations = "200"\n', "line 6: sweep.stations = '200'"),
+        ("[mujoco]\nsegments = 2.5\n", "line 6: mujoco.segments = 2.5"),
+        ("[mujoco]\nsegments = true\n", "line 6: mujoco.segments = True"),
+        ("[mujoco]\nplanar = 1\n", "line 6: mujoco.planar = 1"),
+        ("[sweep]\nstations = 99999999999999999999\n", "sweep.stations"),
+        ("[beam]\nlength = 1e308\n", "a length of 1e+308"),
+        ("[beam]\nlength = 0x" + "f" * 5000, "line 6: beam.length = an integer of 20000 bits"),
+        ('[beam]\nlength = "9**9**9 m"\n', "line 6: beam.length = '9**9**9 m'"),
+        ("x = " + "9" * 5000, "valid TOML"),
+        ("x = " + "[" * 5000 + "]" * 5000, "levels deep"),
+        (".".join("a" * 5000) + " = 1", "levels deep"),
+        ("".join(f"k{i} = 1\n" for i in range(20_000)), "keys"),
+    ],
+)  # fmt: skip
+def test_values_that_cannot_be(tmp_path, extra, said):
+    assert said in refused(tmp_path, CIRCLE + extra)
+
+
+@pytest.mark.parametrize("name", ["../../x", "a/b", "a\\\\b", "", ".", "..", ".x", "x" * 200])
+def test_a_name_stays_in_its_folder(tmp_path, name):
+    assert "line 1: name" in refused(tmp_path, f'name = "{name}"\n{CIRCLE}')
+
+
+def test_files_that_are_none(tmp_path):
+    assert "UTF-8" in refused(tmp_path, CIRCLE.encode("utf-16"))
+    assert "valid TOML" in refused(tmp_path, CIRCLE.replace("\n", "\r"))
+    assert "MB" in refused(tmp_path, CIRCLE + "#" * 3_000_000)
+    for name in (f"{tmp_path}/case.toml/", str(tmp_path), "/dev/zero"):
+        with pytest.raises(InputError):
+            load_job(name)
+
+
+def test_the_place_of_an_error_takes_no_longer_than_the_file(tmp_path):
+    """It took 400 s beside 5,000 points; the limit is loose, for busy machines."""
+    points = "".join(f"  [{x}, {x}], # ] here is one\n" for x in range(20_000))
+    text = f'[profile]\nkind = "points"\npoints = [\n{points}]\nradis = 1\n'
+    begin = time.process_time()
+    assert "line 20005: profile.radis" in refused(tmp_path, text)
+    assert time.process_time() - begin < 10
+
+
+def test_the_line_of_a_key_however_it_is_written(tmp_path):
+    path = tmp_path / "some.toml"
+    path.write_text(
+        '# [a]\na.b = 1\n"c d" = """\n[x]\n"""\n[t]\nlist = [ # [\n  1,\n]\n'
+        "inner = { one = 1, two = { three = 3 } }\n[t.u]\nv = ']'\n[[w]]\nz = 1\n[[w]]\nz = 2\n"
+    )
+    place = TomlFile.read(path, "file").place
+    for keys, line in (
+        (["a", "b"], 2),
+        (["c d"], 3),
+        (["t"], 6),
+        (["t", "list", "0"], 7),
+        (["t", "inner", "two", "three"], 10),
+        (["t", "u", "v"], 12),
+        (["t", "u", "missing"], 11),
+        (["w"], 13),
+    ):
+        assert place(keys) == f"{path}, line {line}: {'.'.join(keys)}"
+    assert place(["nowhere"]) == f"{path}: nowhere"
+
+
+def test_units_are_mixed_only_where_the_scale_has_one(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(
+        '[beam]\nlength = "50 mm"\nflexural_rigidity = "2e-6 N m^2"\n'
+        '[profile]\nkind = "catenary"\na = 0.5\nc = -0.8\nscale = "5 cm"\n'
+    )
+    assert load_job(str(path)).case.beam.length == pytest.approx(0.05)
+    mixed = path.read_text().replace('scale = "5 cm"', "")
+    assert "line 6: profile.a = without a unit" in refused(tmp_path, mixed)
+
+
+@pytest.mark.parametrize("numbers", [{"segments": 2.5}, {"segments": True}, {"tolerance": "1e-8"}])
+def test_settings_in_python_are_held_to_the_same(numbers):
+    with pytest.raises(InputError, match="number between"):
+        Settings(**numbers)

@@ -1,0 +1,124 @@
+"""Files as rigs write them."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import SENSED, InputError, Readings, named_case, solve_sweep
+from compare import read_measured, read_sweeps
+
+FOOT = np.linspace(1, -1, 40)
+TABLE = pd.DataFrame(
+    np.c_[FOOT, np.sin(FOOT), np.cos(FOOT), FOOT**2], columns=["stage", "Fx", "Fy", "Mz"]
+)
+COLUMNS = [f"{name}={column}" for name, column in zip(SENSED, TABLE.columns, strict=True)]
+
+
+def assert_same(readings, table=TABLE):
+    found = readings.table[list(SENSED)].to_numpy()
+    np.testing.assert_allclose(found, table.to_numpy(), rtol=1e-15, atol=1e-15)
+
+
+@pytest.mark.parametrize("ending", ["\n", "\r\n"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
+@pytest.mark.parametrize(
+    ("separator", "decimal"), [(",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ","),
+                               ("   ", "."), ("  ", ",")],
+)  # fmt: skip
+def test_any_separator_decimal_mark_and_encoding(tmp_path, separator, decimal, encoding, ending):
+    lines = TABLE.to_csv(index=False, sep="|", decimal=decimal).replace("|", separator).split("\n")
+    text = ending.join(["# Prüfstand 3", "", *lines])
+    (tmp_path / "rig.txt").write_bytes(text.encode(encoding))
+    assert_same(read_measured(tmp_path / "rig.txt", columns=COLUMNS))
+
+
+def test_a_preamble_a_column_of_times_and_no_header(tmp_path):
+    path = tmp_path / "rig.csv"
+    body = TABLE.assign(time="12:00:01")[["time", *TABLE.columns]].to_csv(index=False, sep=";")
+    path.write_text(f"Program 7;;;;\nDate;2026-01-01;;;\nrate;100\n\n{body}")
+    assert_same(read_measured(path, columns=COLUMNS))
+    path.write_text(TABLE.to_csv(index=False, header=False))
+    columns = [f"{name}={i}" for i, name in enumerate(SENSED, 1)]
+    assert_same(read_measured(path, columns=columns))
+
+
+def test_tables_and_units():
+    columns = ["foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm"]
+    expected = TABLE * [1e-3, 1e-3, 1e-3, 1e-6]
+    assert_same(read_measured(TABLE, columns=columns), expected)
+    assert_same(read_measured(TABLE.to_dict("list"), columns=columns), expected)
+
+
+@pytest.mark.parametrize(
+    ("change", "columns", "said"),
+    [
+        ((1, 2, "ERR"), COLUMNS, "column Fy, line 3 of rig"),
+        ((1, 2, "ERR"), [*COLUMNS[:2], COLUMNS[1]], "the only one for force_x"),
+        (None, ["foot_x=stage:0 m"], "'0 m'"),
+        (None, ["foot_x=stag"], "one of stage, Fx, Fy, Mz"),
+        (None, ["foot=stage"], "NAME=COLUMN"),
+    ],
+)
+@pytest.mark.parametrize("decimal", [".", ","])
+def test_what_cannot_be_read_is_named(tmp_path, monkeypatch, change, columns, said, decimal):
+    monkeypatch.chdir(tmp_path)
+    table = TABLE.astype(object)
+    if change:
+        row, column, text = change
+        table.iloc[row, column] = text
+    table.to_csv("rig.csv", index=False, sep=";", decimal=decimal)
+    if decimal == "," and change:  # pandas writes objects with a point
+        text = (tmp_path / "rig.csv").read_text().replace(".", ",")
+        (tmp_path / "rig.csv").write_text(text)
+    with pytest.raises(InputError) as refused:
+        read_measured("rig.csv", columns=columns)
+    assert said in str(refused.value)
+
+
+def test_a_line_with_another_number_of_cells(tmp_path):
+    path = tmp_path / "rig.csv"
+    for line in ("1,2", "1,2,3,4,5"):
+        path.write_text(TABLE.to_csv(index=False) + line + "\n")
+        with pytest.raises(InputError, match=r"line 42 .* cells: must be 4"):
+            read_measured(path, columns=COLUMNS)
+
+
+def test_there_and_back_are_two_sweeps():
+    both = pd.concat([TABLE, TABLE[::-1]])
+    (left, one), (right, two) = read_sweeps(both, columns=COLUMNS)
+    assert (left, right) == ("left", "right")
+    assert one.values("foot_x")[0] == two.values("foot_x")[-1] == 1
+    assert len(read_measured(both, columns=COLUMNS, direction="right").table) == 39
+    with pytest.raises(InputError, match="one to the left, one to the right"):
+        read_measured(both, columns=COLUMNS)
+
+
+def test_rows_out_of_order_and_repeated_positions():
+    shuffled = read_measured(TABLE.sample(frac=1, random_state=1), columns=COLUMNS)
+    assert_same(shuffled)
+    assert shuffled.provenance["rows"]["out_of_order"] > 0
+    repeated = read_measured(TABLE.loc[np.repeat(TABLE.index, 3)], columns=COLUMNS)
+    assert_same(repeated)
+    assert repeated.provenance["rows"] == {"out_of_order": 0, "averaged": 80}
+    jitter = TABLE.assign(stage=FOOT + 0.03 * np.random.default_rng(0).standard_normal(40))
+    found = read_measured(jitter, columns=COLUMNS)
+    assert (np.diff(found.values("foot_x")) < 0).all()
+
+
+def test_what_an_engine_wrote_is_taken_as_it_is(tmp_path):
+    sweep = solve_sweep(named_case("parabola"))
+    for name in ("own.csv", "own.parquet"):
+        sweep.write(tmp_path / name)
+        found = read_measured(tmp_path / name)
+        pd.testing.assert_frame_equal(found.table, Readings.read(tmp_path / name).table)
+        assert found.provenance == sweep.provenance
+    sweep.table.to_csv(tmp_path / "bare.csv", index=False)
+    assert list(read_measured(tmp_path / "bare.csv").table["phase"]) == list(sweep.table["phase"])
+
+
+@pytest.mark.slow
+def test_a_million_rows(tmp_path):
+    foot = np.linspace(1, -1, 1_000_000)
+    path = tmp_path / "rig.csv"
+    pd.DataFrame({name: foot.round(7) for name in SENSED}).to_csv(path, index=False, sep=";")
+    assert len(read_measured(path).table) > 900_000
