@@ -27,7 +27,8 @@ def test_quantities(text, dimension, value):
 @pytest.mark.parametrize(
     "text",
     ["9**9**9 m", "m**9**9", "1 m**9**9", "((((1 m", "1 m)", '"""', "m", "5", "", "1 kg",
-     "1 parsnip", "1e999 m", "nan m", "1 m" + "*m" * 1000, "1 " + "(" * 50, "1 m;2", "1 m\n2", "2 2 m"],
+     "1 parsnip", "1e999 m", "nan m", "1 m" + "*m" * 1000, "1 " + "(" * 50,
+     "1 m;2", "1 m\n2", "2 2 m"],
 )  # fmt: skip
 def test_what_is_no_quantity_is_refused_at_once(text):
     with pytest.raises(InputError) as refused:
