@@ -48,11 +48,16 @@ def offences() -> list[str]:
     return found
 
 
+def room(line: str) -> str:
+    """The folder that a line is about."""
+    return str(Path(line.split(":")[0]).parent)
+
+
 if __name__ == "__main__":
     wanted = sys.argv[1] if len(sys.argv) > 1 else ""
     lines = [line for line in offences() if line.startswith(wanted)]
     print("\n".join(lines))
-    for where, count in sorted(Counter(str(Path(x.split(":")[0]).parent) for x in lines).items()):
+    for where, count in sorted(Counter(map(room, lines)).items()):
         print(f"{count:4d} {where}")
     print(f"{len(lines):4d} in all")
     sys.exit(bool(lines))
