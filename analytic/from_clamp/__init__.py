@@ -1,1 +1,1 @@
-"""What the clamp's force and moment tell: contact, deflected shape, sideways stiffness."""
+"""What the clamp's force and moment show: contact, deflected shape, sideways stiffness."""

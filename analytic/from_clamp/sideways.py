@@ -34,7 +34,7 @@ turns as a whole about the tangent at its clamp, like a pendulum. With X = int c
 
     Z/z = f sin(alpha)/X = -F_Ax/(xi - x0).
 
-So the clamp tells: a sweep is held in its plane as long as `force_x` has not changed its sign.
+So the clamp shows it: a sweep is held in its plane as long as `force_x` has not changed its sign.
 """
 
 import numpy as np

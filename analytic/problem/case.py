@@ -33,7 +33,7 @@ class Sweep:
     start, stop : float, optional
         First and last foot position [length]. By default from just before the first contact to
         just past the position from which the contour is out of reach: geometry only, so that no
-        engine is told the answer.
+        engine learns the answer from it.
     direction : str
         Where the foot moves to: ``"left"``, as in the paper, or ``"right"``. The vibrissa starts
         clear of the object and straight either way, so the two are different sweeps: what one

@@ -18,7 +18,18 @@ Place = Callable[[int], str]
 
 
 def row_number(row: int) -> str:
-    """Where a row of a table in memory stands, counted from 0."""
+    """Where a row of a table in memory stands.
+
+    Parameters
+    ----------
+    row : int
+        Its number, counted from 0.
+
+    Returns
+    -------
+    str
+        What an error calls it.
+    """
     return f"row {row}"
 
 

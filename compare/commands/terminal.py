@@ -247,14 +247,14 @@ def print_advice(advice: Followed) -> None:
     advice : Followed
         Advice, and what came of it.
     """
-    settings = advice.foretold.settings
+    settings = advice.predicted.settings
     mesh = f" of {settings.contour_points} points" if settings.obstacle == "mesh" else ""
     print_line(
         f"Cheapest for {advice.target:g}: {settings.beam} of {settings.segments} segments, "
         f"{settings.obstacle}{mesh}, contact stiffness {settings.contact_stiffness:.1e}."
     )
     for what, error, seconds in (
-        ("foretold", advice.foretold.error, advice.foretold.seconds_a_station),
+        ("predicted", advice.predicted.error, advice.predicted.seconds_a_station),
         ("measured", advice.error, advice.seconds_a_station),
     ):
         print_line(f"  {what}: {error:.1e} rms, {1e3 * seconds:.1f} ms a station")

@@ -13,6 +13,16 @@ from compare.read.toml import Place, TomlFile
 def read_tolerances(path: Path) -> Tolerances:
     """The ``[tolerances]`` table of a TOML file; other tables do not matter.
 
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    Tolerances
+        What the table leaves out has its default.
+
     Raises
     ------
     InputError
@@ -34,6 +44,11 @@ def tolerances_of(table: Mapping[str, Any], place: Place) -> Tolerances:
         or phase in tables of its name, ``[tolerances.force_x.tip]``.
     place : callable
         What an error calls a key.
+
+    Returns
+    -------
+    Tolerances
+        With the given limits and their reasons.
 
     Raises
     ------
@@ -81,5 +96,5 @@ def _limits(
             )
         number = value["limit"]
         if isinstance(number, bool) or not isinstance(number, int | float) or not number >= 0:
-            raise InputError(place([*here, "limit"]), repr(number), "0 or more", "mend it")
+            raise InputError(place([*here, "limit"]), repr(number), "0 or more", "correct it")
         yield (*keys, key), Limit(float(number), reason)

@@ -64,7 +64,13 @@ class Table(BaseModel):
 
     @classmethod
     def quantities(cls) -> set[str]:
-        """Keys that may have a unit."""
+        """Keys that may have a unit.
+
+        Returns
+        -------
+        set of str
+            Names of the fields with a dimension.
+        """
         return {
             name
             for name, field in cls.model_fields.items()
@@ -80,7 +86,13 @@ class BeamTable(Table):
     radius: Length | None = None
 
     def build(self) -> Beam:
-        """The vibrissa; its radius is by default the same share of its length as in `Beam()`."""
+        """The vibrissa; its radius is by default the same share of its length as in `Beam()`.
+
+        Returns
+        -------
+        Beam
+            In the units of the file, or SI.
+        """
         radius = Beam().radius * self.length if self.radius is None else self.radius
         return Beam(self.length, self.flexural_rigidity, radius)
 
@@ -92,7 +104,18 @@ class ProfileTable(Table):
     scale: Length = Field(default=1.0, gt=0)
 
     def build(self, folder: Path) -> Contour:  # files are in it, if there are any
-        """The contour; a file's path is relative to `folder`."""
+        """The contour.
+
+        Parameters
+        ----------
+        folder : Path
+            What the path of a mesh file is relative to.
+
+        Returns
+        -------
+        Contour
+            In the units of the file, or SI.
+        """
         numbers = self.model_dump(exclude={"kind", "scale"})
         return type(self).factory(**numbers).scaled(self.scale)
 
@@ -185,7 +208,13 @@ class SweepTable(Table):
     direction: Direction = Sweep().direction
 
     def build(self) -> Sweep:
-        """The sweep."""
+        """The sweep.
+
+        Returns
+        -------
+        Sweep
+            In the units of the file, or SI.
+        """
         return Sweep(self.stations, self.start, self.stop, self.direction)
 
 

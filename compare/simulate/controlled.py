@@ -82,14 +82,38 @@ def simulate_all(
 
 
 def sweep_alone(case: Case, settings: Settings) -> Readings:
-    """One MuJoCo sweep, in a process of its own."""
+    """One MuJoCo sweep, in a process of its own.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+    settings : Settings
+        The numerics.
+
+    Returns
+    -------
+    Readings
+        Of the sweep.
+    """
     from mujoco_models import simulate_sweep  # MuJoCo is imported only where it is used
 
     return simulate_sweep(case, settings)
 
 
 def has_primitive(case: Case) -> bool:
-    """Whether MuJoCo's smooth primitive can stand for the case's contour."""
+    """Whether MuJoCo's smooth primitive can stand for the case's contour.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+
+    Returns
+    -------
+    bool
+        False for a contour with corners.
+    """
     from mujoco_models.obstacles.primitive import Primitive
 
     leftward = case.mirrored() if case.sweep.direction == "right" else case

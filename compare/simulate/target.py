@@ -20,7 +20,7 @@ class Followed:
     ----------
     target : float
         The wanted error.
-    foretold : Advice
+    predicted : Advice
         The settings, and what was expected.
     error, seconds_a_station : float
         What was measured with them.
@@ -29,7 +29,7 @@ class Followed:
     """
 
     target: float
-    foretold: Advice
+    predicted: Advice
     error: float
     seconds_a_station: float
 
@@ -39,7 +39,13 @@ class Followed:
         return self.error <= self.target
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``budget.json`` holds."""
+        """What ``budget.json`` holds.
+
+        Returns
+        -------
+        dict
+            JSON can hold it.
+        """
         return {**asdict(self), "reached": self.reached}
 
 
@@ -57,6 +63,11 @@ def follow_advice(
     target : float
         Wanted error; see `advise`.
 
+    Returns
+    -------
+    Followed
+        What was predicted, and what was measured.
+
     Raises
     ------
     InputError
@@ -64,6 +75,8 @@ def follow_advice(
     """
     base = Settings(**runs["base"].provenance["settings"])
     coarser = sweep_alone(case, coarser_mesh(base))
-    foretold = advise(found, runs, coarser, target)
-    made = sweep_alone(case, foretold.settings)
-    return Followed(target, foretold, largest_rms(solve_sweep(case), made), seconds_a_station(made))
+    predicted = advise(found, runs, coarser, target)
+    made = sweep_alone(case, predicted.settings)
+    return Followed(
+        target, predicted, largest_rms(solve_sweep(case), made), seconds_a_station(made)
+    )

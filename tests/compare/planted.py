@@ -11,6 +11,7 @@ def planted(
     unexplained: float = 2e-5,
     closes: bool = True,
     suspects: tuple[Suspect, ...] = (),
+    undecided: bool = False,
 ) -> Budget:
     """One part of `size`, the others of next to nothing."""
     sizes = dict.fromkeys(PARTS, 1e-9) | {"extension": 0.0, "unexplained": unexplained}
@@ -27,5 +28,6 @@ def planted(
     checks = {"softness": dict.fromkeys(CLAMP_READINGS, 1e-9)}
     disagreement = dict.fromkeys(CLAMP_READINGS, size)
     return Budget(
-        parts, disagreement, by_phase, 2.0, closes, blame, suspects, 190, convergence, checks
-    )
+        parts, disagreement, by_phase, 2.0, closes, blame, suspects, 190, convergence, checks,
+        undecided,
+    )  # fmt: skip

@@ -117,7 +117,7 @@ def test_what_is_no_reading_is_an_error(given_, said):
 
 @pytest.mark.slow
 def test_a_million_rows():
-    """A rig's file at 10 kHz; observed 30 s and 1.5 GB in all on one core."""
+    """A rig's file at 10 kHz is compared, most of its rows."""
     rng = np.random.default_rng(0)
     exact = exact_sweep("parabola")
     x = np.linspace(*exact.values("foot_x")[[0, -1]], 1_000_000)

@@ -41,21 +41,59 @@ class Contour(ABC):
 
     @abstractmethod
     def at(self, t: Floats) -> ContourPoint:
-        """Points at contour parameters `t`, shape (n,) [length, rad]."""
+        """Points of the contour.
+
+        Parameters
+        ----------
+        t : array, any shape
+            Contour parameters, within `t_range`.
+
+        Returns
+        -------
+        ContourPoint
+            Arrays of the shape of `t` [length, rad].
+        """
 
     @abstractmethod
     def parameter(self, alpha: Floats) -> Floats:
-        """Contour parameter of the first point, from the left, with slope angle `alpha` [rad]."""
+        """Contour parameter of the first point, from the left, with a given slope angle.
+
+        Parameters
+        ----------
+        alpha : array, any shape
+            Slope angles from -pi/2 to pi/2 [rad].
+
+        Returns
+        -------
+        array, shape of `alpha`
+            Contour parameters.
+        """
 
     @abstractmethod
     def breaks(self) -> Floats:
-        """Parameters, ascending, at which the contour is not smooth."""
+        """Where the contour is not smooth.
+
+        Returns
+        -------
+        array, shape (n,)
+            Contour parameters, ascending.
+        """
 
     @abstractmethod
     def outline(self, begin: float, end: float, points: int) -> Floats:
-        """Vertices, shape (n, 2), of a polygon inscribed between parameters `begin` and `end`.
+        """A polygon inscribed in a part of the contour.
 
-        Exact where the contour is a polygon itself, else `points` in number [length].
+        Parameters
+        ----------
+        begin, end : float
+            Contour parameters of the part's ends.
+        points : int
+            How many vertices; a contour that is a polygon itself has its own.
+
+        Returns
+        -------
+        array, shape (n, 2)
+            Its vertices [length].
         """
 
     @abstractmethod
@@ -63,12 +101,39 @@ class Contour(ABC):
         """The parallel curve at distance `radius` below: what a centreline at that distance feels.
 
         Exact for a round tip and for tangential contact, since both touch at the same alpha.
+
+        Parameters
+        ----------
+        radius : float
+            The distance [length].
+
+        Returns
+        -------
+        Contour
+            The parallel curve.
         """
 
     @abstractmethod
     def scaled(self, factor: float) -> "Contour":
-        """The contour enlarged by `factor` about the origin, to change its unit of length."""
+        """The contour enlarged about the origin, to change its unit of length.
+
+        Parameters
+        ----------
+        factor : float
+            How many new units of length an old one has.
+
+        Returns
+        -------
+        Contour
+            In the new unit.
+        """
 
     @abstractmethod
     def mirrored(self) -> "Contour":
-        """The mirror image: x becomes -x, alpha becomes -alpha, left and right change places."""
+        """The mirror image: x becomes -x, alpha becomes -alpha, left and right change places.
+
+        Returns
+        -------
+        Contour
+            The mirror image.
+        """

@@ -82,6 +82,9 @@ def headline(found: Budget) -> str:
     rest = short(max(part.rms for part in found.parts["unexplained"].values()))
     if found.closes:
         remains = f"at most {rest} stays unexplained, and the budget closes"
+    elif found.undecided:
+        unsure = short(max(part.uncertainty for part in found.parts["unexplained"].values()))
+        remains = f"the budget is undecided: {rest} +- {unsure} stays unexplained"
     else:
         remains = f"{rest} stays unexplained, too much for the budget to close"
     return f"The largest part is {found.blame}; {remains}"

@@ -65,6 +65,7 @@ class BudgetFile(BaseModel):
     parts: dict[str, dict[str, _Part]]
     blame: str
     closes: bool
+    undecided: bool = False  # files of older versions do not say
     order: float
     suspects: list[_Suspect]
 

@@ -116,8 +116,11 @@ def _closure(runs: Sequence[RunRecord], named: Callable[[RunRecord], str]) -> st
         subject = "The budget closes" if len(runs) == 1 else "Every budget closes"
         return f"{subject}: at most {rest} is unexplained."
     if len(runs) == 1:
-        return f"The budget does not close: {rest} is unexplained."
-    which = "; ".join(named(run) for run in still_open)
+        how = "is undecided" if _budget(runs[0]).undecided else "does not close"
+        return f"The budget {how}: {rest} is unexplained."
+    which = "; ".join(
+        f"{named(run)}{': undecided' if _budget(run).undecided else ''}" for run in still_open
+    )
     count = f"{len(still_open)} of {len(runs)} budgets do not close ({which})"
     return f"{count}: up to {rest} is unexplained."
 

@@ -51,7 +51,7 @@ def test_every_sweep_certifies_itself(exact, case):
 @pytest.mark.parametrize(
     "column", ["force_x", "force_y", "moment_z", "contact_x", "contact_arc_length", "contact_angle"]
 )
-def test_a_wrong_answer_is_told(exact, column):
+def test_a_wrong_answer_is_found(exact, column):
     """One part in ten thousand off in any column: no station in contact passes."""
     table = exact.table.assign(**{column: exact.table[column] * (1 + 1e-4)})
     residuals = certify(Readings(table, exact.beam)).max(axis=1)

@@ -80,7 +80,7 @@ def test_uncertainty_grows_with_the_noise(exact):
 
 
 def test_readings_that_no_elastica_has():
-    """A moment too large for its force is told, not made up."""
+    """A moment too large for its force is reported, not hidden."""
     sweep = solve_sweep(named_case("parabola"))
     found = reconstruct(Readings(sweep.table.assign(moment_z=100.0), sweep.beam))
     touching = sweep.table["phase"] != "free"

@@ -58,7 +58,7 @@ def test_agrees_with_solve_contact(case, exact):
     assert (solved["phase"].to_numpy() == touching["phase"].to_numpy()).all()
     for column in ("foot_x", *CLAMP_READINGS, "contact_arc_length", "contact_x", "contact_y"):
         error = np.abs(solved[column].to_numpy() - touching[column].to_numpy()).max()
-        # Right after first contact the height hardly tells the force: 1e-16/(1 - eta).
+        # Right after first contact the height hardly determines the force: 1e-16/(1 - eta).
         assert error < 1e-12 * np.abs(touching[column]).max(), column
 
 

@@ -81,6 +81,6 @@ def test_mujoco_slips_off_there():
         contacts = model.contacts()
         out.append(float(contacts.normal[np.argmin(contacts.distance), 0]))
     # On the near side until there, and 4e-3 L farther, which 10 segments and 1,600 facets need not
-    # tell apart, on the other one.
+    # distinguish, on the other one.
     assert all(0.03 < slope < 0.1 for slope in out[:3])
     assert out[3] < -0.5

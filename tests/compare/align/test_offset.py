@@ -81,7 +81,7 @@ def test_a_model_that_differs(exact, simulated, planted):
     """MuJoCo's systematic difference looks like an offset of at most 1.8e-4 L, as observed.
 
     The interval covers that in four of the five cases: what of a model's difference is just like
-    an offset cannot be told from one.
+    an offset cannot be distinguished from one.
     """
     offset = found(exact, displaced(simulated, planted))
     assert offset.value == pytest.approx(planted, abs=2.5e-4)

@@ -196,7 +196,7 @@ def test_cases_are_listed(tmp_path):
 
 
 def test_reconstruction_of_a_rigs_file(tmp_path):
-    """Own column names, millimetres and millinewtons, and the vibrissa told apart."""
+    """Own column names, millimetres and millinewtons, and the vibrissa given by a file."""
     from analytic import Readings
 
     (tmp_path / "case.toml").write_text(UNITS)
@@ -260,7 +260,7 @@ def rig(tmp_path) -> Path:
 
 @pytest.mark.slow
 def test_compare_with_a_rig(rig):
-    """Own columns, units, an unknown offset, noise; without telling of the last two it fails."""
+    """Own columns, units, an unknown offset, noise; without stating the last two it fails."""
     words = ("compare", "analytic.parquet", "rig.csv", *RIG_COLUMNS, "--out", "out")
     done = vibrissa(*words, "--offset", "auto", "--noise", "0.003", cwd=rig)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -273,7 +273,7 @@ def test_compare_with_a_rig(rig):
     assert estimated.returncode == 0, estimated.stdout
     assert vibrissa(*words, "--offset", "0.002", "--noise", "0.003", cwd=rig).returncode == 0
     assert vibrissa(*words, "--noise", "0.003", cwd=rig).returncode == 1
-    # The other way round: the rig as the reference, whose vibrissa a file tells.
+    # The other way round: the rig as the reference, whose vibrissa a file states.
     columns = [word.replace("--column", "--reference-column") for word in RIG_COLUMNS]
     beam = ("--reference-beam", "case.toml")
     words = ("compare", "rig.csv", "analytic.parquet", *columns, *beam, "--out", "back")
@@ -302,7 +302,7 @@ def test_compare_refuses(rig, words, said):
     assert not (rig / "out").exists()
 
 
-def test_an_offset_that_nothing_tells_is_one_line(rig):
+def test_an_offset_that_nothing_determines_is_one_line(rig):
     lines = (rig / "rig.csv").read_text().splitlines()
     (rig / "rig.csv").write_text("\n".join(lines[:6]))
     words = ("compare", "analytic.parquet", "rig.csv", *RIG_COLUMNS, "--offset", "auto")

@@ -137,5 +137,5 @@ def test_the_message_names_the_cause_or_the_budgets():
     with pytest.raises(AssertionError, match="by its budget the largest part is facets"):
         assert_agreement(exact, stiff, budget=budget)
     coarse = simulated_sweep("catenary", Settings(segments=10))
-    with pytest.raises(AssertionError, match="the readings alone do not tell why"):
+    with pytest.raises(AssertionError, match="the readings alone do not show why"):
         assert_agreement(exact, coarse)

@@ -24,7 +24,7 @@ def test_a_planted_mistake_of_the_record_is_named(kind):
 
 @pytest.mark.slow
 def test_planted_mistakes_are_named():
-    """Ten seeds each; asked are 95 % right and at most 1 % wrong. Observed: see below."""
+    """Ten seeds each; asked are 95 % right and at most 1 % wrong."""
     table = confusion(range(10))
     known = [mistake.named is not None for mistake in MISTAKES.values()]
     assert table[known]["right"].sum() >= 0.95 * 10 * sum(known)

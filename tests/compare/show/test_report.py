@@ -146,6 +146,10 @@ def test_what_the_budget_says():
     assert "3.0e-4 stays unexplained, too much" in headline(
         planted("facets", unexplained=3e-4, closes=False)
     )
+    assert headline(planted(unexplained=3e-4, closes=False, undecided=True)) == (
+        "The largest part is discretisation; the budget is undecided: 3.0e-4 +- 3.0e-5 stays "
+        "unexplained"
+    )
 
 
 def test_the_budgets_picture_sorts_and_marks():
