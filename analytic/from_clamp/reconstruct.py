@@ -182,7 +182,7 @@ def _table(readings: Readings, contact: Contact, loaded: Booleans, phase: Floats
     x, y = _surface(contact, beam.radius / beam.length)
     measured = np.isfinite(_dimensionless(readings)).all(axis=0)
     too_long = contact.arc_length > _LONGEST
-    explained = np.isfinite(contact.arc_length) & ~too_long
+    explained = (contact.arc_length >= 0) & ~too_long
 
     def where_explained(values: Floats, unit: float) -> Floats:
         return np.where(explained, values * unit, np.nan)

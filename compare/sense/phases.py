@@ -10,6 +10,7 @@ from analytic.problem.arrays import Floats, Words
 from compare.sense.noise import reading_noise
 
 _SIGMAS = 5  # a force below so many standard deviations of its noise is none
+_BEYOND_TIP = -0.1  # what lies farther beyond the tip is not located
 _UNLOADED = 1e-9  # of EI/L^2: the same for noise-free readings
 
 
@@ -146,4 +147,7 @@ def _contacts(
 
 
 def _shortfall(contact: pd.DataFrame, length: float) -> Floats:
-    return 1 - contact["contact_arc_length"].to_numpy(dtype=float) / length
+    """NaN where no elastica has such readings; a contact beyond the tip is short by less than 0."""
+    found = 1 - contact["contact_arc_length"].to_numpy(dtype=float) / length
+    beyond = (contact["status"] == "longer than the vibrissa").to_numpy()
+    return np.where(beyond, _BEYOND_TIP, found)

@@ -1,6 +1,7 @@
 """What of the beam may touch, and the contacts that MuJoCo reports."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import mujoco
@@ -67,7 +68,7 @@ class Surface:
         edge_of[edges] = np.arange(len(edges))
         return cls(beads, np.array(sides, dtype=int), bead_of, side_of, edge_of, outward, radius)
 
-    @property
+    @cached_property
     def moves(self) -> Booleans:
         """Whether each geom is one of the beam's, shape (ngeom,)."""
         return (self.bead_of >= 0) | (self.side_of >= 0)

@@ -1,16 +1,12 @@
 """The command line as a user meets it."""
 
-import contextlib
-import io
 import json
-import sys
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from compare.commands.main import main
+from tests.compare.command import vibrissa
 
 CASE = """
 name = "small object"
@@ -39,29 +35,6 @@ scale = "5 cm"
 [sweep]
 stations = 30
 """
-
-
-@dataclass
-class Done:
-    returncode: int
-    stdout: str
-    stderr: str
-
-
-def vibrissa(*arguments, cwd) -> Done:
-    """The command in this process: a fresh one would take longer to import than to run."""
-    out, err = io.StringIO(), io.StringIO()
-    words = ["vibrissa", *map(str, arguments)]
-    with (
-        pytest.MonkeyPatch.context() as patch,
-        contextlib.redirect_stdout(out),
-        contextlib.redirect_stderr(err),
-    ):
-        patch.setattr(sys, "argv", words)
-        patch.chdir(cwd)
-        with pytest.raises(SystemExit) as ended:
-            main()
-    return Done(ended.value.code, out.getvalue(), err.getvalue())
 
 
 def test_run_writes_what_it_promises(tmp_path):
