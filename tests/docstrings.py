@@ -1,12 +1,13 @@
 """Public functions and methods whose docstring lacks something: ``python -m tests.docstrings``.
 
 Every public function and method of the three packages has a numpydoc docstring: all its
-parameters, each described, and what it returns. Exempt are properties, a method that a documented
-base class or protocol of the same package has too, pytest's hooks and the functions behind the
-commands, whose docstring is what ``--help`` shows.
+parameters, each described, arrays with their shape, and what it returns. Exempt are properties, a
+method that a documented base class or protocol of the same package has too, pytest's hooks and the
+functions behind the commands, whose docstring is what ``--help`` shows.
 """
 
 import inspect
+import re
 import sys
 from collections import Counter
 from collections.abc import Iterator
@@ -24,6 +25,8 @@ PACKAGES = ("analytic", "mujoco_models", "compare")
 # No docstring; parameters: undocumented, unknown, not described; nothing of what is returned or
 # yielded; no description of it.
 CHECKS = {"GL08", "PR01", "PR02", "PR07", "RT01", "RT03", "YD01"}
+# "x : array" or "array" as a whole line, where ", shape (n,)" or ", any shape" should follow.
+_SHAPELESS = re.compile(r"^ *(?:[\w, ]+ : )?array(?: of \w+)?(?:, optional)?$", re.M)
 
 
 def modules() -> Iterator[ModuleType]:
@@ -95,6 +98,8 @@ def offences() -> list[str]:
             lacking["RT01"] = (
                 "no Returns"  # a protocol's methods, too, which have no return in them
             )
+        if _SHAPELESS.search(found["docstring"]):
+            lacking["shape"] = "an array without its shape"
         if lacking:
             lines.append(f"{module}.{name}: {'; '.join(lacking.values())}")
     return sorted(set(lines))

@@ -49,10 +49,10 @@ def span(excess: Floats, alpha: Floats) -> Span:
 
     Parameters
     ----------
-    excess : array
+    excess : array, any shape
         w >= 0 [rad]; pi/2 - |alpha| is tangential contact (Phase B).
-    alpha : array
-        Slope angle of the contour at the contact [rad], same shape.
+    alpha : array, same shape
+        Slope angle of the contour at the contact [rad].
 
     Returns
     -------
@@ -69,15 +69,16 @@ def span_of_moment(C: Floats, alpha: Floats) -> Span:
 
     Parameters
     ----------
-    C : array
+    C : array, any shape
         Clamp moment over the root of the force, dimensionless.
-    alpha : array
-        Slope angle of the contour at the contact [rad], same shape.
+    alpha : array, same shape
+        Slope angle of the contour at the contact [rad].
 
     Returns
     -------
     Span
-        NaN where the moment is too large for the force: k^2 = sin^2(alpha/2) + C^2/4 exceeds 1.
+        Of the same shape; NaN where the moment is too large for the force: k^2 =
+        sin^2(alpha/2) + C^2/4 exceeds 1.
     """
     k = np.hypot(np.sin(alpha / 2), C / 2)
     with np.errstate(invalid="ignore"):
@@ -97,13 +98,13 @@ def least_rotation(alpha: Floats) -> Floats:
 
     Parameters
     ----------
-    alpha : array
+    alpha : array, any shape
         Slope angle of the contour at the contact [rad].
 
     Returns
     -------
-    array
-        The least rotation of the span's end [rad], same shape.
+    array, same shape
+        The least rotation of the span's end [rad].
     """
     return np.maximum(0.0, -2 * alpha)
 
@@ -115,8 +116,8 @@ def frame(span: Span, alpha: Floats) -> Frame:
     ----------
     span : Span
         Its integrals, or their derivatives at fixed `alpha`.
-    alpha : array
-        Slope angle of the contour at the contact [rad], same shape.
+    alpha : array, same shape
+        Slope angle of the contour at the contact [rad].
 
     Returns
     -------
@@ -136,10 +137,10 @@ def span_by_excess(span: Span, excess: Floats, alpha: Floats) -> Span:
     ----------
     span : Span
         The integrals.
-    excess : array
-        Excess rotation of the span's end [rad], same shape.
-    alpha : array
-        Slope angle of the contour at the contact [rad], same shape.
+    excess : array, same shape
+        Excess rotation of the span's end [rad].
+    alpha : array, same shape
+        Slope angle of the contour at the contact [rad].
 
     Returns
     -------
@@ -167,8 +168,8 @@ def span_by_alpha(span: Span, by_excess: Span, alpha: Floats) -> Span:
     ----------
     span, by_excess : Span
         The integrals, and their derivatives with respect to the excess rotation.
-    alpha : array
-        Slope angle of the contour at the contact [rad], same shape.
+    alpha : array, same shape
+        Slope angle of the contour at the contact [rad].
 
     Returns
     -------

@@ -69,8 +69,8 @@ def middles(grid: Floats, chosen: Booleans) -> Floats:
 
     Returns
     -------
-    array
-        As many as there are between two numbers.
+    array, shape (m,)
+        Those that lie between two numbers; m is at most how many cells are chosen.
     """
     middle = grid[1:] + (grid[:-1] - grid[1:]) / 2
     return np.asarray(middle[chosen & (middle > grid[1:]) & (middle < grid[:-1])])

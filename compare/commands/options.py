@@ -136,7 +136,7 @@ class Changes:
 
 
 def number_or_auto(option: str, text: str) -> float | Literal["auto"]:
-    """What an option says that takes a number or the word auto.
+    """The value of an option that takes a number or the word auto.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ from compare.commands.output import output_folder
 
 def compare(
     reference: Annotated[Path, typer.Argument(help="Readings, Parquet or CSV.")],
-    candidate: Annotated[Path, typer.Argument(help="Readings to hold against them.")],
+    candidate: Annotated[Path, typer.Argument(help="Readings to compare with them.")],
     out: OutFolder = None,
     column: Columns = None,
     beam: BeamFile = None,
@@ -125,7 +125,7 @@ def side_by_side(
     reference: Annotated[
         str, typer.Argument(help="A case, for its closed form, or a file of readings.")
     ],
-    files: Annotated[list[Path], typer.Argument(help="Readings to hold against it.")],
+    files: Annotated[list[Path], typer.Argument(help="Readings to compare with it.")],
     out: OutFolder = None,
 ) -> int:
     """Compare many files of readings with one reference."""

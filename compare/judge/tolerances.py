@@ -55,7 +55,7 @@ class Tolerances:
     max : float
         The same at any one station.
     snap_off_window : float
-        Stretch before snap-off, of the sweep's length, where neither is asked.
+        Stretch before snap-off, of the sweep's length, where neither applies.
     phase_agreement : float
         Share of stations whose phase, judged from the clamp, is the true contact's.
     transition, snap_off : float

@@ -107,7 +107,7 @@ _REMEDIES = {
     "facets": "more points of the mesh's contour lower",
     "softness": "a stiffer contact lowers in proportion",
     "unrest": "a smaller tolerance of rest lowers",
-    "sensor": "is the sensors' own: hold them against the sum of the contacts",
+    "sensor": "is the sensors' own: compare them with the sum of the contacts",
     "extension": "a beam that cannot be stretched would not have",
 }
 _NUMBERS = ("none", "one", "two", "three", "four", "five", "six")

@@ -1,4 +1,4 @@
-"""Worker processes on this machine: they start or it is said why not, and end with their leader."""
+"""Worker processes: they start, or an error says why not, and end with their leader."""
 
 import os
 import signal

@@ -53,7 +53,7 @@ class Scene:
 
         Parameters
         ----------
-        stations : array of int
+        stations : array of int, shape (n,)
             Of the reference.
         advance : callable
             Called after every picture.

@@ -30,7 +30,7 @@ def with_fold(readings: Readings, phase: Words, x: Floats, y: Floats) -> tuple[F
 
     Returns
     -------
-    x, y : array
+    x, y : array, shape (points,)
         The curve, in sweep order.
     """
     if readings.snap_off is None:

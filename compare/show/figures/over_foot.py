@@ -100,12 +100,12 @@ def on_vibrissa(s: Floats) -> Floats:
 
     Parameters
     ----------
-    s : array
+    s : array, any shape
         Arc lengths [L].
 
     Returns
     -------
-    array
+    array, same shape
         NaN where there is no contact to draw.
     """
     return np.where((s > 0) & (s < _BEYOND_TIP), s, np.nan)

@@ -54,7 +54,7 @@ def envelope(y: Floats) -> Integers:
 
     Returns
     -------
-    array of int
+    array of int, shape (kept,)
         Their indices, ascending: all of them, if they are few.
     """
     if len(y) <= _FEW:
@@ -77,7 +77,7 @@ def cloud(x: Floats, y: Floats) -> Integers:
 
     Returns
     -------
-    array of int
+    array of int, shape (kept,)
         Their indices, ascending: all finite ones, if they are few.
     """
     finite = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
@@ -101,9 +101,9 @@ def stretches(phase: Words) -> tuple[Integers, Integers, Words]:
 
     Returns
     -------
-    begin, end : array of int
+    begin, end : array of int, shape (stretches,)
         First and last station of each.
-    name : array of str
+    name : array of str, shape (stretches,)
         Its phase. Where noise makes phases alternate too often to be seen, the prevailing one.
     """
     begin, end = _runs(phase)

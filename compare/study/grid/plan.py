@@ -138,6 +138,11 @@ class Plan:
         -------
         dict
             Values by dotted key.
+
+        Raises
+        ------
+        IndexError
+            If there is no such run.
         """
         if not 0 <= index < len(self):
             raise IndexError(index)

@@ -112,7 +112,7 @@ def test_measured_readings_without_budget_or_provenance():
         (planted("facets"), "the largest part is facets (1.0e-3), which more points of the mesh"),
         (planted("softness"), "which a stiffer contact lowers in proportion."),
         (planted("unrest"), "a smaller tolerance of rest"),
-        (planted("sensor"), "hold them against the sum of the contacts"),
+        (planted("sensor"), "compare them with the sum of the contacts"),
         (planted("extension"), "a beam that cannot be stretched"),
         (planted("unexplained", closes=False), "neither the numerics nor a known fault"),
         (
