@@ -110,7 +110,8 @@ def demand(comparison: Comparison, budget: Budget | None = None) -> None:
 
 def _cause(comparison: Comparison, budget: Budget | None) -> str:
     if budget is not None:
-        return f"by its budget the largest part is {budget.blame}"
+        doubt = ", but the budget is undecided" if budget.undecided else ""
+        return f"by its budget the largest part is {budget.blame}{doubt}"
     if comparison.likely is not None:
         return f"likely: {comparison.likely}"
     return (

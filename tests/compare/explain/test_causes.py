@@ -136,6 +136,9 @@ def test_the_message_names_the_cause_or_the_budgets():
     object.__setattr__(budget, "blame", "facets")
     with pytest.raises(AssertionError, match="by its budget the largest part is facets"):
         assert_agreement(exact, stiff, budget=budget)
+    object.__setattr__(budget, "undecided", True)
+    with pytest.raises(AssertionError, match="is facets, but the budget is undecided"):
+        assert_agreement(exact, stiff, budget=budget)
     coarse = simulated_sweep("catenary", Settings(segments=10))
     with pytest.raises(AssertionError, match="the readings alone do not show why"):
         assert_agreement(exact, coarse)
