@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from html import escape
 from typing import TYPE_CHECKING, Any, Literal
-
-import numpy as np
 
 from analytic import PHASES, InputError, Readings
 from compare.explain.likely import likely_cause
@@ -73,30 +72,35 @@ class Comparison(Measurement):
             Lengths in the beam's unit, the rest relative; JSON can hold it.
         """
         agreement = self.phase_agreement()
-        return {
-            "verdict": "agrees" if self.agrees else "disagrees",
-            "failures": list(self.failures),
-            "likely": self.likely,
-            "offset": asdict(self.offset),
-            "noise": asdict(self.noise),
-            "disagreement": {name: _plain(asdict(d)) for name, d in self.disagreement.items()},
-            "phases": {
-                "agreement": min(agreement.values()) if agreement else None,
-                "agreement_by_sweep": agreement,
-                "confusion": {
-                    which: {"phases": list(PHASES), "counts": table.to_numpy().tolist()}
-                    for which, table in self.confusion.items()
+        found: dict[str, Any] = _plain(
+            {
+                "verdict": "agrees" if self.agrees else "disagrees",
+                "failures": list(self.failures),
+                "likely": self.likely,
+                "offset": asdict(self.offset),
+                "noise": asdict(self.noise),
+                "disagreement": {name: asdict(d) for name, d in self.disagreement.items()},
+                "phases": {
+                    "agreement": min(agreement.values()) if agreement else None,
+                    "agreement_by_sweep": agreement,
+                    "confusion": {
+                        which: {"phases": list(PHASES), "counts": table.to_numpy().tolist()}
+                        for which, table in self.confusion.items()
+                    },
+                    "transitions": {
+                        name: event.to_dict() for name, event in self.transitions.items()
+                    },
                 },
-                "transitions": {name: event.to_dict() for name, event in self.transitions.items()},
-            },
-            "snap_off": self.snap_off.to_dict(),
-            "stations": self.alignment.counts,
-            "records": {which: record.to_dict() for which, record in self.records.items()},
-            "tolerances": {name: float(x) for name, x in self.tolerances.limits().items()},
-            "tolerance_reasons": {n: x.reason for n, x in self.tolerances.limits().items()},
-            "reference": _origin(self.reference),
-            "candidate": _origin(self.candidate),
-        }
+                "snap_off": self.snap_off.to_dict(),
+                "stations": self.alignment.counts,
+                "records": {which: record.to_dict() for which, record in self.records.items()},
+                "tolerances": {name: float(x) for name, x in self.tolerances.limits().items()},
+                "tolerance_reasons": {n: x.reason for n, x in self.tolerances.limits().items()},
+                "reference": _origin(self.reference),
+                "candidate": _origin(self.candidate),
+            }
+        )
+        return found
 
     def plot(self) -> Figure:
         """The readings of both sweeps over the foot position, and their differences.
@@ -200,9 +204,13 @@ def compare(
     )
 
 
-def _plain(value: dict[str, Any]) -> dict[str, Any]:
-    """JSON has no NaN."""
-    return {k: None if isinstance(v, float) and np.isnan(v) else v for k, v in value.items()}
+def _plain(value: Any) -> Any:  # noqa: ANN401  # whatever JSON can hold
+    """JSON has neither NaN nor infinity: None stands for both."""
+    if isinstance(value, Mapping):
+        return {key: _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _origin(readings: Readings) -> dict[str, Any]:

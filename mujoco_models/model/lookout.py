@@ -179,6 +179,7 @@ class Lookout:
         Returns
         -------
         bool
+            False if the obstacle has none.
         """
         if len(self._obstacle.corners) == 0:
             return False

@@ -32,6 +32,7 @@ def stance(model: BeamModel) -> Stance:
     Returns
     -------
     Stance
+        By the sides of the links that are loaded, or by where the object's lowest point is.
     """
     contacts = model.contacts()
     tip = model.bead_positions(np.array([len(model.layout.beads) - 1]))

@@ -143,6 +143,7 @@ class Obstacle(ABC):
         Returns
         -------
         bool
+            Touching it from outside does not count.
         """
         raise TypeError(f"{type(self).__name__} has no corners")
 
