@@ -21,8 +21,8 @@ _MOST_VERTICES = 50_000  # the hull of a round body takes MuJoCo half a second t
 _SAME_PLACE = 1e-7  # L
 _SPECK_OF_EDGE = 1e-5  # L
 # L; a bead of radius r touches a side that is tilted by t as if the section were larger by
-# r (1/cos(t) - 1). That moves a reading by about twice its share of the height: 2e-3 at 0.5 L.
-_LARGEST_SHIFT = 5e-4
+# r (1/cos(t) - 1). So much is well below what segments and beads leave (1e-3 of a reading).
+_LARGEST_SHIFT = 1e-4
 _SPECK = 0.1  # of the depth at which it lies in the mesh
 
 
