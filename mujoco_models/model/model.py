@@ -21,7 +21,6 @@ _BAD_STATES = (
     mujoco.mjtWarning.mjWARN_BADQACC,
 )
 _FULL = (mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL)
-_MANY = 16  # contacts that cost as much as all the rest of an evaluation
 _IMPEDANCE = 0.9  # MuJoCo's d; with the stiffness set below it cancels out of the law at rest
 
 
@@ -49,8 +48,6 @@ class BeamModel:
         The beads' geoms.
     evaluations : int
         How often `imbalance` was called.
-    effort : float
-        The same, each call weighed by what the solution for its contacts costs.
     """
 
     def __init__(
@@ -62,7 +59,6 @@ class BeamModel:
         self.obstacle = obstacle
         self.contact_stiffness = contact_stiffness
         self.evaluations = 0
-        self.effort = 0.0
         self.model = assemble(beam, radius, obstacle).compile()
         self.data = mujoco.MjData(self.model)
         model = self.model
@@ -116,7 +112,6 @@ class BeamModel:
         self.beam.place(self.data, angles)
         self.evaluate()
         self.evaluations += 1
-        self.effort += 1 + (self.data.ncon / _MANY) ** 2
         if any(self.data.warning[full].number for full in _FULL):
             raise MemoryError(f"MuJoCo's own memory does not hold all of {self.data.ncon} contacts")
         moments = self.beam.moments(self.moments())

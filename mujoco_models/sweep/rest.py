@@ -1,4 +1,4 @@
-"""Coming to rest: Newton's method on MuJoCo's own balance of moments.
+"""Coming to rest, and falling where there is no rest nearby.
 
 A station is settled when MuJoCo's springs and contacts, and nothing else, hold the beam to a
 tolerance; how it got there does not matter, and time stepping to the same balance takes hundreds
@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
 from mujoco_models.model.model import BeamModel
 from mujoco_models.sweep.newton import Newton
 from mujoco_models.sweep.numerics import Numerics
@@ -41,8 +40,8 @@ def relax(
     """
     lookout, obstacle = model.lookout, model.obstacle
     newton = Newton(model, numerics)
-    state = best = State(start.angles, start.forces)
-    lookout.watch(around(model, state.forces, numerics.ahead) or one_bead_a_link(model))
+    state = best = start
+    lookout.watch(_around(model, state.forces, numerics.ahead) or _one_bead_a_link(model))
     if state.forces:
         lookout.anticipate_window()
     for _ in range(numerics.iterations):
@@ -67,66 +66,54 @@ def relax(
                 continue
             if loaded.size:
                 lookout.leave_trail(float(loaded.mean()))
-            slope = float(slopes.mean()) if slopes.size else None
-            return replace(state, settled=True, slope=slope)
+            return replace(state, settled=True)
         state = newton.step(state, contacts)
-        if not around(model, state.forces, numerics.margin) <= lookout.watched:
-            lookout.watch(lookout.watched | around(model, state.forces, numerics.ahead))
+        if not _around(model, state.forces, numerics.margin) <= lookout.watched:
+            lookout.watch(lookout.watched | _around(model, state.forces, numerics.ahead))
     model.imbalance(foot_x, best.angles)  # leaves the readings with the state that is returned
     return best
 
 
-def refine(
-    model: BeamModel, foot_x: float, start: State, tolerance: float, numerics: Numerics
-) -> State:
-    """Bring the beam to rest from a state that nearly is, by MuJoCo's own derivative alone.
+def fall(model: BeamModel, foot_x: float, start: State, numerics: Numerics) -> State:
+    """Where the beam ends, without momentum, with the foot at `foot_x`; not yet at rest.
 
-    Plain Newton steps with the differences of MuJoCo's moments: what `relax` knows of beam and
-    contact takes no part in them, only in checking the state that they lead to.
-
-    Parameters
-    ----------
-    model, foot_x, start, tolerance, numerics
-        As for `relax`.
-
-    Returns
-    -------
-    State
-        Not settled if these steps do not get there.
-    """
-    angles, count = start.angles, len(start.angles)
-    for _ in range(numerics.refinements):
-        residual = model.imbalance(foot_x, angles)
-        if np.abs(residual).max() < tolerance:
-            break
-        derivative = np.empty((count, count))
-        for i, turn in enumerate(numerics.difference * np.eye(count)):
-            derivative[:, i] = (
-                model.imbalance(foot_x, angles + turn) - residual
-            ) / numerics.difference
-        step: Floats = np.asarray(np.linalg.lstsq(derivative, -residual)[0], dtype=float)
-        turn = turned(step, np.zeros(count))
-        angles = angles + step * min(1.0, numerics.largest_turn / max(turn, 1e-300))
-    return relax(model, foot_x, State(angles, start.forces), tolerance, numerics)
-
-
-def around(model: BeamModel, loaded: dict[int, float], reach: int) -> frozenset[int]:
-    """The loaded beads, and as many on either side; all past corners, where they are few.
+    Decides what Newton's method cannot: whether a vibrissa without a neighbouring equilibrium has
+    let go. It goes down MuJoCo's own balance in steps as short as an inertia of a hundred times the
+    stiffness makes them, until it has clearly left; ten times coarser, it lets go too early.
 
     Parameters
     ----------
     model : BeamModel
-        Whose beads they are.
-    loaded : dict
-        Contact force by bead.
-    reach : int
-        How many on either side.
+        The beam and the obstacle.
+    foot_x : float
+        Foot position [L].
+    start : State
+        The last state at rest.
+    numerics : Numerics
+        Constants of the way down.
 
     Returns
     -------
-    frozenset of int
-        Their numbers.
+    State
+        Without forces if the beam has left `start`.
     """
+    model.lookout.watch(_around(model, start.forces, numerics.fall_reach) | _one_bead_a_link(model))
+    newton = Newton(model, numerics)
+    state, inertia = start, numerics.fall_inertia
+    for _ in range(numerics.fall_steps):
+        model.imbalance(foot_x, state.angles)
+        after = newton.step(state, model.contacts(), inertia)
+        if turned(after.angles, state.angles) < numerics.fallen:
+            break
+        if turned(after.angles, start.angles) > numerics.branch_turn:
+            inertia = numerics.far_inertia
+        state = after
+    left = turned(state.angles, start.angles) > numerics.branch_turn
+    return State(state.angles, {} if left else start.forces)
+
+
+def _around(model: BeamModel, loaded: dict[int, float], reach: int) -> frozenset[int]:
+    """The loaded beads and as many on either side; all past corners, where they are few."""
     count = len(model.layout.beads)
     if len(model.obstacle.corners):
         return frozenset(range(count) if loaded else ())
@@ -135,18 +122,7 @@ def around(model: BeamModel, loaded: dict[int, float], reach: int) -> frozenset[
     )
 
 
-def one_bead_a_link(model: BeamModel) -> frozenset[int]:
-    """The last bead of each link: they see a contact coming long before it is loaded.
-
-    Parameters
-    ----------
-    model : BeamModel
-        Whose beads they are.
-
-    Returns
-    -------
-    frozenset of int
-        Their numbers.
-    """
+def _one_bead_a_link(model: BeamModel) -> frozenset[int]:
+    """They see a contact coming long before it is loaded."""
     links = model.layout.links
     return frozenset(np.flatnonzero(np.diff(links, append=links[-1] + 1)).tolist())

@@ -5,13 +5,12 @@ too. At every station MuJoCo's own forces show whether the beam would return to 
 would not, it is nudged, and MuJoCo's own motion carries it to wherever it comes to rest.
 """
 
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
 from mujoco_models.model.model import AT_REST, LONG_STEP, STEP, BeamModel
-from mujoco_models.model.stance import Stance, stance
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.sideways import Sideways, sideways
 from mujoco_models.sweep.state import State, turned
@@ -26,9 +25,6 @@ _TRIAL = 25  # steps of MuJoCo's motion, for the beam to settle into its mode, t
 _STEPS = 20_000  # of that motion at one station; a beam still on its way then goes on at the next
 _LAST_STEPS = 300  # short ones, since contacts are softer in long steps than they are at rest
 _IN_PLANE = 1e-5  # L; a nudged beam that is nearer than this has come back to the plane
-
-
-_Held: TypeAlias = tuple[float, State, Stance]
 
 
 class _Departure(NamedTuple):
@@ -66,7 +62,7 @@ class SpatialWalk(Walk):
         if self._departure is not None:
             self._drift(target, self._departure)
             return
-        start = self._foot_x, self._state, self._stance
+        start = self._foot_x, self._state
         if self._is_held_at(target):
             return
         onset = self._locate(start, target)
@@ -97,21 +93,21 @@ class SpatialWalk(Walk):
 
     def _look(self) -> None:
         """See how stiffly the beam is held in the plane, if it touches and rests there."""
-        resting = self._shown.settled and bool(self._shown.forces)
+        resting = self._state.settled and bool(self._state.forces)
         self._held = sideways(self.model) if resting else None
 
-    def _resume(self, start: _Held) -> None:
-        self._foot_x, self._state, self._stance = start
+    def _resume(self, start: tuple[float, State]) -> None:
+        self._foot_x, self._state = start
         self._before = None
 
-    def _locate(self, start: _Held, target: float) -> float:
+    def _locate(self, start: tuple[float, State], target: float) -> float:
         """Where, between a station that is held in the plane and one that is not, that changes."""
         held, lost = start, target
         while abs(held[0] - lost) > _ONSET:
             self._resume(held)
             middle = (held[0] + lost) / 2
             if self._is_held_at(middle):
-                held = self._foot_x, self._state, self._stance
+                held = self._foot_x, self._state
             else:
                 lost = middle
         return (held[0] + lost) / 2
@@ -158,10 +154,7 @@ class SpatialWalk(Walk):
             self._departure = departure
         else:
             self._state = self._relax(target, State(angles, {}))
-            self._shown, self._stance = self._state, stance(self.model)
             self._look()
             self._departure = None
             if turned(angles, departure.angles) > self._numerics.branch_turn:
                 self.snap_off = departure.foot_x
-        self._shown = self._state
-        self.doubt = None if self._state.settled else "on its way out of the plane"

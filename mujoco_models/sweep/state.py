@@ -21,15 +21,12 @@ class State:
         Largest moment out of balance at any joint [EI/L].
     settled : bool
         Whether that is below the tolerance, with the whole beam looking at the obstacle.
-    slope : float or None
-        Slope angle of the contour at the contact, once settled, if there is one [rad].
     """
 
     angles: Floats
     forces: dict[int, float]
     imbalance: float = np.inf
     settled: bool = False
-    slope: float | None = None
 
     @classmethod
     def straight(cls, joints: int) -> "State":

@@ -1,16 +1,13 @@
 """From station to station at rest, and the snap-off found by smaller and smaller steps."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from mujoco_models.errors import ClampError
 from mujoco_models.model.model import BeamModel
-from mujoco_models.model.stance import Stance, stance
 from mujoco_models.sweep.numerics import Numerics
-from mujoco_models.sweep.release import descend
-from mujoco_models.sweep.rest import refine, relax
+from mujoco_models.sweep.rest import fall, relax
 from mujoco_models.sweep.state import State, turned
 
 _AT_TIP = 1e-9  # L
@@ -18,25 +15,23 @@ _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
 
 
 class Walk:
-    """The beam on its way: the last state on the branch, and the one before it.
+    """The beam on its way: the last state at rest, and the one before it to extrapolate from.
 
     Parameters
     ----------
     model : BeamModel
         The beam and the obstacle.
     foot_x : float
-        Where the foot of the straight beam starts, clear of the object [L].
+        Where the foot of the straight beam starts [L].
     tolerance : float
         Largest moment out of balance at rest [EI/L].
-    numerics : Numerics, optional
+    numerics : Numerics
         Constants of the way.
 
     Attributes
     ----------
     snap_off : float or None
         Where the last contact was let go [L].
-    doubt : str or None
-        Why the station where the beam is cannot be trusted.
     """
 
     def __init__(
@@ -47,13 +42,8 @@ class Walk:
         self._numerics = numerics or Numerics()
         self._foot_x = foot_x
         self._state = State.straight(len(model.layout.joints))
-        self._stance = Stance.AHEAD
         self._before: tuple[float, State] | None = None
-        self._shown = self._state
-        self._budget = self._numerics.budget
-        self._lost: str | None = None
         self.snap_off: float | None = None
-        self.doubt: str | None = None
 
     @property
     def events(self) -> dict[str, float | None]:
@@ -63,98 +53,37 @@ class Walk:
     def go_to(self, target: float) -> None:
         """Follow the branch of equilibria, in smaller steps where it takes them.
 
-        Where even the smallest step leaves the branch, a descent on MuJoCo's balance decides
-        whether the vibrissa has snapped off. A station that is not reached so is unsettled, and
-        the next one is tried from the last state on the branch.
+        Where even the smallest step leaves the branch, MuJoCo's own gentle motion decides: if it
+        goes far, the vibrissa has snapped off; if it stays, the station did not settle.
 
         Parameters
         ----------
         target : float
             Foot position of the next station [L].
         """
-        limit = self.model.effort + self._budget
-        self.doubt = self._advance(target, limit)
-        if self.doubt is None:
-            self._budget = min(2 * self._budget, self._numerics.budget)
-            self._shown = self._state
-            self.doubt = self._lost
-        else:
-            self._budget = max(self._budget // 2, self._numerics.least_budget)
-            # The readings are those of the nearest that there is to a state at rest.
-            self._shown = replace(self._relax(target, self._guess(target)), settled=False)
-
-    def _advance(self, target: float, limit: float) -> str | None:
-        """Go to `target`; why not, if that is not possible."""
-        numerics = self._numerics
         step = target - self._foot_x
         while True:
             trial = target if abs(step) >= abs(target - self._foot_x) else self._foot_x + step
             state = self._relax(trial, self._guess(trial))
             if self._follows(state):
-                self._accept(trial, state)
+                if trial != self._foot_x:
+                    self._before = (self._foot_x, self._state)
+                self._foot_x, self._state = trial, state
                 if trial == target:
-                    return None
+                    return
                 step *= 2
-            elif abs(trial - self._foot_x) > numerics.smallest_step:
+            elif abs(trial - self._foot_x) > self._numerics.smallest_step:
                 step = (trial - self._foot_x) / 2
-            elif self._stance is not Stance.NEAR:
-                if state.settled and stance(self.model) is Stance.PASSED:
-                    return self._lose("the object was passed without a contact")
-                return "no state at rest was found near the last one"
             else:
-                where = (self._foot_x + trial) / 2
-                ahead = target - self._foot_x
-                step = np.copysign(min(abs(ahead), numerics.confirm_step), ahead)
-                held = self._held_at(self._foot_x + step, limit)
-                if held is None:
-                    return self._let_go(where, target)
-                if not self._follows(held):
-                    return "no state at rest was found near the last one, and no snap-off"
-                self._accept(self._foot_x + step, held)
-                if self._foot_x == target:
-                    return None
-            if self.model.effort > limit:
-                return f"not at rest after {self._budget} evaluations"
+                self._let_go((self._foot_x + trial) / 2, target)
+                return
 
-    def _held_at(self, foot_x: float, limit: float) -> State | None:
-        """Where the beam comes to rest beyond the last state; None if it lets go.
-
-        By MuJoCo's own derivative, which is enough if it was the solver's that failed; else it
-        descends.
-        """
-        state = self._state
-        rest = refine(self.model, foot_x, state, self._tolerance, self._numerics)
-        if self._follows(rest):
-            return rest
-        while True:
-            state = descend(self.model, foot_x, state, self._numerics)
-            if not state.forces:
-                return None
-            rest = refine(self.model, foot_x, state, self._tolerance, self._numerics)
-            if rest.settled or self.model.effort > limit:
-                return rest
-
-    def _let_go(self, where: float, target: float) -> str | None:
-        """Go on as the beam that was carried off."""
-        free = self._relax(target, State.straight(len(self._state.angles)))
-        self._foot_x, self._state, self._before = target, free, None
-        self._stance = stance(self.model)
-        if not free.settled:
-            return "not at rest after a snap-off"
-        if self._stance is not Stance.PASSED:
-            return self._lose("the contact was let go, and the object is not behind")
-        self.snap_off = where
-        return None
-
-    def _lose(self, reason: str) -> str:
-        """No later station can be trusted."""
-        self._lost = reason
-        return reason
-
-    def _accept(self, foot_x: float, state: State) -> None:
-        if foot_x != self._foot_x:
-            self._before = (self._foot_x, self._state)
-        self._foot_x, self._state, self._stance = foot_x, state, stance(self.model)
+    def _let_go(self, where: float, target: float) -> None:
+        fallen = fall(self.model, target, self._state, self._numerics)
+        if not fallen.forces:
+            self.snap_off = where
+        self._state = self._relax(target, fallen)
+        self._foot_x, self._before = target, None
 
     def _relax(self, foot_x: float, start: State) -> State:
         return relax(self.model, foot_x, start, self._tolerance, self._numerics)
@@ -174,23 +103,10 @@ class Walk:
         return State(state.angles + ahead * (state.angles - before.angles), forces)
 
     def _follows(self, state: State) -> bool:
-        """Whether `state`, in which the model is, is the neighbour of the last one."""
-        numerics, last = self._numerics, self._state
-        if not state.settled or turned(state.angles, last.angles) > numerics.branch_turn:
-            return False
-        now = stance(self.model)
-        if now is not self._stance:
-            faded = self._stance is Stance.FAR and last.load < numerics.load_held
-            return (self._stance, now) == (Stance.AHEAD, Stance.NEAR) or (
-                faded and now is Stance.PASSED
-            )
-        jumped = (
-            now is Stance.NEAR
-            and state.slope is not None
-            and last.slope is not None
-            and abs(state.slope - last.slope) > numerics.largest_shift
-        )
-        return not jumped
+        """Whether `state` is the neighbour of the last one on the branch."""
+        near = turned(state.angles, self._state.angles) < self._numerics.branch_turn
+        let_go = self._state.load > self._numerics.load_held and not state.forces
+        return state.settled and near and not let_go
 
     def row(self) -> dict[str, Any]:
         """The readings of the state that the beam is in.
@@ -206,7 +122,7 @@ class Walk:
             If the clamp's sensors differ from what holds the beam by more than its residual can
             explain.
         """
-        model, state = self.model, self._shown
+        model, state = self.model, self._state
         clamp = model.clamp()
         contacts = model.contacts()
         loaded = contacts.loaded
@@ -217,7 +133,7 @@ class Walk:
                 ("contact_angle", "contact_arc_length", "contact_x", "contact_y"), np.nan
             ),
             "tip_angle": np.pi / 2 + float(state.angles.sum()),
-            "status": "ok" if self.doubt is None else "unsettled",
+            "status": "ok" if state.settled else "unsettled",
             "residual": state.imbalance,
             "discrepancy": model.discrepancy(),
             "penetration": 0.0,
