@@ -90,7 +90,8 @@ def doubtful(t: Floats, value: Floats, rate: Floats) -> Booleans:
         Where the mean slope does not lie between those at the ends.
     """
     change, width = np.diff(value), np.diff(t)
-    mean = change / width
+    with np.errstate(over="ignore"):  # between points that differ by a rounding only
+        mean = change / width
     low, high = np.minimum(rate[1:], rate[:-1]), np.maximum(rate[1:], rate[:-1])
     slack = _TRUST * np.maximum(np.abs(low), np.abs(high))
     least = _FLAT * np.maximum(1, np.abs(value[1:]))

@@ -59,7 +59,7 @@ def study(
     from compare.study.work.perform import Recipe
 
     folder = out or Path("results") / plan.study.name
-    crew = dask_crew(scheduler) if scheduler else local_crew(cores)
+    crew = local_crew(cores) if scheduler is None else dask_crew(scheduler)
     counts: dict[str, int] = {}
     with Store(folder, plan, _warn) as store:
         done = store.done()

@@ -62,6 +62,8 @@ def dask_crew(address: str) -> Crew:
     for name in _CHATTY:
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
+        if not address:  # Dask would start a cluster of its own
+            raise ValueError("no address")
         client: Any = Client(address, timeout=10)  # type: ignore[no-untyped-call]
         threads = client.nthreads()
     except (OSError, ValueError) as error:

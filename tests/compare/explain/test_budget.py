@@ -156,7 +156,7 @@ def test_unrest_is_unrest():
     case = replace(CASE, sweep=GRID)
     found = measured(case, case, Settings(segments=40, tolerance=1e-2))
     assert found.blame == "unrest"
-    assert found.closes
+    assert found.closes or found.undecided  # a part that is all scatter is as uncertain as large
 
 
 WRONG_BEAMS = {
@@ -209,7 +209,8 @@ def rubbing(monkeypatch):
         self.data.xfrc_applied[:] = 0
         imbalance(self, foot_x, angles)
         pulled = np.zeros(self.model.nv)
-        for bead, normal, distance in zip(*self.contacts(), strict=True):
+        found = self.contacts()
+        for bead, normal, distance in zip(found.touch, found.normal, found.distance, strict=True):
             if distance < 0:
                 load = -distance * self.contact_stiffness
                 drag = FRICTION * load * np.array([-normal[1], normal[0], 0])  # to the right

@@ -61,7 +61,7 @@ def test_a_failure_says_what_where_how_much_and_why(pytester):
     result.stdout.fnmatch_lines(
         [
             "*mine disagrees with analytic:*",
-            "*force_x: rms * most in phase *; allowed 2.00e-03 (a chain of 40 segments*",
+            "*force_x: rms * most in phase *; allowed 2.00e-03 (the default, a convention*",
             "*likely: flexural rigidity +2.00% off*",
         ]
     )
