@@ -56,7 +56,7 @@ def test_in_other_units():
     assert missed(reconstruct(large), large.table).max() < 50 * 1e-13
 
 
-@pytest.mark.parametrize("level", [1e-4, 1e-2])
+@pytest.mark.parametrize("level", [1e-2, pytest.param(1e-4, marks=pytest.mark.slow)])
 def test_uncertainty_covers_the_error(exact, level):
     """95 % of the contacts of 30 noisy sweeps lie within what is stated: 5,000, so +-1 %."""
     noise = relative_noise(exact, level)

@@ -45,7 +45,7 @@ def hits(name: str, stations: int, level: float, seeds: range) -> list[bool]:
     return within
 
 
-@pytest.mark.parametrize("level", [1e-3, 1e-2])
+@pytest.mark.parametrize("level", [1e-3, pytest.param(1e-2, marks=pytest.mark.slow)])
 def test_the_interval_covers(level):
     """Of 40, 34 or fewer hits would happen once in 35 samples of a true 95 % interval."""
     assert sum(hits("parabola", 157, level, range(40))) >= 34

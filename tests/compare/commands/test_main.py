@@ -60,6 +60,7 @@ def test_run_writes_what_it_promises(tmp_path):
     assert again.returncode == 0
 
 
+@pytest.mark.slow
 def test_a_coarse_beam_disagrees(tmp_path):
     (tmp_path / "case.toml").write_text(CASE)
     done = vibrissa("run", "case.toml", cwd=tmp_path)

@@ -79,7 +79,7 @@ def test_a_phase_has_a_limit_of_its_own():
         assert_agreement(exact, simulated, strict)
 
 
-@pytest.mark.parametrize("level", [1e-3, 1e-2])
+@pytest.mark.parametrize("level", [1e-3, pytest.param(1e-2, marks=pytest.mark.slow)])
 def test_noise_is_no_disagreement(case_name, exact, level):
     """A sweep that is right but for its noise fails without saying so, and passes with it."""
     noisy = with_noise(exact, dict.fromkeys(CLAMP_READINGS, level), seed=5)

@@ -159,6 +159,7 @@ def test_a_folder_that_cannot_be_written_to(folder, study, where):
     assert "--out" in line
 
 
+@pytest.mark.slow
 def test_a_full_disk_loses_nothing(folder, study):
     def small_files():
         resource.setrlimit(resource.RLIMIT_FSIZE, (8000, 8000))

@@ -73,6 +73,7 @@ def test_a_files_mesh_is_its_section_to_the_vibrissa(make, tmp_path):
     assert rms(solve_sweep(Case(profile=profile, sweep=Sweep(stations=20))), on_file) < 1.6e-2
 
 
+@pytest.mark.slow
 def test_a_files_mesh_goes_where_it_is_put(tmp_path):
     """Other axes, unit and place in the file, and the object's mirror image: the same sweep."""
     upright = section(prism(), tmp_path)
