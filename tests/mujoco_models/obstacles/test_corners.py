@@ -53,10 +53,15 @@ def test_polygons_are_as_good_as_smooth_contours(profile):
 
 @pytest.mark.slow
 def test_the_order_is_two():
+    """But for stations at which a joint's sphere is within 1e-4 L of the corner.
+
+    There the sphere carries a part of the load with a normal of its own, and holds the corner a
+    little: by up to 4e-3 of a force, at 2 of these 60 stations at N = 160.
+    """
     segments = np.array([20, 40, 80, 160])
-    errors = [disagreement(SQUARE, int(n), stations=60) for n in segments]
+    errors = [disagreement(SQUARE, int(n), stations=60, jumped=3) for n in segments]
     order = -np.polyfit(np.log(segments), np.log(errors), 1)[0]
-    assert order > 1.8  # observed 2.0
+    assert order > 1.8  # observed 2.1
     assert errors[1] < 8e-4  # observed 5e-4
     assert errors[-1] < 5e-5  # observed 2.4e-5
 
