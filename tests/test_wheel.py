@@ -42,7 +42,7 @@ COMMANDS = {
     "side-by-side": (1, "side-by-side a/analytic.parquet a/mujoco-chain.parquet --out side"),
     "reconstruct": (0, "reconstruct a/analytic.parquet --out a"),
     "run": (1, "run mine.toml --out runs/mine --budget"),
-    "budget": (0, "budget mine.toml --out b"),
+    "budget": (1, "budget mine.toml --out b"),  # undecided: ten segments
     "findings": (0, "findings runs --out found"),
     "animate": (0, "animate mine.toml --out anim"),
     "study": (0, "study grid.toml --out grid --workers 1"),
