@@ -1,8 +1,8 @@
 """Mistakes of a rig or a simulator, planted in random sweeps: how often each is named rightly.
 
-``python -m tests.fuzz.mistakes SEEDS`` prints a row a mistake: how often its own name was given,
-how often none, and which wrong ones. Every sweep is past a contour of its own, with the smooth
-error that a chain has and white noise of up to 0.5 %.
+``python -m tests.fuzz.mistakes SEEDS [FIRST]`` prints a row a mistake: how often its own name was
+given, how often none, and which wrong ones. Every sweep is past a contour of its own, with the
+smooth error that a chain has and white noise of up to 0.5 %.
 """
 
 import sys
@@ -309,8 +309,8 @@ def confusion(seeds: Iterable[int]) -> pd.DataFrame:
 
 def main() -> None:
     """Print the table, and the shares."""
-    seeds = int(sys.argv[1]) if len(sys.argv) > 1 else 10
-    table = confusion(range(seeds))
+    seeds, first = (*map(int, sys.argv[1:]), *(10, 0)[len(sys.argv) - 1 :])
+    table = confusion(range(first, first + seeds))
     print(table.to_string(index=False, max_colwidth=None))
     known = [mistake.named is not None for mistake in MISTAKES.values()]
     trials = seeds * sum(known)
