@@ -16,6 +16,7 @@ from compare.sense.noise import scatter
 
 _CONVINCING = 0.9  # share of the disagreement, its scatter apart, that one cause must explain
 _DISTINCT = 2.0  # the next cause must leave so many times the square that the best one leaves
+_REST = 0.1  # share of the disagreement, rms, that a named cause may leave without saying so
 _BETTER = 6.0  # the same, for three constants to be preferred to one cause of one size
 _SCATTERED = 0.5  # share of the disagreement's square that jumps from station to station
 _UNSURE = 1.3  # times the scatter's square, to be on the safe side of its estimate
@@ -177,7 +178,8 @@ def _best(tried: list[Explanation], all_: float, noise: float) -> str | None:
         return None
     if next_ - _UNSURE * noise <= _DISTINCT * _beyond(best, noise):
         return None
-    return best.text
+    rest = float(np.sqrt(_beyond(best, noise) / all_))
+    return best.text + (f"; {rest:.0%} of the disagreement is left" if rest > _REST else "")
 
 
 def _beyond(one: Explanation, noise: float) -> float:

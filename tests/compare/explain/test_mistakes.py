@@ -26,6 +26,6 @@ def test_a_planted_mistake_of_the_record_is_named(kind):
 def test_planted_mistakes_are_named():
     """Ten seeds each; asked are 95 % right and at most 1 % wrong."""
     table = confusion(range(10))
-    known = [mistake.named is not None for mistake in MISTAKES.values()]
+    known = [mistake.must for mistake in MISTAKES.values()]
     assert table[known]["right"].sum() >= 0.95 * 10 * sum(known)
     assert table["wrong"].sum() <= 0.01 * 10 * len(table), table.to_string()
