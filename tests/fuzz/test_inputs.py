@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.fuzz.inputs import campaign
+from tests.fuzz.inputs.campaign import campaign
 
 
 @pytest.mark.slow

@@ -1,0 +1,46 @@
+"""Many trials, counted."""
+
+import gc
+from collections import Counter
+from collections.abc import Iterable
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from tests.fuzz.inputs import data, meshes, tables, words
+from tests.fuzz.inputs.dice import Dice
+from tests.fuzz.inputs.trial import Trial, perform
+
+KINDS = {
+    words.options: 4, tables.case: 5, tables.study: 4, data.data: 5, meshes.mesh: 3,
+    words.written: 2, tables.toml: 1,
+}  # fmt: skip
+"""Makers of trials, and how often each is asked."""
+OWN_PROCESS = 40  # every so manyth trial is done in a process of its own
+
+
+def trial(seed: int, number: int) -> Trial:
+    """The trial of that number; a function of seed and number alone."""
+    dice, weights = Dice(seed, number), np.array([*KINDS.values()])
+    return [*KINDS][dice.rng.choice(len(weights), p=weights / weights.sum())](dice)
+
+
+def campaign(
+    numbers: Iterable[int], seed: int, processes: bool = False, show: bool = False
+) -> tuple[Counter, list[str]]:
+    """Do trials; counts by class and exit code, and a line for each that ended badly."""
+    counts: Counter = Counter()
+    bad = []
+    for number in numbers:
+        made = trial(seed, number)
+        outcome = perform(made, processes or number % OWN_PROCESS == OWN_PROCESS - 1)
+        counts[made.kind, str(outcome.code)[:20]] += 1
+        if outcome.faults:
+            bad.append(f"{number} {made.kind}: {'; '.join(outcome.faults)}: {made}"[:400])
+        if outcome.faults or show:
+            print(number, made.kind, outcome.code, f"{outcome.seconds:.1f} s", made)
+            print(f"    {outcome.error[-300:]!a}", *outcome.faults, sep="; ", flush=True)
+        if number % 50 == 0:
+            plt.close("all")
+            gc.collect()
+    return counts, bad
