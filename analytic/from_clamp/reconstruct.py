@@ -58,7 +58,8 @@ def reconstruct(
         body's surface; ``phase``; ``contact_angle`` [rad]; ``status``. NaN and ``"free"`` where no
         force acts, NaN and ``"unexplained"`` where the force and moment are of no such vibrissa:
         ``status`` is then ``"no elastica"``, or ``"longer than the vibrissa"`` where the contact
-        would be beyond 1.1 L. It is ``"gap"`` where one of the four is NaN. With `noise` also
+        would be beyond 1.1 L. Phase and status are ``"gap"`` where one of the four is NaN. With
+        `noise` also
         ``uncertainty``: the true contact point lies within this distance of the stated one in 95 %
         of all cases [length]; infinite where the noise allows readings that no elastica has.
     """
@@ -182,7 +183,7 @@ def _table(readings: Readings, contact: Contact, loaded: Booleans, phase: Floats
     x, y = _surface(contact, beam.radius / beam.length)
     measured = np.isfinite(_dimensionless(readings)).all(axis=0)
     too_long = contact.arc_length > _LONGEST
-    explained = (contact.arc_length >= 0) & ~too_long
+    explained = measured & (contact.arc_length >= 0) & ~too_long
 
     def where_explained(values: Floats, unit: float) -> Floats:
         return np.where(explained, values * unit, np.nan)
@@ -192,7 +193,9 @@ def _table(readings: Readings, contact: Contact, loaded: Booleans, phase: Floats
             "contact_x": where_explained(x, beam.length),
             "contact_y": where_explained(y, beam.length),
             "contact_arc_length": where_explained(contact.arc_length, beam.length),
-            "phase": np.where(explained, phase, np.where(loaded, "unexplained", "free")),
+            "phase": np.select(
+                [~measured, explained, loaded], ["gap", phase, "unexplained"], "free"
+            ),
             "contact_angle": contact.alpha,
             "status": np.select(
                 [~measured, explained, ~loaded, too_long],

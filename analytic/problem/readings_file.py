@@ -123,6 +123,29 @@ def read_file(path: Path) -> FileContent:
     return FileContent(metadata, table, place)
 
 
+def is_ours(path: Path) -> bool:
+    """Whether `write_file` wrote a file, by the metadata in it.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    bool
+        Also True of a file that cannot be read, whose reader says what is wrong.
+    """
+    try:
+        regular_file(path, "readings file", _LARGEST)
+        if path.suffix == ".parquet":
+            return _METADATA_KEY in (pq.read_schema(path).metadata or {})
+        with path.open("rb") as file:
+            return file.read(len(_CSV_PREFIX)) == _CSV_PREFIX.encode()
+    except (OSError, ValueError, pa.ArrowException):
+        return True
+
+
 def _is_csv(path: Path) -> bool:
     if path.suffix not in (".csv", ".parquet"):
         raise InputError("readings file", path, "named *.parquet or *.csv", "rename it")
@@ -146,9 +169,9 @@ def _read_parquet(path: Path) -> tuple[Any, pd.DataFrame]:
 def _read_csv(path: Path) -> tuple[Any, pd.DataFrame]:
     with path.open(encoding="utf-8-sig") as file:
         first = file.readline()
-        is_ours = first.startswith(_CSV_PREFIX)
-        metadata = json.loads(first.removeprefix(_CSV_PREFIX)) if is_ours else {}
-        if not is_ours:
+        ours = first.startswith(_CSV_PREFIX)
+        metadata = json.loads(first.removeprefix(_CSV_PREFIX)) if ours else {}
+        if not ours:
             file.seek(0)
         with warnings.catch_warnings():
             # A row with more cells than the header would shift or lose values.

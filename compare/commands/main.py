@@ -14,6 +14,7 @@ from analytic.problem.errors import InputError
 from compare.commands import budget, readings, study, sweeps
 
 BAD_INPUT = 2
+_LONGEST = 800  # characters of an error
 
 app = typer.Typer(
     add_completion=False,
@@ -28,6 +29,7 @@ COMMANDS: tuple[Callable[..., int], ...] = (
     sweeps.simulate,
     sweeps.view,
     sweeps.animate,
+    sweeps.report,
     readings.compare,
     readings.reconstruct,
     readings.side_by_side,
@@ -118,5 +120,8 @@ def _require_utf8(word: str) -> None:
 
 
 def _refuse(message: str) -> int:
-    typer.echo(f"vibrissa: {' '.join(message.split())}", err=True)
+    line = " ".join(message.split())
+    if len(line) > _LONGEST:  # what was given is quoted, however long it is
+        line = f"{line[: _LONGEST // 2]} ... {line[-_LONGEST // 2 :]}"
+    typer.echo(f"vibrissa: {line}", err=True)
     return BAD_INPUT

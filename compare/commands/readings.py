@@ -17,6 +17,7 @@ from compare.commands.options import (
     number_or_auto,
 )
 from compare.commands.output import output_folder
+from compare.read.suffixes import TABLES
 
 
 def compare(
@@ -67,8 +68,6 @@ def compare(
 
     expected = read_measured(reference, reference_beam, reference_column or (), direction=direction)
     measured = read_measured(candidate, beam, column or (), expected.beam, direction)
-    terminal.note_rows(expected)
-    terminal.note_rows(measured)
     comparison = compare_readings(
         expected, measured, limits, offset=given_offset, noise=given_noise
     )
@@ -77,6 +76,8 @@ def compare(
         from compare.show.report import write_report
 
         report = write_report(comparison, folder)
+        terminal.note_rows(expected)
+        terminal.note_rows(measured)
         terminal.print_comparison(comparison)
         terminal.print_written(report)
     return AGREES if comparison.agrees else DISAGREES
@@ -103,7 +104,6 @@ def reconstruct(
     from compare.read.rig import read_measured
 
     readings = read_measured(file, beam, column or (), direction=direction)
-    terminal.note_rows(readings)
     level = None if noise is None else relative_noise(readings, noise)
     found = reconstruct_contour(readings, level)
     require_beam(found, readings)
@@ -114,6 +114,7 @@ def reconstruct(
 
         points = found.assign(foot_x=readings.values("foot_x"))
         path = write_whole(folder / "points.csv", points.to_csv(index=False))
+        terminal.note_rows(readings)
         terminal.print_reconstruction(readings, found)
         terminal.print_written(path)
         picture = reconstruction(readings, found)
@@ -127,24 +128,36 @@ def side_by_side(
     ],
     files: Annotated[list[Path], typer.Argument(help="Readings to compare with it.")],
     out: OutFolder = None,
+    column: Columns = None,
+    beam: BeamFile = None,
+    direction: Way = None,
 ) -> int:
-    """Compare many files of readings with one reference."""
+    """Compare many files of readings with one reference.
+
+    --column, --beam and --direction hold for the files of rigs, not for those of engines.
+    """
     if len({path.absolute() for path in files}) < len(files):
         raise InputError(
             "FILE", ", ".join(map(str, files)), "each file once", "leave the second one out"
         )
-    is_file = Path(reference).suffix in (".parquet", ".csv")
     job = None
-    if not is_file:
+    if Path(reference).suffix.lower() not in TABLES:
         from compare.read.case import load_job
 
         job = load_job(reference)
-    from analytic import Readings, solve_sweep
+    from analytic import Beam, Readings, solve_sweep
+    from analytic.problem.readings_file import is_ours
     from compare.commands import terminal
+    from compare.read.rig import read_measured
     from compare.show.side_by_side import side_by_side as compare_all
 
-    candidates = {name: Readings.read(path) for name, path in _short(files).items()}
-    exact = Readings.read(reference) if job is None else solve_sweep(job.case)
+    def read(path: Path, otherwise: Beam | None = None) -> Readings:
+        if is_ours(path):
+            return Readings.read(path)
+        return read_measured(path, beam, column or (), otherwise, direction)
+
+    exact = read(Path(reference)) if job is None else solve_sweep(job.case)
+    candidates = {name: read(path, exact.beam) for name, path in _short(files).items()}
     found = compare_all(exact, candidates)
     with output_folder(out or Path("results") / "side-by-side") as folder:
         from analytic.problem.files import write_whole
@@ -152,6 +165,8 @@ def side_by_side(
         from compare.show.side_by_side import picture
 
         path = write_whole(folder / "side-by-side.json", document(found.to_dict()))
+        for readings in (exact, *candidates.values()):
+            terminal.note_rows(readings)
         terminal.print_side_by_side(found)
         terminal.print_written(path)
         terminal.print_written(save_figure(picture(found), folder / "side-by-side.png"))

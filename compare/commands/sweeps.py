@@ -1,5 +1,9 @@
-"""Commands that sweep a case: ``run``, ``analytic``, ``simulate``, ``view``, ``animate``."""
+"""Commands that sweep a case: ``run``, ``analytic``, ``simulate``, ``view``, ``animate``.
 
+And ``report``, which does what ``run`` does after its sweeps.
+"""
+
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -57,10 +61,35 @@ def run(
         if found is not None:
             terminal.print_budget(found, job.case.name)
         with terminal.progress("frames", _FRAMES) as advance:
-            gif, *stills = write_animation(exact, candidate, folder, _FRAMES, advance)
-        report = write_report(comparison, folder, found, Film(gif, stills[2]))
+            write_animation(exact, candidate, folder, _FRAMES, advance)
+        written = write_report(comparison, folder, found, Film.of(folder))
         terminal.print_comparison(comparison)
-        terminal.print_written(report)
+        terminal.print_written(written)
+        return AGREES if comparison.agrees else DISAGREES
+
+
+def report(
+    folder: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Folder of a run, as `vibrissa run` makes it.")
+    ],
+) -> int:
+    """Write the report of a run again, from the sweeps that it stored.
+
+    Also where there is none yet, after `analytic` and `simulate` of a case with one --out.
+    """
+    from compare.read.run_folder import read_run
+
+    stored = read_run(folder)
+    with output_folder(folder):
+        from compare.commands import terminal
+        from compare.comparison import compare
+        from compare.show.report import Film, write_report
+
+        comparison = compare(stored.reference, stored.candidate, stored.tolerances)
+        film = Film.of(folder)
+        written = write_report(comparison, folder, stored.budget, film)
+        terminal.print_comparison(comparison)
+        terminal.print_written(written)
         return AGREES if comparison.agrees else DISAGREES
 
 

@@ -11,17 +11,17 @@ from numpy.typing import ArrayLike
 
 from analytic import SENSED, Beam, Direction, InputError, Readings
 from analytic.problem.arrays import Floats
+from analytic.problem.readings_file import is_ours
 from analytic.problem.table import Place, as_numbers, row_number
 from compare.read.case import read_beam
 from compare.read.dialect import read_text_table
+from compare.read.suffixes import TEXTS
 from compare.read.units import DIMENSIONS, unit_in_si
 
 Source: TypeAlias = "str | Path | pd.DataFrame | Mapping[str, ArrayLike]"
 
-_TEXTS = (".csv", ".txt", ".tsv", ".dat", ".asc")
 _TURN = 0.02  # of the stage's travel; a shorter way back is the stage's noise
 _WHOLE_SWEEP = 0.5  # of the stage's travel; what goes less far is no sweep of its own
-_OWN = "# vibrissa "
 
 
 def read_measured(
@@ -100,7 +100,7 @@ def read_sweeps(
         As `read_measured` does.
     """
     given = read_beam(beam) if isinstance(beam, Path) else beam
-    if isinstance(source, str | Path) and _written_by_us(Path(source)) and not columns:
+    if isinstance(source, str | Path) and is_ours(Path(source)) and not columns:
         readings = Readings.read(source, otherwise)
         return [(_way(readings), readings if given is None else replace(readings, beam=given))]
     table, place = _table(source)
@@ -111,16 +111,6 @@ def read_sweeps(
 
 def _called(source: Source) -> str:
     return Path(source).name if isinstance(source, str | Path) else "table"
-
-
-def _written_by_us(path: Path) -> bool:
-    if path.suffix == ".parquet":
-        return True
-    try:
-        with path.open("rb") as file:
-            return path.is_file() and file.read(len(_OWN)) == _OWN.encode()
-    except (OSError, ValueError):
-        return True  # whose reader says what is wrong
 
 
 def _table(source: Source) -> tuple[pd.DataFrame, Place]:
@@ -134,11 +124,11 @@ def _table(source: Source) -> tuple[pd.DataFrame, Place]:
                 "readings", "no table", "columns of one length by name", str(error)
             ) from error
     path = Path(source)
-    if path.suffix == ".parquet" or _written_by_us(path):
+    if path.suffix == ".parquet" or is_ours(path):
         return Readings.read_table(path), row_number
-    if path.suffix.lower() not in _TEXTS:
+    if path.suffix.lower() not in TEXTS:
         raise InputError(
-            "readings file", path, f"named *.parquet, *{', *'.join(_TEXTS)}", "rename it"
+            "readings file", path, f"named *.parquet, *{', *'.join(TEXTS)}", "rename it"
         )
     found = read_text_table(path)
     return found.frame, found.place

@@ -190,6 +190,8 @@ class MeshTable(ProfileTable):
     offset: Point = (0.0, 0.0)
     height: float = 0.0
     axes: str = "xy"
+    hull: bool = False
+    tolerance: float = 0.0
 
     def build(self, folder: Path) -> Contour:
         """The section of the mesh."""

@@ -47,6 +47,23 @@ class Film:
     gif: Path
     still: Path
 
+    @classmethod
+    def of(cls, folder: Path) -> "Film | None":
+        """The film of a folder.
+
+        Parameters
+        ----------
+        folder : Path
+            Where `compare.show.animation.write_animation` may have written it.
+
+        Returns
+        -------
+        Film or None
+            None if it is not there.
+        """
+        film = cls(folder / "animation.gif", folder / "still-3.png")
+        return film if film.gif.is_file() and film.still.is_file() else None
+
 
 def write_report(
     comparison: Comparison,

@@ -130,6 +130,14 @@ def _load(file: Path) -> _Read:
             points = np.asarray(found.vertices, dtype=float).reshape(-1, 3)
             faces = np.asarray(found.faces).reshape(-1, 3)
             size = float(np.ptp(points[faces], axis=(0, 1)).max()) if len(faces) else 0.0
+    except ImportError as error:  # of what trimesh needs for some files only
+        package = error.name or str(error)
+        raise InputError(
+            "mesh file",
+            file,
+            f"readable without the Python package {package}",
+            f"pip install {package}, or save it as a binary STL",
+        ) from error
     except Exception as error:  # a parser of foreign bytes may raise anything
         reason = " ".join(str(error).split())[:120] or type(error).__name__
         raise InputError(

@@ -39,12 +39,15 @@ def write_report(folder: Path, warn: Warn) -> Path:
     InputError
         If there is no study in `folder`, or none of its runs is done.
     """
-    rows = read_rows(folder, warn)
+    damage: list[str] = []
+    rows = read_rows(folder, damage.append)
     found = StudyResults.of(read_plan(folder), rows)
     if found.done.empty:
-        reasons = found.rows["reason"] if "reason" in found.rows else pd.Series(dtype=str)
-        reason = next((str(reason) for reason in reasons if reason), "start `vibrissa study` first")
-        raise InputError("DIR", folder, "a study with a run that is done", reason)
+        reasons = found.rows["reason"].tolist() if "reason" in found.rows else []
+        reason = next(filter(None, [*reasons, *damage]), "start `vibrissa study` first")
+        raise InputError("DIR", folder, "a study with a run that is done", str(reason))
+    for line in damage:
+        warn(line)
     numbers = {
         "outcomes": tables.outcomes(found),
         "orders": tables.orders(found),

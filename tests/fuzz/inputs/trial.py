@@ -122,6 +122,8 @@ def _judged(code: object, error: str, seconds: float, megabytes: int) -> Outcome
     faults += [f"said {nonsense!r}" for nonsense in USELESS if nonsense in error]
     if code == 2 and len(error.strip("\n").splitlines()) != 1:
         faults.append(f"{len(error.splitlines())} lines of error")
+    if code in (0, 1) and not all(line.startswith("vibrissa: ") for line in error.splitlines()):
+        faults.append("a stray line")
     if "Warning" in error:
         faults.append("a warning")
     if code == 2 and len(error) > 1500:

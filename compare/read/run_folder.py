@@ -1,0 +1,111 @@
+"""What `vibrissa run` has left in a folder: both sweeps, their limits, the budget."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import TypeAdapter
+
+from analytic import InputError, Readings
+from analytic.problem.files import regular_file
+from compare.explain.budget import Budget
+from compare.judge.tolerances import GENERAL, Limit, Tolerances
+
+_LARGEST = 64_000_000  # bytes of a JSON file
+_REMEDY = "run it again: vibrissa run CASE --out DIR"
+
+
+@dataclass(frozen=True)
+class StoredRun:
+    """A run as its folder has it.
+
+    Attributes
+    ----------
+    reference, candidate : Readings
+        The closed form's sweep and MuJoCo's.
+    tolerances : Tolerances
+        Those that the run was judged by; the defaults if it was not.
+    budget : Budget or None
+        Of the same sweeps, if it was measured.
+    """
+
+    reference: Readings
+    candidate: Readings
+    tolerances: Tolerances
+    budget: Budget | None
+
+
+def read_run(folder: Path) -> StoredRun:
+    """Read the folder of a run, or of an `analytic` and a `simulate` of one case.
+
+    Parameters
+    ----------
+    folder : Path
+        With ``analytic.parquet``, one ``mujoco-BEAM.parquet`` and, as far as there are,
+        ``comparison.json`` and ``budget.json``.
+
+    Returns
+    -------
+    StoredRun
+        All of it.
+
+    Raises
+    ------
+    InputError
+        If a sweep is missing, there are several of MuJoCo, or a file is damaged.
+    """
+    found = [*folder.glob("mujoco-*.parquet")]
+    sweeps = [path for path in found if not path.name.endswith(".partial.parquet")]
+    if not (folder / "analytic.parquet").is_file() or len(sweeps) != 1:
+        there = ", ".join(sorted(path.name for path in folder.glob("*.parquet"))) or "no sweep"
+        raise InputError(
+            "DIR",
+            f"{folder} ({there[:200]})",
+            "the folder of one run, with analytic.parquet and one mujoco-BEAM.parquet",
+            "make one: vibrissa run CASE --out DIR",
+        )
+    return StoredRun(
+        Readings.read(folder / "analytic.parquet"),
+        Readings.read(sweeps[0]),
+        _tolerances(folder / "comparison.json"),
+        _budget(folder / "budget.json"),
+    )
+
+
+def _tolerances(file: Path) -> Tolerances:
+    if not file.exists():
+        return Tolerances()
+    found = _json(file)
+    try:
+        reasons = found["tolerance_reasons"]
+        limits = {
+            str(name): Limit(float(value), str(reasons[name]))
+            for name, value in found["tolerances"].items()
+        }
+        general = {name: limits.pop(name) for name in GENERAL}
+        return Tolerances(**general, special=limits)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise _damaged(file, error) from error
+
+
+def _budget(file: Path) -> Budget | None:
+    if not file.exists():
+        return None
+    try:
+        return TypeAdapter(Budget).validate_python(_json(file))
+    except ValueError as error:
+        raise _damaged(file, error) from error
+
+
+def _json(file: Path) -> Any:  # noqa: ANN401  # whatever the file holds
+    regular_file(file, "file", _LARGEST)
+    try:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise _damaged(file, error) from error
+
+
+def _damaged(file: Path, error: Exception) -> InputError:
+    reason = " ".join(f"{type(error).__name__}: {error}".split())[:160]
+    return InputError(f"file {file}", f"damaged ({reason})", "as the run wrote it", _REMEDY)

@@ -1,0 +1,4 @@
+"""Names of files that may hold readings."""
+
+TEXTS = (".csv", ".txt", ".tsv", ".dat", ".asc")
+TABLES = (".parquet", *TEXTS)
