@@ -28,7 +28,7 @@ def mesh(dice: Dice) -> Trial:
         plain = {"hull": "true", "tolerance": "1e-2", "axes": '"xz"', "scale": "0.5"}
         text += f"{key} = {dice.pick(dice.value(), plain.get(key, '0.1'))}\n"
     words = ["analytic", "case.toml", "--stations", "4", "--out", "out"]
-    return Trial("mesh", words, {"case.toml": text.encode(), name: content})
+    return Trial("mesh", words, {"case.toml": text.encode(errors="surrogateescape"), name: content})
 
 
 def _no_mesh(dice: Dice) -> bytes:
