@@ -1,0 +1,124 @@
+"""Commands that are ended from outside, or started in a strange environment."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from analytic import Readings
+
+COMMAND = [sys.executable, "-c", "from compare.commands.main import main; main()"]
+
+# Says of every station that it is done, so that a test knows when to end the sweep.
+ANNOUNCED = """
+import sys
+import compare.commands.engines as engines
+
+sweep = engines.simulate_sweep
+
+def announced(case, settings, advance, keep):
+    return sweep(case, settings, lambda: (advance(), print("station", flush=True)), keep)
+
+engines.simulate_sweep = announced
+from compare.commands.main import main
+main()
+"""
+PIPES = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+
+
+def alive(process):
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def children(process):
+    tasks = Path(f"/proc/{process}/task").glob("*/children")
+    return [int(child) for file in tasks for child in file.read_text().split()]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("way", "said"),
+    [
+        (signal.SIGINT, "interrupted"),
+        (signal.SIGTERM, "ended by SIGTERM"),
+        (signal.SIGHUP, "ended by SIGHUP"),
+    ],
+)
+def test_a_sweep_that_is_ended_keeps_its_stations(tmp_path, way, said):
+    words = ["simulate", "catenary", "--stations", "4000", "--segments", "10", "--out", "out"]
+    command = [sys.executable, "-c", ANNOUNCED, *words]
+    with subprocess.Popen(command, cwd=tmp_path, **PIPES) as process:
+        for _ in range(5):
+            assert process.stdout.readline() == "station\n"
+        process.send_signal(way)
+        _, error = process.communicate(timeout=60)
+    assert process.returncode == 2
+    kept = Readings.read(tmp_path / "out" / "mujoco-chain.partial.parquet")
+    first, second = error.splitlines()
+    assert first.startswith(f"vibrissa: kept {len(kept.table)} of 4000 stations in ")
+    assert second == f"vibrissa: {said}"
+    assert 5 <= len(kept.table) < 4000
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["mujoco-chain.partial.parquet"]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="children are found in /proc")
+@pytest.mark.parametrize("way", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_a_budget_that_is_ended_leaves_no_process_and_no_folder(tmp_path, way):
+    words = ["budget", "catenary", "--stations", "20000", "--out", "out"]
+    with subprocess.Popen([*COMMAND, *words], cwd=tmp_path, **PIPES) as process:
+        end = time.monotonic() + 120
+        while not (workers := children(process.pid)):
+            assert time.monotonic() < end
+            time.sleep(0.1)
+        time.sleep(5)  # at work, or just about to start
+        workers = {*workers, *children(process.pid)}
+        process.send_signal(way)
+        begin = time.monotonic()
+        _, error = process.communicate(timeout=60)
+    while any(map(alive, workers)):
+        assert time.monotonic() < begin + 60
+        time.sleep(0.1)
+    if way != signal.SIGKILL:
+        assert process.returncode == 2
+        assert len(error.splitlines()) == 1, error
+        assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "strange",
+    [
+        {"MPLBACKEND": "nonsense"},
+        {"PYTHONIOENCODING": "ascii", "LC_ALL": "C", "PYTHONUTF8": "0"},
+        {"LC_ALL": "C", "LANG": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"},
+        {"COLUMNS": "10", "TERM": "dumb"},
+        {"HOME": "/nowhere", "MPLCONFIGDIR": "/nowhere"},
+    ],
+    ids=" ".join,
+)
+def test_strange_environments(tmp_path, strange):
+    """Same files, same exit code; what the encoding lacks is written as an escape."""
+    environment = {k: v for k, v in os.environ.items() if not k.startswith(("LC_", "LANG"))}
+    (tmp_path / "größe.csv").write_text("ü,é\n1,2\n", encoding="utf-8")
+    for words, code in (
+        (["analytic", "parabola", "--stations", "30", "--out", "ä", "--figures"], 0),
+        (["reconstruct", "ä/analytic.parquet", "--out", "ö"], 0),
+        (["compare", "ä/analytic.parquet", "ä/analytic.parquet", "--out", "ü"], 0),
+        (["reconstruct", "größe.csv"], 2),
+        (["run", "ñ"], 2),
+    ):
+        done = subprocess.run(
+            [*COMMAND, *words], cwd=tmp_path, env={**environment, **strange},
+            capture_output=True, check=False,
+        )  # fmt: skip
+        assert done.returncode == code, (words, done.stderr)
+        assert done.stderr.count(b"\n") == (code == 2), (words, done.stderr)
+    assert (tmp_path / "ü" / "report.html").exists()
