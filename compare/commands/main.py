@@ -3,9 +3,10 @@
 import os
 import sys
 from collections.abc import Callable
+from functools import wraps
 from io import TextIOWrapper
 from traceback import format_exc
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from typer.exceptions import TyperException
@@ -39,8 +40,23 @@ COMMANDS: tuple[Callable[..., int], ...] = (
     study.study_report,
     sweeps.cases,
 )
+
+
+def _saying_what_ended_it(command: Callable[..., int]) -> Callable[..., int]:
+    """The command, whose interrupt typer would turn into an exit code without a word."""
+
+    @wraps(command)
+    def run(*given: Any, **named: Any) -> int:  # noqa: ANN401  # as the command takes them
+        try:
+            return command(*given, **named)
+        except KeyboardInterrupt as error:
+            raise typer.Abort(str(error)) from error
+
+    return run
+
+
 for command in COMMANDS:
-    app.command()(command)
+    app.command()(_saying_what_ended_it(command))
 
 
 def _show_version(asked: bool) -> None:
@@ -116,7 +132,12 @@ def _require_utf8(word: str) -> None:
     try:
         word.encode()
     except UnicodeEncodeError as error:
-        raise InputError("argument", ascii(word), "UTF-8", "rename the file or folder") from error
+        raise InputError(
+            "argument",
+            ascii(word),
+            f"text in the encoding of the terminal, {sys.getfilesystemencoding()}",
+            "rename the file or folder, or set LC_ALL=C.UTF-8",
+        ) from error
 
 
 def _refuse(message: str) -> int:

@@ -107,6 +107,8 @@ def _displaced(true: Floats, seen: Floats, scale: Floats, length: float) -> Iter
 def _units(true: Floats, seen: Floats) -> Iterator[Explanation]:
     """One reading, both forces, or all of them, larger by a factor that units differ by."""
     for rows in ([0], [1], [2], [0, 1], [0, 1, 2]):
+        if not true[rows].any():
+            continue
         factor = float(np.sum(true[rows] * seen[rows]) / np.sum(true[rows] ** 2))
         unit = min(_UNITS, key=lambda known: abs(np.log(abs(factor) / known)) if factor else 1.0)
         if abs(factor / unit - 1) > _SAME_UNIT:

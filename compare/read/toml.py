@@ -17,6 +17,7 @@ Place: TypeAlias = Callable[[Sequence[str]], str]
 _LARGEST = 2_000_000  # bytes: some 50,000 points; what is slower to parse than to compute
 _DEEPEST = 32  # tables in tables
 _LONGEST = 10_000  # keys of one table
+_WIDEST = 1024  # bits of an integer; beyond that it fits no float, and Python may not print it
 
 # What may hold a newline or a bracket that ends no statement, else brackets and newlines.
 _TOKEN = re.compile(
@@ -88,7 +89,12 @@ class TomlFile:
         except ValueError as error:  # tomllib's own, and an integer of thousands of digits
             raise InputError(what, path, "valid TOML", f"correct it: {error}") from error
         _check_extent(tables, what, path)
-        return cls(path, text.replace("\r\n", "\n"), tables)
+        file = cls(path, text.replace("\r\n", "\n"), tables)
+        for keys, bits in _wide_integers(tables, ()):
+            raise InputError(
+                file.place(keys), f"an integer of {bits} bits", "less than 1e308", "correct it"
+            )
+        return file
 
     def place(self, keys: Sequence[str]) -> str:
         """Where a key is, as ``"grid.toml, line 7: axes.mujoco.segments"``.
@@ -169,6 +175,18 @@ def _holds(tables: object, keys: Sequence[str]) -> bool:
             return False
         tables = tables[key]
     return True
+
+
+def _wide_integers(value: object, keys: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], int]]:
+    """The keys of integers that are no floats, and how many bits they have."""
+    if isinstance(value, int) and value.bit_length() > _WIDEST:
+        yield keys, value.bit_length()
+    elif isinstance(value, dict):
+        for key, inner in value.items():
+            yield from _wide_integers(inner, (*keys, key))
+    elif isinstance(value, list):
+        for inner in value:
+            yield from _wide_integers(inner, keys)
 
 
 def _check_extent(tables: dict[str, Any], what: str, path: Path) -> None:

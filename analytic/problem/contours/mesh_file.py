@@ -1,5 +1,6 @@
 """A convex body from a mesh file: read, merged, checked, and made no finer than it need be."""
 
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from trimesh import Trimesh
 
 SUFFIXES = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf")
+_ASCII = bytes(range(128)) + 128 * b"?"
 _LARGEST = 256_000_000  # bytes; an STL file of 5 million faces
 _ROUNDING = 1e-5  # of the volume: files hold single precision
 _FLAT = 1e-7  # of the extent: likewise
@@ -123,10 +125,15 @@ def _load(file: Path) -> _Read:
     regular_file(file, "mesh file", _LARGEST)
     import trimesh
 
-    options = {"skip_materials": True} if file.suffix.lower() == ".obj" else {}
+    kind = file.suffix.lower().removeprefix(".")
+    options = {"skip_materials": True} if kind == "obj" else {}
     try:
         with np.errstate(all="ignore"):
-            found: trimesh.Trimesh = trimesh.load_mesh(file, process=False, **options)
+            # A glTF may name files beside it.
+            source = file if kind in ("glb", "gltf") else _in_ascii(file.read_bytes(), kind)
+            found: trimesh.Trimesh = trimesh.load_mesh(
+                source, file_type=kind, process=False, **options
+            )
             points = np.asarray(found.vertices, dtype=float).reshape(-1, 3)
             faces = np.asarray(found.faces).reshape(-1, 3)
             size = float(np.ptp(points[faces], axis=(0, 1)).max()) if len(faces) else 0.0
@@ -157,6 +164,16 @@ def _load(file: Path) -> _Read:
     mesh.merge_vertices()  # with an absolute tolerance: hence in units of its size
     mesh.update_faces(mesh.nondegenerate_faces())
     return _Read(mesh, middle, size)
+
+
+def _in_ascii(content: bytes, kind: str) -> BytesIO:
+    """A mesh without the letters of its comments and names, whose encoding nobody states."""
+    text = len(content)
+    if kind == "ply":
+        text = content.find(b"end_header") + 1
+    elif kind == "stl" and content[84:].count(b"\0"):  # a binary one has no text but its header
+        text = 80
+    return BytesIO(content[:text].translate(_ASCII) + content[text:])
 
 
 def _hull(points: Floats) -> tuple[Body, float]:

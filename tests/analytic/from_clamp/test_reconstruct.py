@@ -125,6 +125,7 @@ def test_gaps_and_odd_numbers():
     )
     found = reconstruct(readings)
     assert found["status"].tolist()[:3] == ["free", "ok", "gap"]
+    assert found["phase"].tolist()[:3] == ["free", "tangent", "gap"]
     length = found["contact_arc_length"].dropna()
     assert ((length >= 0) & (length <= 1.1)).all()
 

@@ -1,5 +1,6 @@
 """Sections of mesh files: whatever programs write, and whatever damage does to it."""
 
+import sys
 import zipfile
 
 import numpy as np
@@ -258,3 +259,35 @@ def test_the_vibrissa_of_a_cube_from_a_file(tmp_path):
     at_corner = touching["contact_x"].abs() < 1e-6
     assert at_corner.sum() > 10
     assert np.ptp(touching["contact_angle"][at_corner]) > 0.5
+
+
+@pytest.mark.parametrize("suffix", ["obj", "off", "ply", "stl", "stl_ascii"])
+def test_comments_in_any_encoding(tmp_path, suffix, monkeypatch):
+    """Sound files with a name in Latin-1, where a package that guesses encodings is missing."""
+    monkeypatch.setitem(sys.modules, "charset_normalizer", None)
+    content = trimesh.creation.box().export(file_type=suffix)
+    content = content.encode() if isinstance(content, str) else content
+    name = "Größe".encode("latin-1")
+    match suffix:
+        case "obj":
+            content = b"# " + name + b"\n" + content
+        case "off":
+            content = b"OFF\n# " + name + b"\n" + content.removeprefix(b"OFF\n")
+        case "ply":
+            content = content.replace(b"1.0\n", b"1.0\ncomment " + name + b"\n", 1)
+        case "stl":
+            content = name.ljust(80) + content[80:]
+        case "stl_ascii":
+            content = b"solid " + name + content[content.index(b"\n") :]
+    file = tmp_path / f"box.{suffix.removesuffix('_ascii')}"
+    file.write_bytes(content)
+    assert_square(mesh_section(file), 0.5)
+
+
+def test_a_missing_package_is_named(tmp_path, monkeypatch):
+    def load(*args, **kwargs):
+        raise ModuleNotFoundError("No module named 'rare'", name="rare")
+
+    monkeypatch.setattr(trimesh, "load_mesh", load)
+    (tmp_path / "box.glb").write_bytes(b"glTF")
+    assert "pip install rare" in refusal(tmp_path / "box.glb")

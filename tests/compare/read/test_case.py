@@ -105,3 +105,13 @@ def test_units_are_mixed_only_where_the_scale_has_one(tmp_path):
 def test_settings_in_python_are_held_to_the_same(numbers):
     with pytest.raises(InputError, match="number between"):
         Settings(**numbers)
+
+
+@pytest.mark.parametrize("number", ["9" * 4000, "0x" + "f" * 5000])
+@pytest.mark.parametrize("key", ["kind", "radius", "c"])
+def test_integers_beyond_floats_are_one_line(tmp_path, capfd, key, number):
+    """Some libraries print a traceback of their own when they cannot print the number."""
+    text = f'[profile]\nkind = "catenary"\n{key} = {number}\n'
+    text = text.replace('kind = "catenary"\nkind', "a = 1\nkind")
+    assert f"line 3: profile.{key} = an integer of" in refused(tmp_path, text)
+    assert capfd.readouterr() == ("", "")

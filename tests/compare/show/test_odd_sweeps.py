@@ -71,6 +71,7 @@ ODD = {
     "no snap-off": without_snap_off,
     "millimetres": scaled,
     "odd names": oddly_named,
+    "no contact": lambda: (sweeps.exact("catenary"), sweeps.without_contact("catenary")),
     "to the right": lambda: tuple(sweep.mirrored() for sweep in picked(slice(None))),
 }
 

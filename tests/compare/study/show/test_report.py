@@ -154,4 +154,7 @@ def test_nothing_done_says_why(plan_of, tmp_path):
     (tmp_path / "runs").mkdir()
     (tmp_path / "study.json").write_text(json.dumps(json.loads(plan.to_json())))
     with pytest.raises(InputError, match="a run that is done"):
-        write_report(tmp_path, print)
+        write_report(tmp_path, pytest.fail)
+    (tmp_path / "runs" / "part-0-damaged.parquet").write_bytes(b"PAR1")
+    with pytest.raises(InputError, match=r"part-0-damaged\.parquet is damaged"):
+        write_report(tmp_path, pytest.fail)

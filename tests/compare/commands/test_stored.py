@@ -1,0 +1,127 @@
+"""Commands on what is stored: the report of a run written again, files of rigs side by side."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import Beam, Case, Readings, Sweep, circle, solve_sweep
+from compare.judge.tolerances import Tolerances
+from compare.read.run_folder import read_run
+from tests.compare.command import vibrissa
+
+
+@pytest.fixture(scope="module")
+def sweep() -> Readings:
+    vibrissa_of_50_mm = Beam(length=0.05, flexural_rigidity=2e-6, radius=0.25e-3)
+    case = Case(vibrissa_of_50_mm, circle(0.04, lowest=(0.0, 0.02)), Sweep(stations=60))
+    return solve_sweep(case)
+
+
+@pytest.mark.slow
+def test_the_report_of_a_run_again(tmp_path):
+    """All that `run` writes after its sweeps: limits, budget and animation are the same."""
+    limits = '[tolerances]\nrms = { limit = 3e-2, reason = "eight segments" }\n'
+    limits += 'max = { limit = 0.2, reason = "as few" }\n'
+    limits += 'force_x.tip.max = { limit = 0.1, reason = "for the controller" }\n'
+    (tmp_path / "case.toml").write_text(
+        '[profile]\nkind = "catenary"\na = 0.5\nc = -0.8\n' + limits
+    )
+    words = ("case.toml", "--stations", 30, "--segments", 8, "--out", "out")
+    done = vibrissa("run", *words, "--budget", cwd=tmp_path)
+    before = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
+    for name in ("report.html", "readings.png"):
+        (tmp_path / "out" / name).unlink()
+    again = vibrissa("report", "out", cwd=tmp_path)
+    assert (again.returncode, again.stderr) == (done.returncode, "")
+    after = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
+    assert after.keys() == before.keys()
+    page = {line for line in after.pop("report.html").splitlines() if b"report out" not in line}
+    lost = page.symmetric_difference(before.pop("report.html").splitlines())
+    assert all(b">date<" in line or b">command<" in line for line in lost), lost
+    assert after == before
+    stored = read_run(tmp_path / "out")
+    assert stored.tolerances.special["force_x.tip.max"].reason == "for the controller"
+    assert stored.budget.convergence.keys() == {8, 16, 32}
+
+
+def test_a_report_of_two_sweeps_that_nobody_compared_yet(tmp_path, sweep):
+    sweep.write(tmp_path / "analytic.parquet")
+    sweep.write(tmp_path / "mujoco-rod.parquet")
+    sweep.write(tmp_path / "mujoco-rod.partial.parquet")
+    done = vibrissa("report", ".", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "report.html").exists()
+    assert read_run(tmp_path).tolerances == Tolerances()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("comparison.json", b"{", "comparison.json"),
+        ("comparison.json", b'{"tolerances": {"rms": "x"}}', "comparison.json"),
+        ("comparison.json", b'{"tolerances": [], "tolerance_reasons": {}}', "comparison.json"),
+        ("budget.json", b'{"parts": 3}', "budget.json"),
+        ("budget.json", b"[" * 100_000, "budget.json"),
+        ("mujoco-chain.parquet", None, "(analytic.parquet)"),
+        ("mujoco-rod.parquet", b"", "one mujoco-BEAM.parquet"),
+        ("analytic.parquet", b"PAR1", "analytic.parquet"),
+    ],
+)
+def test_a_run_that_is_damaged_is_one_line(tmp_path, sweep, name, content, said):
+    sweep.write(tmp_path / "analytic.parquet")
+    sweep.write(tmp_path / "mujoco-chain.parquet")
+    if content is None:
+        (tmp_path / name).unlink()
+    else:
+        (tmp_path / name).write_bytes(content)
+    there = set(tmp_path.iterdir())
+    done = vibrissa("report", tmp_path, cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1, done.stderr
+    assert said in done.stderr
+    assert set(tmp_path.iterdir()) == there
+
+
+def test_rigs_side_by_side(tmp_path, sweep):
+    """Columns, units, decimal commas, rows out of order; the engine's file beside them as it is."""
+    sweep.write(tmp_path / "analytic.parquet")
+    sweep.write(tmp_path / "engine.csv")
+    rig = pd.DataFrame(
+        {
+            "stage": 1e3 * sweep.values("foot_x"),
+            "Fx": 1e3 * sweep.values("force_x"),
+            "Fy": 1e3 * sweep.values("force_y"),
+            "Mz": 1e6 * sweep.values("moment_z"),
+        }
+    )
+    rig.to_csv(tmp_path / "one.csv", index=False)
+    rig.iloc[::-1].to_csv(tmp_path / "two.txt", sep=";", decimal=",", index=False)
+    shuffled = rig.sample(frac=1, random_state=1).reset_index(drop=True)
+    shuffled.to_parquet(tmp_path / "three.parquet")
+    columns = ("foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm")
+    words = [word for column in columns for word in ("--column", column)]
+    files = ("engine.csv", "one.csv", "two.txt", "three.parquet")
+    done = vibrissa(
+        "side-by-side", "analytic.parquet", *files, *words, "--direction", "left", "--out", "out",
+        cwd=tmp_path,
+    )  # fmt: skip
+    assert "three.parquet" in done.stderr or "out of order" in done.stderr
+    found = json.loads((tmp_path / "out" / "side-by-side.json").read_text())["comparisons"]
+    assert [one["names"][1] for one in found[:4]] == ["engine", "one", "two", "three"]
+    rms = [
+        one["disagreement"][name]["rms"] for one in found[:4] for name in ("force_x", "moment_z")
+    ]
+    assert np.max(rms) < 1e-12
+    assert done.returncode in (0, 1)
+
+
+def test_an_engines_file_keeps_its_beam_beside_rigs(tmp_path, sweep):
+    sweep.write(tmp_path / "analytic.parquet")
+    (tmp_path / "other.toml").write_text("[beam]\nlength = 7.0\n")
+    done = vibrissa(
+        "side-by-side", "analytic.parquet", "analytic.parquet", "--beam", "other.toml",
+        "--out", "out", cwd=tmp_path,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
