@@ -8,6 +8,7 @@ from collections.abc import Callable
 from analytic.problem.case import Case
 from analytic.problem.mirror import facing, solve_either_way
 from analytic.problem.readings import Readings
+from mujoco_models.motion import Motion
 from mujoco_models.settings import Settings
 
 
@@ -70,6 +71,61 @@ def simulate_sweep(
 
     return solve_either_way(
         case, lambda leftward: run_sweep(leftward, chosen, advance, keep_facing)
+    )
+
+
+def simulate_motion(
+    case: Case,
+    motion: Motion | None = None,
+    settings: Settings | None = None,
+    advance: Callable[[], None] = lambda: None,
+    keep: Callable[[Readings], None] = lambda _: None,
+) -> Readings:
+    """Sweep `case` in MuJoCo at a steady speed, the beam with its mass, stepped by `mj_step`.
+
+    Parameters
+    ----------
+    case : Case
+        The problem; all that the simulation knows of it.
+    motion : Motion, optional
+        Speed, time step, integrator, damping and contact.
+    settings : Settings, optional
+        Beam, segments, obstacle and contact stiffness; its `tolerance` does not matter.
+    advance : callable, optional
+        Called after every station, for progress bars.
+    keep : callable, optional
+        Given the readings of all stations so far (if two or more) when the sweep ends early; see
+        `simulate_sweep`.
+
+    Returns
+    -------
+    Readings
+        In the units of the case's beam, source ``"mujoco <beam> in motion"``. The clamp's readings
+        are means over the way round each station, see `Motion`; ``force_x_raw``, ``force_y_raw``
+        and ``moment_z_raw`` are those of the moment. More columns: ``time`` [T1],
+        ``kinetic_share``, the kinetic energy seen from the foot over kinetic and elastic energy;
+        ``contact_losses``, how often the contact was lost since the station before, and
+        ``penetration`` [length]. A station is ``"chattering"`` if the contact was lost more than
+        once, and ``"lost"`` if nothing touches there but does later.
+        ``provenance["events"]["snap_off"]`` is where the last contact was lost.
+
+    Raises
+    ------
+    InputError
+        If the case's beam has no radius, or the installed MuJoCo lacks the beam, or it is no chain
+        or rod in the plane.
+    DivergedError
+        If the motion does not stay finite; it names the time and what to change.
+    """
+    from mujoco_models.stepping.sweep import run_motion
+
+    chosen, moved = settings or Settings(), motion or Motion()
+
+    def keep_facing(found: Readings) -> None:
+        keep(facing(case, found))
+
+    return solve_either_way(
+        case, lambda leftward: run_motion(leftward, moved, chosen, advance, keep_facing)
     )
 
 

@@ -10,7 +10,10 @@ from analytic.problem.arrays import Floats
 from analytic.problem.columns import COLUMNS, CONTACT, PHASES, SENSED, STATUSES
 from analytic.problem.errors import InputError
 
-_ODD = ("foot_x", "force_x", "moment_z", "contact_angle", "contact_x")  # change sign in a mirror
+_ODD = (  # change sign in a mirror, averaged or not
+    *("foot_x", "force_x", "moment_z", "contact_angle", "contact_x"),
+    *("force_x_raw", "moment_z_raw"),
+)
 _TEXT_FIX = "fix the cell, or leave it empty where nothing was measured"
 
 Place = Callable[[int], str]

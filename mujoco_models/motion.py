@@ -1,0 +1,111 @@
+"""How a sweep in motion is driven and stepped."""
+
+from dataclasses import dataclass
+from numbers import Real
+from typing import Literal, TypeAlias, get_args
+
+from pydantic import ConfigDict, StrictFloat
+
+from analytic.problem.errors import InputError
+
+IntegratorKind: TypeAlias = Literal["discrete", "implicitfast", "implicit", "euler", "rk4"]
+SolverKind: TypeAlias = Literal["newton", "cg", "pgs"]
+ConeKind: TypeAlias = Literal["pyramidal", "elliptic"]
+INTEGRATORS, SOLVERS, CONES = map(get_args, (IntegratorKind, SolverKind, ConeKind))
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A sweep in motion.
+
+    The unit of time is the first period T1 of the free vibrissa, with density uniform along it:
+    T1 = 1.787 L^2 sqrt(mass per length/EI). No other property of its mass matters but for the
+    rotary inertia of its sections, which is of the order of (radius/L)^2.
+
+    Parameters
+    ----------
+    speed : float
+        Of the foot [L/T1].
+    timestep : float
+        Of MuJoCo [T1].
+    integrator : str
+        MuJoCo's: ``"discrete"`` is implicit in springs, dampers and contacts; all others are
+        explicit in springs, and stable below about 1/(2 N^2) T1 unless there is an armature.
+    damping_ratio : float
+        Of the first free vibration, by dampers in proportion to the stiffness.
+    armature : float
+        Inertia added to every joint, over what the joint's spring makes critical in a step:
+        stiffness times `timestep` squared. Explicit integrators need about 1; it slows all but the
+        slow vibrations of the beam.
+    solref : tuple of float, optional
+        MuJoCo's time constant [T1] and damping ratio of a contact. If it is not given, contacts
+        have the stiffness that the `Settings` ask for, and are critically damped.
+    solimp : float
+        MuJoCo's impedance d of a contact, the same at all depths.
+    solver : str
+        MuJoCo's solver of the constraints.
+    cone : str
+        Of friction; matters with a friction coefficient only.
+    friction : float
+        Coulomb's coefficient between vibrissa and object.
+    ramp : float
+        Time in which the foot reaches its speed, evenly [T1].
+    average : float
+        Share of the way between two stations over which the readings are averaged, half before the
+        station and half behind it; 0 takes the last step before it.
+    cutoff : float, optional
+        Of the sensor's low-pass filter of first order [1/T1].
+
+    Raises
+    ------
+    InputError
+        If a number is out of its range.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid")  # a misspelt key in a case file is an error
+
+    speed: StrictFloat = 0.01
+    timestep: StrictFloat = 0.02
+    integrator: IntegratorKind = "discrete"
+    damping_ratio: StrictFloat = 0.05
+    armature: StrictFloat = 0.0
+    solref: tuple[StrictFloat, StrictFloat] | None = None
+    solimp: StrictFloat = 0.9
+    solver: SolverKind = "newton"
+    cone: ConeKind = "pyramidal"
+    friction: StrictFloat = 0.0
+    ramp: StrictFloat = 1.0
+    average: StrictFloat = 1.0
+    cutoff: StrictFloat | None = None
+
+    def __post_init__(self) -> None:
+        for name, allowed in (("integrator", INTEGRATORS), ("solver", SOLVERS), ("cone", CONES)):
+            value = getattr(self, name)
+            if value not in allowed:
+                raise InputError(
+                    f"motion.{name}", repr(value), f"one of {', '.join(allowed)}", "choose one"
+                )
+        for name, low, high, remedy in (
+            ("speed", 1e-6, 10, "in L/T1; 0.004 is a slow whisk"),
+            ("timestep", 1e-7, 1, "in T1; 0.02 is usual"),
+            ("damping_ratio", 0, 100, "0.05 is usual"),
+            ("armature", 0, 1e6, "explicit integrators need about 1"),
+            ("solimp", 0.001, 0.9999, "0.9 is usual"),
+            ("friction", 0, 10, "0 is the theory's"),
+            ("ramp", 0, 1e3, "in T1; 1 is usual"),
+            ("average", 0, 1, "1 is all the way"),
+        ):
+            _check(name, getattr(self, name), low, high, remedy)
+        if self.cutoff is not None:
+            _check("cutoff", self.cutoff, 1e-3, 1e9, "in 1/T1; leave it out for no filter")
+        if self.solref is not None:
+            if len(self.solref) != 2:
+                raise InputError("motion.solref", self.solref, "two numbers", "as (0.1, 1.0)")
+            _check("solref[0]", self.solref[0], 1e-6, 1e3, "MuJoCo's time constant in T1")
+            _check("solref[1]", self.solref[1], 1e-3, 1e3, "MuJoCo's damping ratio; 1 is usual")
+
+
+def _check(name: str, value: float, low: float, high: float, remedy: str) -> None:
+    is_number = isinstance(value, Real) and not isinstance(value, bool)
+    if not (is_number and low <= value <= high):
+        raise InputError(f"motion.{name}", value, f"a number between {low:g} and {high:g}", remedy)

@@ -1,0 +1,229 @@
+"""The beam with its mass on a foot that slides, stepped by MuJoCo."""
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from mujoco_models.beams.protocol import FOOT, Beam
+from mujoco_models.errors import DivergedError
+from mujoco_models.model.clamp import Clamp, by_sensors
+from mujoco_models.model.contacts import Contacts, Surface
+from mujoco_models.model.lookout import Lookout
+from mujoco_models.model.spec import assemble
+from mujoco_models.motion import Motion
+from mujoco_models.obstacles.protocol import Obstacle
+
+# (beta L)^4 = 12.36 of the first free vibration of a cantilever gives the mass per length with
+# which it takes the time 1: mass = EI (beta L)^4 (T1/2 pi)^2/L^4.
+_MASS = 1.8751040687119611**4 / (2 * np.pi) ** 2
+_FIRST = 2 * np.pi  # rad/T1
+_CARRIAGE = 1e9  # times the vibrissa's mass: nothing the vibrissa does moves the foot
+_AHEAD = 0.01  # L; beads that are nearer to the obstacle take part in collisions
+_BAD_STATES = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+)
+_INTEGRATORS = {
+    "discrete": mujoco.mjtIntegrator.mjINT_DISCRETE,
+    "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
+    "implicit": mujoco.mjtIntegrator.mjINT_IMPLICIT,
+    "euler": mujoco.mjtIntegrator.mjINT_EULER,
+    "rk4": mujoco.mjtIntegrator.mjINT_RK4,
+}
+_SOLVERS = {
+    "newton": mujoco.mjtSolver.mjSOL_NEWTON,
+    "cg": mujoco.mjtSolver.mjSOL_CG,
+    "pgs": mujoco.mjtSolver.mjSOL_PGS,
+}
+_CONES = {
+    "pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL,
+    "elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC,
+}
+
+
+class MovingModel:
+    """MuJoCo's model and state of a vibrissa in motion; L = EI = T1 = 1.
+
+    Parameters
+    ----------
+    beam : Beam
+        Which beam; its links turn on hinges.
+    radius : float
+        Of the vibrissa [L].
+    obstacle : Obstacle
+        What it is swept past.
+    contact_stiffness : float
+        Force over penetration at rest, unless the motion states MuJoCo's own parameters [EI/L^3].
+    motion : Motion
+        How it is stepped.
+    foot_x : float
+        Where the foot starts [L].
+
+    Attributes
+    ----------
+    model, data : mujoco.MjModel, mujoco.MjData
+        MuJoCo's own. The first coordinate is the foot's, all others are the joints'.
+    obstacle : Obstacle
+        As given.
+    time : float
+        Of the state that is reported [T1].
+    """
+
+    def __init__(
+        self,
+        beam: Beam,
+        radius: float,
+        obstacle: Obstacle,
+        contact_stiffness: float,
+        motion: Motion,
+        foot_x: float,
+    ) -> None:
+        self._layout, self.obstacle, self._radius = beam.layout, obstacle, radius
+        self.model = _spec(beam, radius, obstacle, motion, foot_x).compile()
+        self.data = mujoco.MjData(self.model)
+        outward = obstacle.corners.outward
+        self._surface = Surface.of(self.model, len(beam.layout.joints), outward, radius)
+        self._set_contacts(contact_stiffness, motion)
+        self.time = 0.0
+        self._lookout = Lookout(self.model, self.data, self._surface.beads, obstacle, radius)
+        self._foot = self.model.body(FOOT).id
+        self._joints = np.unique(self.model.jnt_bodyid[1:])
+        mujoco.mj_forward(self.model, self.data)
+        self._look()
+
+    def _set_contacts(self, stiffness: float, motion: Motion) -> None:
+        """As `BeamModel` does, or MuJoCo's own parameters."""
+        model = self.model
+        geoms = np.concatenate([self._surface.beads, self._surface.sides])
+        if motion.solref is None:
+            weight = model.body_invweight0[model.geom_bodyid[geoms], 0]
+            k = stiffness * (1 - motion.solimp) * weight
+            model.geom_solref[geoms] = np.column_stack([-k, -2 * np.sqrt(k)])
+        else:
+            model.geom_solref[geoms] = motion.solref
+        model.geom_gap[geoms] = 0  # a contact that carries no force costs time
+        model.geom_solimp[geoms] = [motion.solimp, motion.solimp, 1e-3, 0.5, 2]
+        if motion.friction > 0:
+            model.geom_condim[geoms] = 3
+            model.geom_friction[geoms, 0] = motion.friction
+
+    @property
+    def foot_x(self) -> float:
+        """Where the foot is [L]."""
+        return float(self.data.xpos[self._foot, 0])
+
+    @property
+    def tip_angle(self) -> float:
+        """Slope angle of the last link [rad]."""
+        return float(np.pi / 2 + self.data.qpos[1:].sum())
+
+    def step(self, speed: float) -> None:
+        """One step of MuJoCo's, at whose end the foot has a given speed to the left.
+
+        What the model reports afterwards is the state at the beginning of the step, as MuJoCo's
+        sensors do.
+
+        Parameters
+        ----------
+        speed : float
+            Of the foot [L/T1].
+
+        Raises
+        ------
+        DivergedError
+            If MuJoCo warns of a bad state, which it then sets back to the straight beam.
+        """
+        self.time = float(self.data.time)
+        change = -speed - float(self.data.qvel[0])
+        self.data.qfrc_applied[0] = _CARRIAGE * _MASS * change / self.model.opt.timestep
+        mujoco.mj_step(self.model, self.data)
+        if any(self.data.warning[bad].number for bad in _BAD_STATES):
+            raise DivergedError("MuJoCo's motion does not stay finite")
+        if np.abs(self._positions() - self._seen).max() > _AHEAD / 4:
+            self._look()
+
+    def _look(self) -> None:
+        """Let what may touch before long, and nothing else, take part in collisions."""
+        self._seen = self._positions()
+        near = self.obstacle.near(self._seen, self._radius + _AHEAD)
+        self._lookout.watch(frozenset(near.tolist()))
+        self._lookout.follow_contact(self.contacts())
+
+    def _positions(self) -> Floats:
+        """Of the beads, shape (n_beads, 2) [L]."""
+        return np.asarray(self.data.geom_xpos[self._surface.beads, :2])
+
+    def contacts(self) -> Contacts:
+        """What MuJoCo reports of the last step, loaded or not.
+
+        Returns
+        -------
+        Contacts
+        """
+        joints = np.asarray(self.data.xanchor[1:, :2])
+        return Contacts.of(self.data, self._surface, self._layout, joints)
+
+    def clamp(self) -> Clamp:
+        """The clamp's action on the vibrissa, by MuJoCo's sensors.
+
+        Returns
+        -------
+        Clamp
+            In the world frame, at the foot [EI/L^2, EI/L].
+        """
+        return by_sensors(self.data)
+
+    def kinetic_share(self, speed: float) -> float:
+        """Kinetic energy, seen from the foot, over kinetic and elastic energy.
+
+        Parameters
+        ----------
+        speed : float
+            Of the foot [L/T1].
+
+        Returns
+        -------
+        float
+            From 0 to 1; 0 if there is no energy at all.
+        """
+        seen = self.data.qvel.copy()
+        seen[0] += speed
+        product = np.zeros_like(seen)
+        mujoco.mj_mulM(self.model, self.data, product, seen)
+        kinetic = float(seen[1:] @ product[1:]) / 2
+        total = kinetic + float(self.data.energy[0])
+        return kinetic / total if total > 0 else 0.0
+
+
+def _spec(
+    beam: Beam, radius: float, obstacle: Obstacle, motion: Motion, foot_x: float
+) -> mujoco.MjSpec:
+    """The model at rest, with masses, dampers, and a foot that slides."""
+    spec = assemble(beam, radius, obstacle)
+    foot = spec.body(FOOT)
+    foot.pos = [foot_x, 0, 0]
+    # A force accelerates it, so that the vibrissa feels the start; the joint's own inertia is no
+    # part of what the sensors at the clamp feel.
+    foot.add_joint(
+        name="drive",
+        type=mujoco.mjtJoint.mjJNT_SLIDE,
+        axis=[1, 0, 0],
+        armature=_CARRIAGE * _MASS,
+    )
+    lengths = [float(beam.layout.joints[0]), *beam.layout.lengths.tolist()]
+    capsules = [g for g in spec.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE and g.mass > 0]
+    for capsule, length in zip(capsules, lengths, strict=True):
+        capsule.mass = _MASS * length
+    dampers = 2 * motion.damping_ratio / _FIRST
+    hinges = [j for j in spec.joints if j.type == mujoco.mjtJoint.mjJNT_HINGE]
+    for hinge, cell in zip(hinges, beam.layout.cells.tolist(), strict=True):
+        hinge.armature = motion.armature * motion.timestep**2 / cell
+        hinge.damping[0] = dampers / cell
+    option = spec.option
+    option.timestep = motion.timestep
+    option.integrator = _INTEGRATORS[motion.integrator]
+    option.solver, option.cone = _SOLVERS[motion.solver], _CONES[motion.cone]
+    option.tolerance = 1e-10
+    option.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
+    return spec

@@ -1,0 +1,149 @@
+"""What is kept of a sweep in motion: a row a station, whatever the number of steps."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.problem.columns import CLAMP_READINGS
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One step of MuJoCo's.
+
+    Attributes
+    ----------
+    time : float
+        Since the start [T1].
+    foot_x : float
+        Foot position [L].
+    clamp : array, shape (3,)
+        Force and moment, as the sensor gives them [EI/L^2, EI/L].
+    touches : bool
+        Whether a contact is loaded.
+    """
+
+    time: float
+    foot_x: float
+    clamp: Floats
+    touches: bool
+
+
+class Record:
+    """Means of the readings over the way round each station, and the raw ones at it.
+
+    Between two steps the readings are taken to be linear in the foot's position, so that the means
+    are centred at the stations wherever the steps fall.
+
+    Parameters
+    ----------
+    stations : array, shape (n,)
+        Foot positions, decreasing [L].
+    average : float
+        Share of the way between two stations to take the mean over.
+
+    Attributes
+    ----------
+    rows : list of dict
+        Of the stations that are complete.
+    last_touch : float or None
+        Foot position at which the last contact so far was lost; None if there is one, or was none.
+    """
+
+    def __init__(self, stations: Floats, average: float) -> None:
+        self._stations = stations
+        self._half = average * float(np.abs(np.diff(stations)).min()) / 2
+        self.rows: list[dict[str, Any]] = []
+        self.last_touch: float | None = None
+        self._pending: dict[str, Any] | None = None
+        self._sum = np.zeros(3)
+        self._losses = 0
+
+    @property
+    def first(self) -> float:
+        """Foot position at which the first station's way begins [L]."""
+        return float(self._stations[0] + self._half)
+
+    @property
+    def complete(self) -> bool:
+        """Whether all stations have been passed."""
+        return len(self.rows) == len(self._stations)
+
+    def crosses(self, before: Sample, after: Sample) -> bool:
+        """Whether the next station lies between two steps.
+
+        Parameters
+        ----------
+        before, after : Sample
+            Consecutive ones.
+
+        Returns
+        -------
+        bool
+            True once a station.
+        """
+        return (
+            not self.complete
+            and self._pending is None
+            and after.foot_x <= self._stations[len(self.rows)] < before.foot_x
+        )
+
+    def note(self, before: Sample, after: Sample, state: dict[str, Any]) -> None:
+        """Keep the raw readings and the state at the station between two steps.
+
+        Parameters
+        ----------
+        before, after : Sample
+            Consecutive ones.
+        state : dict
+            What else there is to say of it, by column.
+        """
+        share = (before.foot_x - self._stations[len(self.rows)]) / (before.foot_x - after.foot_x)
+        raw = before.clamp + share * (after.clamp - before.clamp)
+        self._pending = {
+            "time": before.time + share * (after.time - before.time),
+            **{f"{name}_raw": float(x) for name, x in zip(CLAMP_READINGS, raw, strict=True)},
+            **state,
+        }
+
+    def take(self, before: Sample, after: Sample) -> bool:
+        """Add the way between two steps to the mean of the present station.
+
+        Parameters
+        ----------
+        before, after : Sample
+            Consecutive ones.
+
+        Returns
+        -------
+        bool
+            Whether that completes the station; the same two steps may then belong to the next one.
+        """
+        if before.touches != after.touches:
+            self.last_touch = after.foot_x if before.touches else None
+            self._losses += before.touches
+        if self.complete:
+            return False
+        station = self._stations[len(self.rows)]
+        begin, end = station + self._half, station - self._half
+        right, left = min(begin, before.foot_x), max(end, after.foot_x)
+        if right > left:
+            middle = (before.foot_x - (right + left) / 2) / (before.foot_x - after.foot_x)
+            self._sum += (before.clamp + middle * (after.clamp - before.clamp)) * (right - left)
+        if self._pending is None or after.foot_x > end:
+            return False
+        self._close()
+        return True
+
+    def _close(self) -> None:
+        row = self._pending or {}
+        raw = [row[f"{name}_raw"] for name in CLAMP_READINGS]
+        mean = self._sum / (2 * self._half) if self._half > 0 else np.array(raw)
+        row |= dict(zip(CLAMP_READINGS, mean.tolist(), strict=True))
+        row["contact_losses"] = self._losses
+        if row["status"] == "ok" and self._losses > 1:
+            row["status"] = "chattering"
+        self.rows.append(row)
+        self._pending, self._sum, self._losses = None, np.zeros(3), 0

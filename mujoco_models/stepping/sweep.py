@@ -1,0 +1,188 @@
+"""The sweep in motion: steps of MuJoCo's, and its readings in the units of the case."""
+
+import math
+import platform
+import time
+from collections.abc import Callable
+from dataclasses import asdict
+from importlib.metadata import version
+from typing import Any
+
+import mujoco
+import numpy as np
+import pandas as pd
+from threadpoolctl import threadpool_limits
+
+from analytic.problem.case import Case
+from analytic.problem.columns import COLUMNS
+from analytic.problem.errors import InputError
+from analytic.problem.readings import Readings
+from mujoco_models.beams.kinds import build
+from mujoco_models.beams.layout import bead_spacing
+from mujoco_models.errors import DivergedError
+from mujoco_models.model.contacts import Contacts
+from mujoco_models.motion import Motion
+from mujoco_models.obstacles.kinds import place
+from mujoco_models.settings import Settings
+from mujoco_models.stepping.model import MovingModel
+from mujoco_models.stepping.record import Record, Sample
+
+_AT_TIP = 1e-9  # L
+_NOWHERE = dict.fromkeys(("contact_angle", "contact_arc_length", "contact_x", "contact_y"), np.nan)
+
+
+def run_motion(
+    case: Case,
+    motion: Motion,
+    settings: Settings,
+    advance: Callable[[], None] = lambda: None,
+    keep: Callable[[Readings], None] = lambda _: None,
+) -> Readings:
+    """Sweep the beam to the left; see `mujoco_models.simulate_motion`.
+
+    Parameters
+    ----------
+    case, motion, settings, advance, keep
+        As there; the case is one of a sweep to the left.
+
+    Returns
+    -------
+    Readings
+        As there.
+
+    Raises
+    ------
+    InputError, DivergedError
+        As there.
+    """
+    begun = time.process_time()
+    record = Record(case.foot_x / case.beam.length, motion.average)
+    start = record.first + motion.speed * (motion.ramp / 2 + motion.timestep)
+    model = _set_out(case, motion, settings, start)
+    try:
+        with threadpool_limits(1):
+            _drive(model, motion, record, advance)
+    except BaseException as error:  # whatever it is, what there is must not be lost
+        if isinstance(error, DivergedError):
+            record.rows.append({"phase": "free", "status": "diverged"})
+        if len(record.rows) > 1:
+            keep(_readings(case, motion, settings, model, record, begun))
+        if isinstance(error, DivergedError):
+            place_ = f"t = {model.time:.6g} T1"
+            remedy = f"shorten the time step ({motion.timestep:g} T1) or add armature"
+            raise DivergedError(f"diverged at {place_}: {error}; {remedy}") from error
+        raise
+    return _readings(case, motion, settings, model, record, begun)
+
+
+def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> MovingModel:
+    if case.radius == 0:
+        raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
+    if settings.beam == "cable" or not settings.planar:
+        raise InputError(
+            "mujoco.beam" if settings.planar else "mujoco.planar",
+            settings.beam if settings.planar else False,
+            "a chain or rod in the plane, for a sweep in motion",
+            "choose one, or sweep at rest",
+        )
+    obstacle = place(case, settings)
+    spacing = np.inf
+    if len(obstacle.corners) == 0:
+        spacing = bead_spacing(settings.segments, case.radius, obstacle.largest_curvature)
+    beam = build(settings, spacing)
+    return MovingModel(beam, case.radius, obstacle, settings.contact_stiffness, motion, start)
+
+
+def _drive(model: MovingModel, motion: Motion, record: Record, advance: Callable[[], None]) -> None:
+    """Step until the foot has passed all stations."""
+    filtered = np.array(model.clamp())
+    # The share of the difference that a filter of first order follows in a step.
+    follows = 1.0
+    if motion.cutoff is not None:
+        follows = -math.expm1(-2 * math.pi * motion.cutoff * motion.timestep)
+    before = Sample(0.0, model.foot_x, filtered, touches=False)
+    while not record.complete:
+        gone = float(model.data.time) + motion.timestep
+        speed = motion.speed * (min(1.0, gone / motion.ramp) if motion.ramp > 0 else 1.0)
+        model.step(speed)
+        filtered = filtered + follows * (np.array(model.clamp()) - filtered)
+        contacts = model.contacts()
+        after = Sample(model.time, model.foot_x, filtered, bool(contacts.loaded.any()))
+        while True:
+            if record.crosses(before, after):
+                record.note(before, after, _state(model, contacts, speed))
+            if not record.take(before, after):
+                break
+            advance()
+        before = after
+
+
+def _state(model: MovingModel, contacts: Contacts, speed: float) -> dict[str, Any]:
+    """Contact and energy of the last step, dimensionless."""
+    found: dict[str, Any] = {
+        "phase": "free",
+        **_NOWHERE,
+        "tip_angle": model.tip_angle,
+        "status": "ok",
+        "kinetic_share": model.kinetic_share(speed),
+        "penetration": 0.0,
+    }
+    loaded = contacts.loaded
+    if loaded.any():
+        weight = contacts.distance[loaded] / contacts.distance[loaded].sum()
+        normal, s = weight @ contacts.normal[loaded], contacts.arc_length[loaded]
+        x, y = weight @ model.data.contact.pos[loaded, :2]
+        found |= {
+            "phase": "tip" if s.min() > 1 - _AT_TIP else "tangent",
+            "contact_angle": float(np.arctan2(normal[0], -normal[1])),
+            "contact_arc_length": float(weight @ s),
+            "contact_x": float(x),
+            "contact_y": float(y),
+            "penetration": float(-weight @ contacts.distance[loaded]),
+        }
+    return found
+
+
+def _readings(
+    case: Case,
+    motion: Motion,
+    settings: Settings,
+    model: MovingModel,
+    record: Record,
+    begun: float,
+) -> Readings:
+    """In the units of the case's beam; the time stays in T1."""
+    table = pd.DataFrame(record.rows)
+    _mark_lost(table)
+    beam = case.beam
+    for name in ("force_x", "force_y", "moment_z"):
+        unit = beam.moment_unit if name == "moment_z" else beam.force_unit
+        table[[name, f"{name}_raw"]] *= unit
+    for name in ("contact_arc_length", "contact_x", "contact_y", "penetration"):
+        table[name] *= beam.length
+    table.insert(0, "foot_x", case.foot_x[: len(table)])
+    snap_off = record.last_touch
+    provenance = {
+        **case.provenance(),
+        "engine": f"MuJoCo {mujoco.__version__}, vibrissa-testbed {version('vibrissa-testbed')}",
+        "python": platform.python_version(),
+        "settings": asdict(settings),
+        "motion": asdict(motion),
+        "obstacle": model.obstacle.label,
+        "seconds": round(time.process_time() - begun, 3),
+        "events": {"snap_off": None if snap_off is None else snap_off * beam.length},
+    }
+    extra = [name for name in table if name not in COLUMNS]
+    return Readings(
+        table[[*COLUMNS, *extra]], beam, f"mujoco {settings.beam} in motion", provenance
+    )
+
+
+def _mark_lost(table: pd.DataFrame) -> None:
+    """Stations without contact between stations with one: it was lost, and found again."""
+    touches = np.flatnonzero(table["phase"] != "free")
+    if touches.size:
+        between = np.zeros(len(table), dtype=bool)
+        between[touches[0] : touches[-1]] = True
+        lost = between & (table["phase"] == "free") & (table["status"] == "ok")
+        table.loc[lost, "status"] = "lost"

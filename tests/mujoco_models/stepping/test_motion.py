@@ -1,0 +1,102 @@
+"""Sweeps in motion: their limit at rest, and what defaults cost."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import CLAMP_READINGS, InputError, Sweep, named_case, solve_sweep
+from compare import compare
+from mujoco_models import DivergedError, Motion, Settings, simulate_motion, simulate_sweep
+
+CASE = replace(named_case("catenary"), sweep=Sweep(60))
+# Smooth and coarse: many steps in little time.
+SMOOTH = Settings(segments=10, contact_stiffness=1e4, obstacle="primitive")
+
+
+def worst(reference, candidate):
+    return max(x.rms for x in compare(reference, candidate).disagreement.values())
+
+
+@pytest.mark.slow
+def test_a_slow_sweep_tends_to_the_sweep_at_rest():
+    """First order in the speed: the dampers' moment. Observed 6.5e-3, 3.6e-3, 1.8e-3."""
+    rest = simulate_sweep(CASE, SMOOTH)
+    moved = [
+        simulate_motion(CASE, Motion(speed=v, damping_ratio=0.5, average=0.2), SMOOTH)
+        for v in (0.04, 0.02, 0.01)
+    ]
+    errors = [worst(rest, one) for one in moved]
+    assert errors[0] / errors[1] > 1.6
+    assert errors[1] / errors[2] > 1.6
+    assert errors[2] < 2.5e-3
+    # It lets go late, by less the slower it is; observed 0.031, 0.022, 0.015.
+    late = [rest.snap_off - one.snap_off for one in moved]
+    assert late[0] > late[1] > late[2] > 0
+    assert late[2] < 0.02
+
+
+@pytest.mark.slow
+def test_mujocos_default_contact_is_found_wanting():
+    """0.02 s for a whisker whose first period is 28 ms: the tip sinks in and slips past."""
+    steel = Motion(speed=0.05, timestep=1 / 28, solref=(20 / 28, 1.0), damping_ratio=0.05)
+    stock = simulate_motion(CASE, steel, replace(SMOOTH, obstacle="mesh", contour_points=400))
+    found = compare(solve_sweep(CASE), stock)
+    assert not found.agrees
+    assert max(x.rms for x in found.disagreement.values()) > 0.05
+    assert stock.values("penetration").max() > 0.01
+
+
+def test_a_sweep_in_motion_has_a_row_a_station():
+    fast = Motion(speed=0.2, damping_ratio=0.5)
+    moved = simulate_motion(CASE, fast, SMOOTH)
+    assert len(moved.table) == 60
+    assert set(moved.table["status"]) <= {"ok", "chattering", "lost"}
+    # The foot comes by every station at a steady speed.
+    assert np.diff(moved.values("time")) == pytest.approx(
+        -np.diff(moved.values("foot_x")) / 0.2, rel=1e-3
+    )
+    share = moved.values("kinetic_share")
+    assert (share >= 0).all()
+    assert (share <= 1).all()
+    assert moved.source == "mujoco chain in motion"
+    for name in CLAMP_READINGS:
+        assert np.isfinite(moved.values(f"{name}_raw")).all()
+
+
+def test_a_sweep_to_the_right_is_the_mirror_image():
+    fast = Motion(speed=0.4, damping_ratio=0.5)
+    left = simulate_motion(CASE, fast, SMOOTH)
+    right = simulate_motion(replace(CASE, sweep=Sweep(60, direction="right")), fast, SMOOTH)
+    assert right.values("force_x") == pytest.approx(-left.values("force_x"), abs=1e-9)
+    assert right.values("force_y") == pytest.approx(left.values("force_y"), abs=1e-9)
+    assert right.values("moment_z_raw") == pytest.approx(-left.values("moment_z_raw"), abs=1e-9)
+    assert right.snap_off == pytest.approx(-left.snap_off)
+
+
+def test_springs_that_are_too_stiff_for_the_step_are_reported():
+    kept = []
+    with pytest.raises(DivergedError, match=r"diverged at t = .* T1.*shorten the time step"):
+        simulate_motion(CASE, Motion(integrator="euler"), SMOOTH, keep=kept.append)
+
+
+@pytest.mark.parametrize(
+    ("change", "name"),
+    [
+        ({"speed": 0.0}, "motion.speed"),
+        ({"speed": float("nan")}, "motion.speed"),
+        ({"timestep": True}, "motion.timestep"),
+        ({"integrator": "verlet"}, "motion.integrator"),
+        ({"solref": (0.02,)}, "motion.solref"),
+        ({"average": 1.5}, "motion.average"),
+    ],
+)
+def test_bad_settings_are_one_line(change, name):
+    with pytest.raises(InputError, match=name) as caught:
+        Motion(**change)
+    assert "\n" not in str(caught.value)
+
+
+def test_what_cannot_move_yet_is_refused():
+    with pytest.raises(InputError, match="planar"):
+        simulate_motion(CASE, Motion(), replace(SMOOTH, planar=False))
