@@ -160,6 +160,7 @@ class MovingModel:
         Returns
         -------
         Contacts
+            Of the state that is reported.
         """
         joints = np.asarray(self.data.xanchor[1:, :2])
         return Contacts.of(self.data, self._surface, self._layout, joints)
