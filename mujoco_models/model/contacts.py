@@ -1,7 +1,5 @@
-"""What of the beam may touch, and the contacts that MuJoCo reports."""
+"""The contacts that MuJoCo reports."""
 
-from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import mujoco
@@ -9,69 +7,8 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 from mujoco_models.beams.layout import Layout
-from mujoco_models.obstacles.corners import EDGE_PREFIX
-
-SIDE_PREFIX = "side"
-
-
-@dataclass(frozen=True, eq=False)
-class Surface:
-    """The geoms by which beam and obstacle touch, and what each geom is.
-
-    Attributes
-    ----------
-    beads : array of int, shape (n_beads,)
-        The beads' geoms.
-    sides : array of int, shape (n_links,)
-        Those of the links, if they collide with corners.
-    bead_of, side_of, edge_of : array of int, shape (ngeom,)
-        The number of the bead, link or corner that each geom is, or -1.
-    outward : array, shape (m, 2)
-        Of the obstacle's corners, see `Corners`.
-    radius : float
-        Of the vibrissa [L].
-    """
-
-    beads: Integers
-    sides: Integers
-    bead_of: Integers
-    side_of: Integers
-    edge_of: Integers
-    outward: Floats
-    radius: float
-
-    @classmethod
-    def of(cls, model: mujoco.MjModel, links: int, outward: Floats, radius: float) -> "Surface":
-        """That of a compiled model.
-
-        Parameters
-        ----------
-        model : mujoco.MjModel
-            Its only spheres are the beads.
-        links : int
-            Number of the beam's links.
-        outward : array, shape (m, 2)
-            Of the obstacle's corners.
-        radius : float
-            Of the vibrissa [L].
-
-        Returns
-        -------
-        Surface
-        """
-        beads = np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_SPHERE)
-        sides = [model.geom(f"{SIDE_PREFIX}{i}").id for i in range(links if len(outward) else 0)]
-        edges = [model.geom(f"{EDGE_PREFIX}{i}").id for i in range(len(outward))]
-        bead_of, side_of, edge_of = np.full((3, model.ngeom), -1)
-        bead_of[beads] = np.arange(len(beads))
-        side_of[sides] = np.arange(len(sides))
-        edge_of[edges] = np.arange(len(edges))
-        return cls(beads, np.array(sides, dtype=int), bead_of, side_of, edge_of, outward, radius)
-
-    @cached_property
-    def moves(self) -> Booleans:
-        """Whether each geom is one of the beam's, shape (ngeom,)."""
-        return (self.bead_of >= 0) | (self.side_of >= 0)
+from mujoco_models.model.sides import Sides
+from mujoco_models.model.surface import CONTACT_GAP, Surface
 
 
 class Contacts(NamedTuple):
@@ -93,6 +30,8 @@ class Contacts(NamedTuple):
         Unit normal, away from the obstacle.
     distance : array, shape (n,)
         Of the beam's surface from the obstacle; negative where the contact is loaded [L].
+    fused : array of bool, shape (n,)
+        Which of them another contact stands for; they are as far off as MuJoCo looks.
     passed : bool
         Whether a corner has gone through a link's axis, and MuJoCo pushes the wrong way.
     """
@@ -104,6 +43,7 @@ class Contacts(NamedTuple):
     arc_length: Floats
     normal: Floats
     distance: Floats
+    fused: Booleans
     passed: bool
 
     @classmethod
@@ -130,20 +70,22 @@ class Contacts(NamedTuple):
         contact = data.contact
         if data.ncon == 0:
             none, nothing = np.zeros(0), np.zeros(0, dtype=int)
-            nowhere = np.zeros((0, 2))
-            return cls(nothing, nothing, none > 0, nowhere, none, nowhere, none, passed=False)
+            nowhere, no = np.zeros((0, 2)), none > 0
+            return cls(nothing, nothing, no, nowhere, none, nowhere, none, no, passed=False)
         moves = surface.moves[contact.geom]
         normal = np.where(moves[:, :1], -1.0, 1.0) * contact.frame[:, :2]
         bead = surface.bead_of[contact.geom].max(axis=1)
         centre = data.geom_xpos[surface.beads[bead], :2]
+        no = np.zeros(len(bead), dtype=bool)
         beads = cls(
             bead,
             layout.links[bead],
-            np.zeros(len(bead), dtype=bool),
+            no,
             centre,
             layout.beads[bead],
             normal,
             contact.dist.copy(),
+            no,
             passed=False,
         )
         return (
@@ -154,30 +96,22 @@ class Contacts(NamedTuple):
         self, data: mujoco.MjData, surface: Surface, layout: Layout, joints: Floats
     ) -> "Contacts":
         """The same, where what is no bead is a link that touches a corner."""
-        contact = data.contact
-        side = surface.side_of[contact.geom].max(axis=1)
-        edge = surface.edge_of[contact.geom].max(axis=1)
-        is_side = side >= 0
-        ends = np.vstack([joints[1:], data.geom_xpos[surface.beads[-1], :2]])
-        begin, length = joints[side], layout.lengths[side]
-        along = (ends[side] - begin) / length[:, None]
-        place = contact.pos[:, :2]
-        s = ((place - begin) * along).sum(axis=1)
-        on_side = is_side & (s > 0) & (s < length)
-        s = np.clip(s, 0, length)
-        point = np.where(on_side[:, None], place, begin + s[:, None] * along)
+        sides = Sides.of(data, surface, layout, joints)
+        fused = sides.fused(data, surface)
         # Deeper than the axis of a link, MuJoCo sees the corner from behind.
-        behind = on_side & (self.distance < 0)
-        behind &= (self.normal * surface.outward[edge]).sum(axis=1) < 0
-        number = len(surface.beads) + edge * len(joints) + side
+        behind = sides.along & (self.distance < 0) & ~fused
+        behind &= (self.normal * surface.corners.outward[sides.edge]).sum(axis=1) < 0
+        number = len(surface.beads) + sides.edge * len(joints) + sides.link
+        distance = np.where(behind, -self.distance - 2 * surface.radius, self.distance)
         return Contacts(
-            np.where(is_side, number, self.touch),
-            np.where(is_side, side, self.link),
-            on_side,
-            np.where(is_side[:, None], point, self.point),
-            np.where(is_side, layout.joints[side] + s, self.arc_length),
+            np.where(sides.touch, number, self.touch),
+            np.where(sides.touch, sides.link, self.link),
+            sides.along,
+            np.where(sides.touch[:, None], sides.point, self.point),
+            np.where(sides.touch, layout.joints[sides.link] + sides.s, self.arc_length),
             np.where(behind[:, None], -self.normal, self.normal),
-            np.where(behind, -self.distance - 2 * surface.radius, self.distance),
+            np.where(fused, CONTACT_GAP, distance),
+            fused,
             passed=bool(behind.any()),
         )
 

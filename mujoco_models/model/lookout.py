@@ -144,7 +144,7 @@ class Lookout:
         return frozenset(near.tolist())
 
     def overlooked(self, contacts: Contacts) -> float | None:
-        """Where a watched bead is in the obstacle and MuJoCo reports no load on it.
+        """Where a watched bead is in the obstacle and carries no load, nor does one in its place.
 
         What collides is true to the contour near its window only: this makes sure, at every state
         at rest, that it has not let the beam through.
@@ -159,7 +159,9 @@ class Lookout:
         float or None
             The place along the contour, see `Obstacle.place`; None if there is no such bead.
         """
-        unloaded = np.setdiff1d(sorted(self.watched), contacts.touch[contacts.loaded])
+        unloaded = np.setdiff1d(
+            sorted(self.watched), contacts.touch[contacts.loaded | contacts.fused]
+        )
         positions = self._positions()[unloaded]
         inside = self._radius - _OVERLOOKED
         for suspect in self._obstacle.near(positions, inside):

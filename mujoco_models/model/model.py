@@ -7,9 +7,11 @@ from analytic.problem.arrays import Floats, Integers
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.errors import DivergedError
 from mujoco_models.model import clamp
-from mujoco_models.model.contacts import Contacts, Surface
+from mujoco_models.model.contacts import Contacts
 from mujoco_models.model.lookout import Lookout
+from mujoco_models.model.sides import FUSED, Sides
 from mujoco_models.model.spec import assemble
+from mujoco_models.model.surface import Surface
 from mujoco_models.obstacles.protocol import Obstacle
 
 STEP = 1e-3  # of MuJoCo's own motion
@@ -63,8 +65,7 @@ class BeamModel:
         self.data = mujoco.MjData(self.model)
         model = self.model
         self._foot = model.body(FOOT).id
-        outward = obstacle.corners.outward
-        self._surface = Surface.of(model, len(self.layout.joints), outward, radius)
+        self._surface = Surface.of(model, len(self.layout.joints), obstacle.corners, radius)
         self.beads: Integers = self._surface.beads
         # One of those at each of the beam's joints: a universal joint has two of MuJoCo's.
         self._joints = np.unique(model.jnt_bodyid, return_index=True)[1]
@@ -133,6 +134,22 @@ class BeamModel:
         """Let MuJoCo evaluate the configuration that the beam is in, at rest."""
         self.data.qvel[:] = 0
         mujoco.mj_forward(self.model, self.data)
+        if len(self._surface.sides) and self.data.ncon:
+            self._fuse()
+
+    def _fuse(self) -> None:
+        """Take out of MuJoCo's balance the contacts that only repeat another one."""
+        model, data = self.model, self.data
+        sides = Sides.of(data, self._surface, self.layout, self.joint_positions())
+        fused = sides.fused(data, self._surface)
+        carries = data.contact.exclude == 0
+        data.contact.exclude[fused] = FUSED
+        if (fused & carries).any():
+            data.contact.efc_address[fused] = -1
+            mujoco.mj_makeConstraint(model, data)
+            mujoco.mj_island(model, data)
+            mujoco.mj_projectConstraint(model, data)
+            mujoco.mj_forwardSkip(model, data, mujoco.mjtStage.mjSTAGE_POS, 0)
 
     def moments(self) -> Floats:
         """Elasticity and contacts in all of MuJoCo's coordinates.

@@ -3,11 +3,9 @@
 import mujoco
 
 from mujoco_models.beams.protocol import FOOT, Beam
-from mujoco_models.model.contacts import SIDE_PREFIX
+from mujoco_models.model.surface import CONTACT_GAP, SIDE_PREFIX
 from mujoco_models.obstacles.corners import LINKS
 from mujoco_models.obstacles.protocol import Obstacle
-
-_CONTACT_GAP = 0.01  # L; how far ahead the solver sees contacts that carry no force yet
 
 
 def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
@@ -45,7 +43,7 @@ def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
             conaffinity=1,
             condim=1,
             density=0,
-            gap=_CONTACT_GAP,
+            gap=CONTACT_GAP,
             priority=1,
         )
     if len(obstacle.corners):
@@ -63,7 +61,7 @@ def _let_links_collide(beam: Beam, spec: mujoco.MjSpec) -> None:
         body, _ = beam.mount(spec, link, start)
         (capsule,) = (g for g in body.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE)
         capsule.name, capsule.conaffinity = f"{SIDE_PREFIX}{link}", LINKS
-        capsule.condim, capsule.priority, capsule.gap = 1, 1, _CONTACT_GAP
+        capsule.condim, capsule.priority, capsule.gap = 1, 1, CONTACT_GAP
 
 
 def add_options(spec: mujoco.MjSpec) -> None:

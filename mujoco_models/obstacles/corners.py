@@ -69,11 +69,30 @@ class Corners:
         sharp = turn > _TURN
         bisector = ((angles[1:] + angles[:-1]) / 2)[sharp]
         outward = np.column_stack([np.sin(bisector), -np.cos(bisector)])
-        inset = np.insert(_RADIUS * outward, 2, 0.0, axis=1)
-        return cls(edges[sharp] - inset[:, None], outward)
+        return cls(edges[sharp], outward)
 
     def __len__(self) -> int:
         return len(self.ends)
+
+    def nearest(self, edge: int, points: Floats) -> Floats:
+        """Where an edge is nearest to points.
+
+        Parameters
+        ----------
+        edge : int
+            Its number.
+        points : array, shape (n, 3)
+            Positions [L].
+
+        Returns
+        -------
+        array, shape (n, 3)
+            Positions on the edge [L].
+        """
+        begin, end = self.ends[edge]
+        run = end - begin
+        share = np.clip((points - begin) @ run / (run @ run), 0, 1)
+        return np.asarray(begin + share[:, None] * run)
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """Add the edges to the world body.
@@ -83,7 +102,8 @@ class Corners:
         spec : mujoco.MjSpec
             Changed in place.
         """
-        for i, (begin, end) in enumerate(self.ends):
+        inset = np.insert(_RADIUS * self.outward, 2, 0.0, axis=1)
+        for i, (begin, end) in enumerate(self.ends - inset[:, None]):
             spec.worldbody.add_geom(
                 name=f"{EDGE_PREFIX}{i}",
                 type=mujoco.mjtGeom.mjGEOM_CAPSULE,

@@ -1,0 +1,112 @@
+"""Which link touches which corner, and what only repeats another contact.
+
+The beam's axis is a line of links, and the obstacle's section a polygon. They touch where a link's
+side is at a corner, where a joint is at a facet, or where a joint is at a corner, and each such
+place is one contact. MuJoCo knows the geoms only: beside the side of a link that is at a corner, it
+reports the bead at the end of that link and the round end of the next link, as soon as their balls
+reach the corner, too. They would hold the corner, along which the link should slide: by 4e-3 of a
+force where the joint is within 1e-4 L, which is how far the balls reach past a contact as deep as
+1e-6 L.
+"""
+
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Booleans, Floats, Integers
+from mujoco_models.beams.layout import Layout
+from mujoco_models.model.surface import Surface
+
+FUSED = 2  # MuJoCo's `mjContact.exclude` of a contact that another one stands for
+_SAME = 1e-4  # rad; a mesh's single precision turns a bead's normal at a corner by 2e-5
+
+
+class Sides(NamedTuple):
+    """The contacts of links with corners; arrays as long as MuJoCo's contacts.
+
+    Attributes
+    ----------
+    touch : array of bool, shape (n,)
+        Whether a link touches a corner; where not, a bead does, and the rest means nothing.
+    link, edge : array of int, shape (n,)
+        Their numbers.
+    s : array, shape (n,)
+        Where on the link, from where it begins [L].
+    along : array of bool, shape (n,)
+        Whether it is on the side of the link, not on a round end.
+    point : array, shape (n, 2)
+        The corner then; else the centre of the round end [L].
+    """
+
+    touch: Booleans
+    link: Integers
+    edge: Integers
+    s: Floats
+    along: Booleans
+    point: Floats
+
+    @classmethod
+    def of(cls, data: mujoco.MjData, surface: Surface, layout: Layout, joints: Floats) -> "Sides":
+        """Those of a configuration.
+
+        Parameters
+        ----------
+        data : mujoco.MjData
+            An evaluated configuration.
+        surface : Surface
+            What its geoms are.
+        layout : Layout
+            Of the beam.
+        joints : array, shape (n_joints, 2)
+            Where its joints are [L].
+
+        Returns
+        -------
+        Sides
+        """
+        contact = data.contact
+        link = surface.side_of[contact.geom].max(axis=1)
+        edge = surface.edge_of[contact.geom].max(axis=1)
+        touch = link >= 0
+        ends = np.vstack([joints[1:], data.geom_xpos[surface.beads[-1], :2]])
+        begin, length = joints[link], layout.lengths[link]
+        along = (ends[link] - begin) / length[:, None]
+        place = contact.pos[:, :2]
+        s = ((place - begin) * along).sum(axis=1)
+        on_side = touch & (s > 0) & (s < length)
+        s = np.clip(s, 0, length)
+        point = np.where(on_side[:, None], place, begin + s[:, None] * along)
+        return cls(touch, link, edge, s, on_side, point)
+
+    def fused(self, data: mujoco.MjData, surface: Surface) -> Booleans:
+        """Which contacts only repeat another one.
+
+        A round end does: the bead at that joint is the same ball. And a bead does, where it touches
+        a corner that is on the side of a link next to it.
+
+        Parameters
+        ----------
+        data : mujoco.MjData
+            An evaluated configuration.
+        surface : Surface
+            What its geoms are.
+
+        Returns
+        -------
+        array of bool, shape (n,)
+            Of all of MuJoCo's contacts.
+        """
+        contact = data.contact
+        found = self.touch & ~self.along
+        found &= (self.link > 0) | (self.s > 0)  # no bead is where the first link begins
+        bead = surface.bead_of[contact.geom].max(axis=1)
+        outward = np.where(surface.moves[contact.geom[:, :1]], -1.0, 1.0) * contact.frame[:, :3]
+        for i in np.flatnonzero(self.along):
+            neighbours = np.flatnonzero((bead >= 0) & (np.abs(bead - self.link[i] + 0.5) < 1))
+            centre = data.geom_xpos[surface.beads[bead[neighbours]]]
+            away = centre - surface.corners.nearest(int(self.edge[i]), centre)
+            away /= np.linalg.norm(away, axis=1, keepdims=True)
+            same = np.linalg.norm(away - outward[neighbours], axis=1) < _SAME
+            found[neighbours[same]] = True
+        return found
