@@ -115,17 +115,25 @@ class Newton:
     def _forces(self, state: State, contacts: Contacts) -> Floats:
         """The forces of `state` at these contacts, shape (n,) [EI/L^2].
 
-        As the beam slides, a corner passes from link to link: what a link has lost, the nearest one
-        at the same corner has now.
+        As the beam slides, a corner passes from link to joint to link: what has lost it leaves its
+        force to the nearest contact at the same corner or the same joint.
         """
-        touch = contacts.touch.tolist()
-        force = np.array([state.forces.get(i, 0.0) for i in touch])
+        touch = np.where(contacts.fused, -1, contacts.touch)
+        force = np.array([state.forces.get(i, 0.0) for i in touch.tolist()])
+        if len(self._model.obstacle.corners) == 0:
+            return force
         beads, links = len(self._model.layout.beads), len(self._model.layout.joints)
-        for lost in state.forces.keys() - set(touch):
-            corner = (lost - beads) // links
-            same = np.flatnonzero((contacts.touch - beads) // links == corner)
-            if corner >= 0 and same.size:
-                force[same[np.argmin(contacts.distance[same])]] += state.forces[lost]
+        corner, link = np.divmod(touch - beads, links)
+        is_bead, is_side = (touch >= 0) & (touch < beads), touch >= beads
+        for lost in state.forces.keys() - set(touch.tolist()):
+            if lost < beads:  # the bead at the end of that link
+                heirs = is_side & ((link == lost) | (link == lost + 1))
+            else:
+                at, on = divmod(lost - beads, links)
+                heirs = is_side & (corner == at) | is_bead & ((touch == on) | (touch == on - 1))
+            if heirs.any():
+                nearest = np.where(heirs, contacts.distance, np.inf).argmin()
+                force[nearest] += state.forces[lost]
         return force
 
     def _curvature(self, contacts: Contacts) -> Floats:
