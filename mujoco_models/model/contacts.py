@@ -7,7 +7,7 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 from mujoco_models.beams.layout import Layout
-from mujoco_models.model.sides import Sides
+from mujoco_models.model.sides import FUSED, Sides
 from mujoco_models.model.surface import CONTACT_GAP, Surface
 
 
@@ -31,7 +31,8 @@ class Contacts(NamedTuple):
     distance : array, shape (n,)
         Of the beam's surface from the obstacle; negative where the contact is loaded [L].
     fused : array of bool, shape (n,)
-        Which of them another contact stands for; they are as far off as MuJoCo looks.
+        Which of them another contact stands for, see `BeamModel.evaluate`; they count as being as
+        far off as MuJoCo looks.
     passed : bool
         Whether a corner has gone through a link's axis, and MuJoCo pushes the wrong way.
     """
@@ -97,7 +98,7 @@ class Contacts(NamedTuple):
     ) -> "Contacts":
         """The same, where what is no bead is a link that touches a corner."""
         sides = Sides.of(data, surface, layout, joints)
-        fused = sides.fused(data, surface)
+        fused = data.contact.exclude == FUSED
         # Deeper than the axis of a link, MuJoCo sees the corner from behind.
         behind = sides.along & (self.distance < 0) & ~fused
         behind &= (self.normal * surface.corners.outward[sides.edge]).sum(axis=1) < 0

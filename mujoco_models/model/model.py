@@ -131,7 +131,10 @@ class BeamModel:
         self.model.body_pos[self._foot, 0] = foot_x
 
     def evaluate(self) -> None:
-        """Let MuJoCo evaluate the configuration that the beam is in, at rest."""
+        """Let MuJoCo evaluate the configuration that the beam is in, at rest.
+
+        A corner that is next to a joint is then touched once, see `mujoco_models.model.sides`.
+        """
         self.data.qvel[:] = 0
         mujoco.mj_forward(self.model, self.data)
         if len(self._surface.sides) and self.data.ncon:
