@@ -7,9 +7,10 @@ from analytic.problem.arrays import Floats
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.errors import DivergedError
 from mujoco_models.model.clamp import Clamp, by_sensors
-from mujoco_models.model.contacts import Contacts, Surface
+from mujoco_models.model.contacts import Contacts
 from mujoco_models.model.lookout import Lookout
 from mujoco_models.model.spec import assemble
+from mujoco_models.model.surface import Surface
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.protocol import Obstacle
 
@@ -82,8 +83,8 @@ class MovingModel:
         self._layout, self.obstacle, self._radius = beam.layout, obstacle, radius
         self.model = _spec(beam, radius, obstacle, motion, foot_x).compile()
         self.data = mujoco.MjData(self.model)
-        outward = obstacle.corners.outward
-        self._surface = Surface.of(self.model, len(beam.layout.joints), outward, radius)
+        links = len(beam.layout.joints)
+        self._surface = Surface.of(self.model, links, obstacle.corners, radius)
         self._set_contacts(contact_stiffness, motion)
         self.time = 0.0
         self._lookout = Lookout(self.model, self.data, self._surface.beads, obstacle, radius)
