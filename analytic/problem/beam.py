@@ -1,7 +1,7 @@
 """The vibrissa: a straight, inextensible elastic beam with a round tip."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import is_finite_number
@@ -20,6 +20,10 @@ class Beam:
     radius : float
         Radius of the cross-section and of the tip [length]; 0 is the paper's thin vibrissa, which
         only the analytic side can handle.
+    si : bool
+        Whether these numbers, and all that belong to them, are known to be in metres and newtons,
+        as those of a case whose quantities have units. Only reports and pictures use it: they
+        name the units then.
 
     Raises
     ------
@@ -31,6 +35,7 @@ class Beam:
     length: float = 1.0
     flexural_rigidity: float = 1.0
     radius: float = 0.005
+    si: bool = field(default=False, kw_only=True, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("length", "flexural_rigidity"):
@@ -46,6 +51,8 @@ class Beam:
                 f"finite, not negative and below a tenth of the length ({self.length:g})",
                 "a vibrissa is slender: check the units of radius and length",
             )
+        if not isinstance(self.si, bool):
+            raise InputError("beam.si", repr(self.si), "True or False", "leave it out")
         for name in ("length", "flexural_rigidity", "radius"):
             object.__setattr__(self, name, float(getattr(self, name)))
         if not self._has_units():

@@ -83,19 +83,10 @@ def validate(tables: Mapping[str, Any], place: Place) -> CaseFile:
     Raises
     ------
     InputError
-        If there are unknown keys, wrong types, unknown units, or numbers with and without units
-        mixed.
+        If there are unknown keys, wrong types, unknown units, numbers with and without units
+        mixed, or one left out beside units whose default is a number without.
     """
-    file = _validated(CaseFile, tables, place)
-    bare, united = _quantities(file, tables)
-    if bare and united:
-        raise InputError(
-            place(bare[0]),
-            "without a unit",
-            f"given with a unit, as {united[0][-1]} is",
-            "write all dimensions with units, or none",
-        )
-    return file
+    return _validated(CaseFile, tables, place)
 
 
 def read_beam(path: Path) -> Beam:
@@ -114,7 +105,7 @@ def read_beam(path: Path) -> Beam:
     Raises
     ------
     InputError
-        If the file cannot be read, there is no such table, or it cannot be used.
+        If the file cannot be read, there is no such table, or it cannot be used, as in `validate`.
     """
     file = TomlFile.read(path, "beam file")
     if "beam" not in file.tables:
@@ -125,28 +116,47 @@ def read_beam(path: Path) -> Beam:
 
 def _validated(schema: type[_Schema], tables: Mapping[str, Any], place: Place) -> _Schema:
     try:
-        return schema.model_validate(tables)
+        file = schema.model_validate(tables)
     except ValidationError as error:
         raise complaint(error, schema, place) from error
+    _check_units(file, tables, place)
+    return file
 
 
-def _quantities(
-    file: CaseFile, tables: Mapping[str, Any]
-) -> tuple[list[list[str]], list[list[str]]]:
-    """The keys of all dimensions that are given without and with a unit; 0 needs none."""
+def _check_units(file: Table, tables: Mapping[str, Any], place: Place) -> None:
+    """Refuse dimensions with and without units side by side, also those left to a default."""
     bare: list[list[str]] = []
     united: list[list[str]] = []
-    for name in ("beam", "profile", "sweep"):
+    left_out: list[list[str]] = []
+    for name in filter(type(file).model_fields.__contains__, ("beam", "profile", "sweep")):
         given, schema = tables.get(name, {}), type(getattr(file, name))
         # A shape whose scale has a unit is itself in units of the scale.
         relative = name == "profile" and isinstance(given.get("scale"), str)
-        for key in filter(schema.quantities().__contains__, given):
+        for key in schema.quantities():
+            number = key != "scale" and not relative
+            if key not in given:  # a scale of 1 is a factor
+                default = schema.model_fields[key].default
+                left_out += [[name, key]] if number and any(_numbers(default)) else []
+                continue
             for value in _numbers(given[key]):
                 if isinstance(value, str):
                     united.append([name, key])
-                elif value != 0 and (key == "scale" or not relative):
+                elif value != 0 and (number or key == "scale"):  # 0 needs no unit
                     bare.append([name, key])
-    return bare, united
+    if bare and united:
+        raise InputError(
+            place(bare[0]),
+            "without a unit",
+            f"given with a unit, as {united[0][-1]} is",
+            "write all dimensions with units, or none",
+        )
+    if left_out and united:
+        raise InputError(
+            place(left_out[0]),
+            "missing",
+            f"given with a unit, as {united[0][-1]} is",
+            "add it: its default is a number without a unit",
+        )
 
 
 def _numbers(value: Any) -> list[Any]:  # noqa: ANN401

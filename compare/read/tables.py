@@ -3,9 +3,18 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, get_args
+from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from analytic import (
@@ -43,16 +52,40 @@ class Dimension:
                 return in_si(value, self.unit)
         except (InputError, OverflowError):
             pass
+        what, example = _EXAMPLES[self.unit]
         raise PydanticCustomError(
-            "quantity", "a number, or a text with a unit, as '50 {unit}'", {"unit": self.unit}
+            "quantity",
+            "a number, or a text with a known unit of {what}, as '{example}'",
+            {"what": what, "example": example},
         )
 
 
-_LENGTH = Dimension("m")
-Length = Annotated[float, BeforeValidator(_LENGTH)]
+_EXAMPLES = {
+    "m": ("length", "50 mm"),
+    "1/m": ("inverse length", "0.5 1/mm"),
+    "N m^2": ("force times length squared", "2 N mm^2"),
+}
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A validator: two values, called by `names` where there are not two."""
+
+    names: str
+
+    def __call__(self, value: object) -> object:
+        """The two."""
+        if isinstance(value, list | tuple) and len(value) == 2:
+            return value
+        raise PydanticCustomError("pair", "two lengths, [{names}]", {"names": self.names})
+
+
+Length = Annotated[float, BeforeValidator(Dimension("m"))]
 PerLength = Annotated[float, BeforeValidator(Dimension("1/m"))]
 Rigidity = Annotated[float, BeforeValidator(Dimension("N m^2"))]
-Point = Annotated[tuple[Length, Length], Field(strict=False)]
+Two = Annotated[tuple[Length, Length], Field(strict=False)]
+Point = Annotated[Two, BeforeValidator(Pair("x, y"))]
+SemiAxes = Annotated[Two, BeforeValidator(Pair("along x, along y"))]
 Points = list[Point]
 FileName = Annotated[str, AfterValidator(plain_name)]
 
@@ -63,19 +96,19 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     @classmethod
-    def quantities(cls) -> set[str]:
+    def quantities(cls) -> list[str]:
         """Keys that may have a unit.
 
         Returns
         -------
-        set of str
+        list of str
             Names of the fields with a dimension.
         """
-        return {
+        return [
             name
             for name, field in cls.model_fields.items()
             if _has_dimension([*field.metadata, field.annotation])
-        }
+        ]
 
 
 class BeamTable(Table):
@@ -84,6 +117,14 @@ class BeamTable(Table):
     length: Length = 1.0
     flexural_rigidity: Rigidity = 1.0
     radius: Length | None = None
+    _si: bool = PrivateAttr(default=False)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _remember_units(cls, given: object, validated: ModelWrapValidatorHandler[Self]) -> Self:
+        table = validated(given)
+        table._si = isinstance(given, dict) and isinstance(given.get("length"), str)
+        return table
 
     def build(self) -> Beam:
         """The vibrissa; its radius is by default the same share of its length as in `Beam()`.
@@ -94,7 +135,7 @@ class BeamTable(Table):
             In the units of the file, or SI.
         """
         radius = Beam().radius * self.length if self.radius is None else self.radius
-        return Beam(self.length, self.flexural_rigidity, radius)
+        return Beam(self.length, self.flexural_rigidity, radius, si=self._si)
 
 
 class ProfileTable(Table):
@@ -152,7 +193,7 @@ class EllipseTable(ProfileTable):
 
     factory = staticmethod(ellipse)
     kind: Literal["ellipse"]
-    semi_axes: Point
+    semi_axes: SemiAxes
     lowest: Point
 
 

@@ -1,7 +1,7 @@
 """The report of a comparison: one offline HTML file, and the figures beside it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +28,7 @@ FIGURES = {"geometry": geometry, "readings": readings, "phases": phase_criterion
 """Pictures that are also written as files of their own."""
 
 _BULKY = ("contour", "events")  # of a source's provenance; they are drawn instead
+_BEAM = ("length", "flexural_rigidity", "radius")
 _LONGEST = 200  # characters of a setting
 _OF_LARGEST = "of the reading's largest magnitude"
 _LIMITED = {
@@ -231,7 +232,7 @@ def _known(comparison: Comparison) -> dict[str, dict[str, str]]:
 
 
 def _recorded(readings: Readings) -> dict[str, str]:
-    beam = (f"{words(name)} {value:g}" for name, value in asdict(readings.beam).items())
+    beam = (f"{words(name)} {getattr(readings.beam, name):g}" for name in _BEAM)
     provenance = dict(readings.provenance)
     settings = provenance.pop("settings", {})
     numerics = settings if isinstance(settings, Mapping) else {"settings": settings}
