@@ -17,6 +17,7 @@ import pandas as pd
 
 from analytic.problem.errors import InputError
 from analytic.problem.files import regular_file
+from compare.read.units import is_unit
 
 _LARGEST = 512_000_000  # bytes; 10^6 rows of four columns have 80 MB
 _LOOKED_AT = 200  # lines that decide
@@ -117,12 +118,15 @@ class TextTable:
         What is in it.
     first : int
         Line of its first row.
+    units : dict of str
+        Units of the columns, if a line between the names and the data has them.
     """
 
     frame: pd.DataFrame
     path: Path
     text: str
     first: int
+    units: dict[str, str]
 
     def place(self, row: int) -> str:
         """Where a row stands.
@@ -181,9 +185,12 @@ def read_text_table(path: Path) -> TextTable:
     numbered = list(_first(text))
     first, line = numbered[begin]
     width = len(dialect.cells(line))
-    names = _names(dialect, [cells for _, cells in numbered[:begin]], width)
+    before = [line for _, line in numbered[:begin]]
+    units = _units(dialect, before, width)
+    names = _distinct(_names(dialect, before[:-1] if units else before, width))
     _check_widths(dialect, text, first, width, path)
-    return TextTable(_parsed(dialect, text, first, names, path), path, text, first)
+    frame = _parsed(dialect, text, first, names, path)
+    return TextTable(frame, path, text, first, dict(zip(names, units, strict=False)))
 
 
 def _decoded(content: bytes) -> str:
@@ -227,12 +234,25 @@ def _rows(dialect: Dialect, lines: list[str]) -> tuple[int, int]:
 
 def _names(dialect: Dialect, before: list[str], width: int) -> list[str]:
     """The columns' names: the last line before the data, if it has as many cells."""
-    named = dialect.cells(before[-1]) if before else []
-    if len(named) != width and before:  # names with blanks, over columns between blanks
-        named = re.split(r"\t| {2,}", before[-1].strip())
-    if len(named) != width:
-        named = []
+    named = _cells(dialect, before[-1], width) if before else []
     return [name or str(i) for i, name in enumerate(named, 1)] or [str(i + 1) for i in range(width)]
+
+
+def _cells(dialect: Dialect, line: str, width: int) -> list[str]:
+    """The cells of a line before the data; none if they are not as many as the columns."""
+    found = dialect.cells(line)
+    if len(found) != width:  # names with blanks, over columns between blanks
+        found = re.split(r"\t| {2,}", line.strip())
+    return found if len(found) == width else []
+
+
+def _units(dialect: Dialect, before: list[str], width: int) -> list[str]:
+    """The columns' units: the last line before the data, if all in it are, with names above."""
+    names, units = ([_cells(dialect, line, width) for line in before[-2:]] + [[], []])[:2]
+    units = [unit.strip("[]") for unit in units]
+    given = [(name, unit) for name, unit in zip(names, units, strict=False) if unit]
+    is_row = len(given) > 1 and all(name and is_unit(unit) for name, unit in given)
+    return units if is_row else []
 
 
 def _check_widths(dialect: Dialect, text: str, first: int, width: int, path: Path) -> None:
@@ -274,7 +294,7 @@ def _parsed(dialect: Dialect, text: str, first: int, names: list[str], path: Pat
         for name, column in frame.items():
             if not pd.api.types.is_numeric_dtype(column):
                 frame[name] = [dialect.with_point(cell) for cell in column]
-    return frame.set_axis(_distinct(names), axis=1)
+    return frame.set_axis(names, axis=1)
 
 
 def _distinct(names: list[str]) -> list[str]:

@@ -1,6 +1,8 @@
 """Readings from a rig: its own files, columns and units, a vibrissa described elsewhere."""
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
@@ -9,7 +11,15 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from analytic import SENSED, Beam, Direction, InputError, Readings
+from analytic import (
+    SENSED,
+    Beam,
+    Direction,
+    InputError,
+    Readings,
+    reconstruct,
+    require_beam,
+)
 from analytic.problem.arrays import Floats
 from analytic.problem.readings_file import is_ours
 from analytic.problem.table import Place, as_numbers, row_number
@@ -21,6 +31,11 @@ from compare.read.units import DIMENSIONS, unit_in_si
 Source: TypeAlias = "str | Path | pd.DataFrame | Mapping[str, ArrayLike]"
 
 _TURN = 0.02  # of the stage's travel; a shorter way back is the stage's noise
+ASSUMED = "vibrissa_assumed"
+"""In the provenance of a sweep whose vibrissa nobody named."""
+
+_BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
+_LOOKED_AT = 2000  # stations that show whether a vibrissa can have made them
 _WHOLE_SWEEP = 0.5  # of the stage's travel; what goes less far is no sweep of its own
 
 
@@ -42,10 +57,12 @@ def read_measured(
         `otherwise`.
     columns : sequence of str
         ``NAME=COLUMN`` or ``NAME=COLUMN:UNIT``: which column is the sensed quantity NAME, and in
-        which unit. With units everything becomes SI, so the beam must be in units too. Columns of
-        a file without names are called ``1``, ``2``, ...
+        which unit; without UNIT it is that of the file's line of units, if it has one. With units
+        everything becomes SI, so the beam must be in units too. Columns of a file without names
+        are called ``1``, ``2``, ...
     otherwise : Beam, optional
-        The vibrissa, if nothing else says; ``Beam()`` by default.
+        The vibrissa, if nothing else says. By default that is ``Beam()``, if no column has a unit
+        and the readings can be of a vibrissa with L = EI = 1; ``provenance`` says so.
     direction : {"left", "right"}, optional
         Which sweep, if there is one in each direction.
 
@@ -58,8 +75,8 @@ def read_measured(
     Raises
     ------
     InputError
-        If the file, the beam, a column or a unit cannot be used, a cell is no number, or there are
-        several sweeps.
+        If the file, the beam, a column or a unit cannot be used, a cell is no number, the vibrissa
+        is missing, or there are several sweeps.
     """
     sweeps = read_sweeps(source, beam, columns, otherwise)
     several = len(sweeps) > 1
@@ -100,45 +117,88 @@ def read_sweeps(
         As `read_measured` does.
     """
     given = read_beam(beam) if isinstance(beam, Path) else beam
+    assumed = Beam()
     if isinstance(source, str | Path) and is_ours(Path(source)) and not columns:
-        readings = Readings.read(source, otherwise)
-        return [(_way(readings), readings if given is None else replace(readings, beam=given))]
-    table, place = _table(source)
-    table = _renamed(table, columns, place, _called(source))
-    readings = Readings.of(table, given or otherwise, f"measured, {_called(source)}", None, place)
-    return _sweeps(readings)
+        readings = Readings.read(source, otherwise or assumed)
+        readings = readings if given is None else replace(readings, beam=given)
+        sweeps = [(_way(readings), readings)]
+    else:
+        table, place, units = _table(source)
+        table, units = _renamed(table, columns, place, _called(source), units)
+        if units:
+            _check_beam(beam, given or otherwise)
+        provenance = {"units": units} if units else None
+        beam_of_all = given or otherwise or assumed
+        source_ = f"measured, {_called(source)}"
+        sweeps = _sweeps(Readings.of(table, beam_of_all, source_, provenance, place))
+    return [(way, _with_note(one) if one.beam is assumed else one) for way, one in sweeps]
+
+
+def _check_beam(beam: Path | Beam | None, found: Beam | None) -> None:
+    """Refuse columns with units beside no vibrissa, or a file with one in plain numbers."""
+    if found is None:
+        raise InputError(
+            "vibrissa",
+            "none given",
+            "given in units, as the columns are",
+            "use --beam FILE, for a reference --reference-beam FILE (in Python beam=Beam(...))",
+        )
+    if isinstance(beam, Path) and not found.si:
+        raise InputError(
+            f"[beam] of {beam}",
+            f"without units (length = {found.length:g})",
+            "given in units, as the columns are",
+            'write length = "50 mm" and the like',
+        )
+
+
+def _with_note(readings: Readings) -> Readings:
+    """The sweep of a vibrissa that nobody named, if it can be of one with L = EI = 1."""
+    thin = readings.table.iloc[:: len(readings.table) // _LOOKED_AT + 1]
+    some = replace(readings, table=thin.reset_index(drop=True)) if len(thin) > 1 else readings
+    require_beam(reconstruct(some), some)
+    return replace(readings, provenance={**readings.provenance, ASSUMED: "L = EI = 1"})
 
 
 def _called(source: Source) -> str:
     return Path(source).name if isinstance(source, str | Path) else "table"
 
 
-def _table(source: Source) -> tuple[pd.DataFrame, Place]:
+def _table(source: Source) -> tuple[pd.DataFrame, Place, dict[str, str]]:
+    """The table, where its rows stand, and units that it gives itself, by column."""
     if isinstance(source, pd.DataFrame):
-        return source, row_number
+        return source, row_number, {}
     if isinstance(source, Mapping):
         try:
-            return pd.DataFrame(dict(source)), row_number
+            return pd.DataFrame(dict(source)), row_number, {}
         except (ValueError, TypeError) as error:
             raise InputError(
                 "readings", "no table", "columns of one length by name", str(error)
             ) from error
     path = Path(source)
     if path.suffix == ".parquet" or is_ours(path):
-        return Readings.read_table(path), row_number
+        return Readings.read_table(path), row_number, {}
     if path.suffix.lower() not in TEXTS:
         raise InputError(
             "readings file", path, f"named *.parquet, *{', *'.join(TEXTS)}", "rename it"
         )
     found = read_text_table(path)
-    return found.frame, found.place
+    return found.frame, found.place, found.units
 
 
 def _renamed(
-    table: pd.DataFrame, columns: Sequence[str], place: Place, called: str
-) -> pd.DataFrame:
-    """The table with the sensed quantities under their own names and, with units, in SI."""
+    table: pd.DataFrame,
+    columns: Sequence[str],
+    place: Place,
+    called: str,
+    units: Mapping[str, str],
+) -> tuple[pd.DataFrame, dict[str, str]]:
+    """The table with the sensed quantities under their own names and, with units, in SI.
+
+    Also the units that they had.
+    """
     named: dict[str, Floats] = {}
+    used: dict[str, str] = {}
     for text in columns:
         name, _, rest = text.partition("=")
         # Names of columns may have colons, units never do.
@@ -159,8 +219,37 @@ def _renamed(
                 f"column {column!r} of {called}", "missing", f"one of {there}", "check --column"
             )
         numbers = as_numbers(table[column], column, place)
-        named[name] = numbers * unit_in_si(unit, DIMENSIONS[name]) if unit else numbers
-    return table.assign(**named)
+        used[name] = unit or units.get(column, "")
+        named[name] = numbers * _factor(name, used[name])
+    for name in SENSED:
+        if name not in named and units.get(name):
+            used[name] = units[name]
+            named[name] = as_numbers(table[name], name, place) * _factor(name, used[name])
+    found = table.assign(**named)
+    missing = [name for name in SENSED if name not in found]
+    if missing and not table.columns.empty:
+        raise InputError(
+            f"columns of {called}",
+            ", ".join(map(str, table.columns[:20])),
+            f"at least {', '.join(SENSED)}",
+            f"name them with --column {_example(missing[0], table.columns, units)}"
+            f"{' and so on' if len(missing) > 1 else ''}",
+        )
+    return found, {name: unit for name, unit in used.items() if unit}
+
+
+def _factor(name: str, unit: str) -> float:
+    return unit_in_si(unit, DIMENSIONS[name]) if unit else 1.0
+
+
+def _example(name: str, columns: Iterable[object], units: Mapping[str, str]) -> str:
+    """How the user may name a column: the first whose unit, in brackets or below, can be right."""
+    for column in map(str, columns):
+        unit = units.get(column) or next(iter(_BRACKETS.findall(column)), "")
+        with suppress(InputError):
+            unit_in_si(unit, DIMENSIONS[name])
+            return f"{name}='{column}:{unit}'"
+    return f"{name}=COLUMN:{DIMENSIONS[name]}"
 
 
 def _sweeps(readings: Readings) -> list[tuple[Direction, Readings]]:

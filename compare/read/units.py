@@ -17,6 +17,8 @@ DIMENSIONS = {"foot_x": "m", "force_x": "N", "force_y": "N", "moment_z": "N m"}
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 _LONGEST = 60  # characters of a unit
+# Nm and Nmm, as instruments write them; elsewhere Nm is a unit of yarn.
+_JOINED = re.compile(r"(?<!\w)([kmcµμ]?N)([mcµμ]?m)(?!\w)")
 # Names, products, quotients, parentheses, and powers of at most two digits, not raised again.
 _UNIT = re.compile(
     r"(?:[^\W\d]\w*|[²³]|[()·*/ ]|(?:\^|\*\*) ?-?\d{1,2}(?!\d| ?\^| ?\*\*)|(?<![\d.])1(?= ?/))+"
@@ -77,15 +79,38 @@ def unit_in_si(unit: str, dimension: str) -> float:
     InputError
         If it is unknown or of another dimension.
     """
-    unit = unit.strip()
+    found = _parsed(unit)
+    if found is None or not found.is_compatible_with(dimension):
+        raise _refused(unit.strip(), f"a unit of {dimension}")
+    return found.to(dimension).magnitude
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit, of any dimension.
+
+    Parameters
+    ----------
+    text : str
+        As ``"mm"`` or ``"counts"``.
+
+    Returns
+    -------
+    bool
+        True if it is a known one.
+    """
+    return _parsed(text) is not None
+
+
+def _parsed(text: str) -> "pint.Quantity[float] | None":
+    """One of a unit; None if it is not known."""
+    unit = _JOINED.sub(r"\1 \2", text.strip())
     balanced = unit.count("(") == unit.count(")")
     if not (balanced and len(unit) <= _LONGEST and _UNIT.fullmatch(unit)):
-        raise _refused(unit, f"a unit of {dimension}")
+        return None
     try:
-        found = _registry().Quantity(1.0, _registry().parse_units(unit)).to(dimension)
-    except Exception as error:  # pint has no common base of what a malformed unit raises
-        raise _refused(unit, f"a unit of {dimension}") from error
-    return found.magnitude
+        return _registry().Quantity(1.0, _registry().parse_units(unit))
+    except Exception:  # pint has no common base of what a malformed unit raises
+        return None
 
 
 def _refused(text: str, allowed: str) -> InputError:

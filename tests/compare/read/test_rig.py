@@ -4,13 +4,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analytic import SENSED, InputError, Readings, named_case, solve_sweep
+from analytic import SENSED, Beam, InputError, Readings, named_case, solve_sweep
 from compare import read_measured, read_sweeps
 
 FOOT = np.linspace(1, -1, 40)
 TABLE = pd.DataFrame(
     np.c_[FOOT, np.sin(FOOT), np.cos(FOOT), FOOT**2], columns=["stage", "Fx", "Fy", "Mz"]
 )
+BEAM = Beam()  # these readings are of no vibrissa: one must be given, or they are refused
 COLUMNS = [f"{name}={column}" for name, column in zip(SENSED, TABLE.columns, strict=True)]
 
 
@@ -29,24 +30,24 @@ def test_any_separator_decimal_mark_and_encoding(tmp_path, separator, decimal, e
     lines = TABLE.to_csv(index=False, sep="|", decimal=decimal).replace("|", separator).split("\n")
     text = ending.join(["# Prüfstand 3", "", *lines])
     (tmp_path / "rig.txt").write_bytes(text.encode(encoding))
-    assert_same(read_measured(tmp_path / "rig.txt", columns=COLUMNS))
+    assert_same(read_measured(tmp_path / "rig.txt", beam=BEAM, columns=COLUMNS))
 
 
 def test_a_preamble_a_column_of_times_and_no_header(tmp_path):
     path = tmp_path / "rig.csv"
     body = TABLE.assign(time="12:00:01")[["time", *TABLE.columns]].to_csv(index=False, sep=";")
     path.write_text(f"Program 7;;;;\nDate;2026-01-01;;;\nrate;100\n\n{body}")
-    assert_same(read_measured(path, columns=COLUMNS))
+    assert_same(read_measured(path, beam=BEAM, columns=COLUMNS))
     path.write_text(TABLE.to_csv(index=False, header=False))
     columns = [f"{name}={i}" for i, name in enumerate(SENSED, 1)]
-    assert_same(read_measured(path, columns=columns))
+    assert_same(read_measured(path, beam=BEAM, columns=columns))
 
 
 def test_tables_and_units():
     columns = ["foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm"]
     expected = TABLE * [1e-3, 1e-3, 1e-3, 1e-6]
-    assert_same(read_measured(TABLE, columns=columns), expected)
-    assert_same(read_measured(TABLE.to_dict("list"), columns=columns), expected)
+    assert_same(read_measured(TABLE, beam=BEAM, columns=columns), expected)
+    assert_same(read_measured(TABLE.to_dict("list"), beam=BEAM, columns=columns), expected)
 
 
 @pytest.mark.parametrize(
@@ -71,7 +72,7 @@ def test_what_cannot_be_read_is_named(tmp_path, monkeypatch, change, columns, sa
         text = (tmp_path / "rig.csv").read_text().replace(".", ",")
         (tmp_path / "rig.csv").write_text(text)
     with pytest.raises(InputError) as refused:
-        read_measured("rig.csv", columns=columns)
+        read_measured("rig.csv", beam=BEAM, columns=columns)
     assert said in str(refused.value)
 
 
@@ -80,28 +81,28 @@ def test_a_line_with_another_number_of_cells(tmp_path):
     for line in ("1,2", "1,2,3,4,5"):
         path.write_text(TABLE.to_csv(index=False) + line + "\n")
         with pytest.raises(InputError, match=r"line 42 .* cells: must be 4"):
-            read_measured(path, columns=COLUMNS)
+            read_measured(path, beam=BEAM, columns=COLUMNS)
 
 
 def test_there_and_back_are_two_sweeps():
     both = pd.concat([TABLE, TABLE[::-1]])
-    (left, one), (right, two) = read_sweeps(both, columns=COLUMNS)
+    (left, one), (right, two) = read_sweeps(both, beam=BEAM, columns=COLUMNS)
     assert (left, right) == ("left", "right")
     assert one.values("foot_x")[0] == two.values("foot_x")[-1] == 1
-    assert len(read_measured(both, columns=COLUMNS, direction="right").table) == 39
+    assert len(read_measured(both, beam=BEAM, columns=COLUMNS, direction="right").table) == 39
     with pytest.raises(InputError, match="one to the left, one to the right"):
-        read_measured(both, columns=COLUMNS)
+        read_measured(both, beam=BEAM, columns=COLUMNS)
 
 
 def test_rows_out_of_order_and_repeated_positions():
-    shuffled = read_measured(TABLE.sample(frac=1, random_state=1), columns=COLUMNS)
+    shuffled = read_measured(TABLE.sample(frac=1, random_state=1), beam=BEAM, columns=COLUMNS)
     assert_same(shuffled)
     assert shuffled.provenance["rows"]["out_of_order"] > 0
-    repeated = read_measured(TABLE.loc[np.repeat(TABLE.index, 3)], columns=COLUMNS)
+    repeated = read_measured(TABLE.loc[np.repeat(TABLE.index, 3)], beam=BEAM, columns=COLUMNS)
     assert_same(repeated)
     assert repeated.provenance["rows"] == {"out_of_order": 0, "averaged": 80}
     jitter = TABLE.assign(stage=FOOT + 0.03 * np.random.default_rng(0).standard_normal(40))
-    found = read_measured(jitter, columns=COLUMNS)
+    found = read_measured(jitter, beam=BEAM, columns=COLUMNS)
     assert (np.diff(found.values("foot_x")) < 0).all()
 
 
@@ -121,4 +122,4 @@ def test_a_million_rows(tmp_path):
     foot = np.linspace(1, -1, 1_000_000)
     path = tmp_path / "rig.csv"
     pd.DataFrame({name: foot.round(7) for name in SENSED}).to_csv(path, index=False, sep=";")
-    assert len(read_measured(path).table) > 900_000
+    assert len(read_measured(path, BEAM).table) > 900_000
