@@ -19,7 +19,7 @@ _UNLOADED = 1e-9  # of EI/L^2: below, a force has no direction to speak of
 _SIGMAS = 5.0  # the same, in standard deviations of the force's noise
 _SAMPLES = 400  # of the noise, a station
 _COVERAGE = 0.95
-_CLEAR = 0.1  # of the largest force; stations with less tell noise from no wrong vibrissa
+_CLEAR = 0.1  # of the largest force; with less, noise makes of a contact what it likes
 _LONGEST = 1.1  # L; a tip contact seen through a few percent of noise may seem as long
 _NEARLY_ONE = 1e-6  # L; by how much a contact may miss the tip and still be called a tip contact
 
@@ -100,51 +100,44 @@ def require_beam(found: pd.DataFrame, readings: Readings) -> None:
     ------
     InputError
         If most stations with a good part of the largest force have contacts beyond the vibrissa's
-        length, or no elastica at all. If the beam is the default one, also if the contacts do not
-        lie on one object.
+        length, or no elastica at all.
+    """
+    loaded = clearly_loaded(readings)
+    wrong = int((found["status"][loaded] != "ok").sum())
+    if 2 * wrong <= loaded.sum():
+        return
+    impossible = f"{wrong} of {loaded.sum()} contacts cannot be of"
+    if readings.beam == Beam():
+        raise InputError(
+            "vibrissa",
+            "none given",
+            f"the one that was measured ({impossible} L = EI = 1)",
+            "use --beam FILE (in Python a Beam), in the units of the readings",
+        )
+    raise InputError(
+        "vibrissa",
+        f"of length {readings.beam.length:g} and flexural rigidity "
+        f"{readings.beam.flexural_rigidity:g}",
+        f"the one that was measured ({impossible} this one)",
+        f"check its units, and those of {readings.source}",
+    )
+
+
+def clearly_loaded(readings: Readings) -> Booleans:
+    """Stations that show a wrong vibrissa whatever the noise.
+
+    Parameters
+    ----------
+    readings : Readings
+        One sweep.
+
+    Returns
+    -------
+    array of bool, shape (stations,)
+        Whether the force is more than a tenth of the largest.
     """
     force = np.hypot(readings.values("force_x"), readings.values("force_y"))
-    loaded = force > _CLEAR * np.nanmax(force, initial=0.0)
-    wrong = int((found["status"][loaded] != "ok").sum())
-    impossible = (
-        f"{wrong} of {loaded.sum()} contacts cannot be of" if 2 * wrong > loaded.sum() else ""
-    )
-    beam = readings.beam
-    if beam == Beam():
-        apart = _off_the_tangents(found[loaded & (found["status"] == "ok")])
-        if not impossible and apart > 1:
-            impossible = f"contacts {apart:.2g} L off any one object with"
-        if impossible:
-            raise InputError(
-                "vibrissa",
-                "none given",
-                f"the one that was measured ({impossible} L = EI = 1)",
-                "use --beam FILE (in Python a Beam), in the units of the readings",
-            )
-    elif impossible:
-        raise InputError(
-            f"readings ({readings.source})",
-            f"up to a force of {np.nanmax(force):.3g}",
-            f"of the vibrissa ({impossible} one of length {beam.length:g} and flexural rigidity "
-            f"{beam.flexural_rigidity:g})",
-            "check the units of both",
-        )
-
-
-def _off_the_tangents(found: pd.DataFrame) -> float:
-    """How far the contacts get along their normals: not at all on a contour or a corner [length].
-
-    The largest step counts as none: the vibrissa may swing to the other side of the object.
-    """
-    x, y, alpha = (
-        found[name].to_numpy(dtype=float) for name in ("contact_x", "contact_y", "contact_angle")
-    )
-    normal = (alpha[1:] + alpha[:-1]) / 2
-    steps = np.diff(y) * np.cos(normal) - np.diff(x) * np.sin(normal)
-    if not len(steps):
-        return 0.0
-    steps[np.argmax(np.abs(steps))] = 0.0
-    return float(np.ptp(np.cumsum(steps)))
+    return np.asarray(force > _CLEAR * np.nanmax(force, initial=0.0), dtype=bool)
 
 
 def reconstruct_by_decision(readings: Readings, tolerance: float = 1e-6) -> pd.DataFrame:

@@ -94,6 +94,29 @@ def without_offset(readings: Readings, offset: float) -> Readings:
     return replace(readings, table=table.assign(**moved), provenance=provenance)
 
 
+def checked_offset(offset: float) -> float:
+    """An offset that somebody gave.
+
+    Parameters
+    ----------
+    offset : float
+        [length]
+
+    Returns
+    -------
+    float
+        The same.
+
+    Raises
+    ------
+    InputError
+        If it is no finite number.
+    """
+    if isinstance(offset, bool | str) or not np.isfinite(offset):
+        raise InputError("offset", repr(offset), "'auto' or a finite number", "give a length")
+    return float(offset)
+
+
 def estimate_offset(
     reference: Readings,
     candidate: Readings,

@@ -10,6 +10,7 @@ from types import FrameType
 from analytic.problem.errors import InputError
 
 _SIGNALS = {"SIGINT": "interrupted", "SIGTERM": "ended by SIGTERM", "SIGHUP": "ended by SIGHUP"}
+_LONGEST = 100  # characters of a name
 
 
 class Ended(KeyboardInterrupt):
@@ -53,6 +54,26 @@ def output_folder(folder: Path) -> Iterator[Path]:
         yield folder
     finally:
         _remove_empty(made)
+
+
+def distinct_name(path: Path) -> str:
+    """What results of a file are called: its name, and the folders on the way to it.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    str
+        As ``"one-analytic"`` of ``one/analytic.parquet``; of a file in the current folder its name
+        alone, of one in ``results`` without that word.
+    """
+    absolute, here = path.absolute(), Path.cwd()
+    inside = absolute.is_relative_to(here)
+    steps = absolute.relative_to(here if inside else absolute.anchor).with_suffix("").parts
+    return "-".join(steps[1:] if steps[0] == "results" and len(steps) > 1 else steps)[-_LONGEST:]
 
 
 @contextmanager

@@ -2,7 +2,7 @@
 
 import os
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -16,12 +16,17 @@ from compare.commands.options import (
     Way,
     number_or_auto,
 )
-from compare.commands.output import output_folder
+from compare.commands.output import distinct_name, output_folder
 from compare.read.suffixes import TABLES
+
+if TYPE_CHECKING:
+    from compare.read.case import Job
 
 
 def compare(
-    reference: Annotated[Path, typer.Argument(help="Readings, Parquet or CSV.")],
+    reference: Annotated[
+        str, typer.Argument(help="A case, for its closed form, or a file of readings.")
+    ],
     candidate: Annotated[Path, typer.Argument(help="Readings to compare with them.")],
     out: OutFolder = None,
     column: Columns = None,
@@ -54,7 +59,10 @@ def compare(
         typer.Option(metavar="FILE", help="TOML file whose [tolerances] table has the limits."),
     ] = None,
 ) -> int:
-    """Compare two files of readings, of engines or of a rig."""
+    """Compare a file of readings, of an engine or a rig, with another or with a case's closed form.
+
+    The limits are those of --tolerances, else the case's.
+    """
     given_offset, given_noise = (
         number_or_auto("--offset", offset),
         number_or_auto("--noise", noise),
@@ -62,16 +70,30 @@ def compare(
     from compare.read.limits import read_tolerances
 
     limits = None if tolerances is None else read_tolerances(tolerances)
+    job = _job(reference)
+    if job is not None and (reference_column or reference_beam):
+        raise InputError(
+            "reference", repr(reference), "a file, beside --reference-...", "leave the option out"
+        )
+    from analytic import solve_sweep
     from compare.commands import terminal
     from compare.comparison import compare as compare_readings
+    from compare.read.assumed import ASSUMED
     from compare.read.rig import read_measured
 
-    expected = read_measured(reference, reference_beam, reference_column or (), direction=direction)
-    measured = read_measured(candidate, beam, column or (), expected.beam, direction)
+    if job is None:
+        path = Path(reference)
+        expected = read_measured(path, reference_beam, reference_column or (), None, direction)
+    else:
+        expected = solve_sweep(job.case)
+        limits = limits or job.tolerances
+    known = None if ASSUMED in expected.provenance else expected.beam
+    measured = read_measured(candidate, beam, column or (), known, direction)
     comparison = compare_readings(
         expected, measured, limits, offset=given_offset, noise=given_noise
     )
-    default = Path("results") / f"{reference.stem}-{candidate.stem}"
+    called = distinct_name(Path(reference)) if job is None else job.case.name
+    default = Path("results") / f"{called}-{distinct_name(candidate)}"
     with output_folder(out or default) as folder:
         from compare.show.report import write_report
 
@@ -96,18 +118,29 @@ def reconstruct(
             help="Noise of the clamp readings over their largest magnitude, as 0.01.",
         ),
     ] = None,
+    offset: Annotated[
+        float,
+        typer.Option(
+            metavar="NUMBER",
+            help="By how much foot_x is too large, as `compare --offset auto` finds it; in the "
+            "vibrissa's unit of length, metres beside units.",
+        ),
+    ] = 0.0,
 ) -> int:
     """Find the object from the clamp readings alone."""
     from analytic import reconstruct as reconstruct_contour
     from analytic import relative_noise, require_beam
+    from compare.align.offset import checked_offset, without_offset
     from compare.commands import terminal
     from compare.read.rig import read_measured
 
     readings = read_measured(file, beam, column or (), direction=direction)
+    if offset:
+        readings = without_offset(readings, checked_offset(offset))
     level = None if noise is None else relative_noise(readings, noise)
     found = reconstruct_contour(readings, level)
     require_beam(found, readings)
-    with output_folder(out or Path("results") / f"{file.stem}-reconstructed") as folder:
+    with output_folder(out or Path("results") / f"{distinct_name(file)}-reconstructed") as folder:
         from analytic.problem.files import write_whole
         from compare.show.figures.geometry import reconstruction
         from compare.show.page import save_figure
@@ -140,14 +173,11 @@ def side_by_side(
         raise InputError(
             "FILE", ", ".join(map(str, files)), "each file once", "leave the second one out"
         )
-    job = None
-    if Path(reference).suffix.lower() not in TABLES:
-        from compare.read.case import load_job
-
-        job = load_job(reference)
+    job = _job(reference)
     from analytic import Beam, Readings, solve_sweep
     from analytic.problem.readings_file import is_ours
     from compare.commands import terminal
+    from compare.read.assumed import ASSUMED
     from compare.read.rig import read_measured
     from compare.show.side_by_side import side_by_side as compare_all
 
@@ -157,7 +187,8 @@ def side_by_side(
         return read_measured(path, beam, column or (), otherwise, direction)
 
     exact = read(Path(reference)) if job is None else solve_sweep(job.case)
-    candidates = {name: read(path, exact.beam) for name, path in _short(files).items()}
+    known = None if ASSUMED in exact.provenance else exact.beam
+    candidates = {name: read(path, known) for name, path in _short(files).items()}
     found = compare_all(exact, candidates)
     with output_folder(out or Path("results") / "side-by-side") as folder:
         from analytic.problem.files import write_whole
@@ -171,6 +202,15 @@ def side_by_side(
         terminal.print_written(path)
         terminal.print_written(save_figure(picture(found), folder / "side-by-side.png"))
     return AGREES if all(one.agrees for one in found.against.values()) else DISAGREES
+
+
+def _job(reference: str) -> "Job | None":
+    """The case of that name; None if it is a file of readings."""
+    if Path(reference).suffix.lower() in TABLES:
+        return None
+    from compare.read.case import load_job
+
+    return load_job(reference)
 
 
 def _short(files: list[Path]) -> dict[str, Path]:

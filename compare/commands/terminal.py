@@ -25,6 +25,8 @@ from rich.text import Text
 from analytic import CLAMP_READINGS, PHASES, Readings
 from compare.comparison import Comparison
 from compare.explain.budget import Budget
+from compare.read.assumed import ASSUMED
+from compare.read.rig import OWN_UNITS
 from compare.show.figures.budget_bars import headline
 from compare.show.side_by_side import SideBySide
 from compare.simulate.target import Followed
@@ -113,7 +115,7 @@ def print_sweep(readings: Readings) -> None:
 
 
 def note_rows(readings: Readings) -> None:
-    """Say on standard error what was done to the rows of a rig's file, if anything was.
+    """Say on standard error what was assumed of a rig's file or done to its rows, if anything.
 
     Parameters
     ----------
@@ -121,7 +123,13 @@ def note_rows(readings: Readings) -> None:
         As `compare.read_measured` returns them.
     """
     rows = readings.provenance.get("rows", {})
-    notes = [
+    notes = []
+    if ASSUMED in readings.provenance:
+        notes.append("no vibrissa given, L = EI = 1 is assumed")
+    if units := readings.provenance.get(OWN_UNITS):
+        shown = ", ".join(f"{name} in {unit}" for name, unit in units.items())
+        notes.append(f"units taken from the line below the names: {shown}")
+    notes += [
         f"{count} rows {what}"
         for name, what in (
             ("out_of_order", "out of order were sorted by foot_x"),

@@ -8,7 +8,12 @@ import numpy as np
 import pandas as pd
 
 from analytic import SENSED, InputError, Readings
-from compare.align.offset import Offset, estimate_offset, without_offset
+from compare.align.offset import (
+    Offset,
+    checked_offset,
+    estimate_offset,
+    without_offset,
+)
 from compare.align.order import Order, in_order
 from compare.align.stations import Alignment, align
 from compare.measure.disagreement import Disagreement, Occurrence, disagreements
@@ -129,7 +134,7 @@ def measure(
     shift = (
         estimate_offset(reference, candidate, judged["reference"], judged["candidate"])
         if offset == "auto"
-        else Offset(_finite(offset))
+        else Offset(checked_offset(offset))
     )
     candidate = without_offset(candidate, shift.value)
     alignment = align(reference, candidate, judged["reference"], judged["candidate"])
@@ -159,12 +164,6 @@ def measure(
         records,
         order,
     )
-
-
-def _finite(offset: float) -> float:
-    if isinstance(offset, bool | str) or not np.isfinite(offset):
-        raise InputError("offset", repr(offset), "'auto' or a finite number", "give a length")
-    return float(offset)
 
 
 def _check_size(which: str, sweep: Readings) -> None:

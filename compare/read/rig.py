@@ -11,18 +11,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from analytic import (
-    SENSED,
-    Beam,
-    Direction,
-    InputError,
-    Readings,
-    reconstruct,
-    require_beam,
-)
+from analytic import SENSED, Beam, Direction, InputError, Readings
 from analytic.problem.arrays import Floats
 from analytic.problem.readings_file import is_ours
 from analytic.problem.table import Place, as_numbers, row_number
+from compare.read.assumed import assumed_of
 from compare.read.case import read_beam
 from compare.read.dialect import read_text_table
 from compare.read.suffixes import TEXTS
@@ -31,11 +24,10 @@ from compare.read.units import DIMENSIONS, unit_in_si
 Source: TypeAlias = "str | Path | pd.DataFrame | Mapping[str, ArrayLike]"
 
 _TURN = 0.02  # of the stage's travel; a shorter way back is the stage's noise
-ASSUMED = "vibrissa_assumed"
-"""In the provenance of a sweep whose vibrissa nobody named."""
+OWN_UNITS = "units_of_the_file"
+"""In the provenance of a sweep: units that nobody named, but its file."""
 
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
-_LOOKED_AT = 2000  # stations that show whether a vibrissa can have made them
 _WHOLE_SWEEP = 0.5  # of the stage's travel; what goes less far is no sweep of its own
 
 
@@ -124,14 +116,14 @@ def read_sweeps(
         sweeps = [(_way(readings), readings)]
     else:
         table, place, units = _table(source)
-        table, units = _renamed(table, columns, place, _called(source), units)
-        if units:
+        table, used, own = _renamed(table, columns, place, _called(source), units)
+        if used:
             _check_beam(beam, given or otherwise)
-        provenance = {"units": units} if units else None
+        provenance = {name: x for name, x in (("units", used), (OWN_UNITS, own)) if x}
         beam_of_all = given or otherwise or assumed
         source_ = f"measured, {_called(source)}"
         sweeps = _sweeps(Readings.of(table, beam_of_all, source_, provenance, place))
-    return [(way, _with_note(one) if one.beam is assumed else one) for way, one in sweeps]
+    return [(way, assumed_of(one) if one.beam is assumed else one) for way, one in sweeps]
 
 
 def _check_beam(beam: Path | Beam | None, found: Beam | None) -> None:
@@ -150,14 +142,6 @@ def _check_beam(beam: Path | Beam | None, found: Beam | None) -> None:
             "given in units, as the columns are",
             'write length = "50 mm" and the like',
         )
-
-
-def _with_note(readings: Readings) -> Readings:
-    """The sweep of a vibrissa that nobody named, if it can be of one with L = EI = 1."""
-    thin = readings.table.iloc[:: len(readings.table) // _LOOKED_AT + 1]
-    some = replace(readings, table=thin.reset_index(drop=True)) if len(thin) > 1 else readings
-    require_beam(reconstruct(some), some)
-    return replace(readings, provenance={**readings.provenance, ASSUMED: "L = EI = 1"})
 
 
 def _called(source: Source) -> str:
@@ -192,13 +176,14 @@ def _renamed(
     place: Place,
     called: str,
     units: Mapping[str, str],
-) -> tuple[pd.DataFrame, dict[str, str]]:
+) -> tuple[pd.DataFrame, dict[str, str], dict[str, str]]:
     """The table with the sensed quantities under their own names and, with units, in SI.
 
-    Also the units that they had.
+    Also the units that they had, and those of them that only the file names.
     """
     named: dict[str, Floats] = {}
     used: dict[str, str] = {}
+    own: dict[str, str] = {}
     for text in columns:
         name, _, rest = text.partition("=")
         # Names of columns may have colons, units never do.
@@ -219,12 +204,17 @@ def _renamed(
                 f"column {column!r} of {called}", "missing", f"one of {there}", "check --column"
             )
         numbers = as_numbers(table[column], column, place)
-        used[name] = unit or units.get(column, "")
-        named[name] = numbers * _factor(name, used[name])
-    for name in SENSED:
-        if name not in named and units.get(name):
-            used[name] = units[name]
-            named[name] = as_numbers(table[name], name, place) * _factor(name, used[name])
+        named[name] = numbers
+        if unit:
+            used[name] = unit
+        elif units.get(column):
+            own[name] = units[column]
+    for name in set(units) & set(SENSED) - set(named):
+        if units[name]:
+            named[name], own[name] = as_numbers(table[name], name, place), units[name]
+    used |= own
+    for name, unit in used.items():
+        named[name] = named[name] * unit_in_si(unit, DIMENSIONS[name])
     found = table.assign(**named)
     missing = [name for name in SENSED if name not in found]
     if missing and not table.columns.empty:
@@ -232,14 +222,9 @@ def _renamed(
             f"columns of {called}",
             ", ".join(map(str, table.columns[:20])),
             f"at least {', '.join(SENSED)}",
-            f"name them with --column {_example(missing[0], table.columns, units)}"
-            f"{' and so on' if len(missing) > 1 else ''}",
+            f"name them with --column {_example(missing[0], table.columns, units)}",
         )
-    return found, {name: unit for name, unit in used.items() if unit}
-
-
-def _factor(name: str, unit: str) -> float:
-    return unit_in_si(unit, DIMENSIONS[name]) if unit else 1.0
+    return found, used, own
 
 
 def _example(name: str, columns: Iterable[object], units: Mapping[str, str]) -> str:

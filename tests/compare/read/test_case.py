@@ -115,3 +115,43 @@ def test_integers_beyond_floats_are_one_line(tmp_path, capfd, key, number):
     text = text.replace('kind = "catenary"\nkind', "a = 1\nkind")
     assert f"line 3: profile.{key} = an integer of" in refused(tmp_path, text)
     assert capfd.readouterr() == ("", "")
+
+
+UNITED = """[beam]
+length = "50 mm"
+flexural_rigidity = "2e-6 N m^2"
+[profile]
+kind = "circle"
+radius = "40 mm"
+lowest = [0, "20 mm"]
+"""
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (('flexural_rigidity = "2e-6 N m^2"\n', ""), "line 1: beam.flexural_rigidity = missing"),
+        (('length = "50 mm"\n', ""), "line 1: beam.length = missing"),
+        ((UNITED[: UNITED.index("[profile]")], ""), "beam.length = missing"),
+        ((UNITED[UNITED.index('"circle"') :], '"two-circles"\n'), "profile.right_radius = missing"),
+        (('"50 mm"', '"50 mmm"'), "a known unit of length, as '50 mm'"),
+        (('"2e-6 N m^2"', '"2 N"'), "as '2 N mm^2'"),
+        (('lowest = [0, "20 mm"]', 'lowest = "20 mm"'), "two lengths, [x, y]"),
+        (('lowest = [0, "20 mm"]', 'lowest = ["20 mm"]'), "two lengths, [x, y]"),
+        (
+            ('"circle"\nradius = "40 mm"', '"ellipse"\nsemi_axes = "30 mm"'),
+            "two lengths, [along x, along y]",
+        ),
+    ],
+)
+def test_beside_units_nothing_is_one_by_default(tmp_path, change, said):
+    assert change[0] in UNITED
+    assert said in refused(tmp_path, UNITED.replace(*change))
+
+
+def test_a_case_with_units_remembers_that_it_is_in_si(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(UNITED)
+    assert load_job(str(path)).case.beam.si
+    path.write_text(CIRCLE)
+    assert not load_job(str(path)).case.beam.si

@@ -1,0 +1,132 @@
+"""A rig's units, and the vibrissa that they are of: never assumed where they cannot be."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import SENSED, Beam, Case, InputError, Readings, circle, named_case, solve_sweep
+from compare import read_measured
+from compare.read.assumed import ASSUMED
+from compare.read.rig import OWN_UNITS
+from compare.read.units import is_unit, unit_in_si
+
+BEAM = Beam(0.05, 2e-6, 0.25e-3)  # m, N m^2, m
+FILE_UNITS = (1e-3, 1e-3, 1e-3, 1e-6)  # mm, mN, mN, mN mm
+CASE = "[beam]\nlength = {}\nflexural_rigidity = {}\nradius = {}\n"
+
+
+@pytest.fixture(scope="module")
+def exact() -> Readings:
+    return solve_sweep(Case(BEAM, circle(0.04, lowest=(0.0, 0.02))))
+
+
+@pytest.fixture
+def rig(exact) -> pd.DataFrame:
+    return exact.table[list(SENSED)] / np.array(FILE_UNITS)
+
+
+def test_units_without_a_vibrissa(rig):
+    columns = [f"{n}={n}:{u}" for n, u in zip(SENSED, ("mm", "mN", "mN", "mN mm"), strict=True)]
+    with pytest.raises(InputError, match=r"vibrissa = none given: .* --beam FILE"):
+        read_measured(rig, columns=columns)
+    with pytest.raises(InputError, match="vibrissa = none given"):
+        read_measured(rig, columns=columns[:1])
+    assert read_measured(rig, BEAM, columns).beam == BEAM
+
+
+@pytest.mark.parametrize("length", [1e3, 1e2, 1.0])
+@pytest.mark.parametrize("force", [1e3, 1.0])
+@pytest.mark.parametrize("noise", [0.0, 0.01])
+def test_readings_of_no_vibrissa_of_length_and_rigidity_one(exact, length, force, noise):
+    """A rig of 50 mm in mm, cm or m and mN or N, whose numbers are of no such vibrissa."""
+    table = exact.table[list(SENSED)] * [length, force, force, force * length]
+    scatter = np.random.default_rng(0).standard_normal(table.shape)
+    table += noise * scatter * [0, *table.abs().max()[1:]]
+    with pytest.raises(InputError, match="vibrissa = none given"):
+        read_measured(table)
+
+
+@pytest.mark.parametrize(
+    "case", ["catenary", "parabola", "two-circles", "shallow-catenary", "tip-only"]
+)
+@pytest.mark.parametrize("noise", [0.0, 0.01, 0.05])
+def test_dimensionless_readings_go_on_working(case, noise):
+    sweep = solve_sweep(named_case(case))
+    table = sweep.table[list(SENSED)].copy()
+    scatter = np.random.default_rng(1).standard_normal(table.shape)
+    table += noise * scatter * [0, *table.abs().max()[1:]]
+    found = read_measured(table)
+    assert found.beam == Beam()
+    assert found.provenance[ASSUMED] == "L = EI = 1"
+
+
+def test_a_vibrissa_in_plain_numbers_beside_units(tmp_path, rig):
+    columns = [f"{n}={n}:{u}" for n, u in zip(SENSED, ("mm", "mN", "mN", "mN mm"), strict=True)]
+    path = tmp_path / "beam.toml"
+    path.write_text(CASE.format(50, 2, 0.25))
+    with pytest.raises(InputError, match="without units"):
+        read_measured(rig, path, columns)
+    path.write_text(CASE.format('"50 mm"', '"2e-6 N m^2"', '"0.25 mm"'))
+    found = read_measured(rig, path, columns)
+    assert found.beam.si
+    assert found.provenance["units"]["moment_z"] == "mN mm"
+    path.write_text(CASE.format('"50 mm"', "2", '"0.25 mm"'))
+    with pytest.raises(InputError, match="flexural_rigidity = without a unit"):
+        read_measured(rig, path, columns)
+
+
+@pytest.mark.parametrize("separator", [";", "\t", ",", "   "])
+@pytest.mark.parametrize("brackets", ["{}", "[{}]"])
+def test_a_line_of_units_below_the_names(tmp_path, exact, rig, separator, brackets):
+    names, units = ("Weg", "Kraft x", "Kraft y", "Moment"), ("mm", "mN", "mN", "mN mm")
+    head = "Messung 7\n" + separator.join(names) + "\n"
+    head += separator.join(brackets.format(unit) for unit in units) + "\n"
+    body = rig.to_csv(index=False, header=False, sep="|").replace("|", separator)
+    path = tmp_path / "rig.txt"
+    path.write_text(head + body)
+    columns = [f"{name}={column}" for name, column in zip(SENSED, names, strict=True)]
+    found = read_measured(path, BEAM, columns)
+    assert found.provenance[OWN_UNITS]["moment_z"] == "mN mm"
+    expected = exact.table[list(SENSED)].to_numpy()
+    np.testing.assert_allclose(
+        found.table[list(SENSED)].to_numpy(), expected, rtol=1e-12, atol=1e-15
+    )
+    with pytest.raises(InputError, match="vibrissa = none given"):
+        read_measured(path, columns=columns)
+    # A unit that is named counts, and the file's own names need not be.
+    named = read_measured(path, BEAM, [*columns[:3], "moment_z=Moment:N m"])
+    assert named.values("moment_z") == pytest.approx(1e6 * found.values("moment_z"))
+    path.write_text(path.read_text().replace(separator.join(names), separator.join(SENSED)))
+    assert read_measured(path, BEAM).values("foot_x") == pytest.approx(found.values("foot_x"))
+
+
+def test_names_that_are_units_by_chance_are_names(tmp_path, rig):
+    """A preamble as wide as the table is no line of names."""
+    path = tmp_path / "rig.csv"
+    path.write_text("Date;2026;;\nm;N;V;s\n" + rig.to_csv(index=False, header=False, sep=";"))
+    found = read_measured(path, BEAM, [f"{n}={c}" for n, c in zip(SENSED, "mNVs", strict=True)])
+    assert "units" not in found.provenance
+
+
+def test_columns_that_nobody_named(tmp_path, rig):
+    path = tmp_path / "rig.csv"
+    names = ["Zeit [s]", "Kraft (mN)", "Weg [mm]", "Mz [N mm]"]
+    rig.set_axis(names, axis=1).to_csv(path, index=False)
+    with pytest.raises(InputError, match=r"--column foot_x='Weg \[mm\]:mm'"):
+        read_measured(path)
+    with pytest.raises(InputError, match=r"--column force_x='Kraft \(mN\):mN'"):
+        read_measured(path, columns=["foot_x=Weg [mm]"])
+
+
+@pytest.mark.parametrize(("unit", "size"), [("N·mm²", 1e-6), ("GPa mm^4", 1e-3), ("N mm^2", 1e-6)])
+def test_flexural_rigidity_in_engineers_units(unit, size):
+    assert unit_in_si(unit, "N m^2") == pytest.approx(size)
+
+
+@pytest.mark.parametrize(
+    ("unit", "size"), [("Nm", 1.0), ("Nmm", 1e-3), ("mNm", 1e-3), ("mNmm", 1e-6)]
+)
+def test_moments_as_instruments_write_them(unit, size):
+    assert unit_in_si(unit, "N m") == pytest.approx(size)
+    assert is_unit(unit)
+    assert not is_unit("Weg")
