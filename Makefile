@@ -15,45 +15,47 @@ RUNS := $(foreach case,$(CASES),$(foreach beam,$(BEAMS),results/runs/$(case)-$(b
 FOUND = --budget --beam $(BEAM) --out $(@D) $(ARGS) || test $$? -eq 1; test -f $@
 
 .NOTPARALLEL:
-.PHONY: help install run test test-slow test-all coverage lint docs wheel fuzz bench results again studies \
+.PHONY: help install develop run test test-slow test-all coverage lint docs wheel fuzz bench results again studies \
   install-mujoco3 test-mujoco3 versions clean
 
 help:            ## list the targets
 	@grep -E '^[a-z0-9-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
 
-install: .venv/installed      ## build .venv with the newest MuJoCo
+install: .venv/installed      ## build .venv with the newest MuJoCo and all that a user needs
+
+develop: .venv/developed      ## the same with the tools of the targets below: half as large again
 
 run: install     ## sweep CASE in both models and write results/CASE/report.html
 	$(BIN)/vibrissa run $(CASE) $(ARGS)
 
-test: install    ## the fast tests, under two minutes
+test: develop    ## the fast tests, under two minutes
 	$(BIN)/python -m pytest -n auto $(ARGS)
 
-test-slow: install   ## the slow tests alone
+test-slow: develop   ## the slow tests alone
 	$(BIN)/python -m pytest -n auto -m slow $(ARGS)
 
-test-all: install    ## all tests, the slow ones too
+test-all: develop    ## all tests, the slow ones too
 	$(BIN)/python -m pytest -n auto -m "slow or not slow" $(ARGS)
 
-coverage: install    ## how much of the code the fast tests run; ARGS='-m "slow or not slow"' for all tests
+coverage: develop    ## how much of the code the fast tests run; ARGS='-m "slow or not slow"' for all tests
 	$(BIN)/python -m pytest -n auto --cov --cov-report=term --cov-report=html $(ARGS)
 
-lint: install    ## format, style, types, import rules
+lint: develop    ## format, style, types, import rules
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-docs: install    ## the pages and an API reference -> site/index.html
+docs: develop    ## the pages and an API reference -> site/index.html
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
 
-wheel: install   ## dist/*.whl
+wheel: develop   ## dist/*.whl
 	$(BIN)/python -m build --wheel --no-isolation
 
-fuzz: install    ## bad input to all commands; ARGS="N SEED"
+fuzz: develop    ## bad input to all commands; ARGS="N SEED"
 	$(BIN)/python -m tests.fuzz.inputs $(or $(ARGS),10000 1)
 
-bench: install   ## speed, side by side on one core; ARGS="analytic mujoco stepping exudyn study"
+bench: develop   ## speed, side by side on one core; ARGS="analytic mujoco stepping exudyn study"
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench $(ARGS)
 
 results: $(RUNS) | install ## results/README.md: all named cases, all beams there are; goes on where it stopped
@@ -102,6 +104,10 @@ results/runs/%-cable/report.html: | install-mujoco3
 
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable . pytest
+	touch $@
+
+.venv/developed: .venv/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,dask,docs]'
 	touch $@
 

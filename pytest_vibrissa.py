@@ -217,6 +217,7 @@ def _agreement(
         noise: float | Literal["auto"] = 0.0,
         budget: Budget | None = None,
     ) -> Comparison:
+        __tracebackhide__ = True
         nonlocal reported
         gates = _ours("compare.testing.gates")
         if reference is None:

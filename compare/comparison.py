@@ -13,7 +13,7 @@ from analytic import PHASES, InputError, Readings
 from compare.explain.likely import likely_cause
 from compare.judge.allowance import NoiseAllowance, noise_allowance
 from compare.judge.failures import Failure, failures
-from compare.judge.tolerances import Tolerances
+from compare.judge.tolerances import CONVENTION, Tolerances
 from compare.measure.measurement import Measurement, measure
 from compare.sense.noise import checked_level, noise_level
 
@@ -57,6 +57,11 @@ class Comparison(Measurement):
     def likely(self) -> str | None:
         """What the disagreement looks like; None if it agrees, or matches no known cause."""
         return None if self.agrees else likely_cause(self, self.tolerances, self.noise)
+
+    @property
+    def remark(self) -> str | None:
+        """What is to be known of the limits that are exceeded; None if there is nothing."""
+        return CONVENTION if self.exceeded and self.tolerances.conventional else None
 
     @property
     def agrees(self) -> bool:
@@ -129,6 +134,8 @@ class Comparison(Measurement):
             f"{self.candidate.source} {verdict} {self.reference.source} "
             f"({compared} of {len(self.candidate.table)} stations compared)"
         )
+        if self.likely is not None:
+            yield f"  likely: {self.likely}"
         for name, d in self.disagreement.items():
             limit = self.tolerances.of_sweep(name)
             yield f"  {name:9} rms {d.rms:.1e}  max {d.max:.1e}  allowed {limit:.1e} rms"
@@ -139,8 +146,8 @@ class Comparison(Measurement):
             yield f"  failed: {failure.clause}"
         if len(self.exceeded) > _SHOWN:
             yield f"  and {len(self.exceeded) - _SHOWN} more, see .failures"
-        if self.likely is not None:
-            yield f"  likely: {self.likely}"
+        if self.remark is not None:
+            yield f"  {self.remark}"
 
 
 def compare(

@@ -3,7 +3,7 @@
 import numpy as np
 
 from analytic.checks.integration import march
-from analytic.from_clamp.reconstruct import reconstruct
+from analytic.from_clamp.contact import located
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED
 from analytic.problem.readings import Readings
@@ -32,7 +32,7 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
     force_x = readings.values("force_x") / beam.force_unit
     force_y = readings.values("force_y") / beam.force_unit
     moment = readings.values("moment_z") / beam.moment_unit
-    loaded = reconstruct(readings)["contact_arc_length"].to_numpy(dtype=float) / beam.length
+    loaded = located(readings).arc_length
     loaded = np.minimum(np.nan_to_num(loaded, nan=1.0), 1.0)
 
     def rate(state: Floats) -> Floats:

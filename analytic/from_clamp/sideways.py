@@ -39,7 +39,7 @@ So the clamp shows it: a sweep is held in its plane as long as `force_x` has not
 
 import numpy as np
 
-from analytic.from_clamp.reconstruct import reconstruct
+from analytic.from_clamp.contact import located
 from analytic.problem.arrays import Floats
 from analytic.problem.readings import Readings
 
@@ -58,7 +58,5 @@ def sideways_stiffness(readings: Readings) -> Floats:
         Force across the plane over displacement, at the contact [force/length]: negative where the
         vibrissa leaves the plane unless something holds it. NaN where nothing touches.
     """
-    found = reconstruct(readings)
-    alpha = found["contact_angle"].to_numpy(dtype=float)
-    contact_x = found["contact_x"].to_numpy(dtype=float) + readings.beam.radius * np.sin(alpha)
+    contact_x = located(readings).xi * readings.beam.length
     return np.asarray(-readings.values("force_x") / (contact_x - readings.values("foot_x")))

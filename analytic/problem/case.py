@@ -193,12 +193,15 @@ class Case:
         }
 
     def outline(self, points: int = 181) -> tuple[Floats, Floats]:
-        """The body's contour within reach of the vibrissa, for pictures.
+        """The body's contour within reach of the vibrissa: what a simulator makes its obstacle of.
+
+        Points of the surface, from left to right. The body is convex and lies above them; nothing
+        of it beyond them is ever touched.
 
         Parameters
         ----------
         points : int
-            How many, unless the contour is a polygon.
+            How many, unless the contour is a polygon, which has its own vertices.
 
         Returns
         -------

@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from analytic import CLAMP_READINGS, InputError, Readings
+from analytic.from_clamp.noise import MEDIAN_OF_NORMAL
 from analytic.problem.arrays import Booleans, Floats
 from compare.align.stations import interpolant
-from compare.sense.noise import MEDIAN_OF_NORMAL, scales
+from compare.sense.noise import scales
 from compare.sense.phases import Classification
 from compare.sense.transitions import locate_transitions
 

@@ -19,7 +19,6 @@ _LONGEST = 800  # characters of an error
 
 app = typer.Typer(
     add_completion=False,
-    no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,  # markup would swallow the brackets of [beam] and [tolerances]
 )
@@ -96,6 +95,9 @@ def _run() -> int:
     try:
         for word in sys.argv[1:]:
             _require_utf8(word)
+        if not sys.argv[1:]:
+            app(["--help"], standalone_mode=False)
+            return BAD_INPUT
         return app(standalone_mode=False) or 0
     except (InputError, TyperException, OSError, ArithmeticError, MemoryError) as error:
         return _refuse(_in_words(error))

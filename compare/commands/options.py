@@ -27,9 +27,26 @@ Out = Annotated[
         show_default="results/CASE, with the options that change the case",
     ),
 ]
-OutFolder = Annotated[
-    Path | None, typer.Option("--out", metavar="DIR", help="Folder for what is written.")
-]
+
+
+def out_folder(default: str) -> Any:  # noqa: ANN401  # typer's
+    """The option ``--out`` of a command on files.
+
+    Parameters
+    ----------
+    default : str
+        What its help says of the folder if none is given.
+
+    Returns
+    -------
+    typer's option
+        To annotate a ``Path | None`` with.
+    """
+    return typer.Option(
+        "--out", metavar="DIR", help="Folder for what is written.", show_default=default
+    )
+
+
 Stations = Annotated[
     int | None,
     typer.Option(metavar="N", help="Stations of the sweep.", show_default="the case's, or 200"),

@@ -1,6 +1,7 @@
 """Commands on files of readings: ``compare``, ``reconstruct``, ``side-by-side``."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,11 +13,12 @@ from compare.commands.options import (
     DISAGREES,
     BeamFile,
     Columns,
-    OutFolder,
     Way,
     number_or_auto,
+    out_folder,
 )
 from compare.commands.output import distinct_name, output_folder
+from compare.commands.waiting import waiting
 from compare.read.suffixes import TABLES
 
 if TYPE_CHECKING:
@@ -28,7 +30,7 @@ def compare(
         str, typer.Argument(help="A case, for its closed form, or a file of readings.")
     ],
     candidate: Annotated[Path, typer.Argument(help="Readings to compare with them.")],
-    out: OutFolder = None,
+    out: Annotated[Path | None, out_folder("results/REFERENCE-CANDIDATE")] = None,
     column: Columns = None,
     beam: BeamFile = None,
     reference_column: Annotated[
@@ -67,47 +69,52 @@ def compare(
         number_or_auto("--offset", offset),
         number_or_auto("--noise", noise),
     )
-    from compare.read.limits import read_tolerances
+    with waiting("comparing"):
+        from compare.comparison import compare as compare_readings
+        from compare.read.limits import read_tolerances
+        from compare.read.rig import read_measured
 
-    limits = None if tolerances is None else read_tolerances(tolerances)
-    job = _job(reference)
-    if job is not None and (reference_column or reference_beam):
-        raise InputError(
-            "reference", repr(reference), "a file, beside --reference-...", "leave the option out"
+        limits = None if tolerances is None else read_tolerances(tolerances)
+        job = _job(reference)
+        if job is not None and (reference_column or reference_beam):
+            raise InputError(
+                "reference",
+                repr(reference),
+                "a file, beside --reference-...",
+                "leave the option out",
+            )
+        from analytic import solve_sweep
+        from compare.read.assumed import ASSUMED
+
+        if job is None:
+            path = Path(reference)
+            expected = read_measured(path, reference_beam, reference_column or (), None, direction)
+        else:
+            expected = solve_sweep(job.case)
+            limits = limits or job.tolerances
+        known = None if ASSUMED in expected.provenance else expected.beam
+        measured = read_measured(candidate, beam, column or (), known, direction)
+        comparison = compare_readings(
+            expected, measured, limits, offset=given_offset, noise=given_noise
         )
-    from analytic import solve_sweep
+        called = distinct_name(Path(reference)) if job is None else job.case.name
+        default = Path("results") / f"{called}-{distinct_name(candidate)}"
+        with output_folder(out or default) as folder:
+            from compare.show.report import write_report
+
+            report = write_report(comparison, folder)
     from compare.commands import terminal
-    from compare.comparison import compare as compare_readings
-    from compare.read.assumed import ASSUMED
-    from compare.read.rig import read_measured
 
-    if job is None:
-        path = Path(reference)
-        expected = read_measured(path, reference_beam, reference_column or (), None, direction)
-    else:
-        expected = solve_sweep(job.case)
-        limits = limits or job.tolerances
-    known = None if ASSUMED in expected.provenance else expected.beam
-    measured = read_measured(candidate, beam, column or (), known, direction)
-    comparison = compare_readings(
-        expected, measured, limits, offset=given_offset, noise=given_noise
-    )
-    called = distinct_name(Path(reference)) if job is None else job.case.name
-    default = Path("results") / f"{called}-{distinct_name(candidate)}"
-    with output_folder(out or default) as folder:
-        from compare.show.report import write_report
-
-        report = write_report(comparison, folder)
-        terminal.note_rows(expected)
-        terminal.note_rows(measured)
-        terminal.print_comparison(comparison)
-        terminal.print_written(report)
+    terminal.note_rows(expected)
+    terminal.note_rows(measured)
+    terminal.print_comparison(comparison)
+    terminal.print_written(report)
     return AGREES if comparison.agrees else DISAGREES
 
 
 def reconstruct(
     file: Annotated[Path, typer.Argument(help="Readings, Parquet or CSV.")],
-    out: OutFolder = None,
+    out: Annotated[Path | None, out_folder("results/FILE-reconstructed")] = None,
     beam: BeamFile = None,
     column: Columns = None,
     direction: Way = None,
@@ -128,8 +135,10 @@ def reconstruct(
     ] = 0.0,
 ) -> int:
     """Find the object from the clamp readings alone."""
+    import numpy as np
+
+    from analytic import CLAMP_READINGS, relative_noise, require_beam
     from analytic import reconstruct as reconstruct_contour
-    from analytic import relative_noise, require_beam
     from compare.align.offset import checked_offset, without_offset
     from compare.commands import terminal
     from compare.read.rig import read_measured
@@ -137,6 +146,10 @@ def reconstruct(
     readings = read_measured(file, beam, column or (), direction=direction)
     if offset:
         readings = without_offset(readings, checked_offset(offset))
+    known = {
+        name: np.where(readings.trusted, readings.values(name), np.nan) for name in CLAMP_READINGS
+    }
+    readings = replace(readings, table=readings.table.assign(**known))
     level = None if noise is None else relative_noise(readings, noise)
     found = reconstruct_contour(readings, level)
     require_beam(found, readings)
@@ -160,7 +173,7 @@ def side_by_side(
         str, typer.Argument(help="A case, for its closed form, or a file of readings.")
     ],
     files: Annotated[list[Path], typer.Argument(help="Readings to compare with it.")],
-    out: OutFolder = None,
+    out: Annotated[Path | None, out_folder("results/side-by-side")] = None,
     column: Columns = None,
     beam: BeamFile = None,
     direction: Way = None,
@@ -189,7 +202,8 @@ def side_by_side(
     exact = read(Path(reference)) if job is None else solve_sweep(job.case)
     known = None if ASSUMED in exact.provenance else exact.beam
     candidates = {name: read(path, known) for name, path in _short(files).items()}
-    found = compare_all(exact, candidates)
+    with waiting("comparing"):
+        found = compare_all(exact, candidates)
     with output_folder(out or Path("results") / "side-by-side") as folder:
         from analytic.problem.files import write_whole
         from compare.show.page import document, save_figure

@@ -29,6 +29,7 @@ from compare.read.assumed import ASSUMED
 from compare.read.rig import OWN_UNITS
 from compare.show.figures.budget_bars import headline
 from compare.show.side_by_side import SideBySide
+from compare.show.verdict import why
 from compare.simulate.target import Followed
 
 
@@ -159,6 +160,8 @@ def print_reconstruction(readings: Readings, found: pd.DataFrame) -> None:
         f"{touching} contact points from {len(found)} stations",
         ", ".join(f"{counts[phase]} {phase}" for phase in PHASES if phase in counts),
     ]
+    if "unexplained" in counts:
+        words.append(f"{counts['unexplained']} with readings that no such vibrissa has")
     unused = int((~readings.trusted).sum())
     if unused:
         words.append(f"{unused} not used, their readings are not to be trusted")
@@ -181,10 +184,14 @@ def print_comparison(comparison: Comparison) -> None:
         What was found.
     """
     _output().print(_summary(comparison))
+    print_line("relative to each reading's largest magnitude; lengths in L")
+    if comparison.agrees:
+        return
+    print_line(why(comparison))
     for failure in comparison.failures:
         print_line(f"  {failure}")
-    if comparison.likely is not None:
-        print_line(f"  likely: {comparison.likely}")
+    if comparison.remark is not None:
+        print_line(f"  {comparison.remark}")
 
 
 def _summary(comparison: Comparison) -> Table:
@@ -195,7 +202,7 @@ def _summary(comparison: Comparison) -> Table:
     title.append(f" with {comparison.reference.source}")
     table = Table(
         "reading", "rms", "max", "at foot_x", "phase",
-        title=title, caption="relative to each reading's largest magnitude; lengths in L",
+        title=title,
     )  # fmt: skip
     for name in CLAMP_READINGS:
         d = comparison.disagreement[name]

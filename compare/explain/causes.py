@@ -59,7 +59,8 @@ def causes(found: Measurement, table: pd.DataFrame, true: Floats, scale: Floats)
     yield Cause("flexural rigidity {size:+.2%} off: all readings scale alike", true, -0.8, 2.2)
     # Farther off the readings are no longer linear in it; `offset` is there for that.
     yield Cause(
-        "foot_x {size:+.2e} off, the same at all stations: an offset (or a lag); see `offset`",
+        "foot_x {size:+.2e} off, the same at all stations: an offset (or a lag), see "
+        "`--offset auto`",
         -slopes(table, true),
         -0.1 * length,
         0.1 * length,

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import CLAMP_READINGS
+from analytic.from_clamp.noise import scatter
 from analytic.problem.arrays import Floats
 from compare.explain.causes import causes
 from compare.explain.fit import Explanation, fitted
@@ -12,7 +13,6 @@ from compare.judge.allowance import NoiseAllowance
 from compare.judge.tolerances import Tolerances
 from compare.measure.disagreement import before_snap_off
 from compare.measure.measurement import Measurement
-from compare.sense.noise import scatter
 
 _CONVINCING = 0.9  # share of the disagreement, its scatter apart, that one cause must explain
 _DISTINCT = 2.0  # the next cause must leave so many times the square that the best one leaves
@@ -116,14 +116,14 @@ def _scattered(found: Measurement, error: Floats, jumps: Floats, scale: Floats) 
         return None
     size = f"differences jump from station to station by {jumps.max():.1e}"
     if "segments" not in found.candidate.provenance.get("settings", {}):
-        return f"noise: {size}; see `noise`"
+        return f"noise: {size}; see `--noise auto`"
     free = found.judged["candidate"].phase == "free"
     if free.sum() < 2:
         return f"facets of a coarse mesh, or noise: {size}"
     idle = np.stack([found.candidate.values(n)[free] for n in CLAMP_READINGS])
     resting = np.median(np.abs(idle / scale[:, None]), axis=1)
     if (resting > jumps / 3).all():
-        return f"noise: {size}, and without contact they do too; see `noise`"
+        return f"noise: {size}, and without contact they do too; see `--noise auto`"
     return f"facets of a coarse mesh: {size}, but not without contact"
 
 

@@ -133,6 +133,11 @@ class Tolerances:
         }
         return replace(self, **plain)
 
+    @property
+    def conventional(self) -> bool:
+        """Whether some limit is a default that nothing but convention stands behind."""
+        return any(getattr(self, name).reason == why for name, why in _CONVENTIONS.items())
+
     def of_reading(self, kind: Kind, reading: str, phase: str) -> Limit:
         """The limit at one station: the most special that there is.
 
@@ -202,12 +207,16 @@ class Tolerances:
         return {name: _limit(name, value) for name, value in named.items()}
 
 
-_OTHER = "the default, a convention for this source: give a limit of your own with its reason"
+CONVENTION = (
+    "note: the default limits are no more than a convention for this source: give limits of your "
+    "own, each with its reason (`--tolerances FILE`, in Python `Tolerances`)"
+)
+"""What is to be said where one of `_CONVENTIONS` is exceeded."""
 _CONVENTIONS = {
-    "rms": _OTHER,
-    "max": "ten times the default rms, a convention for this source",
+    "rms": "the default",
+    "max": "the default, ten times that of the rms",
     "transition": "the default, a hundredth of the length",
-    "snap_off": _OTHER,
+    "snap_off": "the default",
     "phase_agreement": "the default: one station of a hundred may fall beside a transition",
     "untrusted": "the default: one station of 200 may lack a number",
 }

@@ -1,4 +1,4 @@
-"""Noise of the clamp readings: estimated from a sweep, and put on one."""
+"""Noise of two sweeps: relative to the reference, as a level, and put on one."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -6,57 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic import CLAMP_READINGS, InputError, Readings
-from analytic.problem.arrays import Floats
-
-_DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # kills cubics: what is left is noise
-_ROUND_OFF = 1e-14  # of the largest magnitude: no reading is better than that
-
-MEDIAN_OF_NORMAL = 0.6745
-"""Median of |x| for a standard normal x: turns a median deviation into a standard deviation."""
-
-
-def reading_noise(readings: Readings) -> dict[str, float]:
-    """Standard deviation of each clamp reading's noise, in the reading's unit.
-
-    The median of the absolute fourth differences between neighbouring trusted stations: robust
-    against the few stations where a phase begins or ends, and blind to anything smooth, so a
-    model's bias is not taken for noise.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep.
-
-    Returns
-    -------
-    dict
-        ``force_x``, ``force_y``, ``moment_z``; 0 for fewer than five loaded stations.
-    """
-    loaded = readings.trusted & (
-        np.hypot(readings.values("force_x"), readings.values("force_y")) > 0
-    )
-    return {name: scatter(readings.values(name)[loaded]) for name in CLAMP_READINGS}
-
-
-def scatter(values: Floats) -> float:
-    """Standard deviation of what jumps from one value to the next.
-
-    Parameters
-    ----------
-    values : array, shape (stations,)
-        In sweep order.
-
-    Returns
-    -------
-    float
-        In the unit of the values; at least their round-off, and 0 for fewer than five.
-    """
-    if len(values) < len(_DIFFERENCE):
-        return 0.0
-    differences = np.convolve(values, _DIFFERENCE, mode="valid")
-    # The norm, sqrt(70), is the difference's gain on white noise.
-    noise = np.median(np.abs(differences)) / MEDIAN_OF_NORMAL / np.linalg.norm(_DIFFERENCE)
-    return float(max(noise, _ROUND_OFF * np.abs(values).max()))
+from analytic.from_clamp.noise import largest, reading_noise
 
 
 def scales(reference: Readings) -> dict[str, float]:
@@ -164,11 +114,7 @@ def with_noise(readings: Readings, level: Mapping[str, float], seed: int) -> Rea
     rng = np.random.default_rng(seed)
     noisy = {
         name: readings.values(name)
-        + share * _largest(readings.values(name)) * rng.standard_normal(len(readings.table))
+        + share * largest(readings.values(name)) * rng.standard_normal(len(readings.table))
         for name, share in level.items()
     }
     return replace(readings, table=readings.table.assign(**noisy))
-
-
-def _largest(values: Floats) -> float:
-    return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))

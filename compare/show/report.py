@@ -13,6 +13,7 @@ from analytic.problem.files import write_whole
 from compare.comparison import Comparison
 from compare.explain.budget import UNRESOLVED, Budget
 from compare.explain.convergence import fitted_orders
+from compare.judge.tolerances import CONVENTION
 from compare.show.colophon import colophon
 from compare.show.figures.budget_bars import headline, panels, picture
 from compare.show.figures.geometry import geometry
@@ -22,7 +23,7 @@ from compare.show.figures.phases import phase_criterion
 from compare.show.figures.readings import reading_panels, readings, snap_off_panels
 from compare.show.page import document, embedded, inline_svg, png, render, words
 from compare.show.style import PHASE_LETTERS
-from compare.show.verdict import verdict, worst_reading
+from compare.show.verdict import absent_transitions, verdict, why, worst_reading
 
 FIGURES = {"geometry": geometry, "readings": readings, "phases": phase_criterion}
 """Pictures that are also written as files of their own."""
@@ -157,6 +158,10 @@ def report_page(
         "report.html.j2",
         found=found,
         verdict=verdict(comparison, budget),
+        why=_sentence(why(comparison) if comparison.likely or budget is None else ""),
+        remark=_sentence(comparison.remark or ""),
+        convention=_sentence(CONVENTION if comparison.tolerances.conventional else ""),
+        absent=[_sentence(line) for line in absent_transitions(comparison)],
         worst=worst_reading(comparison),
         readings=CLAMP_READINGS,
         phases=[p for p in PHASES if p in set(comparison.alignment.table["phase"])],
@@ -187,7 +192,7 @@ def _figures(
     describes = {
         "geometry": "The object and the vibrissa at stations of the sweep, in {}",
         "readings": "{} of both models over the foot position, and their difference",
-        "phases": "Criterion (26) and the contact's arc length of {} over the foot position",
+        "phases": "Phase B's criterion and the contact's arc length over the foot position, {}",
         "snap-off": "{} of both models around the snap-off, and their difference",
     }
     if budget is not None:
@@ -207,6 +212,10 @@ def _figures(
         ]
         for section, pictures in sections.items()
     }
+
+
+def _sentence(text: str) -> str:
+    return text and f"{text[0].upper()}{text[1:].rstrip('.')}."
 
 
 def _units(readings: Readings) -> dict[str, float]:

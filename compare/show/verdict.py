@@ -1,8 +1,13 @@
 """What a comparison, and its budget if there is one, come to: a sentence to act on."""
 
+from collections.abc import Iterator
+
+import numpy as np
+
 from analytic import CLAMP_READINGS
 from compare.comparison import Comparison
 from compare.explain.budget import Budget
+from compare.judge.tolerances import CONTACT_PHASES
 from compare.show.page import short
 
 _NEARLY_ALL = 0.95  # of the compared stations: with fewer, the budget is about another disagreement
@@ -44,23 +49,91 @@ def verdict(comparison: Comparison, budget: Budget | None = None) -> str:
     if comparison.worst is None:
         name = worst_reading(comparison)
         found, allowed = comparison.disagreement[name], comparison.tolerances.of_sweep(name)
-        beside = "" if found.rms <= allowed else " beside the noise"
-        said = (
-            f"Readings of {candidate} can be used in place of {reference} to within "
-            f"{short(found.rms)} rms ({name}, the worst; {short(allowed)} is allowed{beside})"
-        )
+        noise = comparison.noise.level[name]
+        beside = "" if found.rms <= allowed else f" beside noise of {short(noise)}"
+        much = f"{short(found.rms)} rms ({name}, the worst; {short(allowed)} is allowed{beside})"
+        said = f"Readings of {candidate} and of {reference} agree to within {much}"
+        if _is_mujoco(comparison):
+            said = f"Readings of {candidate} can be used in place of {reference} to within {much}"
     else:
         others = len(comparison.exceeded) - 1
         more = f" ({_count(others)} more limit{'s' * (others > 1)} exceeded)" if others else ""
-        said = (
-            f"Do not use readings of {candidate} in place of {reference} yet: "
-            f"{comparison.worst.clause}{more}"
-        )
+        said = f"Readings of {candidate} disagree with those of {reference}"
+        if _is_mujoco(comparison):
+            said = f"Do not use readings of {candidate} in place of {reference} yet"
+        said = f"{said}: {comparison.worst.clause}{more}"
     if budget is not None:
         return f"{said}; {_advice(comparison, budget)}{_doubt(comparison, budget)}."
-    if comparison.agrees or "settings" not in comparison.candidate.provenance:
-        return f"{said}."
-    return f"{said}; a budget would show why."
+    return f"{said}."
+
+
+def why(comparison: Comparison, budget: Budget | None = None) -> str:
+    """What a disagreement is likely made of, or how to find that out.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Of two sweeps that disagree.
+    budget : Budget, optional
+        Of the candidate's disagreement; then it counts.
+
+    Returns
+    -------
+    str
+        In one line.
+    """
+    if budget is not None:
+        doubt = ", but the budget is undecided" if budget.undecided else ""
+        return f"by its budget the largest part is {budget.blame}{doubt}"
+    if comparison.likely is not None:
+        return f"likely: {comparison.likely}"
+    unknown = "the readings alone do not show why"
+    if _is_mujoco(comparison):
+        return f"{unknown}; `vibrissa budget CASE` measures the parts of a MuJoCo model"
+    rig = "check its units and columns, the vibrissa's length and rigidity, the object's place"
+    if comparison.candidate.source.startswith("measured"):
+        return f"{unknown}; {rig}"
+    return (
+        f"{unknown}; of a simulator, refine one thing at a time (elements, time step, contact, "
+        f"obstacle) and see which makes them agree; of a rig, {rig}"
+    )
+
+
+def absent_transitions(comparison: Comparison) -> Iterator[str]:
+    """Why a sweep has no beginning or end of Phase B, where it has none.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Of two sweeps.
+
+    Yields
+    ------
+    str
+        A line for each that is missing, of one sweep or of both.
+    """
+    sources = {"reference": comparison.reference.source, "candidate": comparison.candidate.source}
+    lines: dict[str, list[str]] = {}
+    for which, source in sources.items():
+        phase = comparison.judged[which].phase
+        touching = phase[np.isin(phase, CONTACT_PHASES)]
+        if not (touching == "tangent").any():
+            if touching.size:
+                lines.setdefault("no Phase B: the contact stays at the tip", []).append(source)
+            continue
+        found = {n: getattr(event, which) for n, event in comparison.transitions.items()}
+        if found["phase_b_start"] is None:
+            reason = "no start of Phase B: the first contact is tangential already"
+            lines.setdefault(reason, []).append(source)
+        if found["phase_b_end"] is None:
+            reason = "no end of Phase B: the last contact is tangential still"
+            lines.setdefault(reason, []).append(source)
+    for line, those in lines.items():
+        yield f"{line} ({' and '.join(those)})"
+
+
+def _is_mujoco(comparison: Comparison) -> bool:
+    return comparison.candidate.source.startswith("mujoco ")
 
 
 def _doubt(comparison: Comparison, budget: Budget) -> str:

@@ -1,6 +1,7 @@
 """The README's picture: the sweep, the signs, and both models' readings.
 
-Run as ``python -m compare.simulate.overview FILE``.
+Run as ``python -m compare.simulate.overview FILE``. It is drawn here and not in `compare.show`,
+since it calls MuJoCo, and whatever shows readings does without a simulator.
 """
 
 import sys
@@ -129,7 +130,7 @@ def _plots(axes: list[Axes], exact: Readings, simulated: Readings) -> None:
     for ax, name in zip(axes, CLAMP_READINGS, strict=True):
         shade_phases(ax, foot(exact), phase)
         curve = with_fold(exact, phase, foot(exact), exact.values(name))
-        ax.plot(*curve, **LINE | {"linewidth": 1.8}, label="closed form")
+        ax.plot(*curve, **LINE | {"linewidth": 1.8}, label="analytic")
         ax.plot(
             foot(simulated),
             simulated.values(name),
@@ -137,7 +138,7 @@ def _plots(axes: list[Axes], exact: Readings, simulated: Readings) -> None:
             color=CANDIDATE,
             markersize=3.6,
             markeredgewidth=0,
-            label="MuJoCo chain, 40 segments",
+            label="mujoco chain, 40 segments",
         )
         ax.set_title(axis_label(name), fontsize=10)
         ax.set_xlabel(FOOT)

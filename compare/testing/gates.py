@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 from analytic import InputError, Readings
 from compare.comparison import Comparison, compare
 from compare.judge.tolerances import Tolerances
+from compare.show.verdict import why
 
 if TYPE_CHECKING:
     from compare.explain.budget import Budget
@@ -46,6 +47,7 @@ def assert_agreement(
     InputError
         As `compare`.
     """
+    __tracebackhide__ = True  # a failing test shows its own lines, and the message
     comparison = compared(reference, candidate, tolerances, offset=offset, noise=noise)
     demand(comparison, budget)
     return comparison
@@ -102,19 +104,10 @@ def demand(comparison: Comparison, budget: Budget | None = None) -> None:
     AssertionError
         If a limit is exceeded; its message is that of `assert_agreement`.
     """
+    __tracebackhide__ = True
     if comparison.agrees:
         return
     title = f"{comparison.candidate.source} disagrees with {comparison.reference.source}:"
-    raise AssertionError("\n  ".join([title, *comparison.failures, _cause(comparison, budget)]))
-
-
-def _cause(comparison: Comparison, budget: Budget | None) -> str:
-    if budget is not None:
-        doubt = ", but the budget is undecided" if budget.undecided else ""
-        return f"by its budget the largest part is {budget.blame}{doubt}"
-    if comparison.likely is not None:
-        return f"likely: {comparison.likely}"
-    return (
-        "the readings alone do not show why; `vibrissa budget` measures the parts of a "
-        "MuJoCo model's disagreement"
-    )
+    remark = [] if comparison.remark is None else [comparison.remark]
+    lines = [title, why(comparison, budget), *comparison.failures, *remark]
+    raise AssertionError("\n  ".join(lines))

@@ -15,8 +15,8 @@ from analytic import (
     named_case,
     solve_sweep,
 )
+from analytic.from_clamp.noise import reading_noise
 from compare import Tolerances, assert_agreement, classify, compare
-from compare.sense.noise import reading_noise
 from compare.sense.phases import confusion
 from compare.sense.transitions import locate_transitions
 

@@ -29,10 +29,12 @@ def folder(tmp_path) -> Path:
     make = tools / "make"
     make.write_text(
         f'#!/bin/sh\nexec /usr/bin/make -s -f "{ROOT}/Makefile" BIN="{BIN}" BIN_MUJOCO3="{BIN}" '
-        '-o .venv/installed -o .venv-mujoco3/installed "$@"\n'
+        '-o .venv/installed -o .venv/developed -o .venv-mujoco3/installed "$@"\n'
     )
     make.chmod(0o755)
-    (tmp_path / "work").mkdir()
+    activate = tmp_path / "work" / ".venv" / "bin" / "activate"  # the tests' Python is active
+    activate.parent.mkdir(parents=True)
+    activate.touch()
     return tmp_path / "work"
 
 

@@ -9,7 +9,7 @@ from compare.show.style import CANDIDATE, FOOT, GREY, PAGE_WIDTH, REFERENCE, SMA
 
 
 def phase_criterion(comparison: Comparison) -> Figure:
-    """Draw criterion (26), zero in Phase B, and the contact, at the tip in Phase A.
+    """Draw criterion (26) of the paper, zero in Phase B, and the contact, at the tip in Phase A.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def phase_criterion(comparison: Comparison) -> Figure:
     for ax, expected in zip(axes, (0, 1), strict=True):
         shade_reference(ax, comparison)
         ax.axhline(expected, color=GREY, linewidth=0.8, linestyle="--")
-    axes[0].set_ylabel(r"$(2F_{Ay} - M_{Az}^2)\,/\,2f$  (26)" + "\nzero in Phase B")
+    axes[0].set_ylabel(r"$(2F_{Ay} - M_{Az}^2)\,/\,2f$" + "\nzero in Phase B")
     axes[1].set_ylabel("contact $s_1$ / $L$\none in Phase A")
     axes[1].set_xlabel(f"{FOOT}   (dotted: transitions found from the clamp)")
     length = comparison.reference.beam.length

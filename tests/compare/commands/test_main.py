@@ -1,6 +1,8 @@
 """The command line as a user meets it."""
 
+import io
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -167,6 +169,50 @@ def test_cases_are_listed(tmp_path):
     done = vibrissa("cases", cwd=tmp_path)
     assert done.returncode == 0
     assert "two-circles" in done.stdout
+
+
+def test_alone_it_prints_its_help_and_is_no_success(tmp_path):
+    done = vibrissa(cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stdout.count("\n") > 10
+    assert "side-by-side" in done.stdout
+    assert done.stderr == ""
+
+
+def test_points_and_counts_have_the_phases_of_a_comparison(tmp_path):
+    import pandas as pd
+
+    from analytic import CLAMP_READINGS, Sweep, named_case, solve_sweep
+    from compare import classify
+    from compare.sense.noise import with_noise
+
+    exact = solve_sweep(replace(named_case("catenary"), sweep=Sweep(stations=60)))
+    noisy = with_noise(exact, dict.fromkeys(CLAMP_READINGS, 1e-3), 3)
+    noisy.table.loc[30, "status"] = "unsettled"
+    noisy.write(tmp_path / "noisy.csv")
+    done = vibrissa("reconstruct", "noisy.csv", "--out", "out", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    points = pd.read_csv(tmp_path / "out" / "points.csv")
+    judged = classify(noisy).phase
+    explained = (points["phase"] != "unexplained").to_numpy()
+    here = explained & (judged != "")
+    assert (points["phase"].to_numpy()[here] == judged[here]).all()
+    assert points["phase"][30] == "gap"
+    for phase in ("tip", "tangent"):
+        assert f"{(points['phase'] == phase).sum()} {phase}" in done.stdout
+    assert "1 not used" in done.stdout
+
+
+def test_a_terminal_shows_what_is_being_done(monkeypatch):
+    from compare.commands.waiting import waiting
+
+    for terminal in (True, False):
+        out = io.StringIO()
+        out.isatty = lambda terminal=terminal: terminal
+        monkeypatch.setattr("sys.stderr", out)
+        with waiting("comparing"):
+            pass
+        assert ("comparing" in out.getvalue()) == terminal
 
 
 def test_reconstruction_of_a_rigs_file(tmp_path):

@@ -61,10 +61,14 @@ def test_a_failure_says_what_where_how_much_and_why(pytester):
     result.stdout.fnmatch_lines(
         [
             "*mine disagrees with analytic:*",
-            "*force_x: rms * most in phase *; allowed 2.00e-03 (the default, a convention*",
             "*likely: flexural rigidity +2.00% off*",
+            "*force_x: rms * most in phase *; allowed 2.00e-03 (the default)",
+            "*convention for this source*",
         ]
     )
+    said = result.stdout.str()
+    assert "def demand" not in said
+    assert "def agree" not in said
     (row,) = json.loads((pytester.path / "out" / "summary.json").read_text())
     assert not row["agrees"]
     assert row["likely"].startswith("flexural rigidity +2.00%")

@@ -1,0 +1,134 @@
+"""Noise of the clamp readings: given, or estimated from the sweep itself."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.problem.columns import CLAMP_READINGS, SENSED
+from analytic.problem.errors import InputError
+from analytic.problem.readings import Readings
+
+_DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # kills cubics: what is left is noise
+_ROUND_OFF = 1e-14  # of the largest magnitude: no reading is better than that
+
+MEDIAN_OF_NORMAL = 0.6745
+"""Median of |x| for a standard normal x: turns a median deviation into a standard deviation."""
+
+
+def reading_noise(readings: Readings) -> dict[str, float]:
+    """Standard deviation of each clamp reading's noise, in the reading's unit.
+
+    The median of the absolute fourth differences between neighbouring trusted stations: robust
+    against the few stations where a phase begins or ends, and blind to anything smooth, so a
+    model's bias is not taken for noise.
+
+    Parameters
+    ----------
+    readings : Readings
+        One sweep.
+
+    Returns
+    -------
+    dict
+        ``force_x``, ``force_y``, ``moment_z``; 0 for fewer than five loaded stations.
+    """
+    loaded = readings.trusted & (
+        np.hypot(readings.values("force_x"), readings.values("force_y")) > 0
+    )
+    return {name: scatter(readings.values(name)[loaded]) for name in CLAMP_READINGS}
+
+
+def scatter(values: Floats) -> float:
+    """Standard deviation of what jumps from one value to the next.
+
+    Parameters
+    ----------
+    values : array, shape (stations,)
+        In sweep order.
+
+    Returns
+    -------
+    float
+        In the unit of the values; at least their round-off, and 0 for fewer than five.
+    """
+    if len(values) < len(_DIFFERENCE):
+        return 0.0
+    differences = np.convolve(values, _DIFFERENCE, mode="valid")
+    # The norm, sqrt(70), is the difference's gain on white noise.
+    noise = np.median(np.abs(differences)) / MEDIAN_OF_NORMAL / np.linalg.norm(_DIFFERENCE)
+    return float(max(noise, _ROUND_OFF * np.abs(values).max()))
+
+
+def relative_noise(readings: Readings, level: float) -> dict[str, float]:
+    """Noise in proportion to each clamp reading's largest magnitude, as `reconstruct` takes it.
+
+    Parameters
+    ----------
+    readings : Readings
+        Whose magnitudes count.
+    level : float
+        Standard deviation over largest magnitude, as 0.01 for one per cent.
+
+    Returns
+    -------
+    dict
+        Standard deviation by column, in the column's unit.
+
+    Raises
+    ------
+    InputError
+        If `level` is not between 0 and 1.
+    """
+    if isinstance(level, bool | str) or not 0 <= level < 1:
+        raise InputError(
+            "noise", level, "between 0 and 1", "it is a share of each reading's largest magnitude"
+        )
+    return {name: float(level) * largest(readings.values(name)) for name in CLAMP_READINGS}
+
+
+def checked_noise(noise: object) -> dict[str, float]:
+    """The noise that a user states.
+
+    Parameters
+    ----------
+    noise : mapping
+        Standard deviation by sensed column, in the column's unit.
+
+    Returns
+    -------
+    dict
+        The same.
+
+    Raises
+    ------
+    InputError
+        If it is no mapping, a name is no sensed column, or a value no finite number from 0 up.
+    """
+    remedy = "`relative_noise(readings, 0.01)` makes it from a share of the largest magnitudes"
+    if not isinstance(noise, Mapping):
+        raise InputError("noise", repr(noise), "a standard deviation by column", remedy)
+    for name, size in noise.items():
+        if name not in SENSED:
+            raise InputError("noise", repr(name), f"of {', '.join(SENSED)}", remedy)
+        if isinstance(size, bool | str) or not 0 <= size < np.inf:
+            raise InputError(
+                f"noise of {name}", size, "a number from 0 up, in the column's unit", remedy
+            )
+    return {str(name): float(size) for name, size in noise.items()}
+
+
+def largest(values: Floats) -> float:
+    """Largest magnitude of a reading.
+
+    Parameters
+    ----------
+    values : array, shape (stations,)
+        With gaps.
+
+    Returns
+    -------
+    float
+        In their unit; 0 where all are gaps.
+    """
+    return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))

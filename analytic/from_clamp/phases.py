@@ -1,0 +1,135 @@
+"""Contact phases from the clamp readings alone, each judged by what noise makes of it."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from analytic.from_clamp.contact import LONGEST, UNLOADED, contact_of, dimensionless
+from analytic.from_clamp.noise import MEDIAN_OF_NORMAL, checked_noise, largest, reading_noise
+from analytic.problem.arrays import Booleans, Floats, Words
+from analytic.problem.columns import CLAMP_READINGS
+from analytic.problem.readings import Readings
+
+_SIGMAS = 5.0  # a force below so many standard deviations of its noise is none
+_BEYOND_TIP = -0.1  # what lies farther beyond the tip is not located
+_UNKNOWN = 1e-3  # of the largest magnitude; too few stations show no noise: alike in all readings
+_STEP = 0.05  # of the largest magnitude, at most, for a derivative
+_UNRESOLVED = 0.1  # standard deviations; what meets its phase's condition better shows no noise
+
+
+class Judgement(NamedTuple):
+    """Phases of one sweep, and what they were decided by; arrays of shape (stations,).
+
+    Attributes
+    ----------
+    phase : array of str
+        ``"free"``, ``"tip"``, ``"tangent"``.
+    criterion : array
+        (2 F_y - M^2)/(2 f) = sin(phi_1 - alpha) of eq. 26: zero in Phase B.
+    criterion_tolerance : array
+        Its standard deviation.
+    shortfall : array
+        1 - s1/L: zero in Phase A.
+    shortfall_tolerance : array
+        Its standard deviation.
+    """
+
+    phase: Words
+    criterion: Floats
+    criterion_tolerance: Floats
+    shortfall: Floats
+    shortfall_tolerance: Floats
+
+
+@np.errstate(divide="ignore", over="ignore", invalid="ignore")  # next to no load: no contact
+def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -> Judgement:
+    """Decide each station's phase by which phase's own condition its readings meet better.
+
+    In Phase B the criterion (26) vanishes and the contact lies short of the tip; in Phase A it is
+    the other way round. Each deviation is measured in standard deviations, which the noise of the
+    readings gives; the smaller one wins. So no tolerance has to be chosen, and readings that are
+    all a little off, as a coarse beam's are, still fall on the right side.
+
+    The noise is what the readings themselves show (`reading_noise`), and what is stated if that is
+    more. Stations that lie too far apart seem to jump; but then their readings meet the conditions
+    far better than such noise allows, and no contact is taken for none.
+
+    Parameters
+    ----------
+    readings : Readings
+        One sweep; only the four sensed columns are used, and ``status`` to leave stations out of
+        the estimate of the noise.
+    noise : mapping, optional
+        Standard deviation by sensed column, in its unit.
+
+    Returns
+    -------
+    Judgement
+        A station without force, or with a gap, is ``"free"``.
+
+    Raises
+    ------
+    InputError
+        If the noise is no such mapping.
+
+    References
+    ----------
+    C. Will, J. Steigenberger, C. Behn, *Quasi-static object scanning using technical vibrissae*,
+    eq. 26, for the criterion.
+    """
+    sensed = dimensionless(readings)
+    _, force_x, force_y, moment = sensed
+    seen = np.array(list(reading_noise(readings).values()))
+    given = {} if noise is None else checked_noise(noise)
+    stated = np.array([given.get(name, 0.0) for name in CLAMP_READINGS])
+    units = np.array([readings.beam.force_unit] * 2 + [readings.beam.moment_unit])
+    magnitudes = np.array([largest(values) for values in sensed[1:]])
+    seen, stated = seen / units, stated / units
+    known = np.maximum(seen, stated)
+    noise_x, noise_y, noise_m = known if known.any() else _UNKNOWN * magnitudes
+
+    f = np.hypot(force_x, force_y)
+    felt = f > UNLOADED
+    criterion = np.where(felt, (2 * force_y - moment**2) / (2 * f), np.nan)
+    by_x = criterion * force_x / f**2
+    by_y = 1 / f - criterion * force_y / f**2
+    by_m = moment / f
+    criterion_tolerance = np.sqrt(
+        (by_x * noise_x) ** 2 + (by_y * noise_y) ** 2 + (by_m * noise_m) ** 2
+    )
+    shortfall = _shortfall(sensed, felt)
+    variance = np.zeros_like(shortfall)
+    for row, size in enumerate((noise_x, noise_y, noise_m), start=1):
+        step = min(1.0, _STEP * magnitudes[row - 1] / size) if size else 1.0
+        moved = sensed.copy()
+        moved[row] += step * size
+        there = _shortfall(moved, np.hypot(moved[1], moved[2]) > UNLOADED)
+        variance += (np.nan_to_num(there - shortfall) / step) ** 2
+    shortfall_tolerance = np.sqrt(variance)
+
+    of_criterion = np.abs(criterion) / criterion_tolerance
+    of_shortfall = np.abs(shortfall) / shortfall_tolerance
+    better = np.fmin(of_criterion, of_shortfall)[felt & readings.trusted]
+    better = better[~np.isnan(better)]
+    met = float(np.median(better)) / MEDIAN_OF_NORMAL if better.size else 1.0
+    drowning = np.maximum(stated, seen * (met if met < _UNRESOLVED else 1.0))
+    loaded = f > max(_SIGMAS * np.hypot(*drowning[:2]), UNLOADED)
+
+    tangent = of_criterion < of_shortfall
+    # A negative deviation belongs to neither phase: it is noise about zero, evidence for its own.
+    tangent = np.where(shortfall <= 0, False, np.where(criterion <= 0, True, tangent))
+    return Judgement(
+        np.where(loaded, np.where(tangent, "tangent", "tip"), "free"),
+        np.where(loaded, criterion, np.nan),
+        np.where(loaded, criterion_tolerance, np.nan),
+        np.where(loaded, shortfall, np.nan),
+        np.where(loaded, shortfall_tolerance, 0.0),
+    )
+
+
+def _shortfall(sensed: Floats, felt: Booleans) -> Floats:
+    """NaN where no elastica has such readings; a contact beyond the tip is short by less than 0."""
+    arc_length = contact_of(np.where(felt, sensed, np.nan)).arc_length
+    short = np.where(arc_length >= 0, 1 - arc_length, np.nan)
+    return np.where(arc_length > LONGEST, _BEYOND_TIP, short)

@@ -1,0 +1,83 @@
+"""Phases from the clamp: at every noise, past any contour, and where stations are few."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import (
+    CASE_NAMES,
+    CLAMP_READINGS,
+    InputError,
+    Readings,
+    Sweep,
+    named_case,
+    reconstruct,
+    relative_noise,
+    solve_sweep,
+)
+
+# Shares of right stations as published for the default sweeps, less what one seed may miss.
+RIGHT = {0.0: 1.0, 1e-4: 0.995, 1e-3: 0.98, 1e-2: 0.9}
+
+
+def noisy(sweep: Readings, level: float, seed: int = 1) -> Readings:
+    rng = np.random.default_rng(seed)
+    columns = {
+        name: sweep.values(name) + size * rng.standard_normal(len(sweep.table))
+        for name, size in relative_noise(sweep, level).items()
+    }
+    return replace(sweep, table=sweep.table.assign(**columns))
+
+
+@pytest.mark.parametrize("level", RIGHT)
+def test_each_phase_is_found_in_spite_of_noise(exact, level):
+    """Whether the noise is stated or not; what drowns in it is free, at first contact most."""
+    sweep = noisy(exact, level)
+    true = exact.table["phase"].to_numpy(str)
+    for noise in (None, relative_noise(exact, level)):
+        found = reconstruct(sweep, noise)["phase"].to_numpy(str)
+        assert (found == true).mean() >= RIGHT[level]
+        for phase in ("tip", "tangent"):
+            mistaken = ~np.isin(found, (phase, "free"))[true == phase]
+            assert not mistaken.size or mistaken.mean() < 0.1
+
+
+@pytest.mark.parametrize("stations", [2, 5, 8, 12])
+@pytest.mark.parametrize("name", CASE_NAMES)
+def test_few_stations_are_no_noise(name, stations):
+    """Neighbours that differ much are no reason to lose a contact or mistake its phase."""
+    exact = solve_sweep(replace(named_case(name), sweep=Sweep(stations=stations)))
+    for level in (0.0, 1e-3):
+        found = reconstruct(noisy(exact, level))
+        touching = (exact.table["phase"] != "free").to_numpy()
+        assert found["contact_x"].notna()[touching].all()
+        wrong = (found["phase"] != exact.table["phase"])[touching].sum()
+        assert wrong <= (1 if level else 0)
+
+
+def test_nothing_is_found_where_there_is_only_noise(exact):
+    rng = np.random.default_rng(5)
+    still = {name: 1e-3 * rng.standard_normal(len(exact.table)) for name in CLAMP_READINGS}
+    found = reconstruct(replace(exact, table=exact.table.assign(**still)))
+    assert (found["phase"] == "free").mean() > 0.99
+
+
+@pytest.mark.parametrize(
+    ("noise", "named"),
+    [
+        (0.01, "noise = 0.01"),
+        ({"force": 0.01}, "noise = 'force'"),
+        ({"force_x": -1.0}, "noise of force_x"),
+        ({"force_x": float("nan")}, "noise of force_x"),
+    ],
+)
+def test_noise_is_a_standard_deviation_by_column(exact, noise, named):
+    with pytest.raises(InputError, match=named):
+        reconstruct(exact, noise)
+
+
+@pytest.mark.parametrize("level", [-0.1, 1.0, float("nan"), True])
+def test_relative_noise_is_a_share(exact, level):
+    with pytest.raises(InputError, match="noise = "):
+        relative_noise(exact, level)

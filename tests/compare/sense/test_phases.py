@@ -1,0 +1,46 @@
+"""The phases that the comparison judges by are those of the reconstruction."""
+
+import numpy as np
+from hypothesis import given, seed, settings
+from hypothesis import strategies as st
+
+from analytic import (
+    CLAMP_READINGS,
+    Case,
+    Sweep,
+    circle,
+    ellipse,
+    parabola,
+    reconstruct,
+    solve_sweep,
+)
+from compare import classify
+from compare.sense.noise import with_noise
+
+SIZES = st.floats(0.1, 3.0)
+PROFILES = st.one_of(
+    st.builds(lambda r, h: circle(r, (0.0, h)), SIZES, st.floats(0.1, 0.9)),
+    st.builds(lambda a, h: parabola(a, h), SIZES, st.floats(0.1, 0.9)),
+    st.builds(lambda a, b, h: ellipse((a, b), (0.0, h)), SIZES, SIZES, st.floats(0.1, 0.9)),
+)
+
+
+@seed(11)
+@settings(max_examples=25, deadline=None)
+@given(PROFILES, st.integers(20, 80), st.sampled_from([0.0, 1e-4, 1e-3, 1e-2]))
+def test_reconstruction_and_comparison_judge_alike(profile, stations, level):
+    exact = solve_sweep(Case(profile=profile, sweep=Sweep(stations=stations)))
+    sweep = with_noise(exact, dict.fromkeys(CLAMP_READINGS, level), stations)
+    found = reconstruct(sweep)
+    explained = (found["phase"] != "unexplained").to_numpy() & sweep.trusted
+    judged = classify(sweep).phase
+    np.testing.assert_array_equal(found["phase"][explained], judged[explained])
+    right = (judged == exact.table["phase"])[sweep.trusted]
+    assert right.all() if level == 0 else right.mean() > 0.7
+
+
+def test_untrusted_stations_have_no_phase():
+    exact = solve_sweep(Case(profile=circle(1.0, (0.0, 0.4)), sweep=Sweep(stations=40)))
+    exact.table.loc[20, "status"] = "unsettled"
+    assert classify(exact).phase[20] == ""
+    assert reconstruct(exact)["phase"][20] == exact.table["phase"][20]
