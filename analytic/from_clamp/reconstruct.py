@@ -145,10 +145,12 @@ def clearly_loaded(readings: Readings) -> Booleans:
     Returns
     -------
     array of bool, shape (stations,)
-        Whether the force is more than a tenth of the largest.
+        Whether the force is more than a tenth of the largest, and does not drown in noise.
     """
     force = np.hypot(readings.values("force_x"), readings.values("force_y"))
-    return np.asarray(force > _CLEAR * np.nanmax(force, initial=0.0), dtype=bool)
+    felt = force > UNLOADED * readings.beam.force_unit
+    drowned = felt & (judge_phases(readings).phase == "free")
+    return np.asarray((force > _CLEAR * np.nanmax(force, initial=0.0)) & ~drowned, dtype=bool)
 
 
 def reconstruct_by_decision(readings: Readings, tolerance: float = 1e-6) -> pd.DataFrame:
