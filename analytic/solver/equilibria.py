@@ -47,6 +47,12 @@ class Equilibria(NamedTuple):
         return np.where(self.tangent, tangent, 1.0)
 
     @property
+    def tip_angle(self) -> Floats:
+        """Slope angle of the vibrissa at the contact [rad]."""
+        tip = np.pi / 2 - (self.excess + least_rotation(self.point.alpha))
+        return np.where(self.tangent, self.point.alpha, tip)
+
+    @property
     def foot_x(self) -> Floats:
         """Foot position x0 (Will et al., eqs. 13 and 22) [L]."""
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -201,7 +207,6 @@ def to_columns(states: Equilibria, beam: Beam) -> dict[str, Column]:
     force = states.root_f**2
     radius = beam.radius / beam.length
     reached = np.isfinite(states.excess)
-    tip_angle = np.pi / 2 - (states.excess + least_rotation(alpha))
     return {
         "foot_x": states.foot_x * beam.length,
         "force_x": -force * np.sin(alpha) * beam.force_unit,
@@ -212,6 +217,6 @@ def to_columns(states: Equilibria, beam: Beam) -> dict[str, Column]:
         "contact_arc_length": np.where(reached, states.arc_length, np.nan) * beam.length,
         "contact_x": (xi - radius * np.sin(alpha)) * beam.length,
         "contact_y": (eta + radius * np.cos(alpha)) * beam.length,
-        "tip_angle": np.where(states.tangent, alpha, tip_angle),
+        "tip_angle": states.tip_angle,
         "status": np.where(reached, "ok", "unreachable"),
     }

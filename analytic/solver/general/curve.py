@@ -1,0 +1,198 @@
+"""The curve of equilibria of the general vibrissa: points on it, steps along it, kinks and folds.
+
+Its coordinates are contour parameter t, normal force f and excess w. Keller's pseudo-arclength
+continuation: a step along the tangent, and Newton's method back to the curve in the plane normal
+to it. The curve has a kink where the phases take turns and where the contour is not smooth.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.problem.contours.contour import Contour
+from analytic.solver.general.states import Vibrissa, with_rates
+
+_NEAR = 1e-8  # of the misses of a point of the curve, between which stations are solved
+_CLOSE = 1e-14  # where the curve has a kink or a fold: of an event
+_ROUNDING = 1e-12  # of the misses: one that does not fall any more is as small as it can be
+_NEWTON = 10
+_ASIDE = 1e-9  # of a step: a kink nearer than that is the one that the step starts from
+_INSIDE = -5e-324  # an excess of nothing, in Phase B
+_FOLD = 1e-9  # of a cell, of where the foot position is least
+_SEARCHES = 40
+_T, _F, _W = range(3)
+
+
+class Point(NamedTuple):
+    """A point of the curve."""
+
+    z: Floats
+    direction: Floats
+    """Derivative of `z` by the curve's length."""
+    foot_x: float
+    rate: float
+    """Foot position [L] and its derivative by the curve's length."""
+    beyond: bool = False
+    """Whether the span is longer than half a period."""
+
+
+class Curve(NamedTuple):
+    """The curve of one vibrissa along one contour, within reach."""
+
+    centreline: Contour
+    vibrissa: Vibrissa
+    t_range: tuple[float, float]
+    breaks: Floats
+
+    def start(self, t: float, excess: float) -> Point:
+        """The unloaded vibrissa at first contact."""
+        here = self._point(np.array([t, 0.0, excess]))
+        return here if here.direction[_F] > 0 else _reversed(here)
+
+    def advance(self, here: Point, length: float, bend: Floats) -> tuple[Point, ...]:
+        """The next points of the curve, at most a step ahead.
+
+        One; two at a kink, one on each side; or none if the step is too long for Newton's method.
+        The curve's second derivative `bend` is a guess.
+        """
+        z = here.z + length * here.direction + length**2 / 2 * bend
+        if z[_F] < 0:
+            return self._stopped(here, (here.z[_F] / (here.z[_F] - z[_F]), _F, 0.0, math.nan), z)
+        places = self._places(here.z, z)
+        if places:
+            return self._stopped(here, min(places), z)
+        scale = _scale(here.z)
+        new = self._corrected(z, here.direction / scale**2, close=_NEAR)
+        if new is None:
+            return ()
+        new = _along(new, here.direction / scale**2)
+        places = self._places(here.z, new.z)
+        return self._stopped(here, min(places), new.z) if places else (new,)
+
+    def _stopped(
+        self, here: Point, place: tuple[float, int, float, float], ahead: Floats
+    ) -> tuple[Point, ...]:
+        """A kink or the end of the curve between here and a place ahead."""
+        share, index, before, after = place
+        way = ahead - here.z
+        guess = here.z + share * way
+        guess[index] = before
+        found = self._fixed(guess, index) if share > _ASIDE else None
+        if found is None or _size(found.z - guess, here.z) > _size(way, here.z):
+            return ()
+        first = _along(found, way / _scale(here.z) ** 2)
+        if math.isnan(after):
+            return (first,)
+        z = first.z.copy()
+        z[index] = after
+        second = self._point(z)
+        same = second.direction[index] * first.direction[index] > 0
+        return first, second if same else _reversed(second)
+
+    def fold(self, begin: Point, end: Point) -> Point | None:
+        """Where the foot position is least between two points of a smooth part."""
+        chord = end.z - begin.z
+        normal = chord / _scale(begin.z) ** 2
+        low, high = 0.0, 1.0
+        rate_low, rate_high = begin.rate, end.rate
+        found = None
+        for _ in range(_SEARCHES):
+            share = low + (high - low) * np.clip(rate_low / (rate_low - rate_high), 0.05, 0.95)
+            found = self._corrected(begin.z + share * chord, normal)
+            if found is None:
+                return None
+            found = _along(found, normal)
+            if found.rate < 0:
+                low, rate_low = share, found.rate
+            else:
+                high, rate_high = share, found.rate
+            if high - low < _FOLD or abs(found.rate) < _FOLD:
+                break
+        return found
+
+    def _places(self, old: Floats, new: Floats) -> list[tuple[float, int, float, float]]:
+        """Kinks between: share of the way, coordinate, and its value before and after."""
+        places = []
+        if (old[_W] < 0) != (new[_W] < 0):
+            sides = (_INSIDE, 0.0) if old[_W] < 0 else (0.0, _INSIDE)
+            places.append((float(old[_W] / (old[_W] - new[_W])), _W, *sides))
+        low, high = sorted((old[_T], new[_T]))
+        way = np.inf if new[_T] > old[_T] else -np.inf
+        for at in self.breaks[(self.breaks > low) & (self.breaks < high)]:
+            share = float((at - old[_T]) / (new[_T] - old[_T]))
+            places.append((share, _T, float(np.nextafter(at, -way)), float(np.nextafter(at, way))))
+        for at in self.t_range:
+            if low < at < high or new[_T] == at != old[_T]:
+                places.append((float((at - old[_T]) / (new[_T] - old[_T])), _T, at, np.nan))
+        return places
+
+    def _point(self, z: Floats) -> Point:
+        return self._with_direction(z)[0]
+
+    def _with_direction(self, z: Floats) -> tuple[Point, Floats, Floats]:
+        """A point, what it misses, and the derivatives of that, shape (2, 3)."""
+        here, rates = with_rates(
+            self.centreline.at(z[:1]), z[1:2].copy(), z[2:3].copy(), self.vibrissa
+        )
+        slopes = np.concatenate([rates.twist, rates.above])
+        (a, b, c), (d, e, f) = slopes.tolist()
+        across = b * f - c * e, c * d - a * f, a * e - b * d
+        size = math.hypot(across[0], across[1] / max(1.0, z[_F]), across[2])
+        direction = np.array(across) / (size or math.nan)
+        misses = np.array([here.twist[0], here.up[0] - here.point.eta[0]])
+        point = Point(z, direction, float(here.foot_x[0]), float(rates.foot_x[0] @ direction), bool(here.beyond[0]))
+        return point, misses, slopes
+
+    def _corrected(self, z: Floats, normal: Floats, pinned: slice = slice(0), close: float = _CLOSE) -> Point | None:
+        """The point of the curve in the plane through z."""
+        value = z[pinned].copy()
+        missed = np.inf
+        for _ in range(_NEWTON):
+            point, misses, slopes = self._with_direction(z)
+            if not np.isfinite(point.direction).all():
+                return None
+            before, missed = missed, np.abs(misses).max()
+            if missed < close or (missed < _ROUNDING and missed >= before / 2):
+                return point
+            matrix = np.vstack([slopes, normal])
+            try:
+                z = z - np.linalg.solve(matrix, np.append(misses, 0.0))
+                z[pinned] = value
+            except np.linalg.LinAlgError:
+                return None
+            if z[_F] < 0 or not self.t_range[0] - 1 < z[_T] < self.t_range[1] + 1:
+                return None
+        return None
+
+    def _fixed(self, z: Floats, index: int) -> Point | None:
+        """The point of the curve with one coordinate as it is."""
+        normal = np.zeros(3)
+        normal[index] = 1.0
+        return self._corrected(z, normal, slice(index, index + 1))
+
+
+def _scale(z: Floats) -> Floats:
+    """The size of the coordinates: the force's is its own."""
+    return np.array([1.0, max(1.0, z[_F]), 1.0])
+
+
+def _size(way: Floats, at: Floats) -> float:
+    return float(np.linalg.norm(way / _scale(at)))
+
+
+def turning(here: Point, new: Point) -> float:
+    """By how much the curve turns between two points [rad]."""
+    scale = _scale(here.z)
+    a, b = here.direction / scale, new.direction / scale
+    return float(np.arccos(np.clip(a @ b / np.sqrt((a @ a) * (b @ b)), -1, 1)))
+
+
+def _along(point: Point, way: Floats) -> Point:
+    """The point, its direction that of a way."""
+    return point if point.direction @ way > 0 else _reversed(point)
+
+
+def _reversed(point: Point) -> Point:
+    return point._replace(direction=-point.direction, rate=-point.rate)

@@ -1,0 +1,91 @@
+"""A loaded span of constant natural curvature, from the contact back to the clamp, in closed form.
+
+With the moment of a dead force F of slope angle theta = phi - phi_F about the span's end, the
+curvature obeys kappa' = F cos(theta): the pendulum's equation. It holds whatever the natural
+curvature, as long as that is constant. With chi = pi/4 - theta/2 the three functions
+
+    p = sin(chi),  g = cos(chi),  v = -kappa/2    obey    p' = g v,  g' = -p v,  v' = -F p g,
+
+so that p^2 + g^2 = 1 and F p^2 + v^2 = B stay. They are k sn, dn and sqrt(F) k cn with k^2 = B/F. Let
+S(s) be the solution of S' = c d, c^2 = 1 - F S^2, d^2 = 1 - B S^2: sn/sqrt(F) of modulus k for k < 1,
+sn/sqrt(B) of modulus 1/k for k > 1, and s for no force and no curvature. The addition theorem (Byrd
+and Friedman, *Handbook of elliptic integrals*, 123.01) takes p, g and v from the contact to the
+clamp, and the second kind's (116.02) gives the position. Written so, nothing is singular: neither
+where the curvature changes its sign, nor at k = 1, nor where the force vanishes.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import ellipj, elliprd
+
+from analytic.problem.arrays import Booleans, Floats
+
+
+class Start(NamedTuple):
+    """The clamp's end of the span, as seen from the contact; arrays of one shape."""
+
+    p: Floats
+    g: Floats
+    """sin(chi) and cos(chi) of the slope at the clamp."""
+    kappa: Floats
+    along: Floats
+    across: Floats
+    """Integrals of cos(theta) and sin(theta) from the clamp to the contact."""
+    beyond: Booleans
+    """Whether the span is longer than half a period."""
+
+
+def back_to_clamp(theta: Floats, kappa: Floats, force: Floats, length: Floats) -> Start:
+    """March from the contact back to the clamp.
+
+    Parameters
+    ----------
+    theta, kappa : array, any shape
+        Slope angle at the contact, from the force's [rad]; curvature there, dimensionless.
+    force : array, same shape
+        Dimensionless, not negative.
+    length : array, same shape
+        Arc length from the clamp to the contact [L].
+
+    Returns
+    -------
+    Start
+        Of the same shape, dimensionless; right for spans of up to one period.
+    """
+    chi = np.pi / 4 - theta / 2
+    p1, g1, v1 = np.sin(chi), np.cos(chi), -kappa / 2
+    energy = force * p1**2 + v1**2
+    swings = energy <= force  # the pendulum does; else it turns over
+    larger = np.maximum(np.where(swings, force, energy), 1e-300)
+    m = np.where(swings, energy, force) / larger
+    root = np.sqrt(larger)
+    sn, cn, dn, _ = ellipj(root * length, m)
+    S = sn / root
+    c, d = np.where(swings, cn, dn), np.where(swings, dn, cn)
+    down = energy * _second_kind(S, cn, dn, m, root)
+
+    F_SS = force * S**2
+    D = 1 - p1**2 * F_SS
+    p = (p1 * c * d - S * v1 * g1) / D
+    g = (g1 * d + p1 * v1 * S * c) / D
+    with np.errstate(divide="ignore", invalid="ignore"):
+        fall = np.where(c >= 0, S**2 / (1 + c), (1 - c) / force)  # (1 - c)/F
+    gained = (v1 * (p1**2 * S**2 - fall) + p1 * g1 * S * d) / D  # (v - v1)/F
+    across = length - 2 * (down + p1 * p * S)
+    return Start(p, g, kappa - 2 * force * gained, 2 * gained, across, S < 0)
+
+
+def _second_kind(S: Floats, cn: Floats, dn: Floats, m: Floats, root: Floats) -> Floats:
+    """Integral of S^2 by arc length, from 0 (Carlson's R_D; DLMF 19.25.10)."""
+    rising = np.abs(S) ** 3 / 3 * elliprd(cn**2, dn**2, np.ones_like(S))
+    first = (cn >= 0) & (S >= 0)
+    if first.all():  # no longer than a quarter of a period
+        return rising
+    quarter = np.zeros_like(S)
+    quarter[~first] = elliprd(0.0, 1 - m[~first], 1.0) / (3 * root[~first] ** 3)
+    return np.where(
+        S >= 0,
+        np.where(cn >= 0, rising, 2 * quarter - rising),
+        np.where(cn < 0, 2 * quarter + rising, 4 * quarter - rising),
+    )

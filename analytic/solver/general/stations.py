@@ -1,0 +1,94 @@
+"""The states of the general vibrissa at given foot positions."""
+
+import numpy as np
+
+from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.contours.contour import Contour
+from analytic.solver.general.newton import solve
+from analytic.solver.general.path import Path
+from analytic.solver.general.states import States, Vibrissa, states, with_rates
+
+_HALVINGS = 40  # of a cell, to begin Newton's method from
+_NEAR = 0.5  # of a cell's length: by how much its interpolation may err
+_ASIDE = 1e-6  # by how much a state may lie beyond its cell: near a fold x0 hardly tells
+_BALANCED = 1e-11  # L, rad; beyond, no state was found
+
+
+def solve_stations(
+    centreline: Contour, vibrissa: Vibrissa, path: Path, foot_x: Floats
+) -> tuple[States, Booleans]:
+    """The state at each foot position on the path.
+
+    Newton's method starts from the cubic through the path's points and directions.
+
+    Parameters
+    ----------
+    centreline : Contour
+        Contour that the centreline feels, in units of the vibrissa's length.
+    vibrissa : Vibrissa
+        Its numbers.
+    path : Path
+        From first contact to where the vibrissa lets go.
+    foot_x : array, shape (n,)
+        Foot positions on it [L].
+
+    Returns
+    -------
+    states : States
+        Of n contacts.
+    found : array of bool, shape (n,)
+        Whether the state balances, and is that of the station's cell of the path.
+    """
+    cells = path.cells(foot_x)
+    begin, end = path.z[cells], path.z[cells + 1]
+    scale = np.maximum(1.0, [[0.0, 1.0, 0.0]] * np.abs(begin))
+    length = np.linalg.norm((end - begin) / scale, axis=1)
+    share = _share(path, cells, foot_x, length)
+    guess = _cubic(
+        share[:, None],
+        (begin, length[:, None] * path.direction[cells]),
+        (end, length[:, None] * path.direction[cells + 1]),
+    )
+    inside = path.tangent[cells]
+    guess[:, 1] = np.maximum(guess[:, 1], 0.0)
+    guess[:, 2] = np.where(inside, np.minimum(guess[:, 2], -5e-324), np.maximum(guess[:, 2], 0.0))
+
+    def misses(z: Floats, which: Integers) -> Floats:
+        here = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
+        return np.stack([here.twist, here.up - here.point.eta, here.foot_x - foot_x[which]], axis=1)
+
+    def jacobian(z: Floats, which: Integers) -> Floats:
+        _, rates = with_rates(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
+        return np.stack(rates, axis=1)
+
+    z, missed = solve(misses, jacobian, guess)
+    chord = (end - begin) / scale
+    along = np.einsum("nk,nk->n", (z - begin) / scale, chord) / length
+    strayed = np.linalg.norm((z - guess) / scale, axis=1)
+    found = missed <= _BALANCED * np.maximum(1.0, np.abs(foot_x))
+    found &= ((z[:, 2] < 0) == inside) & (strayed <= _NEAR * length + _ASIDE)
+    found &= (along >= -_ASIDE) & (along <= length + _ASIDE)  # not beyond a fold
+    return states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa), found
+
+
+def _share(path: Path, cells: Integers, foot_x: Floats, length: Floats) -> Floats:
+    """How far along its cell each station lies, by the cubic of the foot position."""
+    low, high = np.zeros_like(foot_x), np.ones_like(foot_x)
+    begin = path.foot_x[cells], length * path.rate[cells]
+    end = path.foot_x[cells + 1], length * path.rate[cells + 1]
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        ahead = _cubic(middle, begin, end) > foot_x
+        low, high = np.where(ahead, middle, low), np.where(ahead, high, middle)
+    return low
+
+
+def _cubic(
+    share: Floats, begin: tuple[Floats, Floats], end: tuple[Floats, Floats]
+) -> Floats:
+    """Hermite's cubic of a value and its derivative at both ends."""
+    a, b = share, 1 - share
+    return (
+        b * b * ((1 + 2 * a) * begin[0] + a * begin[1])
+        + a * a * ((1 + 2 * b) * end[0] - b * end[1])
+    )
