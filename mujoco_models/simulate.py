@@ -53,8 +53,9 @@ def simulate_sweep(
     Raises
     ------
     InputError
-        If the case's beam has no radius: MuJoCo cannot collide a line. If the installed MuJoCo
-        lacks the beam that the settings ask for, or has no such obstacle for the contour.
+        If the case's beam has no radius: MuJoCo cannot collide a line. If the beam is curved at
+        rest, its clamp turns or the object rubs. If the installed MuJoCo lacks the beam that the
+        settings ask for, or has no such obstacle for the contour.
     DivergedError
         If the simulation is not a number any more; it names the station.
     MemoryError

@@ -1,10 +1,13 @@
 """A certificate for every station: its conditions, checked by a route of their own."""
 
+import math
+
 import numpy as np
 import pandas as pd
 
 from analytic.checks.integration import integrate_span
 from analytic.problem.readings import Readings
+from analytic.problem.support import support_of
 
 
 def certify(readings: Readings) -> pd.DataFrame:
@@ -22,12 +25,14 @@ def certify(readings: Readings) -> pd.DataFrame:
     -------
     pandas.DataFrame
         A row a station, dimensionless. ``residual_boundary`` is the largest of the misses of the
-        contact's position, of zero curvature there, of the slope there (the contour's in Phase B,
-        the tip's in Phase A) and of the force's direction, normal to the contour; of what the arc
-        length exceeds L by; and of what the slope falls below the contour's by on the way: above it
-        the vibrissa stays below the tangent at the contact, and so outside a convex body.
-        ``residual_moment`` is that of M = F_y (xi - x0) - F_x eta. Zero where the vibrissa is free,
-        NaN where the readings have no contact to check.
+        contact's position, of its curvature (the natural one, less what friction's couple on the
+        surface adds), of the slope there (the contour's in Phase B, the tip's in Phase A) and of
+        the force's direction, normal to the contour, or off it by friction's angle; and of what the
+        arc length exceeds L by. For the paper's vibrissa it is that of what the slope falls below
+        the contour's by on the way, too: above it the vibrissa stays below the tangent at the
+        contact, and so outside a convex body. ``residual_moment`` is that of
+        M = F_y (xi - x0) - F_x eta + mu r f. Zero where the vibrissa is free, NaN where the
+        readings have no contact to check.
     """
     if readings.bends_left:
         return certify(readings.mirrored())
@@ -44,23 +49,34 @@ def certify(readings: Readings) -> pd.DataFrame:
     arc_length = readings.values("contact_arc_length") / length
     phase = readings.table["phase"].to_numpy()
     slope = np.where(phase == "tangent", alpha, readings.values("tip_angle"))
+    clamp_stiffness, friction = support_of(readings.provenance)
+    compliance, natural = beam.moment_unit / clamp_stiffness, beam.natural_curvature * length
+    # Friction acts on the surface, and turns the force by the friction angle.
+    arm = friction / math.sqrt(1 + friction**2) * beam.radius / length
+    couple = arm * np.hypot(force_x, force_y)
+    plain = compliance == natural == friction == 0
 
     touching = np.isfinite(arc_length)
     boundary = np.where(phase == "free", 0.0, np.nan)
     balance = np.where(phase == "free", np.abs(moment), np.nan)
     if touching.any():
         end = integrate_span(
-            force_x[touching], force_y[touching], moment[touching], arc_length[touching]
+            force_x[touching],
+            force_y[touching],
+            moment[touching],
+            arc_length[touching],
+            compliance=compliance,
+            natural=natural,
         )
         misses = [
             end.x - x[touching],
             end.y - y[touching],
             end.phi - slope[touching],
-            end.kappa,
-            (np.arctan2(-force_x, force_y) - alpha)[touching],
+            end.kappa - natural + couple[touching],
+            (np.arctan2(-force_x, force_y) - math.atan(friction) - alpha)[touching],
             np.maximum(0.0, arc_length[touching] - 1),
-            np.maximum(0.0, alpha[touching] - end.least_phi),
+            np.maximum(0.0, alpha[touching] - (end.least_phi if plain else slope[touching])),
         ]
         boundary[touching] = np.abs(misses).max(axis=0)
-        balance[touching] = np.abs(moment - (force_y * x - force_x * y))[touching]
+        balance[touching] = np.abs(moment - (force_y * x - force_x * y) - couple)[touching]
     return pd.DataFrame({"residual_boundary": boundary, "residual_moment": balance})

@@ -23,7 +23,13 @@ class End(NamedTuple):
 
 
 def integrate_span(
-    force_x: Floats, force_y: Floats, moment: Floats, length: Floats, tolerance: float = 1e-13
+    force_x: Floats,
+    force_y: Floats,
+    moment: Floats,
+    length: Floats,
+    tolerance: float = 1e-13,
+    compliance: float = 0.0,
+    natural: float = 0.0,
 ) -> End:
     """March from the clamp along the loaded span (Will et al., eqs. 4 and 15).
 
@@ -40,6 +46,10 @@ def integrate_span(
         Arc length up to the contact [L].
     tolerance : float
         Relative and absolute, of the Dormand-Prince method of order 8.
+    compliance : float
+        Rotation of the clamp by moment [L/EI].
+    natural : float
+        Natural curvature [1/L].
 
     Returns
     -------
@@ -55,7 +65,7 @@ def integrate_span(
             [length * cos, length * sin, length * kappa, length * (force_y * cos - force_x * sin)]
         )
 
-    start = np.concatenate([np.zeros(2 * n), np.full(n, np.pi / 2), -moment])
+    start = np.concatenate([np.zeros(2 * n), np.pi / 2 - compliance * moment, natural - moment])
     found = solve_ivp(
         rate, (0.0, 1.0), start, method="DOP853", rtol=tolerance, atol=tolerance, t_eval=_MARKS
     )

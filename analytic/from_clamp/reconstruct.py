@@ -65,8 +65,10 @@ def reconstruct(
     Raises
     ------
     InputError
-        If `noise` is no such mapping.
+        If `noise` is no such mapping, or the vibrissa is curved at rest, its clamp turns, or the
+        object rubs.
     """
+    readings.require_plain("the reconstruction")
     judged = judge_phases(readings, noise)
     found = contact_table(readings, judged)
     if noise is not None:
@@ -168,6 +170,7 @@ def reconstruct_by_decision(readings: Readings, tolerance: float = 1e-6) -> pd.D
     pandas.DataFrame
         As `reconstruct`.
     """
+    readings.require_plain("the reconstruction")
     if readings.bends_left:
         return mirrored_table(reconstruct_by_decision(readings.mirrored(), tolerance))
     sensed = dimensionless(readings)

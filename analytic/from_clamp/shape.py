@@ -67,6 +67,7 @@ def curvatures(readings: Readings, x: Floats, y: Floats) -> Floats:
         kappa [1/length], positive where the vibrissa bends to the left of its way from clamp to
         tip.
     """
+    readings.require_plain("the curvature from the clamp")
     foot_x, force_x, force_y, moment = (readings.values(name)[:, None] for name in SENSED)
     kappa = (force_y * (x - foot_x) - force_x * y - moment) / readings.beam.flexural_rigidity
     kappa[:, -1] = 0.0

@@ -1,6 +1,7 @@
 """The problem: a vibrissa, a contour, and the positions of its foot."""
 
 import hashlib
+import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal, TypeAlias, get_args
@@ -14,6 +15,8 @@ from analytic.problem.contours.families import catenary
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import is_finite_number, is_whole_number
 from analytic.problem.reach import FARTHEST, contact_range, out_of_reach
+from analytic.problem.rest import first_touch
+from analytic.problem.support import check_support, is_plain, require_plain
 
 Direction: TypeAlias = Literal["left", "right"]
 
@@ -86,19 +89,25 @@ class Case:
         The foot positions.
     name : str
         What files and reports call the case.
+    clamp_stiffness : float
+        Moment of the clamp by its rotation [force length/rad]; by default it is rigid.
+    friction : float
+        Coulomb's coefficient between a sliding vibrissa and the object, from 0 to 1.
 
     Raises
     ------
     InputError
-        If a field is of another kind, the vibrissa cannot reach the contour, the contour is more
-        than 1,000 L wide within reach or farther than 10,000 L from the origin, or the sweep does
-        not start clear of it.
+        If a field is of another kind or out of range, the vibrissa cannot reach the contour, the
+        contour is more than 1,000 L wide within reach or farther than 10,000 L from the origin, or
+        the sweep does not start clear of it.
     """
 
     beam: Beam = field(default_factory=Beam)
     profile: Contour = field(default_factory=lambda: catenary(0.5, -0.8))
     sweep: Sweep = field(default_factory=Sweep)
     name: str = "case"
+    clamp_stiffness: float = field(default=math.inf, kw_only=True)
+    friction: float = field(default=0.0, kw_only=True)
 
     def __post_init__(self) -> None:
         for name, kind, remedy in (
@@ -112,6 +121,9 @@ class Case:
                 raise InputError(
                     f"case.{name}", f"a {type(value).__name__}", f"a {kind.__name__}", remedy
                 )
+        check_support(self.clamp_stiffness, self.friction, self.beam, signed=False)
+        for name in ("clamp_stiffness", "friction"):
+            object.__setattr__(self, name, float(getattr(self, name)))
         touch = self._first_contact * self.beam.length
         farthest = 2 * FARTHEST * self.beam.length
         for name, value in (("start", self._start), ("stop", self._stop)):
@@ -149,6 +161,26 @@ class Case:
         return contact_range(self.centreline)
 
     @property
+    def is_plain(self) -> bool:
+        """Whether the vibrissa is the paper's: straight at rest, its clamp rigid, no friction."""
+        return is_plain(self.beam, self.clamp_stiffness, self.friction)
+
+    def require_plain(self, who: str) -> None:
+        """Refuse a case that is not the paper's vibrissa.
+
+        Parameters
+        ----------
+        who : str
+            Who can take nothing else into account.
+
+        Raises
+        ------
+        InputError
+            If the vibrissa is curved at rest, its clamp turns, or it rubs.
+        """
+        require_plain(who, self.beam, self.clamp_stiffness, self.friction)
+
+    @property
     def radius(self) -> float:
         """The beam's radius in units of its length."""
         return self.beam.radius / self.beam.length
@@ -172,6 +204,9 @@ class Case:
                 point.eta,
             ]
         )
+        if not self.is_plain:
+            beyond = beam.natural_curvature, self.clamp_stiffness, self.friction
+            numbers = np.append(numbers, beyond)
         text = " ".join(f"{x:.12e}" for x in numbers)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
@@ -182,14 +217,20 @@ class Case:
         -------
         dict
             ``case`` and ``profile`` by name, ``digest``, and ``contour``: two lists, xi and eta
-            [length].
+            [length]; ``support``, if the clamp turns or the object rubs: ``clamp_stiffness``, None
+            if rigid, and ``friction``.
         """
         xi, eta = self.outline()
+        support: dict[str, Any] = {}
+        if self.clamp_stiffness != math.inf or self.friction != 0:
+            stiffness = self.clamp_stiffness if self.clamp_stiffness < math.inf else None
+            support = {"support": {"clamp_stiffness": stiffness, "friction": self.friction}}
         return {
             "case": self.name,
             "profile": self.profile.label,
             "digest": self.digest,
             "contour": [xi.tolist(), eta.tolist()],
+            **support,
         }
 
     def outline(self, points: int = 181) -> tuple[Floats, Floats]:
@@ -222,7 +263,8 @@ class Case:
         """
         opposite: Direction = "left" if self.sweep.direction == "right" else "right"
         sweep = Sweep(self.sweep.stations, -self._start, -self._stop, opposite)
-        return replace(self, profile=self.profile.mirrored(), sweep=sweep)
+        beam = self.beam.mirrored()
+        return replace(self, beam=beam, profile=self.profile.mirrored(), sweep=sweep)
 
     @property
     def _way(self) -> int:
@@ -231,6 +273,12 @@ class Case:
 
     @cached_property
     def _first_contact(self) -> float:
+        if self.beam.natural_curvature != 0:
+            natural = self.beam.natural_curvature * self.beam.length
+            if self._way > 0:
+                mirrored = self.centreline.mirrored()
+                return -first_touch(mirrored, contact_range(mirrored), -natural).foot_x
+            return first_touch(self.centreline, self.reach, natural).foot_x
         left, right = self.reach
         first = left if self._way > 0 else right
         return float(self.centreline.at(np.array([first])).xi[0])

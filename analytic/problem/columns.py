@@ -4,5 +4,14 @@ CLAMP_READINGS = ("force_x", "force_y", "moment_z")
 SENSED = ("foot_x", *CLAMP_READINGS)
 CONTACT = ("contact_angle", "contact_arc_length", "contact_x", "contact_y", "tip_angle")
 PHASES = ("free", "tip", "tangent")
-STATUSES = ("ok", "unsettled", "diverged", "unreachable", "chattering", "lost")
+STATUSES = (
+    "ok",
+    "unsettled",
+    "diverged",
+    "unreachable",
+    "chattering",
+    "lost",
+    "touches again",
+    "sticks",
+)
 COLUMNS = (*SENSED, "phase", *CONTACT, "status")

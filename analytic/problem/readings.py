@@ -15,6 +15,7 @@ from analytic.problem.columns import SENSED
 from analytic.problem.errors import InputError
 from analytic.problem.readings_file import read_file, write_file
 from analytic.problem.readings_shown import as_html, as_text, plot
+from analytic.problem.support import require_plain, support_of
 from analytic.problem.table import Place, checked_table, mirrored_table, row_number
 
 if TYPE_CHECKING:
@@ -177,6 +178,22 @@ class Readings:
         """
         return float(np.nansum(self.values("moment_z"))) < 0
 
+    def require_plain(self, who: str) -> None:
+        """Refuse readings of a vibrissa that is not the paper's.
+
+        Parameters
+        ----------
+        who : str
+            Who can take nothing else into account.
+
+        Raises
+        ------
+        InputError
+            If the vibrissa is curved at rest or, as the provenance has it, its clamp turns or the
+            object rubs.
+        """
+        require_plain(who, self.beam, *support_of(self.provenance))
+
     def mirrored(self) -> "Readings":
         """The readings in a mirror, x to -x.
 
@@ -192,7 +209,8 @@ class Readings:
         if "contour" in provenance:
             xi, eta = provenance["contour"]
             provenance["contour"] = [[-x for x in reversed(xi)], list(reversed(eta))]
-        return replace(self, table=mirrored_table(self.table), provenance=provenance)
+        table, beam = mirrored_table(self.table), self.beam.mirrored()
+        return replace(self, table=table, beam=beam, provenance=provenance)
 
     def write(self, path: str | Path) -> Path:
         """Write to Parquet (metadata inside) or CSV (metadata in the first line), by the suffix.
@@ -327,6 +345,11 @@ def _check_provenance(provenance: Mapping[str, Any]) -> None:
         raise InputError(
             "provenance.events", _short(events), "foot positions or null by name", "drop it"
         )
+    support = provenance.get("support", {})
+    if not _is_held(support):
+        raise InputError(
+            "provenance.support", _short(support), "clamp_stiffness and friction", "drop it"
+        )
     contour = provenance.get("contour", [[], []])
     try:
         right = np.ndim(contour) == 2 and len(contour) == 2 and np.isfinite(contour).all()
@@ -336,6 +359,14 @@ def _check_provenance(provenance: Mapping[str, Any]) -> None:
         raise InputError(
             "provenance.contour", _short(contour), "two lists of as many coordinates", "drop it"
         )
+
+
+def _is_held(value: object) -> bool:
+    """Whether a value is a clamp's stiffness, None if rigid, and friction, by name."""
+    if not isinstance(value, Mapping):
+        return False
+    known = set(value) <= {"clamp_stiffness", "friction"}
+    return known and all(_is_place(number) for number in value.values())
 
 
 def _is_place(value: object) -> bool:

@@ -1,5 +1,7 @@
 """Readings of the vibrissa against given points of a contour."""
 
+import math
+
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
@@ -7,10 +9,22 @@ from numpy.typing import ArrayLike
 from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
+from analytic.problem.support import check_support, is_plain
 from analytic.solver.equilibria import equilibria, to_columns
+from analytic.solver.general.clearance import is_clear
+from analytic.solver.general.columns import to_columns as general_columns
+from analytic.solver.general.contacts import contacts
+from analytic.solver.general.states import Vibrissa
 
 
-def solve_contact(profile: Contour, alpha: ArrayLike, beam: Beam | None = None) -> pd.DataFrame:
+def solve_contact(
+    profile: Contour,
+    alpha: ArrayLike,
+    beam: Beam | None = None,
+    *,
+    clamp_stiffness: float = math.inf,
+    friction: float = 0.0,
+) -> pd.DataFrame:
     """Clamp readings and contact of a vibrissa that touches `profile` where its slope is `alpha`.
 
     Parameters
@@ -21,19 +35,29 @@ def solve_contact(profile: Contour, alpha: ArrayLike, beam: Beam | None = None) 
         Slope angles of the contact points [rad].
     beam : Beam, optional
         The vibrissa; ``Beam()`` if not given.
+    clamp_stiffness : float
+        Moment of the clamp by its rotation [force length/rad]; by default it is rigid.
+    friction : float
+        Coulomb's coefficient, positive where the object pushes the vibrissa along its contour to
+        the right, as in a sweep to the left; negative for the other sense of sliding.
 
     Returns
     -------
     pandas.DataFrame
         n rows with the columns of `Readings.table`, in the units of `beam`. ``status`` is
-        ``"unreachable"``, and the readings NaN, where no vibrissa reaches.
+        ``"unreachable"``, and the readings NaN, where no vibrissa reaches. With a natural
+        curvature, friction or an elastic clamp it is so, too, where the state of the paper's
+        vibrissa cannot be followed to this one; and ``"touches again"`` where it would touch the
+        object in a second place. Such a vibrissa may have two states at one point of the contour;
+        the one that a sweep comes to is that of `solve_sweep`.
 
     Raises
     ------
     InputError
-        If an angle is not within [-pi/2, pi/2].
+        If an angle is not within [-pi/2, pi/2], or a number is out of range.
     """
     beam = Beam() if beam is None else beam
+    check_support(clamp_stiffness, friction, beam, signed=True)
     angles = np.atleast_1d(np.asarray(alpha, dtype=float))
     outside = ~(np.abs(angles) <= np.pi / 2)
     if outside.any():
@@ -44,5 +68,9 @@ def solve_contact(profile: Contour, alpha: ArrayLike, beam: Beam | None = None) 
             "angles are in rad",
         )
     centreline = profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
-    states = equilibria(centreline, centreline.parameter(angles))
-    return pd.DataFrame(to_columns(states, beam))
+    t = centreline.parameter(angles)
+    if is_plain(beam, clamp_stiffness, friction):
+        return pd.DataFrame(to_columns(equilibria(centreline, t), beam))
+    found = contacts(centreline, t, Vibrissa.of(beam, clamp_stiffness, friction))
+    again = np.isfinite(found.excess) & ~is_clear(centreline, found)
+    return pd.DataFrame(general_columns(found, again, beam))

@@ -10,12 +10,18 @@ from typing import Any
 import numpy as np
 
 from analytic.problem.beam import Beam
+from analytic.problem.columns import COLUMNS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.reach import contact_range
+from analytic.problem.rest import first_touch
 from analytic.problem.roots import zeros
+from analytic.problem.support import check_support, is_plain
 from analytic.solver.branch import trace
 from analytic.solver.contact_length import surplus_and_rate
 from analytic.solver.equilibria import Equilibria, equilibria, tangent_contact, to_columns
+from analytic.solver.general.columns import to_columns as general_columns
+from analytic.solver.general.path import follow
+from analytic.solver.general.states import Vibrissa, states
 from analytic.solver.grid import along
 
 
@@ -43,7 +49,8 @@ class Events:
     If Phases A and B take turns more than once, as they may on an object that is flat below,
     Phase B is here from its first start to its last end. ``contact_length_minimum`` is that of
     eq. 21 even where it exceeds the vibrissa's length: then there is no Phase B, and only its
-    angle, contact point and arc length have a meaning. ``out_of_plane`` is where a vibrissa that
+    angle, contact point and arc length have a meaning. With a natural curvature, friction or an
+    elastic clamp there are no numbers then. ``out_of_plane`` is where a vibrissa that
     nothing guides leaves the plane of the sweep (`analytic.from_clamp.sideways`); what is after it
     happens to one that is guided.
     """
@@ -56,7 +63,13 @@ class Events:
     snap_off: Event
 
 
-def find_events(profile: Contour, beam: Beam | None = None) -> Events:
+def find_events(
+    profile: Contour,
+    beam: Beam | None = None,
+    *,
+    clamp_stiffness: float = math.inf,
+    friction: float = 0.0,
+) -> Events:
     """The events of a sweep of `beam` along `profile`, each with the readings there.
 
     Parameters
@@ -65,20 +78,31 @@ def find_events(profile: Contour, beam: Beam | None = None) -> Events:
         The body's contour [length].
     beam : Beam, optional
         The vibrissa; ``Beam()`` if not given.
+    clamp_stiffness : float
+        Moment of the clamp by its rotation [force length/rad]; by default it is rigid.
+    friction : float
+        Coulomb's coefficient, from 0 to 1.
 
     Returns
     -------
     Events
-        In the units of `beam`.
+        In the units of `beam`. Where the vibrissa leaves the plane of the sweep is not known with a
+        natural curvature, friction or an elastic clamp.
 
     Raises
     ------
     InputError
-        If the vibrissa cannot reach the contour.
+        If the vibrissa cannot reach the contour, or a number is out of range.
+    ArithmeticError
+        If the equilibria of such a vibrissa cannot be followed to where it snaps off.
     """
     beam = Beam() if beam is None else beam
+    check_support(clamp_stiffness, friction, beam, signed=False)
     centreline = profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
     reach = contact_range(centreline)
+    if not is_plain(beam, clamp_stiffness, friction):
+        vibrissa = Vibrissa.of(beam, clamp_stiffness, friction)
+        return _general_events(centreline, reach, vibrissa, beam)
     branch = trace(centreline, reach)
     touch = _first_touch(centreline, branch.first_contact, beam)
 
@@ -99,6 +123,32 @@ def find_events(profile: Contour, beam: Beam | None = None) -> Events:
         None if branch.sideways_limit is None else event(branch.sideways_limit),
         event(branch.snap_off),
     )
+
+
+def _general_events(
+    centreline: Contour, reach: tuple[float, float], vibrissa: Vibrissa, beam: Beam
+) -> Events:
+    touch = first_touch(centreline, reach, vibrissa.natural_curvature)
+    path = follow(centreline, vibrissa, touch, reach)
+    if not path.complete:
+        place = f"beyond foot_x = {path.foot_x[-1] * beam.length:.6g}"
+        raise ArithmeticError(f"the equilibria along {centreline.label} are lost {place}")
+    places = path.events()
+
+    def event(name: str) -> Event | None:
+        i = places[name]
+        if i is None:
+            return None
+        z = path.z[i : i + 1]
+        found = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
+        columns = general_columns(found, np.zeros(1, dtype=bool), beam)
+        return Event(**{name: column[0].item() for name, column in columns.items()})
+
+    first, snap_off = event("first_contact"), event("snap_off")
+    assert first is not None and snap_off is not None
+    minimum = event("contact_length_minimum") or _nowhere()
+    start, end = event("phase_b_start"), event("phase_b_end")
+    return Events(first, start, end, minimum, None, snap_off)
 
 
 def _contact_length_minimum(centreline: Contour, reach: tuple[float, float]) -> float:
@@ -135,6 +185,12 @@ def _first_touch(centreline: Contour, t: float, beam: Beam) -> Event:
         tip_angle=np.pi / 2,
         status="ok",
     )
+
+
+def _nowhere() -> Event:
+    """What there is not."""
+    numbers = {name: np.nan for name in COLUMNS if name not in ("phase", "status")}
+    return Event(**numbers, phase="free", status="unreachable")
 
 
 def _imaginary(minimum: Event) -> Event:

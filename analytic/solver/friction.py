@@ -62,6 +62,8 @@ def with_friction(case: Case, coefficient: float) -> Readings:
     """
     if not abs(coefficient) <= 0.5:
         raise InputError("friction coefficient", coefficient, "from -0.5 to 0.5", "0.1 is usual")
+    if isinstance(case, Case):
+        case.require_plain("the integration with friction")
     return solve_either_way(case, lambda leftward: _leftward(leftward, coefficient))
 
 

@@ -15,6 +15,9 @@ from analytic.problem.mirror import solve_either_way
 from analytic.problem.readings import Readings
 from analytic.solver.branch import trace
 from analytic.solver.equilibria import Column, to_columns
+from analytic.solver.general import sweep as general
+from analytic.solver.general.residuals import residuals as general_residuals
+from analytic.solver.general.states import Vibrissa
 from analytic.solver.residuals import residuals
 from analytic.solver.stations import solve_stations
 
@@ -42,7 +45,10 @@ def solve_sweep(case: Case, certified: bool = False) -> Readings:
         beyond L and of the tip's angle below the contour's; ``residual_moment`` is that of the
         balance of moments. They come from the clamp readings by the closed form; if `certified`,
         they are the larger ones of that and of the integration. ``status`` is ``"diverged"`` where
-        one exceeds 1e-11 by the closed form or 1e-9 by the integration, else ``"ok"``.
+        one exceeds 1e-11 by the closed form or 1e-9 by the integration, else ``"ok"``. Where a
+        vibrissa that is curved at rest would touch the object in a second place, it is ``"touches
+        again"``, without readings. Where friction would not let it slide on as its foot moves, it
+        is ``"sticks"``, with the readings of one that does: those depend on what was before.
     """
     return solve_either_way(case, partial(_solve_leftward, certified=certified))
 
@@ -51,12 +57,28 @@ def _solve_leftward(case: Case, certified: bool) -> Readings:
     """Solve a sweep to the left.
 
     Right of the first contact and left of the snap-off the vibrissa is free. Between them the foot
-    position falls along the contour, so that each station has one state.
+    position falls along the equilibria, so that each station has one state.
     """
+    beam = case.beam
+    columns = _free(case)
+    solve = _solve_plain if case.is_plain else _solve_general
+    checked, events = solve(case, columns)
+    provenance = {
+        **case.provenance(),
+        "engine": _engine(),
+        "events": {name: None if x is None else x * beam.length for name, x in events.items()},
+    }
+    readings = Readings(pd.DataFrame({**columns, **checked}), beam, "analytic", provenance)
+    return _with_certificate(readings) if certified else readings
+
+
+def _solve_plain(
+    case: Case, columns: dict[str, Column]
+) -> tuple[dict[str, Floats], dict[str, float | None]]:
+    """Fill in the stations that touch; what they miss, and where what happens happens [L]."""
     beam = case.beam
     foot_x = case.foot_x / beam.length
     branch = trace(case.centreline, case.reach)
-    columns = _free(case.foot_x)
     first, snap_off = branch.foot_x[0], branch.foot_x[-1]
     touching = (foot_x < first) & (foot_x >= snap_off - _ROUNDING * max(1.0, abs(snap_off)))
     if touching.any():
@@ -66,15 +88,21 @@ def _solve_leftward(case: Case, certified: bool) -> Readings:
     checked = residuals(columns, beam)
     solved_on = np.maximum(*checked.values()) <= _SOLVED
     columns["status"] = np.where(solved_on, "ok", "diverged")
-    provenance = {
-        **case.provenance(),
-        "engine": _engine(),
-        "events": {
-            name: None if x is None else x * beam.length for name, x in branch.events().items()
-        },
-    }
-    readings = Readings(pd.DataFrame({**columns, **checked}), beam, "analytic", provenance)
-    return _with_certificate(readings) if certified else readings
+    return checked, branch.events()
+
+
+def _solve_general(
+    case: Case, columns: dict[str, Column]
+) -> tuple[dict[str, Floats], dict[str, float | None]]:
+    """The same with friction, an elastic clamp or a natural curvature."""
+    solved = general.solve(case)
+    for name in COLUMNS[1:]:
+        columns[name][solved.where] = solved.columns[name]
+    vibrissa = Vibrissa.of(case.beam, case.clamp_stiffness, case.friction)
+    checked = general_residuals(columns, case.beam, vibrissa)
+    inexact = np.maximum(*checked.values()) > _SOLVED
+    columns["status"][inexact] = "diverged"
+    return checked, solved.events
 
 
 @cache
@@ -91,14 +119,15 @@ def _with_certificate(readings: Readings) -> Readings:
     return replace(readings, table=table)
 
 
-def _free(foot_x: Floats) -> dict[str, Column]:
+def _free(case: Case) -> dict[str, Column]:
     """The readings of a vibrissa that touches nothing."""
-    count = len(foot_x)
+    count = len(case.foot_x)
     columns: dict[str, Column] = {name: np.full(count, np.nan) for name in COLUMNS}
-    columns["foot_x"] = foot_x
+    columns["foot_x"] = case.foot_x
     for name in CLAMP_READINGS:
         columns[name] = np.zeros(count)
     columns["phase"] = np.full(count, "free", dtype="<U11")
-    columns["tip_angle"] = np.full(count, np.pi / 2)
-    columns["status"] = np.full(count, "ok", dtype="<U11")
+    turn = case.beam.natural_curvature * case.beam.length
+    columns["tip_angle"] = np.full(count, np.pi / 2 + turn)
+    columns["status"] = np.full(count, "ok", dtype="<U13")
     return columns

@@ -25,6 +25,7 @@ from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
 from analytic.problem.reach import contact_range
+from analytic.problem.support import require_plain
 from analytic.solver.elastica import Span, frame, span
 
 _GRID = 801  # contour points to find the fold between; it is then exact
@@ -53,11 +54,13 @@ def slip_off(profile: Contour, tilt: float, beam: Beam | None = None) -> float |
     Raises
     ------
     InputError
-        If the tilt is zero (see `find_events`, ``out_of_plane``) or large.
+        If the tilt is zero (see `find_events`, ``out_of_plane``) or large, or the vibrissa is
+        curved at rest.
     """
     if not 0 < abs(tilt) <= _LARGEST:
         raise InputError("tilt", f"{tilt} rad", f"up to {_LARGEST} rad, not zero", "it is in rad")
     beam = Beam() if beam is None else beam
+    require_plain("the slip-off", beam)
     centreline = profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
     first = contact_range(centreline)[1]
     lowest = float(centreline.parameter(np.zeros(1))[0])

@@ -97,8 +97,10 @@ def set_out(case: Case, settings: Settings, numerics: Numerics | None = None) ->
     Raises
     ------
     InputError
-        If the case's beam has no radius, or MuJoCo has no such beam or obstacle.
+        If the case's beam has no radius or is curved at rest, its clamp turns, the object rubs, or
+        MuJoCo has no such beam or obstacle.
     """
+    case.require_plain("MuJoCo's beams")
     if case.radius == 0:
         raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
     obstacle = place(case, settings)

@@ -1,0 +1,1 @@
+"""The vibrissa with friction, an elastic clamp and a constant natural curvature."""

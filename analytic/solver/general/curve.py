@@ -6,6 +6,7 @@ to it. The curve has a kink where the phases take turns and where the contour is
 """
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +21,7 @@ _ROUNDING = 1e-12  # of the misses: one that does not fall any more is as small 
 _NEWTON = 10
 _ASIDE = 1e-9  # of a step: a kink nearer than that is the one that the step starts from
 _INSIDE = -5e-324  # an excess of nothing, in Phase B
-_FOLD = 1e-9  # of a cell, of where the foot position is least
+_LEAST = 1e-9  # of a cell, and of a rate: where something is least
 _SEARCHES = 40
 _T, _F, _W = range(3)
 
@@ -47,15 +48,37 @@ class Curve(NamedTuple):
     breaks: Floats
 
     def start(self, t: float, excess: float) -> Point:
-        """The unloaded vibrissa at first contact."""
+        """The unloaded vibrissa at first contact.
+
+        Parameters
+        ----------
+        t, excess : float
+            Contour parameter and excess of the contact.
+
+        Returns
+        -------
+        Point
+            Its direction is that of the growing force.
+        """
         here = self._point(np.array([t, 0.0, excess]))
         return here if here.direction[_F] > 0 else _reversed(here)
 
     def advance(self, here: Point, length: float, bend: Floats) -> tuple[Point, ...]:
         """The next points of the curve, at most a step ahead.
 
-        One; two at a kink, one on each side; or none if the step is too long for Newton's method.
-        The curve's second derivative `bend` is a guess.
+        Parameters
+        ----------
+        here : Point
+            Where to go on from.
+        length : float
+            Of the step.
+        bend : array, shape (3,)
+            A guess of the curve's second derivative.
+
+        Returns
+        -------
+        tuple of Point
+            One; two at a kink, one on each side; none if the step is too long for Newton's method.
         """
         z = here.z + length * here.direction + length**2 / 2 * bend
         if z[_F] < 0:
@@ -91,12 +114,25 @@ class Curve(NamedTuple):
         same = second.direction[index] * first.direction[index] > 0
         return first, second if same else _reversed(second)
 
-    def fold(self, begin: Point, end: Point) -> Point | None:
-        """Where the foot position is least between two points of a smooth part."""
+    def turn(self, begin: Point, end: Point, rate: Callable[[Point], float]) -> Point | None:
+        """Where something is least between two points of a smooth part.
+
+        Parameters
+        ----------
+        begin, end : Point
+            Between which its rate changes from negative to positive.
+        rate : callable
+            Its derivative by the curve's length, at a point.
+
+        Returns
+        -------
+        Point or None
+            None if Newton's method loses the curve.
+        """
         chord = end.z - begin.z
         normal = chord / _scale(begin.z) ** 2
         low, high = 0.0, 1.0
-        rate_low, rate_high = begin.rate, end.rate
+        rate_low, rate_high = rate(begin), rate(end)
         found = None
         for _ in range(_SEARCHES):
             share = low + (high - low) * np.clip(rate_low / (rate_low - rate_high), 0.05, 0.95)
@@ -104,11 +140,12 @@ class Curve(NamedTuple):
             if found is None:
                 return None
             found = _along(found, normal)
-            if found.rate < 0:
-                low, rate_low = share, found.rate
+            here = rate(found)
+            if here < 0:
+                low, rate_low = share, here
             else:
-                high, rate_high = share, found.rate
-            if high - low < _FOLD or abs(found.rate) < _FOLD:
+                high, rate_high = share, here
+            if high - low < _LEAST or abs(here) < _LEAST:
                 break
         return found
 
@@ -119,13 +156,13 @@ class Curve(NamedTuple):
             sides = (_INSIDE, 0.0) if old[_W] < 0 else (0.0, _INSIDE)
             places.append((float(old[_W] / (old[_W] - new[_W])), _W, *sides))
         low, high = sorted((old[_T], new[_T]))
-        way = np.inf if new[_T] > old[_T] else -np.inf
+        back, on = (low, high) if new[_T] > old[_T] else (high, low)
         for at in self.breaks[(self.breaks > low) & (self.breaks < high)]:
             share = float((at - old[_T]) / (new[_T] - old[_T]))
-            places.append((share, _T, float(np.nextafter(at, -way)), float(np.nextafter(at, way))))
-        for at in self.t_range:
-            if low < at < high or new[_T] == at != old[_T]:
-                places.append((float((at - old[_T]) / (new[_T] - old[_T])), _T, at, np.nan))
+            places.append((share, _T, float(np.nextafter(at, back)), float(np.nextafter(at, on))))
+        ends = [at for at in self.t_range if low < at < high or new[_T] == at != old[_T]]
+        way = float(new[_T] - old[_T])
+        places += [(float(at - old[_T]) / way, _T, at, math.nan) for at in ends]
         return places
 
     def _point(self, z: Floats) -> Point:
@@ -142,10 +179,18 @@ class Curve(NamedTuple):
         size = math.hypot(across[0], across[1] / max(1.0, z[_F]), across[2])
         direction = np.array(across) / (size or math.nan)
         misses = np.array([here.twist[0], here.up[0] - here.point.eta[0]])
-        point = Point(z, direction, float(here.foot_x[0]), float(rates.foot_x[0] @ direction), bool(here.beyond[0]))
+        point = Point(
+            z,
+            direction,
+            float(here.foot_x[0]),
+            float(rates.foot_x[0] @ direction),
+            bool(here.beyond[0]),
+        )
         return point, misses, slopes
 
-    def _corrected(self, z: Floats, normal: Floats, pinned: slice = slice(0), close: float = _CLOSE) -> Point | None:
+    def _corrected(
+        self, z: Floats, normal: Floats, pinned: slice = slice(0), close: float = _CLOSE
+    ) -> Point | None:
         """The point of the curve in the plane through z."""
         value = z[pinned].copy()
         missed = np.inf
@@ -183,7 +228,18 @@ def _size(way: Floats, at: Floats) -> float:
 
 
 def turning(here: Point, new: Point) -> float:
-    """By how much the curve turns between two points [rad]."""
+    """By how much the curve turns between two points.
+
+    Parameters
+    ----------
+    here, new : Point
+        The points.
+
+    Returns
+    -------
+    float
+        Angle between the directions, the force measured by its size [rad].
+    """
     scale = _scale(here.z)
     a, b = here.direction / scale, new.direction / scale
     return float(np.arccos(np.clip(a @ b / np.sqrt((a @ a) * (b @ b)), -1, 1)))

@@ -73,12 +73,13 @@ def solve(misses: Misses, jacobian: Jacobian, start: Floats) -> tuple[Floats, Fl
 
 
 def _largest(values: Floats) -> Floats:
-    return np.nan_to_num(np.abs(values).max(axis=1), nan=np.inf)
+    largest = np.abs(values).max(axis=1)
+    return np.where(np.isnan(largest), np.inf, largest)
 
 
 def _step(slopes: Floats, values: Floats) -> Floats:
-    regular = np.isfinite(slopes).all(axis=(1, 2))
-    regular[regular] = np.linalg.det(slopes[regular]) != 0
+    regular = np.flatnonzero(np.isfinite(slopes).all(axis=(1, 2)))
+    regular = regular[np.linalg.det(slopes[regular]) != 0]
     step = np.zeros_like(values)
     step[regular] = np.linalg.solve(slopes[regular], values[regular][..., None])[..., 0]
     return step

@@ -5,14 +5,15 @@ that is curved towards the object is straightened first, and its tip climbs. So 
 its own length.
 """
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
+from analytic.problem.rest import Touch
 from analytic.solver.general.curve import Curve, Point, turning
-from analytic.solver.general.rest import Touch
 from analytic.solver.general.states import Vibrissa
 
 _STEP = 0.02  # of the curve's length, at first
@@ -45,6 +46,27 @@ class Path(NamedTuple):
     def snap_off(self) -> int:
         """Which point has the least foot position: from there the vibrissa lets go."""
         return int(np.argmin(self.foot_x))
+
+    def events(self) -> dict[str, int | None]:
+        """What happens on the way to the snap-off, and at which point; None where it does not.
+
+        Returns
+        -------
+        dict
+            The first contact, the first start and the last end of Phase B, the contact nearest to
+            the clamp in Phase B, and the snap-off, of a curve that is complete.
+        """
+        excess = self.z[: self.snap_off + 1, 2]
+        inside = excess < 0
+        change = np.flatnonzero(inside[1:] != inside[:-1]) + 1
+        into_b, into_a = change[inside[change]].tolist(), change[~inside[change]].tolist()
+        return {
+            "first_contact": 0,
+            "phase_b_start": 0 if inside[0] else next(iter(into_b), None),
+            "phase_b_end": into_a[-1] if into_a and not inside[-1] else None,
+            "contact_length_minimum": int(np.argmin(excess)) if inside.any() else None,
+            "snap_off": self.snap_off if self.complete else None,
+        }
 
     def cells(self, foot_x: Floats) -> Integers:
         """The cell that holds the state at each foot position.
@@ -102,8 +124,14 @@ def follow(
             bend = (ahead[0].direction - here.direction) / length
             length = min(_LARGEST, length * min(2.0, max(0.5, _TURN / max(turn, 1e-3))))
     complete = _ended(points, reach)
-    columns = list(zip(*_with_folds(curve, points), strict=True))[:4]
-    return Path(*(np.array(values) for values in columns), complete)
+    points = _with_turns(curve, points)
+    return Path(
+        np.array([point.z for point in points]),
+        np.array([point.direction for point in points]),
+        np.array([point.foot_x for point in points]),
+        np.array([point.rate for point in points]),
+        complete,
+    )
 
 
 def _ended(points: list[Point], reach: tuple[float, float]) -> bool:
@@ -114,12 +142,23 @@ def _ended(points: list[Point], reach: tuple[float, float]) -> bool:
     return here.z[1] == 0 or here.z[0] in reach or (here.beyond and here.rate > 0)
 
 
-def _with_folds(curve: Curve, points: list[Point]) -> list[Point]:
-    found = points[:1]
-    for begin, end in zip(points[:-1], points[1:], strict=True):
-        if begin.rate < 0 < end.rate and np.any(begin.z != end.z):
-            fold = curve.fold(begin, end)
-            if fold is not None:
-                found.append(fold)
-        found.append(end)
-    return found
+def _with_turns(curve: Curve, points: list[Point]) -> list[Point]:
+    """The points, and those between where foot position or contact's arc length are least."""
+    for rate in (_foot_rate, _excess_rate):
+        found = points[:1]
+        for begin, end in pairwise(points):
+            if rate(begin) < 0 < rate(end) and np.any(begin.z != end.z):
+                least = curve.turn(begin, end, rate)
+                if least is not None:
+                    found.append(least)
+            found.append(end)
+        points = found
+    return points
+
+
+def _foot_rate(point: Point) -> float:
+    return point.rate
+
+
+def _excess_rate(point: Point) -> float:
+    return float(point.direction[2]) if point.z[2] < 0 else 0.0

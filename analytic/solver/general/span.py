@@ -1,17 +1,17 @@
 """A loaded span of constant natural curvature, from the contact back to the clamp, in closed form.
 
-With the moment of a dead force F of slope angle theta = phi - phi_F about the span's end, the
-curvature obeys kappa' = F cos(theta): the pendulum's equation. It holds whatever the natural
-curvature, as long as that is constant. With chi = pi/4 - theta/2 the three functions
+With the moment of a dead force F of slope angle phi_F about the span's end, the curvature obeys
+kappa' = F cos(theta), theta = phi - phi_F: the pendulum's equation, whatever the natural curvature,
+as long as that is constant. With chi = pi/4 - theta/2 the three functions
 
     p = sin(chi),  g = cos(chi),  v = -kappa/2    obey    p' = g v,  g' = -p v,  v' = -F p g,
 
-so that p^2 + g^2 = 1 and F p^2 + v^2 = B stay. They are k sn, dn and sqrt(F) k cn with k^2 = B/F. Let
-S(s) be the solution of S' = c d, c^2 = 1 - F S^2, d^2 = 1 - B S^2: sn/sqrt(F) of modulus k for k < 1,
-sn/sqrt(B) of modulus 1/k for k > 1, and s for no force and no curvature. The addition theorem (Byrd
-and Friedman, *Handbook of elliptic integrals*, 123.01) takes p, g and v from the contact to the
-clamp, and the second kind's (116.02) gives the position. Written so, nothing is singular: neither
-where the curvature changes its sign, nor at k = 1, nor where the force vanishes.
+so that p^2 + g^2 = 1 and F p^2 + v^2 = B stay. They are k sn, dn and sqrt(F) k cn with k^2 = B/F.
+Let S(s) be the solution of S' = c d, c^2 = 1 - F S^2, d^2 = 1 - B S^2, S(0) = 0: it is sn/sqrt(F) of
+modulus k for k < 1, sn/sqrt(B) of modulus 1/k for k > 1. The addition theorems of sn, cn and dn (Byrd
+and Friedman, *Handbook of elliptic integrals*, 1971, 123.01) take p, g and v from the contact to the
+clamp, and that of the second kind's integral (116.02) gives the position. Written so, nothing is
+singular: neither where the curvature changes its sign, nor at k = 1, nor where the force vanishes.
 """
 
 from typing import NamedTuple
@@ -53,6 +53,7 @@ def back_to_clamp(theta: Floats, kappa: Floats, force: Floats, length: Floats) -
     Start
         Of the same shape, dimensionless; right for spans of up to one period.
     """
+    theta, kappa, force, length = np.broadcast_arrays(theta, kappa, force, length)
     chi = np.pi / 4 - theta / 2
     p1, g1, v1 = np.sin(chi), np.cos(chi), -kappa / 2
     energy = force * p1**2 + v1**2
@@ -79,7 +80,7 @@ def back_to_clamp(theta: Floats, kappa: Floats, force: Floats, length: Floats) -
 def _second_kind(S: Floats, cn: Floats, dn: Floats, m: Floats, root: Floats) -> Floats:
     """Integral of S^2 by arc length, from 0 (Carlson's R_D; DLMF 19.25.10)."""
     rising = np.abs(S) ** 3 / 3 * elliprd(cn**2, dn**2, np.ones_like(S))
-    first = (cn >= 0) & (S >= 0)
+    first = ~((cn < 0) | (S < 0))
     if first.all():  # no longer than a quarter of a period
         return rising
     quarter = np.zeros_like(S)

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import ContourPoint
 from analytic.solver.general.span import back_to_clamp
-
 
 # Differences of second order, to one side: a force is not negative, and a phase ends where w = 0.
 _DIFFERENCE = 1e-5  # of a force and an excess of size 1: truncation and round-off are alike
@@ -36,8 +36,42 @@ class Vibrissa(NamedTuple):
     radius: float = 0.0
     """[L]"""
 
-    def scaled(self, share: Floats) -> "Vibrissa":
-        """The vibrissa a part of the way from the paper's to this one, its radius as it is."""
+    @classmethod
+    def of(cls, beam: Beam, clamp_stiffness: float, friction: float) -> "Vibrissa":
+        """The numbers of a beam in its clamp, made dimensionless.
+
+        Parameters
+        ----------
+        beam : Beam
+            The vibrissa.
+        clamp_stiffness, friction : float
+            Moment of the clamp by its rotation [force length/rad]; coefficient.
+
+        Returns
+        -------
+        Vibrissa
+            Dimensionless.
+        """
+        return cls(
+            beam.natural_curvature * beam.length,
+            beam.moment_unit / clamp_stiffness,
+            friction,
+            beam.radius / beam.length,
+        )
+
+    def scaled(self, share: float) -> "Vibrissa":
+        """The vibrissa a part of the way from the paper's to this one, its radius as it is.
+
+        Parameters
+        ----------
+        share : float
+            From 0 to 1.
+
+        Returns
+        -------
+        Vibrissa
+            Dimensionless.
+        """
         return Vibrissa(
             share * self.natural_curvature,
             share * self.compliance,
@@ -170,7 +204,8 @@ def with_rates(
         excess + step_w * _BY_EXCESS[:, None],
         vibrissa,
     )
-    here = States(point, force, excess, *(values[0] for values in found[3:8]), vibrissa)
+    moment, up, reach, twist, beyond = (values[0] for values in found[3:8])
+    here = States(point, force, excess, moment, up, reach, twist, beyond, vibrissa)
     sin, cos = np.sin(point.alpha), np.cos(point.alpha)
     by_t = (
         point.turning,

@@ -10,7 +10,9 @@ from analytic.solver.general.states import States, Vibrissa, states, with_rates
 
 _HALVINGS = 40  # of a cell, to begin Newton's method from
 _NEAR = 0.5  # of a cell's length: by how much its interpolation may err
-_ASIDE = 1e-6  # by how much a state may lie beyond its cell: near a fold x0 hardly tells
+_ASIDE = (
+    1e-6  # by how much a state may lie beyond its cell: close to a fold x0 does not distinguish
+)
 _BALANCED = 1e-11  # L, rad; beyond, no state was found
 
 
@@ -83,12 +85,9 @@ def _share(path: Path, cells: Integers, foot_x: Floats, length: Floats) -> Float
     return low
 
 
-def _cubic(
-    share: Floats, begin: tuple[Floats, Floats], end: tuple[Floats, Floats]
-) -> Floats:
+def _cubic(share: Floats, begin: tuple[Floats, Floats], end: tuple[Floats, Floats]) -> Floats:
     """Hermite's cubic of a value and its derivative at both ends."""
     a, b = share, 1 - share
-    return (
-        b * b * ((1 + 2 * a) * begin[0] + a * begin[1])
-        + a * a * ((1 + 2 * b) * end[0] - b * end[1])
+    return b * b * ((1 + 2 * a) * begin[0] + a * begin[1]) + a * a * (
+        (1 + 2 * b) * end[0] - b * end[1]
     )

@@ -71,6 +71,7 @@ def contact_length(case: Case) -> Figure:
     """
     figure = Figure(figsize=(6.5, 4), layout="constrained")
     ax = figure.subplots()
+    case.require_plain("figure 12")
     events = find_events(case.profile, case.beam)
     centreline, length = case.centreline, case.beam.length
     first = events.first_contact.contact_angle

@@ -65,8 +65,8 @@ def first_touch(centreline: Contour, reach: tuple[float, float], natural: float)
     InputError
         If the vibrissa at rest passes below the object.
     """
-    tip_x, tip_y, tip_angle = (float(v) for v in arc(natural, np.array(1.0)))
-    last, first = reach
+    _, tip_y, tip_angle = (float(v) for v in arc(natural, np.array(1.0)))
+    first = reach[1]
     lowest = float(centreline.parameter(np.zeros(1))[0])
 
     def height(t: Floats) -> Floats:
@@ -80,7 +80,11 @@ def first_touch(centreline: Contour, reach: tuple[float, float], natural: float)
             f"below {tip_y:.6g} L, the tip of the vibrissa at rest",
             "lower the object or lessen the natural curvature",
         )
-    top = first if height(ends[1])[0] <= tip_y else float(zeros(lambda t: height(t) - tip_y, *ends)[0])
+    top = (
+        first
+        if height(ends[1])[0] <= tip_y
+        else float(zeros(lambda t: height(t) - tip_y, *ends)[0])
+    )
 
     def arc_length(t: Floats) -> Floats:
         """Arc length at which the vibrissa is as high as the contour at t."""
@@ -94,16 +98,24 @@ def first_touch(centreline: Contour, reach: tuple[float, float], natural: float)
 
     grid = np.linspace(top, lowest, _SAMPLES)
     steep = lean(grid)
+    at_tip = top < first or height(ends[1])[0] >= tip_y * (1 - 1e-15)
+    if not at_tip and steep[0] < 0:
+        raise InputError(
+            "beam.natural_curvature",
+            f"{natural:.6g}/L",
+            "such that the vibrissa at rest does not lean over the object from its upper side "
+            f"({centreline.label})",
+            "lessen it; only the object's lower side can be touched",
+        )
     crossings = np.flatnonzero((steep[:-1] > 0) & (steep[1:] <= 0))
     tangents = zeros(lean, grid[crossings + 1], grid[crossings])
     places = np.append(top, tangents)
     lengths = arc_length(places)
-    at_tip = height(places[:1])[0] >= tip_y * (1 - 1e-15)
-    if at_tip:
-        lengths[0] = 1.0
+    lengths[0] = 1.0 if at_tip else lengths[0]
     point = centreline.at(places)
     feet = point.xi - arc(natural, lengths)[0]
     best = int(np.argmax(feet))
+    excess = float(lengths[best] - 1)
     if best == 0 and at_tip:
-        return Touch(top, max(tip_angle - float(point.alpha[0]), 0.0), float(feet[0]))
-    return Touch(float(places[best]), float(lengths[best] - 1), float(feet[best]))
+        excess = max(tip_angle - float(point.alpha[0]), 0.0)
+    return Touch(float(places[best]), excess, float(feet[best]))

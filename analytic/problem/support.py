@@ -1,0 +1,119 @@
+"""How the vibrissa is held and how the object rubs: checks, and who cannot do with what."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from analytic.problem.beam import Beam
+from analytic.problem.errors import InputError
+from analytic.problem.numbers import is_finite_number
+
+_MOST_FRICTION = 1.0
+_SOFTEST = 0.01  # EI/L
+_MOST_CURVED = math.pi / 2  # 1/L; beyond, the vibrissa at rest leans over itself
+
+
+def check_support(clamp_stiffness: object, friction: object, beam: Beam, signed: bool) -> None:
+    """Refuse a clamp or a friction that cannot be.
+
+    Parameters
+    ----------
+    clamp_stiffness : object
+        Moment of the clamp by its rotation [force length/rad]; infinite if rigid.
+    friction : object
+        Coefficient.
+    beam : Beam
+        The vibrissa.
+    signed : bool
+        Whether the coefficient may be negative: the other sense of sliding.
+
+    Raises
+    ------
+    InputError
+        If one is no number or out of range.
+    """
+    softest = _SOFTEST * beam.moment_unit
+    rigid = isinstance(clamp_stiffness, float) and clamp_stiffness == math.inf
+    if not (rigid or (is_finite_number(clamp_stiffness) and clamp_stiffness >= softest)):
+        raise InputError(
+            "clamp_stiffness",
+            clamp_stiffness,
+            f"at least {softest:g}, a hundredth of EI/L, or infinite",
+            "it is moment by angle; leave it out for a rigid clamp",
+        )
+    least = -_MOST_FRICTION if signed else 0.0
+    if not (is_finite_number(friction) and least <= friction <= _MOST_FRICTION):
+        raise InputError(
+            "friction", friction, f"from {least:g} to {_MOST_FRICTION:g}", "0.1 to 0.5 is usual"
+        )
+    if abs(beam.natural_curvature) * beam.length > _MOST_CURVED:
+        raise InputError(
+            "beam.natural_curvature",
+            beam.natural_curvature,
+            f"within {_MOST_CURVED / beam.length:.6g} of zero",
+            "beyond, the vibrissa at rest overhangs, and no contact of it is solved",
+        )
+
+
+def is_plain(beam: Beam, clamp_stiffness: float, friction: float) -> bool:
+    """Whether a vibrissa is the paper's: straight at rest, rigidly clamped, without friction.
+
+    Parameters
+    ----------
+    beam : Beam
+        The vibrissa.
+    clamp_stiffness, friction : float
+        Of its clamp and contact.
+
+    Returns
+    -------
+    bool
+        Whether it is.
+    """
+    return beam.natural_curvature == 0 and clamp_stiffness == math.inf and friction == 0
+
+
+def require_plain(
+    who: str, beam: Beam, clamp_stiffness: float = math.inf, friction: float = 0.0
+) -> None:
+    """Refuse what someone cannot take into account.
+
+    Parameters
+    ----------
+    who : str
+        Who cannot.
+    beam : Beam
+        The vibrissa.
+    clamp_stiffness, friction : float
+        Of its clamp and contact.
+
+    Raises
+    ------
+    InputError
+        If the vibrissa is curved at rest, its clamp turns, or it rubs.
+    """
+    for name, value, plain in (
+        ("beam.natural_curvature", beam.natural_curvature, 0.0),
+        ("clamp_stiffness", clamp_stiffness, math.inf),
+        ("friction", friction, 0.0),
+    ):
+        if value != plain:
+            allowed = f"{plain:g}: {who} cannot take it into account"
+            raise InputError(name, value, allowed, "leave it out")
+
+
+def support_of(provenance: Mapping[str, Any]) -> tuple[float, float]:
+    """Clamp stiffness and friction that readings were made with.
+
+    Parameters
+    ----------
+    provenance : mapping
+        Of the readings.
+
+    Returns
+    -------
+    clamp_stiffness, friction : float
+        [force length/rad] and coefficient; rigid and none if the provenance does not say.
+    """
+    held = provenance.get("support", {})
+    return float(held.get("clamp_stiffness") or math.inf), float(held.get("friction", 0.0))

@@ -1,0 +1,91 @@
+"""A sweep of the general vibrissa at given stations."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.case import Case
+from analytic.problem.columns import COLUMNS
+from analytic.problem.rest import first_touch
+from analytic.solver.equilibria import Column
+from analytic.solver.general.clearance import is_clear, is_rest_clear
+from analytic.solver.general.columns import to_columns
+from analytic.solver.general.path import follow
+from analytic.solver.general.states import States, Vibrissa, with_rates
+from analytic.solver.general.stations import solve_stations
+
+_ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
+_STILL = 1e-8  # of the foot's way: slower, and the other way, the contact does not slide
+
+
+class Solved(NamedTuple):
+    """Columns of the stations that are not free, and where what happens happens [L]."""
+
+    where: Booleans
+    columns: dict[str, Column]
+    events: dict[str, float | None]
+
+
+def solve(case: Case) -> Solved:
+    """Solve a sweep to the left.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+
+    Returns
+    -------
+    Solved
+        In the units of the case's beam; the events in lengths.
+    """
+    beam = case.beam
+    vibrissa = Vibrissa.of(beam, case.clamp_stiffness, case.friction)
+    centreline, foot_x = case.centreline, case.foot_x / beam.length
+    touch = first_touch(centreline, case.reach, vibrissa.natural_curvature)
+    path = follow(centreline, vibrissa, touch, case.reach)
+    last = path.foot_x[path.snap_off]
+    held = (foot_x < path.foot_x[0]) & (foot_x >= last - _ROUNDING * max(1.0, abs(last)))
+    past = (foot_x < path.foot_x[0]) & ~held
+    lost = past & (not path.complete)
+    lost[past] |= ~is_rest_clear(centreline, vibrissa, foot_x[past])
+    where = held | lost
+
+    columns = _nothing(case.foot_x, "diverged" if not path.complete else "touches again")
+    if held.any():
+        states, found = solve_stations(centreline, vibrissa, path, foot_x[held])
+        solved = to_columns(states, ~is_clear(centreline, states), beam)
+        solved["status"] = np.where(found, solved["status"], "diverged")
+        solved["status"][(solved["status"] == "ok") & ~_slides(states)] = "sticks"
+        for name in COLUMNS[1:]:
+            values = solved[name]
+            number = name not in ("phase", "status")
+            columns[name][held] = np.where(found, values, np.nan) if number else values
+    places = {**path.events(), "out_of_plane": None}  # where it leaves the plane is not known
+    del places["contact_length_minimum"]
+    events = {n: None if i is None else float(path.foot_x[i]) for n, i in places.items()}
+    return Solved(where, {name: values[where] for name, values in columns.items()}, events)
+
+
+def _nothing(foot_x: Floats, status: str) -> dict[str, Column]:
+    columns: dict[str, Column] = {name: np.full(len(foot_x), np.nan) for name in COLUMNS}
+    columns["foot_x"] = foot_x
+    columns["phase"] = np.full(len(foot_x), "free", dtype="<U11")
+    columns["status"] = np.full(len(foot_x), status, dtype="<U13")
+    return columns
+
+
+def _slides(found: States) -> Booleans:
+    """Whether the vibrissa slides on along the object as its foot moves to the left.
+
+    A place on it moves along the contour by what the contact does, less what the contact moves
+    along the vibrissa.
+    """
+    if found.vibrissa.friction == 0:
+        return np.ones(len(found.force), dtype=bool)
+    _, rates = with_rates(found.point, found.force, found.excess, found.vibrissa)
+    way = np.cross(rates.twist, rates.above)
+    foot = np.einsum("nk,nk->n", rates.foot_x, way)
+    slip = found.point.stretch * way[:, 0] - np.where(found.tangent, way[:, 2], 0.0)
+    return np.asarray(slip / foot >= -_STILL)
