@@ -60,10 +60,16 @@ def classify(readings: Readings) -> Classification:
     Classification
         The phase of each station, and what it was decided by.
 
+    Raises
+    ------
+    InputError
+        If the vibrissa is curved at rest, its clamp turns, or the object rubs.
+
     See Also
     --------
     analytic.from_clamp.phases.judge_phases : how.
     """
+    readings.require_plain("the phase from the clamp's readings")
     judged = judge_phases(readings)
     phase = np.where(readings.trusted, judged.phase, "")
     return Classification(phase, *judged[1:], contact_table(readings, judged))

@@ -1,22 +1,28 @@
 """States of the general vibrissa at given points of a contour."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.contour import Contour, ContourPoint
+from analytic.problem.reach import contact_range
+from analytic.problem.rest import first_touch
 from analytic.solver.equilibria import equilibria
 from analytic.solver.general.newton import solve
+from analytic.solver.general.path import Path, follow
 from analytic.solver.general.states import States, Vibrissa, states, with_rates
 
-_SHARES = (4, 32)  # steps from the paper's vibrissa; the more where the fewer fail
+_STEPS = 8  # from the paper's vibrissa
 _BALANCED = 1e-12  # L, rad
 
 
 def contacts(centreline: Contour, t: Floats, vibrissa: Vibrissa) -> States:
     """The vibrissa against each contour point, tangential or at the tip.
 
-    The paper's vibrissa against the same point is followed as it is given its curvature, its
-    elastic clamp and its friction.
+    They are those of the sweep along the contour, with what follows after the snap-off; of two at
+    the same point the later one. Points that it does not come to are tried from the paper's
+    vibrissa there, as it is given its curvature, its elastic clamp and its friction.
 
     Parameters
     ----------
@@ -31,23 +37,51 @@ def contacts(centreline: Contour, t: Floats, vibrissa: Vibrissa) -> States:
     -------
     States
         Of n contacts; the excess is NaN where none was found.
+
+    Raises
+    ------
+    InputError
+        If the vibrissa cannot reach the contour.
     """
+    reach = contact_range(centreline)
+    touch = first_touch(centreline, reach, vibrissa.natural_curvature)
+    path = follow(centreline, vibrissa, touch, reach)
     point = centreline.at(t)
+    z, missed = _balanced(point, vibrissa, _on_path(path, t))
+    left = np.flatnonzero(~(missed <= _BALANCED))
+    if left.size:
+        at = ContourPoint(*(values[left] for values in point))
+        z[left], missed[left] = _from_plain(centreline, t[left], at, vibrissa)
+    z[~(missed <= _BALANCED)] = np.nan
+    return states(point, z[:, 0], z[:, 1], vibrissa)
+
+
+def _on_path(path: Path, t: Floats) -> Floats:
+    """Force and excess of the last place on a path with each contour parameter, shape (n, 2).
+
+    NaN where there is none.
+    """
+    cells = np.full(len(t), -1)
+    for i, (begin, end) in enumerate(pairwise(path.z[:, 0])):
+        if begin != end:
+            cells[(t - begin) * (t - end) <= 0] = i
+    found = np.full((len(t), 2), np.nan)
+    on = cells >= 0
+    found[on] = path.at(cells[on], path.share(cells[on], t[on], 0))[:, 1:]
+    return found
+
+
+def _from_plain(
+    centreline: Contour, t: Floats, point: ContourPoint, vibrissa: Vibrissa
+) -> tuple[Floats, Floats]:
+    """Force and excess, shape (n, 2), and what they miss, followed from the paper's vibrissa."""
     plain = equilibria(centreline, t)
     straight = np.where(plain.tangent, plain.arc_length - 1, plain.tip_angle - point.alpha)
-    begin = np.stack([plain.root_f**2, straight], axis=1)
-    found = np.full_like(begin, np.nan)
-    for steps in _SHARES:
-        left = np.flatnonzero(np.isnan(found[:, 1]) & np.isfinite(begin).all(axis=1))
-        if left.size == 0:
-            break
-        z, missed = begin[left], np.zeros(left.size)
-        at = ContourPoint(*(values[left] for values in point))
-        for share in np.linspace(0, 1, steps + 1)[1:]:
-            z, missed = _balanced(at, vibrissa.scaled(share), z)
-        good = missed <= _BALANCED
-        found[left[good]] = z[good]
-    return states(point, found[:, 0], found[:, 1], vibrissa)
+    z = np.stack([plain.root_f**2, straight], axis=1)
+    missed = np.full(len(t), np.inf)
+    for share in np.linspace(0, 1, _STEPS + 1)[1:]:
+        z, missed = _balanced(point, vibrissa.scaled(share), z)
+    return z, missed
 
 
 def _balanced(point: ContourPoint, vibrissa: Vibrissa, start: Floats) -> tuple[Floats, Floats]:

@@ -20,7 +20,7 @@ _CLOSE = 1e-14  # where the curve has a kink or a fold: of an event
 _ROUNDING = 1e-12  # of the misses: one that does not fall any more is as small as it can be
 _NEWTON = 10
 _ASIDE = 1e-9  # of a step: a kink nearer than that is the one that the step starts from
-_INSIDE = -5e-324  # an excess of nothing, in Phase B
+INSIDE = -5e-324  # an excess of nothing, in Phase B
 _LEAST = 1e-9  # of a cell, and of a rate: where something is least
 _SEARCHES = 40
 _T, _F, _W = range(3)
@@ -153,7 +153,7 @@ class Curve(NamedTuple):
         """Kinks between: share of the way, coordinate, and its value before and after."""
         places = []
         if (old[_W] < 0) != (new[_W] < 0):
-            sides = (_INSIDE, 0.0) if old[_W] < 0 else (0.0, _INSIDE)
+            sides = (INSIDE, 0.0) if old[_W] < 0 else (0.0, INSIDE)
             places.append((float(old[_W] / (old[_W] - new[_W])), _W, *sides))
         low, high = sorted((old[_T], new[_T]))
         back, on = (low, high) if new[_T] > old[_T] else (high, low)

@@ -13,7 +13,7 @@ import numpy as np
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.problem.rest import Touch
-from analytic.solver.general.curve import Curve, Point, turning
+from analytic.solver.general.curve import INSIDE, Curve, Point, turning
 from analytic.solver.general.states import Vibrissa
 
 _STEP = 0.02  # of the curve's length, at first
@@ -21,6 +21,7 @@ _LARGEST = 0.5
 _SMALLEST = 1e-7
 _TURN = 0.2  # rad; of the curve's direction between neighbours
 _MOST = 4000  # points
+_HALVINGS = 20  # of a cell, to begin Newton's method from
 
 
 class Path(NamedTuple):
@@ -86,6 +87,90 @@ class Path(NamedTuple):
         end = np.searchsorted(-least, -foot_x, side="left")
         return np.clip(end, 1, len(least) - 1) - 1
 
+    def share(self, cells: Integers, wanted: Floats, coordinate: int | None) -> Floats:
+        """How far along its cell something has a wanted value, by Hermite's cubic.
+
+        Parameters
+        ----------
+        cells : array of int, shape (n,)
+            Cells between whose ends it lies.
+        wanted : array, shape (n,)
+            Values of a coordinate of ``z``, or of the foot position.
+        coordinate : int or None
+            Which coordinate; None for the foot position.
+
+        Returns
+        -------
+        array, shape (n,)
+            From 0 to 1, to a millionth.
+        """
+        foot = coordinate is None
+        value = self.foot_x if foot else self.z[:, coordinate]
+        rate = (
+            self.length(cells)
+            * (self.rate if foot else self.direction[:, coordinate])[np.stack([cells, cells + 1])]
+        )
+        begin, end = value[cells], value[cells + 1]
+        falls = begin > end
+        low, high = np.zeros_like(wanted), np.ones_like(wanted)
+        for _ in range(_HALVINGS):
+            middle = (low + high) / 2
+            before = (_cubic(middle, begin, rate[0], end, rate[1]) > wanted) == falls
+            low, high = np.where(before, middle, low), np.where(before, high, middle)
+        return low
+
+    def at(self, cells: Integers, share: Floats) -> Floats:
+        """Places in cells, by Hermite's cubic: what Newton's method starts from.
+
+        Parameters
+        ----------
+        cells : array of int, shape (n,)
+            The cells.
+        share : array, shape (n,)
+            How far along each, from 0 to 1.
+
+        Returns
+        -------
+        array, shape (n, 3)
+            Contour parameter, force and excess, of the cell's phase.
+        """
+        length = self.length(cells)[:, None]
+        z = _cubic(
+            share[:, None],
+            self.z[cells],
+            length * self.direction[cells],
+            self.z[cells + 1],
+            length * self.direction[cells + 1],
+        )
+        z[:, 1] = np.maximum(z[:, 1], 0.0)
+        inside = self.tangent[cells]
+        z[:, 2] = np.where(inside, np.minimum(z[:, 2], INSIDE), np.maximum(z[:, 2], 0.0))
+        return z
+
+    def length(self, cells: Integers) -> Floats:
+        """The length of cells, as chords.
+
+        Parameters
+        ----------
+        cells : array of int, shape (n,)
+            The cells.
+
+        Returns
+        -------
+        array, shape (n,)
+            The force measured by its size.
+        """
+        way = self.z[cells + 1] - self.z[cells]
+        way[:, 1] /= np.maximum(1.0, self.z[cells, 1])
+        return np.asarray(np.sqrt(np.einsum("nk,nk->n", way, way)))
+
+
+def _cubic(share: Floats, begin: Floats, rate: Floats, end: Floats, end_rate: Floats) -> Floats:
+    """Hermite's cubic of a value and its derivative at both ends."""
+    a, b = share, 1 - share
+    first, last = (1 + 2 * a) * begin + a * rate, (1 + 2 * b) * end - b * end_rate
+    return b * b * first + a * a * last
+
 
 def follow(
     centreline: Contour, vibrissa: Vibrissa, touch: Touch, reach: tuple[float, float]
@@ -108,6 +193,8 @@ def follow(
     Path
         At least two points.
     """
+    # A curved vibrissa comes as far up as its length when it is straightened, and no farther.
+    reach = reach[0], centreline.t_range[1]
     curve = Curve(centreline, vibrissa, reach, centreline.breaks())
     points = [curve.start(touch.t, touch.excess)]
     length, bend = _STEP, np.zeros(3)

@@ -7,11 +7,12 @@ as long as that is constant. With chi = pi/4 - theta/2 the three functions
     p = sin(chi),  g = cos(chi),  v = -kappa/2    obey    p' = g v,  g' = -p v,  v' = -F p g,
 
 so that p^2 + g^2 = 1 and F p^2 + v^2 = B stay. They are k sn, dn and sqrt(F) k cn with k^2 = B/F.
-Let S(s) be the solution of S' = c d, c^2 = 1 - F S^2, d^2 = 1 - B S^2, S(0) = 0: it is sn/sqrt(F) of
-modulus k for k < 1, sn/sqrt(B) of modulus 1/k for k > 1. The addition theorems of sn, cn and dn (Byrd
-and Friedman, *Handbook of elliptic integrals*, 1971, 123.01) take p, g and v from the contact to the
-clamp, and that of the second kind's integral (116.02) gives the position. Written so, nothing is
-singular: neither where the curvature changes its sign, nor at k = 1, nor where the force vanishes.
+Let S(s) be the solution of S' = c d, c^2 = 1 - F S^2, d^2 = 1 - B S^2, S(0) = 0: it is sn/sqrt(F)
+of modulus k for k < 1, sn/sqrt(B) of modulus 1/k for k > 1. The addition theorems of sn, cn and dn
+(Byrd and Friedman, *Handbook of elliptic integrals*, 1971, 123.01) take p, g and v from the contact
+to the clamp, and that of the second kind's integral (116.02) gives the position. Written so,
+nothing is singular: neither where the curvature changes its sign, nor at k = 1, nor where the force
+vanishes.
 """
 
 from typing import NamedTuple

@@ -8,7 +8,6 @@ from analytic.solver.general.newton import solve
 from analytic.solver.general.path import Path
 from analytic.solver.general.states import States, Vibrissa, states, with_rates
 
-_HALVINGS = 40  # of a cell, to begin Newton's method from
 _NEAR = 0.5  # of a cell's length: by how much its interpolation may err
 _ASIDE = (
     1e-6  # by how much a state may lie beyond its cell: close to a fold x0 does not distinguish
@@ -42,18 +41,9 @@ def solve_stations(
         Whether the state balances, and is that of the station's cell of the path.
     """
     cells = path.cells(foot_x)
-    begin, end = path.z[cells], path.z[cells + 1]
-    scale = np.maximum(1.0, [[0.0, 1.0, 0.0]] * np.abs(begin))
-    length = np.linalg.norm((end - begin) / scale, axis=1)
-    share = _share(path, cells, foot_x, length)
-    guess = _cubic(
-        share[:, None],
-        (begin, length[:, None] * path.direction[cells]),
-        (end, length[:, None] * path.direction[cells + 1]),
-    )
-    inside = path.tangent[cells]
-    guess[:, 1] = np.maximum(guess[:, 1], 0.0)
-    guess[:, 2] = np.where(inside, np.minimum(guess[:, 2], -5e-324), np.maximum(guess[:, 2], 0.0))
+    guess = path.at(cells, path.share(cells, foot_x, None))
+    begin, way, length = path.z[cells], path.z[cells + 1] - path.z[cells], path.length(cells)
+    scale = np.maximum(1.0, [[0.0, 1.0, 0.0]] * begin)
 
     def misses(z: Floats, which: Integers) -> Floats:
         here = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
@@ -64,30 +54,9 @@ def solve_stations(
         return np.stack(rates, axis=1)
 
     z, missed = solve(misses, jacobian, guess)
-    chord = (end - begin) / scale
-    along = np.einsum("nk,nk->n", (z - begin) / scale, chord) / length
+    along = np.einsum("nk,nk->n", (z - begin) / scale, way / scale) / length
     strayed = np.linalg.norm((z - guess) / scale, axis=1)
     found = missed <= _BALANCED * np.maximum(1.0, np.abs(foot_x))
-    found &= ((z[:, 2] < 0) == inside) & (strayed <= _NEAR * length + _ASIDE)
+    found &= ((z[:, 2] < 0) == path.tangent[cells]) & (strayed <= _NEAR * length + _ASIDE)
     found &= (along >= -_ASIDE) & (along <= length + _ASIDE)  # not beyond a fold
     return states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa), found
-
-
-def _share(path: Path, cells: Integers, foot_x: Floats, length: Floats) -> Floats:
-    """How far along its cell each station lies, by the cubic of the foot position."""
-    low, high = np.zeros_like(foot_x), np.ones_like(foot_x)
-    begin = path.foot_x[cells], length * path.rate[cells]
-    end = path.foot_x[cells + 1], length * path.rate[cells + 1]
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        ahead = _cubic(middle, begin, end) > foot_x
-        low, high = np.where(ahead, middle, low), np.where(ahead, high, middle)
-    return low
-
-
-def _cubic(share: Floats, begin: tuple[Floats, Floats], end: tuple[Floats, Floats]) -> Floats:
-    """Hermite's cubic of a value and its derivative at both ends."""
-    a, b = share, 1 - share
-    return b * b * ((1 + 2 * a) * begin[0] + a * begin[1]) + a * a * (
-        (1 + 2 * b) * end[0] - b * end[1]
-    )

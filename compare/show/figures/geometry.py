@@ -1,6 +1,7 @@
 """The object and the vibrissa as they stand in space."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -155,7 +156,8 @@ def _draw_shapes(ax: Axes, readings: Readings, phase: Words) -> None:
         return
     scale = readings.beam.length
     # A sweep has two stations at least.
-    picked = Readings(readings.table.iloc[np.append(chosen, chosen[-1])], readings.beam)
+    rows = readings.table.iloc[np.append(chosen, chosen[-1])]
+    picked = replace(readings, table=rows)
     x, y = (path[:-1] / scale for path in deflected_shapes(picked))
     lines = LineCollection(
         list(np.stack([x, y], axis=-1)),

@@ -1,0 +1,235 @@
+"""Sweeps with friction, an elastic clamp and a natural curvature."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from analytic import (
+    Beam,
+    Case,
+    Readings,
+    Sweep,
+    catenary,
+    certify,
+    circle,
+    ellipse,
+    find_events,
+    named_case,
+    parabola,
+    polygon,
+    solve_contact,
+    solve_sweep,
+)
+from analytic.problem.reach import contact_range
+from analytic.problem.rest import arc, first_touch
+from analytic.solver.general.path import follow
+from analytic.solver.general.states import Vibrissa
+from analytic.solver.general.stations import solve_stations
+
+SQUARE = polygon([(-0.6, 0.45), (0.7, 0.4), (0.9, 1.5), (-0.5, 1.6)])
+ROUND = np.linspace(0, 2 * np.pi, 17)[:-1]
+SIXTEEN = polygon(np.column_stack([np.cos(ROUND), 1.4 + np.sin(ROUND)]))
+READ = ("force_x", "force_y", "moment_z")
+
+
+def case_of(profile, natural=0.0, stiffness=math.inf, friction=0.0, stations=40, radius=0.005):
+    beam = Beam(radius=radius, natural_curvature=natural)
+    sweep = Sweep(stations)
+    return Case(beam, profile, sweep, clamp_stiffness=stiffness, friction=friction)
+
+
+def assert_sound(case):
+    """Every station that is ok balances, by integration from the clamp; none is lost."""
+    readings = solve_sweep(case)
+    table = readings.table
+    assert set(table["status"]) <= {"ok", "touches again", "sticks"}
+    ok = table["status"] == "ok"
+    assert table.loc[ok, ["residual_boundary", "residual_moment"]].max(axis=None) < 1e-12
+    # 1e-10: the integration errs by 1e-13 times how much an error at the clamp grows.
+    assert certify(readings)[ok].max(axis=None) < 1e-10
+    return readings
+
+
+@pytest.mark.parametrize("natural", [-0.8, 0.0, 0.6])
+@pytest.mark.parametrize(("stiffness", "friction"), [(math.inf, 0.3), (2.0, 0.0), (8.0, 0.5)])
+@pytest.mark.parametrize("profile", [named_case("catenary").profile, SQUARE, SIXTEEN])
+def test_stations_balance(profile, natural, stiffness, friction):
+    readings = assert_sound(case_of(profile, natural, stiffness, friction))
+    assert (readings.table["status"] == "ok").sum() > 10
+    assert readings.provenance["support"]["friction"] == friction
+
+
+@pytest.mark.slow
+@settings(max_examples=60, deadline=None)
+@given(
+    natural=st.floats(-1, 1),
+    compliance=st.floats(0, 1),
+    friction=st.floats(0, 0.7),
+    height=st.floats(0.25, 0.6),
+    size=st.floats(0.8, 2),
+    kind=st.sampled_from(["circle", "parabola", "catenary", "ellipse", "square"]),
+)
+def test_random_vibrissae_balance(natural, compliance, friction, height, size, kind):
+    profile = {
+        "circle": lambda: circle(size, lowest=(0.1, height)),
+        "parabola": lambda: parabola(1 / size, height),
+        "catenary": lambda: catenary(1 / size, height - 1),
+        "ellipse": lambda: ellipse(semi_axes=(size, 1.2), lowest=(0.0, height)),
+        "square": lambda: SQUARE,
+    }[kind]()
+    assert_sound(case_of(profile, natural, 1 / compliance if compliance else math.inf, friction))
+
+
+@pytest.mark.parametrize("name", ["catenary", "two-circles", "tip-only"])
+def test_limit_is_the_papers_vibrissa(name):
+    """Curve, stations, phases and snap-off of nothing beyond the paper's are the paper's."""
+    plain = solve_sweep(named_case(name))
+    case = named_case(name)
+    vibrissa = Vibrissa(radius=case.radius)
+    touch = first_touch(case.centreline, case.reach, 0.0)
+    path = follow(case.centreline, vibrissa, touch, case.reach)
+    events = plain.provenance["events"]
+    for event, i in path.events().items():
+        if event != "contact_length_minimum":
+            found = None if i is None else path.foot_x[i]
+            assert found == pytest.approx(events[event], abs=1e-13)
+    held = (plain.table["phase"] != "free").to_numpy()
+    states, found = solve_stations(case.centreline, vibrissa, path, case.foot_x[held])
+    assert found.all()
+    # 2e-13: each is exact to a few roundings of forces of up to 20.
+    np.testing.assert_allclose(states.moment, plain.values("moment_z")[held], atol=2e-13)
+    force = np.hypot(plain.values("force_x"), plain.values("force_y"))[held]
+    np.testing.assert_allclose(states.force, force, atol=2e-13)
+    np.testing.assert_array_equal(states.tangent, (plain.table["phase"] == "tangent")[held])
+
+
+@pytest.mark.parametrize("name", ["natural", "stiffness", "friction"])
+def test_limit_is_smooth(name):
+    """Readings change in proportion to a little friction, compliance or curvature."""
+    sweep = Sweep(200, start=2.5, stop=-2.5)
+    profile = named_case("catenary").profile
+    reference = solve_sweep(Case(profile=profile, sweep=sweep))
+
+    def change(little):
+        value = 1 / little if name == "stiffness" else little
+        varied = solve_sweep(replace(case_of(profile, **{name: value}), sweep=sweep))
+        both = (varied.table["phase"] == reference.table["phase"]) & (
+            reference.values("foot_x") > 0
+        )
+        return np.stack([(varied.values(n) - reference.values(n))[both] for n in READ])
+
+    once, twice = change(1e-6), change(2e-6)
+    assert 1e-7 < np.abs(once).max() < 1e-3
+    # The next order is smaller by 1e-6 times how strongly the first one acts, where it does most.
+    np.testing.assert_allclose(twice, 2 * once, atol=1e-4 * np.abs(once).max())
+
+
+def test_mirror():
+    case = case_of(circle(1.0, lowest=(0.2, 0.4)), -0.5, 4.0, 0.2)
+    left, right = solve_sweep(case), solve_sweep(case.mirrored())
+    assert case.mirrored().beam.natural_curvature == 0.5
+    assert right.beam == case.mirrored().beam
+    for name, sign in (("force_x", -1), ("force_y", 1), ("moment_z", -1), ("foot_x", -1)):
+        np.testing.assert_allclose(right.values(name), sign * left.values(name), atol=1e-14)
+    assert certify(right)[(right.table["status"] == "ok")].max(axis=None) < 1e-10
+
+
+def test_phase_b_of_a_thin_vibrissa_shows_friction_and_clamp():
+    """The first integral between clamp and contact, where only a thin one's is so simple."""
+    rub = solve_sweep(case_of(named_case("catenary").profile, friction=0.3, radius=0.0)).table
+    rub = rub[rub["phase"] == "tangent"]
+    force = np.hypot(rub["force_x"], rub["force_y"])
+    share = (rub["moment_z"] ** 2 - 2 * rub["force_y"]) / (2 * force)
+    np.testing.assert_allclose(share, np.sin(np.arctan(0.3)), atol=1e-13)
+
+    soft = solve_sweep(case_of(named_case("catenary").profile, stiffness=5.0, radius=0.0)).table
+    soft = soft[soft["phase"] == "tangent"]
+    turn = soft["moment_z"] / 5.0
+    held = soft["force_y"] * np.cos(turn) + soft["force_x"] * np.sin(turn)
+    np.testing.assert_allclose(soft["moment_z"] ** 2, 2 * held, rtol=1e-13)
+
+
+def test_snap_off_is_a_fold_and_friction_delays_it():
+    profile = named_case("catenary").profile
+    places = []
+    for friction in (0.0, 0.1, 0.3):
+        held = {"clamp_stiffness": 6.0, "friction": friction}
+        fold = find_events(profile, **held).snap_off
+        beside = solve_contact(profile, fold.contact_angle + np.array([-1e-4, 0, 1e-4]), **held)
+        rise = beside["foot_x"].to_numpy() - fold.foot_x
+        assert rise[1] == pytest.approx(0, abs=1e-13)
+        assert (rise[[0, 2]] > 1e-9).all() and (rise[[0, 2]] < 1e-6).all()
+        places.append(fold.foot_x)
+    assert places == sorted(places, reverse=True)
+
+
+@pytest.mark.parametrize("natural", [-1.4, -0.7, 0.5])
+@pytest.mark.parametrize("profile", [parabola(1.0, 0.4), parabola(30.0, 0.4), SQUARE])
+def test_first_contact_is_that_of_two_rigid_bodies(natural, profile):
+    reach = contact_range(profile)
+    found = first_touch(profile, reach, natural)
+    # Where the arc, moved to the right by more than its distance from the contour, ends touching.
+    s = np.linspace(0, 1, 40001)[1:]
+    x, y, _ = arc(natural, s)
+    grid = profile.at(np.linspace(profile.parameter(np.zeros(1))[0], reach[1], 20001))
+    inside = (y > grid.eta.min()) & (y <= grid.eta.max())
+    feet = np.interp(y[inside], grid.eta, grid.xi) - x[inside]
+    # A corner lies between two samples of the arc, which are 2.5e-5 apart.
+    assert found.foot_x == pytest.approx(feet.max(), abs=2e-5)
+    assert (found.excess < 0) == (s[inside][np.argmax(feet)] < 1 - 1e-3)
+
+
+def test_vibrissa_that_is_curved_more_than_the_object_touches_it_twice():
+    """In Phase B its curvature is the natural one: more than the circle's, and it is inside."""
+    for natural, inside in ((0.9, False), (1.2, True)):
+        table = solve_sweep(case_of(circle(1.0, lowest=(0, 0.4)), natural, stations=100)).table
+        tangent = table["phase"] == "tangent"
+        assert tangent.sum() > 5
+        assert ((table["status"][tangent] == "touches again") == inside).all()
+        assert table.loc[table["status"] == "touches again", [*READ]].isna().all(axis=None)
+
+
+def test_tip_that_climbs_does_not_slide_on():
+    """A vibrissa that is curved towards the object is straightened first, and its tip rises."""
+    profile = named_case("parabola").profile
+    smooth = solve_sweep(case_of(profile, 0.5, stations=200)).table
+    rough = solve_sweep(case_of(profile, 0.5, friction=0.2, stations=200)).table
+    climbs = np.diff(smooth["contact_angle"].dropna()) > 0
+    assert 5 < climbs.sum() < 50
+    sticks = (rough["status"] == "sticks").to_numpy()
+    assert abs(sticks.sum() - climbs.sum()) < 10
+    assert (np.diff(np.flatnonzero(sticks)) == 1).all()
+    assert (rough["status"][~sticks] == "ok").all()
+
+
+def test_file_keeps_what_the_certificate_needs(tmp_path):
+    readings = solve_sweep(case_of(circle(1.0, lowest=(0, 0.4)), 0.3, 3.0, 0.2))
+    back = Readings.read(readings.write(tmp_path / "sweep.parquet"))
+    assert back.beam == readings.beam
+    np.testing.assert_array_equal(certify(back), certify(readings))
+    wrong = {"support": {"clamp_stiffness": 4.0, "friction": 0.2}}
+    other = replace(back, provenance={**back.provenance, **wrong})
+    assert certify(other).max(axis=None) > 1e-3
+
+
+def test_units():
+    """In other units the same sweep."""
+    one = solve_sweep(case_of(circle(1.0, lowest=(0, 0.4)), -0.4, 4.0, 0.2))
+    beam = Beam(50.0, 2.0, 0.25, natural_curvature=-0.4 / 50)
+    other = solve_sweep(
+        Case(
+            beam,
+            circle(50.0, lowest=(0, 20.0)),
+            Sweep(40),
+            clamp_stiffness=4.0 * beam.moment_unit,
+            friction=0.2,
+        )
+    )
+    np.testing.assert_allclose(other.values("foot_x"), 50 * one.values("foot_x"), atol=1e-12)
+    moment = other.values("moment_z") / beam.moment_unit
+    np.testing.assert_allclose(moment, one.values("moment_z"), atol=1e-11)
+    assert find_events(circle(50.0, lowest=(0, 20.0)), beam).snap_off.foot_x < 0

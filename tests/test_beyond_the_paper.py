@@ -1,0 +1,108 @@
+"""Who cannot take friction, an elastic clamp or a natural curvature into account says so."""
+
+import pytest
+
+from analytic import (
+    Beam,
+    Case,
+    InputError,
+    Readings,
+    Sweep,
+    certify,
+    circle,
+    curvatures,
+    deflected_shapes,
+    find_events,
+    named_case,
+    reconstruct,
+    reconstruct_by_decision,
+    sideways_stiffness,
+    slip_off,
+    solve_contact,
+    solve_sweep,
+    with_friction,
+)
+from compare import compare
+from compare.show.figures.paper import paper_figures
+from mujoco_models import simulate_sweep
+
+OBJECT = circle(1.0, lowest=(0, 0.4))
+BEYOND = {
+    "beam.natural_curvature": {"beam": Beam(natural_curvature=-0.2)},
+    "clamp_stiffness": {"clamp_stiffness": 5.0},
+    "friction": {"friction": 0.1},
+}
+
+
+def budget_of(case):
+    from compare.explain.variations import variations
+
+    return variations(case)
+
+
+@pytest.mark.parametrize("name", BEYOND)
+@pytest.mark.parametrize(
+    "ask",
+    [
+        simulate_sweep,
+        lambda case: with_friction(case, 0.1),
+        lambda case: reconstruct(solve_sweep(case)),
+        lambda case: reconstruct_by_decision(solve_sweep(case)),
+        lambda case: deflected_shapes(solve_sweep(case)),
+        lambda case: curvatures(solve_sweep(case), None, None),
+        lambda case: sideways_stiffness(solve_sweep(case)),
+        lambda case: paper_figures(case, solve_sweep(case)),
+        lambda case: compare(solve_sweep(case), solve_sweep(case)),
+        budget_of,
+    ],
+)
+def test_refused_in_one_line(name, ask):
+    case = Case(profile=OBJECT, sweep=Sweep(20), **BEYOND[name])
+    with pytest.raises(InputError, match=f"^{name} = .*cannot take it into account") as error:
+        ask(case)
+    assert "\n" not in str(error.value)
+
+
+def test_a_tilted_clamp_is_the_straight_vibrissas():
+    with pytest.raises(InputError, match=r"beam\.natural_curvature"):
+        slip_off(OBJECT, 0.01, Beam(natural_curvature=0.1))
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda: Beam(natural_curvature=float("nan")), "beam.natural_curvature = nan"),
+        (lambda: Beam(2.0, natural_curvature=1.6), "foot line"),
+        (lambda: Case(Beam(natural_curvature=2.0), OBJECT), "within 1.5708 of zero"),
+        (lambda: Case(Beam(natural_curvature=1.5), circle(1, lowest=(0, 0.9))), "tip of the vibri"),
+        (lambda: Case(Beam(natural_curvature=0.3), circle(0.2, lowest=(0, 0.5))), "upper side"),
+        (lambda: Case(profile=OBJECT, friction=-0.1), "friction = -0.1: must be from 0 to 1"),
+        (lambda: Case(profile=OBJECT, friction="much"), "friction = much"),
+        (lambda: Case(profile=OBJECT, clamp_stiffness=0.0), "clamp_stiffness = 0.0"),
+        (lambda: Case(profile=OBJECT, clamp_stiffness=float("nan")), "clamp_stiffness = nan"),
+        (lambda: Case(profile=OBJECT, clamp_stiffness=True), "clamp_stiffness = True"),
+        (lambda: solve_contact(OBJECT, 0.1, friction=1.5), "from -1 to 1"),
+        (lambda: find_events(OBJECT, clamp_stiffness=-1.0), "clamp_stiffness = -1.0"),
+    ],
+)
+def test_bad_input_is_one_line(make, says):
+    with pytest.raises(InputError) as error:
+        make()
+    assert says in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("support", ["soft", {"friction": "much"}, {"lubricant": 1.0}, [0.1]])
+def test_provenance_that_says_nothing_of_the_clamp_is_refused(support):
+    exact = solve_sweep(named_case("catenary"))
+    with pytest.raises(InputError, match=r"provenance\.support"):
+        certify(Readings(exact.table, provenance={"support": support}))
+
+
+def test_defaults_are_the_papers_vibrissa():
+    case = named_case("catenary")
+    same = Case(Beam(natural_curvature=0), case.profile, clamp_stiffness=float("inf"), friction=0)
+    assert same.digest == case.digest and same.is_plain
+    assert "support" not in solve_sweep(same).provenance
+    rough = Case(profile=case.profile, friction=0.1)
+    assert rough.digest != case.digest
