@@ -113,8 +113,9 @@ def simulate_motion(
     Raises
     ------
     InputError
-        If the case's beam has no radius, or the installed MuJoCo lacks the beam, or it is no chain
-        or rod in the plane.
+        If the case's beam has no radius or is curved at rest, its clamp turns, or the case has
+        friction (of a motion it is `Motion`'s); if the installed MuJoCo lacks the beam, or it is no
+        chain or rod in the plane.
     DivergedError
         If the motion does not stay finite; it names the time and what to change.
     """

@@ -24,7 +24,7 @@ from analytic import (
 )
 from compare import compare
 from compare.show.figures.paper import paper_figures
-from mujoco_models import simulate_sweep
+from mujoco_models import simulate_motion, simulate_sweep
 
 OBJECT = circle(1.0, lowest=(0, 0.4))
 BEYOND = {
@@ -45,6 +45,7 @@ def budget_of(case):
     "ask",
     [
         simulate_sweep,
+        simulate_motion,
         lambda case: with_friction(case, 0.1),
         lambda case: reconstruct(solve_sweep(case)),
         lambda case: reconstruct_by_decision(solve_sweep(case)),

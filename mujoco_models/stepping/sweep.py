@@ -76,6 +76,7 @@ def run_motion(
 
 
 def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> MovingModel:
+    case.require_plain("MuJoCo's beams")
     if case.radius == 0:
         raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
     if settings.beam == "cable" or not settings.planar:
