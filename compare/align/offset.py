@@ -150,20 +150,8 @@ def estimate_offset(
         If there are too few stations in contact, or the offset is ambiguous: another one fits as
         well, or the readings hardly depend on it.
     """
-    curve = _Curve.of(reference, reference_phase)
-    loaded = np.isin(candidate_phase.phase, ("tip", "tangent"))
-    for name, number in (("reference", curve.stations), ("candidate", int(loaded.sum()))):
-        if number < _FEWEST:
-            raise _ambiguous(f"{number} trusted stations of the {name} in contact")
-    scale = np.array([*scales(reference).values()])
-    seen = np.stack([candidate.values(name) for name in CLAMP_READINGS]) / scale[:, None]
-    x, length = candidate.values("foot_x"), reference.beam.length
-    starts = _scan(curve, x, seen, loaded, candidate.trusted, scale)
-    tried = (_fit(curve, x[loaded], seen[:, loaded], start, scale) for start in starts)
-    fits = [fit for fit in tried if fit is not None]
-    if not fits:
-        raise _ambiguous(f"fewer than {_FEWEST} stations in a phase of the reference")
-    best, *others = sorted(fits, key=lambda fit: fit.misfit)
+    length = reference.beam.length
+    best, *others = offset_fits(reference, candidate, reference_phase, candidate_phase)
     for other in others:
         apart = abs(other.value - best.value) > _USELESS * length
         if apart and other.misfit * _DISTINCT < best.misfit:
@@ -173,11 +161,52 @@ def estimate_offset(
     return Offset(best.value, best.uncertainty)
 
 
-class _Fit(NamedTuple):
+class Fit(NamedTuple):
+    """An offset that fits, at least better than those around it."""
+
     value: float
     uncertainty: float
     misfit: float
     """Root mean square of the robust residual, relative to the readings' largest magnitudes."""
+
+
+def offset_fits(
+    reference: Readings,
+    candidate: Readings,
+    reference_phase: Classification,
+    candidate_phase: Classification,
+) -> list[Fit]:
+    """Offsets at which the candidate's clamp readings fit the reference's, the best first.
+
+    Parameters
+    ----------
+    reference, candidate, reference_phase, candidate_phase
+        As of `estimate_offset`.
+
+    Returns
+    -------
+    list of Fit
+        At least one.
+
+    Raises
+    ------
+    InputError
+        If there are too few stations in contact.
+    """
+    curve = _Curve.of(reference, reference_phase)
+    loaded = np.isin(candidate_phase.phase, ("tip", "tangent"))
+    for name, number in (("reference", curve.stations), ("candidate", int(loaded.sum()))):
+        if number < _FEWEST:
+            raise _ambiguous(f"{number} trusted stations of the {name} in contact")
+    scale = np.array([*scales(reference).values()])
+    seen = np.stack([candidate.values(name) for name in CLAMP_READINGS]) / scale[:, None]
+    x = candidate.values("foot_x")
+    starts = _scan(curve, x, seen, loaded, candidate.trusted, scale)
+    tried = (_fit(curve, x[loaded], seen[:, loaded], start, scale) for start in starts)
+    fits = [fit for fit in tried if fit is not None]
+    if not fits:
+        raise _ambiguous(f"fewer than {_FEWEST} stations in a phase of the reference")
+    return sorted(fits, key=lambda fit: fit.misfit)
 
 
 @dataclass(frozen=True)
@@ -266,7 +295,7 @@ def _scan(
     return [float(trials[i]) for i in minima[np.argsort(misfit[minima])][:3]]
 
 
-def _fit(curve: _Curve, x: Floats, seen: Floats, start: float, scale: Floats) -> _Fit | None:
+def _fit(curve: _Curve, x: Floats, seen: Floats, start: float, scale: Floats) -> Fit | None:
     """Gauss and Newton's method from `start`; None where it leads out of the reference.
 
     Plain least squares first, each reading over its largest magnitude: the scatter that the
@@ -295,7 +324,7 @@ def _fit(curve: _Curve, x: Floats, seen: Floats, start: float, scale: Floats) ->
         if not plain and abs(step) < 1e-12 * (abs(value) + curve.spacing):
             break
     misfit = float(np.sqrt(np.mean((robust * scatter) ** 2)))
-    return _Fit(value, _half_width(score, information), misfit)
+    return Fit(value, _half_width(score, information), misfit)
 
 
 def _half_width(score: Floats, information: float) -> float:

@@ -9,16 +9,27 @@ from analytic import CLAMP_READINGS
 from analytic.problem.arrays import Floats
 from compare.explain.fit import Explanation, fitted
 
-_UNITS = {
-    1000.0: "a thousandth of the unit, as mN or N mm",
-    0.001: "a thousand of the unit, as kN",
-    100.0: "a hundredth of the unit, as N cm",
-    9.80665: "kgf, or its moment, taken for N",
-    1 / 9.80665: "N, or its moment, taken for kgf",
+# What a reading is larger by, and which unit was taken for which: the file's for the stated one.
+_FORCES = {
+    1e3: "mN taken for N",
+    1e-3: "N taken for mN",
+    9.80665: "N taken for kgf",
+    1 / 9.80665: "kgf taken for N",
     101.9716: "gf taken for N",
     1 / 101.9716: "N taken for gf",
     4.448222: "N taken for lbf",
     1 / 4.448222: "lbf taken for N",
+}
+_MOMENTS = {
+    **_FORCES,
+    1e6: "mN mm taken for N m",
+    1e-6: "N m taken for mN mm",
+    1e3: "N mm taken for N m, or mN m for N m",
+    1e-3: "N m taken for N mm, or for mN m",
+    1e2: "N cm taken for N m",
+    1e-2: "N m taken for N cm",
+    10.0: "N mm taken for N cm",
+    0.1: "N cm taken for N mm",
     25.4: "mm taken for inches",
     1 / 25.4: "inches taken for mm",
 }
@@ -105,19 +116,23 @@ def _displaced(true: Floats, seen: Floats, scale: Floats, length: float) -> Iter
 
 
 def _units(true: Floats, seen: Floats) -> Iterator[Explanation]:
-    """One reading, both forces, or all of them, larger by a factor that units differ by."""
-    for rows in ([0], [1], [2], [0, 1], [0, 1, 2]):
-        if not true[rows].any():
-            continue
-        factor = float(np.sum(true[rows] * seen[rows]) / np.sum(true[rows] ** 2))
-        unit = min(_UNITS, key=lambda known: abs(np.log(abs(factor) / known)) if factor else 1.0)
-        if abs(factor / unit - 1) > _SAME_UNIT:
-            continue
-        scaled = true.copy()
-        scaled[rows] *= factor
-        names = " and ".join(CLAMP_READINGS[i] for i in rows) if len(rows) < 3 else "all readings"
-        text = f"{names} in another unit: {factor:.4g} times what is due ({_UNITS[unit]}?)"
-        yield Explanation(text, float(np.sum((seen - scaled) ** 2)))
+    """One reading, both forces, or all of them, larger by factors that units differ by."""
+    for groups in ([[0]], [[1]], [[2]], [[0, 1]], [[0, 1, 2]], [[0, 1], [2]]):
+        scaled, said = true.copy(), {}
+        for rows in groups:
+            if not true[rows].any():
+                continue
+            factor = float(np.sum(true[rows] * seen[rows]) / np.sum(true[rows] ** 2))
+            units = _MOMENTS if rows == [2] else _FORCES
+            unit = min(units, key=lambda known: abs(np.log(abs(factor) / known)) if factor else 1.0)
+            if abs(factor / unit - 1) > _SAME_UNIT:
+                continue
+            scaled[rows] *= factor
+            names = " and ".join(CLAMP_READINGS[i] for i in rows)
+            names = names if len(rows) < len(CLAMP_READINGS) else "all readings"
+            said[unit] = f"{names} in another unit: {factor:.4g} times what is due ({units[unit]}?)"
+        if len(said) == len(groups):  # of one factor it is one mistake
+            yield Explanation(", ".join(said.values()), float(np.sum((seen - scaled) ** 2)))
 
 
 def _dead(true: Floats, seen: Floats) -> Iterator[Explanation]:

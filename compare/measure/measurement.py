@@ -16,6 +16,7 @@ from compare.align.offset import (
 )
 from compare.align.order import Order, in_order
 from compare.align.stations import Alignment, align
+from compare.align.units import check_unit_of_length, in_units_of
 from compare.measure.disagreement import Disagreement, Occurrence, disagreements
 from compare.sense.noise import scales
 from compare.sense.phases import Classification, classify, confusion
@@ -116,7 +117,8 @@ def measure(
     ------
     InputError
         If the sweeps are of different beams or have no common stretch, the reference never touches,
-        a number is too large to be a reading, or the offset is ambiguous.
+        a number is too large to be a reading, their foot positions are in different units, or the
+        offset is ambiguous.
     """
     for which, sweep in (("reference", reference), ("candidate", candidate)):
         _check_size(which, sweep)
@@ -131,8 +133,15 @@ def measure(
         )
     candidate, records["candidate"], order = in_order(reference, candidate)
     judged = {"reference": classify(reference), "candidate": classify(candidate)}
+    comparable = in_units_of(reference, candidate)
+    check_unit_of_length(reference, comparable, judged["reference"])
     shift = (
-        estimate_offset(reference, candidate, judged["reference"], judged["candidate"])
+        estimate_offset(
+            reference,
+            comparable,
+            judged["reference"],
+            judged["candidate"] if comparable is candidate else classify(comparable),
+        )
         if offset == "auto"
         else Offset(checked_offset(offset))
     )
