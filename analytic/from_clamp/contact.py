@@ -104,7 +104,13 @@ def located(readings: Readings) -> Contact:
     -------
     Contact
         Each of shape (stations,); NaN without a force, and where no such vibrissa has the readings.
+
+    Raises
+    ------
+    InputError
+        If the vibrissa is curved at rest, its clamp turns, or the object rubs.
     """
+    readings.require_plain("the contact from the clamp")
     sensed = dimensionless(readings)
     found = contact_of(np.where(np.hypot(sensed[1], sensed[2]) > UNLOADED, sensed, np.nan))
     there = (found.arc_length >= 0) & (found.arc_length <= LONGEST)

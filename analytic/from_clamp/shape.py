@@ -26,6 +26,11 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
     -------
     x, y : array, shape (stations, 66)
         Coordinates [length].
+
+    Raises
+    ------
+    InputError
+        If the vibrissa is curved at rest, its clamp turns, or the object rubs.
     """
     beam = readings.beam
     foot_x = readings.values("foot_x") / beam.length
@@ -66,6 +71,11 @@ def curvatures(readings: Readings, x: Floats, y: Floats) -> Floats:
     array, shape (stations, points)
         kappa [1/length], positive where the vibrissa bends to the left of its way from clamp to
         tip.
+
+    Raises
+    ------
+    InputError
+        If the vibrissa is curved at rest, its clamp turns, or the object rubs.
     """
     readings.require_plain("the curvature from the clamp")
     foot_x, force_x, force_y, moment = (readings.values(name)[:, None] for name in SENSED)
