@@ -178,7 +178,7 @@ def _forget_peak() -> None:
 
 
 def _peak() -> int:
-    """Largest memory of this trial [MB]; that of all trials where the system cannot tell."""
+    """Largest memory of this trial [MB]; that of all trials where the system does not say."""
     try:
         lines = Path("/proc/self/status").read_text().splitlines()
         return next(int(line.split()[1]) for line in lines if line.startswith("VmHWM")) // 1024
