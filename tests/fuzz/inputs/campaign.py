@@ -40,6 +40,8 @@ def campaign(
         if outcome.faults or show:
             print(number, made.kind, outcome.code, f"{outcome.seconds:.1f} s", made)
             print(f"    {outcome.error[-300:]!a}", *outcome.faults, sep="; ", flush=True)
+        if number % 500 == 499:
+            print(f"{counts.total()} done, the last is number {number}", flush=True)
         if number % 50 == 0:
             plt.close("all")
             gc.collect()
