@@ -6,6 +6,7 @@ MuJoCo itself is imported when one of them is called, not before.
 from collections.abc import Callable
 
 from analytic.problem.case import Case
+from analytic.problem.errors import require
 from analytic.problem.mirror import facing, solve_either_way
 from analytic.problem.readings import Readings
 from mujoco_models.motion import Motion
@@ -65,7 +66,8 @@ def simulate_sweep(
     """
     from mujoco_models.sweep.sweep import run_sweep
 
-    chosen = settings or Settings()
+    chosen = Settings() if settings is None else settings
+    require("settings", chosen, Settings, "as Settings(beam='chain', segments=40)")
 
     def keep_facing(found: Readings) -> None:
         keep(facing(case, found))

@@ -1,6 +1,7 @@
 """Bad input: one line that names the value, what is allowed, and what to do."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from analytic import (
@@ -12,12 +13,15 @@ from analytic import (
     Sweep,
     catenary,
     circle,
+    find_events,
+    mesh_section,
     named_case,
     parabola,
+    reconstruct,
     solve_contact,
     solve_sweep,
 )
-from compare import compare
+from compare import compare, read_measured
 from mujoco_models import Settings, simulate_sweep
 
 
@@ -105,3 +109,26 @@ def test_readings_that_cannot_be_compared():
         compare(one, Readings(table, one.beam))
     with pytest.raises(InputError, match="the same"):
         compare(one, Readings(one.table, Beam(flexural_rigidity=2)))
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: find_events("catenary"), "profile = 'catenary': must be a Contour"),
+        (lambda: solve_contact(None, [0.1]), "profile = a NoneType"),
+        (lambda: solve_contact(catenary(0.5, -0.8), "x"), "alpha = 'x'"),
+        (lambda: solve_contact(catenary(0.5, -0.8), [0.1], 1.0), "beam = a float"),
+        (lambda: solve_sweep("catenary"), "case = 'catenary': must be a Case"),
+        (lambda: simulate_sweep(named_case("catenary"), {"segments": 3}), "settings = a dict"),
+        (lambda: reconstruct(pd.DataFrame()), "readings = a DataFrame"),
+        (lambda: Readings.read(3), "readings file = a int: must be a path"),
+        (lambda: Readings.read_table(None), "readings file = a NoneType"),
+        (lambda: mesh_section([1]), "mesh file = a list: must be a path"),
+        (lambda: read_measured(None), "readings file = a NoneType"),
+        (lambda: read_measured({}, direction="up"), "direction = 'up'"),
+    ],
+)
+def test_things_of_another_kind(call, said):
+    with pytest.raises(InputError) as refused:
+        call()
+    assert said in str(refused.value)

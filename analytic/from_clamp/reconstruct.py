@@ -20,12 +20,13 @@ from analytic.from_clamp.phases import Judgement, judge_phases
 from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.beam import Beam
 from analytic.problem.columns import SENSED
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
 from analytic.problem.table import mirrored_table
 from analytic.solver.elastica import span
 
 _SAMPLES = 400  # of the noise, a station
+_AT_ONCE = 10_000  # stations whose samples are in memory, 130 MB for each number of them
 _COVERAGE = 0.95
 _CLEAR = 0.1  # of the largest force; with less, noise makes of a contact what it likes
 
@@ -68,6 +69,7 @@ def reconstruct(
         If `noise` is no such mapping, or the vibrissa is curved at rest, its clamp turns, or the
         object rubs.
     """
+    require("readings", readings, Readings, "as Readings(table, beam)")
     readings.require_plain("the reconstruction")
     judged = judge_phases(readings, noise)
     found = contact_table(readings, judged)
@@ -226,15 +228,21 @@ def _uncertainty(
     spread = np.array([noise.get(n, 0.0) / u for n, u in zip(SENSED, units, strict=True)])
     sensed = dimensionless(readings)[:, loaded]
     sensed = sides(sensed) * sensed
-    random = np.random.default_rng(seed).standard_normal((4, sensed.shape[1], _SAMPLES))
-    noisy = sensed[:, :, None] + spread[:, None, None] * random
-    moved, here = (
-        contact_bent_right(x).surface(beam.radius / beam.length)
-        for x in (noisy, sensed[:, :, None])
-    )
-    miss = np.hypot(*(m - h for m, h in zip(moved, here, strict=True)))
+    generator = np.random.default_rng(seed)
+
+    def covering(some: Floats) -> Floats:
+        random = generator.standard_normal((4, some.shape[1], _SAMPLES))
+        noisy = some[:, :, None] + spread[:, None, None] * random
+        moved, here = (
+            contact_bent_right(x).surface(beam.radius / beam.length)
+            for x in (noisy, some[:, :, None])
+        )
+        miss = np.hypot(*(m - h for m, h in zip(moved, here, strict=True)))
+        return np.asarray(
+            np.quantile(np.nan_to_num(miss, nan=np.inf), _COVERAGE, axis=1, method="higher")
+        )
+
     radius = np.full(len(loaded), np.nan)
-    radius[loaded] = np.quantile(
-        np.nan_to_num(miss, nan=np.inf), _COVERAGE, axis=1, method="higher"
-    )
+    pieces = np.array_split(sensed, sensed.shape[1] // _AT_ONCE + 1, axis=1)
+    radius[loaded] = np.concatenate([covering(piece) for piece in pieces])
     return radius

@@ -12,7 +12,7 @@ from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.families import catenary
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, require
 from analytic.problem.numbers import is_finite_number, is_whole_number
 from analytic.problem.reach import FARTHEST, contact_range, out_of_reach
 from analytic.problem.rest import first_touch
@@ -116,11 +116,7 @@ class Case:
             ("sweep", Sweep, "as Sweep(stations=200)"),
             ("name", str, "it names files and reports"),
         ):
-            value = getattr(self, name)
-            if not isinstance(value, kind):
-                raise InputError(
-                    f"case.{name}", f"a {type(value).__name__}", f"a {kind.__name__}", remedy
-                )
+            require(f"case.{name}", getattr(self, name), kind, remedy)
         check_support(self.clamp_stiffness, self.friction, self.beam, signed=False)
         for name in ("clamp_stiffness", "friction"):
             object.__setattr__(self, name, float(getattr(self, name)))

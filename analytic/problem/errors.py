@@ -30,3 +30,27 @@ def _written(value: object) -> str:
         return str(value)
     except ValueError:  # Python refuses to write thousands of digits
         return "an integer of thousands of digits"
+
+
+def require(name: str, value: object, kind: type, remedy: str) -> None:
+    """Refuse what is of another kind, before something inside stumbles over it.
+
+    Parameters
+    ----------
+    name : str
+        What was given, as the user knows it.
+    value : object
+        What was given.
+    kind : type
+        What it must be.
+    remedy : str
+        How to make one.
+
+    Raises
+    ------
+    InputError
+        If it is none.
+    """
+    if not isinstance(value, kind):
+        found = repr(value) if isinstance(value, str) else f"a {type(value).__name__}"
+        raise InputError(name, found[:80], f"a {kind.__name__}", remedy)

@@ -9,6 +9,31 @@ from pathlib import Path
 from analytic.problem.errors import InputError
 
 
+def as_path(path: object, name: str) -> Path:
+    """A path from what was given as one.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    name : str
+        What an error calls it.
+
+    Returns
+    -------
+    Path
+        The same.
+
+    Raises
+    ------
+    InputError
+        If it is no text and no path.
+    """
+    if not isinstance(path, str | os.PathLike):
+        raise InputError(name, f"a {type(path).__name__}", "a path", "as 'folder/name'")
+    return Path(path)
+
+
 def regular_file(path: str | Path, name: str, largest: int) -> Path:
     """A path that can be read without surprises: no pipe, no device, not too large.
 
@@ -31,7 +56,7 @@ def regular_file(path: str | Path, name: str, largest: int) -> Path:
     InputError
         If it is missing, is no regular file, or is larger.
     """
-    path = Path(path)
+    path = as_path(path, name)
     try:
         size = path.stat().st_size
     except (OSError, ValueError) as error:
@@ -77,6 +102,8 @@ def whole_file(path: Path) -> Iterator[Path]:
     try:
         yield unfinished
         unfinished.replace(path)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror or str(error), str(path)) from error
     finally:
         unfinished.unlink(missing_ok=True)
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from analytic.problem.case import Case
-from analytic.problem.errors import InputError
+from analytic.problem.errors import require
 from analytic.problem.readings import Readings
 
 
@@ -31,8 +31,7 @@ def solve_either_way(case: Case, solve: Callable[[Case], Readings]) -> Readings:
     InputError
         If `case` is none.
     """
-    if not isinstance(case, Case):
-        raise InputError("case", repr(case)[:80], "a Case", "named_case('catenary') makes one")
+    require("case", case, Case, "named_case('catenary') makes one")
     if case.sweep.direction == "left":
         return solve(case)
     return facing(case, solve(case.mirrored()))

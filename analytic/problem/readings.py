@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.beam import Beam
 from analytic.problem.columns import SENSED
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, require
+from analytic.problem.files import as_path
 from analytic.problem.readings_file import read_file, write_file
 from analytic.problem.readings_shown import as_html, as_text, plot
 from analytic.problem.support import require_plain, support_of
@@ -66,10 +67,7 @@ class Readings:
             ("source", self.source, str, "it says who produced them"),
             ("provenance", self.provenance, Mapping, "as {'engine': '...'}"),
         ):
-            if not isinstance(value, kind):
-                raise InputError(
-                    f"readings' {name}", f"a {type(value).__name__}", f"a {kind.__name__}", remedy
-                )
+            require(f"readings' {name}", value, kind, remedy)
         table = checked_table(self.table, self.source)
         if len(table) < 2 or table["foot_x"].isna().any():
             raise InputError(
@@ -239,8 +237,9 @@ class Readings:
             "source": self.source,
             "provenance": dict(self.provenance),
         }
-        write_file(Path(path), self.table, metadata)
-        return Path(path)
+        path = as_path(path, "readings file")
+        write_file(path, self.table, metadata)
+        return path
 
     @staticmethod
     def read_table(path: str | Path) -> pd.DataFrame:
@@ -261,7 +260,7 @@ class Readings:
         InputError
             If the file is missing, damaged, too large or no regular file.
         """
-        return read_file(Path(path)).table
+        return read_file(as_path(path, "readings file")).table
 
     @classmethod
     def read(cls, path: str | Path, otherwise: Beam | None = None) -> "Readings":
@@ -285,7 +284,7 @@ class Readings:
             If the file is missing, damaged, too large or not a sweep; the message has line and
             column of a cell that cannot be read.
         """
-        path = Path(path)
+        path = as_path(path, "readings file")
         content = read_file(path)
         metadata = content.metadata
         try:

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import Contour
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, require
 from analytic.problem.support import check_support, is_plain
 from analytic.solver.equilibria import equilibria, to_columns
 from analytic.solver.general.clearance import is_clear
@@ -57,8 +57,13 @@ def solve_contact(
         If an angle is not within [-pi/2, pi/2], or a number is out of range.
     """
     beam = Beam() if beam is None else beam
+    require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
+    require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
     check_support(clamp_stiffness, friction, beam, signed=True)
-    angles = np.atleast_1d(np.asarray(alpha, dtype=float))
+    try:
+        angles = np.atleast_1d(np.asarray(alpha, dtype=float))
+    except (TypeError, ValueError) as error:
+        raise InputError("alpha", repr(alpha)[:80], "numbers", "angles are in rad") from error
     outside = ~(np.abs(angles) <= np.pi / 2)
     if outside.any():
         raise InputError(

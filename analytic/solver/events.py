@@ -12,6 +12,7 @@ import numpy as np
 from analytic.problem.beam import Beam
 from analytic.problem.columns import COLUMNS
 from analytic.problem.contours.contour import Contour
+from analytic.problem.errors import require
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
 from analytic.problem.roots import zeros
@@ -97,6 +98,8 @@ def find_events(
         If the equilibria of such a vibrissa cannot be followed to where it snaps off.
     """
     beam = Beam() if beam is None else beam
+    require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
+    require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
     check_support(clamp_stiffness, friction, beam, signed=False)
     centreline = profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
     reach = contact_range(centreline)

@@ -23,7 +23,7 @@ from scipy.optimize import minimize_scalar
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import Contour
-from analytic.problem.errors import InputError
+from analytic.problem.errors import InputError, require
 from analytic.problem.reach import contact_range
 from analytic.problem.support import require_plain
 from analytic.solver.elastica import Span, frame, span
@@ -60,6 +60,8 @@ def slip_off(profile: Contour, tilt: float, beam: Beam | None = None) -> float |
     if not 0 < abs(tilt) <= _LARGEST:
         raise InputError("tilt", f"{tilt} rad", f"up to {_LARGEST} rad, not zero", "it is in rad")
     beam = Beam() if beam is None else beam
+    require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
+    require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
     require_plain("the slip-off", beam)
     centreline = profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
     first = contact_range(centreline)[1]

@@ -96,6 +96,15 @@ def complaint(
             return InputError(name, value, f"one of {context['expected']}", "choose one")
         case "bool_parsing" | "bool_type":
             return InputError(name, value, "true or false", "write it without quotes")
+        case "too_short" | "too_long":
+            few = first["type"] == "too_short"
+            allowed_count = context["min_length"] if few else context["max_length"]
+            return InputError(
+                name,
+                value,
+                f"of {'at least' if few else 'at most'} {allowed_count}",
+                "add what is missing" if few else "leave some out",
+            )
         case "value_error":
             return InputError(name, value, "usable", str(context["error"]))
     allowed_value = first["msg"].removeprefix("Input should be ").removeprefix("Value should be ")

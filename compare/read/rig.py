@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TypeAlias
+from typing import TypeAlias, get_args
 
 import numpy as np
 import pandas as pd
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from analytic import SENSED, Beam, Direction, InputError, Readings
 from analytic.problem.arrays import Floats
+from analytic.problem.files import as_path
 from analytic.problem.readings_file import is_ours
 from analytic.problem.table import Place, as_numbers, row_number
 from compare.read.assumed import assumed_of
@@ -70,6 +71,8 @@ def read_measured(
         If the file, the beam, a column or a unit cannot be used, a cell is no number, the vibrissa
         is missing, or there are several sweeps.
     """
+    if direction not in (None, *get_args(Direction)):
+        raise InputError("direction", repr(direction), "'left' or 'right'", "or leave it out")
     sweeps = read_sweeps(source, beam, columns, otherwise)
     several = len(sweeps) > 1
     chosen = [one for way, one in sweeps if not several or direction in (None, way)]
@@ -108,9 +111,11 @@ def read_sweeps(
     InputError
         As `read_measured` does.
     """
+    if not isinstance(source, pd.DataFrame | Mapping):
+        source = as_path(source, "readings file")
     given = read_beam(beam) if isinstance(beam, Path) else beam
     assumed = Beam()
-    if isinstance(source, str | Path) and is_ours(Path(source)) and not columns:
+    if isinstance(source, Path) and is_ours(source) and not columns:
         readings = Readings.read(source, otherwise or assumed)
         readings = readings if given is None else replace(readings, beam=given)
         sweeps = [(_way(readings), readings)]

@@ -17,7 +17,12 @@ Place: TypeAlias = Callable[[Sequence[str]], str]
 _LARGEST = 2_000_000  # bytes: some 50,000 points; what is slower to parse than to compute
 _DEEPEST = 32  # tables in tables
 _LONGEST = 10_000  # keys of one table
+_SHOWN = 60  # characters of a key
 _WIDEST = 1024  # bits of an integer; beyond that it fits no float, and Python may not print it
+
+_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_DOTTED = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_DEEPEST}}}")
+"""A key in more tables than there may be."""
 
 # What may hold a newline or a bracket that ends no statement, else brackets and newlines.
 _TOKEN = re.compile(
@@ -74,6 +79,8 @@ class TomlFile:
         regular_file(path, what, _LARGEST)
         try:
             text = path.read_bytes().decode("utf-8")
+            if _DOTTED.search(text):
+                raise RecursionError  # the parser takes memory as the square of the depth
             tables = tomllib.loads(text)
         except OSError as error:
             reason = error.strerror or type(error).__name__
@@ -118,7 +125,8 @@ class TomlFile:
             ),
             None,
         )
-        return f"{self.path}{'' if line is None else f', line {line}'}: {'.'.join(keys)}"
+        name = ".".join(key if len(key) <= _SHOWN else f"{key[:_SHOWN]}..." for key in keys)
+        return f"{self.path}{'' if line is None else f', line {line}'}: {name}"
 
     @cached_property
     def _statements(self) -> list[tuple[int, dict[str, Any]]]:

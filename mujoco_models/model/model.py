@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
+from analytic.problem.errors import InputError
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.errors import DivergedError
 from mujoco_models.model import clamp
@@ -61,7 +62,7 @@ class BeamModel:
         self.obstacle = obstacle
         self.contact_stiffness = contact_stiffness
         self.evaluations = 0
-        self.model = assemble(beam, radius, obstacle).compile()
+        self.model = _compiled(assemble(beam, radius, obstacle))
         self.data = mujoco.MjData(self.model)
         model = self.model
         self._foot = model.body(FOOT).id
@@ -330,3 +331,16 @@ class BeamModel:
         by_contacts = clamp.by_contacts(self.model, self.data, foot, self._surface.moves)
         moment = float(self.elastic_moments()[0])
         return clamp.discrepancy(self.clamp(), by_contacts, float(self.layout.joints[0]), moment)
+
+
+def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """What MuJoCo makes of it, unless it is too thin or too small for MuJoCo's precision."""
+    try:
+        return spec.compile()
+    except (ValueError, mujoco.FatalError) as error:
+        raise InputError(
+            "MuJoCo's model",
+            f"impossible ({' '.join(str(error).split())[:150]})",
+            "of a vibrissa and an object that are neither too thin nor too small for MuJoCo",
+            "give a larger radius or object: some 1e-4 L is the least",
+        ) from error

@@ -9,7 +9,7 @@ import numpy as np
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.simplify import thinned
 from analytic.problem.errors import InputError
-from analytic.problem.files import regular_file
+from analytic.problem.files import as_path, regular_file
 
 if TYPE_CHECKING:
     from trimesh import Trimesh
@@ -73,7 +73,7 @@ def read_body(file: str | Path, hull: bool, tolerance: float) -> Body:
     """
     from scipy.spatial import QhullError  # slow to load, as trimesh is
 
-    file = Path(file)
+    file = as_path(file, "mesh file")
     read = _load(file)
     mesh, middle, size = read
     if not hull and not mesh.is_watertight:

@@ -1,5 +1,8 @@
 """The object from the clamp alone: exact readings, noisy ones, and none."""
 
+import tracemalloc
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, seed, settings
@@ -9,6 +12,7 @@ from analytic import (
     Beam,
     InputError,
     Readings,
+    Sweep,
     named_case,
     reconstruct,
     reconstruct_by_decision,
@@ -111,6 +115,20 @@ def test_exact_readings_ask_for_nothing(exact):
     found = reconstruct(exact)
     require_beam(found, exact)
     assert set(found["status"]) == {"free", "ok"}
+
+
+@pytest.mark.slow
+def test_samples_of_many_stations_take_little_memory():
+    """As many stations as a rig writes; samples of all of them at once took 25 GB."""
+    case = named_case("parabola")
+    sweep = solve_sweep(replace(case, sweep=Sweep(stations=21_000)))
+    tracemalloc.start()
+    found = reconstruct(sweep, relative_noise(sweep, 1e-3))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 1e9
+    touching = found["phase"].isin(["tip", "tangent"])
+    assert (found["uncertainty"][touching] > 0).all()
 
 
 def test_gaps_and_odd_numbers():

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from analytic import Case, Readings, Sweep, circle
+from analytic import Beam, Case, InputError, Readings, Sweep, catenary, circle
 from compare.commands.main import main
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
@@ -137,3 +137,10 @@ def test_a_study_calls_it_diverged(not_a_number, tmp_path):
     row = perform(Recipe.of(plan.study), run).row
     assert row["outcome"] == "diverged"
     assert "station" in row["reason"]
+
+
+def test_what_mujoco_cannot_compile_is_one_line():
+    thin = Case(Beam(radius=1e-5), catenary(0.5, -0.8), Sweep(stations=5))
+    with pytest.raises(InputError, match=r"mass and inertia .* too thin") as refused:
+        simulate_sweep(thin, Settings(segments=8, contour_points=100))
+    assert "\n" not in str(refused.value)
