@@ -163,8 +163,9 @@ def reconstruct(
         terminal.note_rows(readings)
         terminal.print_reconstruction(readings, found)
         terminal.print_written(path)
-        picture = reconstruction(readings, found)
-        terminal.print_written(save_figure(picture, folder / "reconstruction.png"))
+        with waiting("drawing"):
+            drawn = save_figure(reconstruction(readings, found), folder / "reconstruction.png")
+        terminal.print_written(drawn)
     return AGREES
 
 

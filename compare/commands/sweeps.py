@@ -21,6 +21,7 @@ from compare.commands.options import (
     Stations,
 )
 from compare.commands.output import output_folder
+from compare.commands.waiting import waiting
 
 _FRAMES = 48  # of a report's animation: smooth enough, and under 2 MB
 
@@ -62,7 +63,8 @@ def run(
             terminal.print_budget(found, job.case.name)
         with terminal.progress("frames", _FRAMES) as advance:
             write_animation(exact, candidate, folder, _FRAMES, advance)
-        written = write_report(comparison, folder, found, Film.of(folder))
+        with waiting("drawing"):
+            written = write_report(comparison, folder, found, Film.of(folder))
         terminal.print_comparison(comparison)
         terminal.print_written(written)
         return AGREES if comparison.agrees else DISAGREES
@@ -85,9 +87,9 @@ def report(
         from compare.comparison import compare
         from compare.show.report import Film, write_report
 
-        comparison = compare(stored.reference, stored.candidate, stored.tolerances)
-        film = Film.of(folder)
-        written = write_report(comparison, folder, stored.budget, film)
+        with waiting("comparing"):
+            comparison = compare(stored.reference, stored.candidate, stored.tolerances)
+            written = write_report(comparison, folder, stored.budget, Film.of(folder))
         terminal.print_comparison(comparison)
         terminal.print_written(written)
         return AGREES if comparison.agrees else DISAGREES
@@ -111,7 +113,8 @@ def analytic(
         from analytic import solve_sweep
         from compare.commands import terminal
 
-        readings = solve_sweep(job.case, certified)
+        with waiting("solving"):
+            readings = solve_sweep(job.case, certified)
         terminal.print_sweep(readings)
         terminal.print_written(readings.write(folder / "analytic.parquet"))
         if figures:
