@@ -160,7 +160,7 @@ def polygon(points: ArrayLike, label: str = "polygon") -> Polygon:
     before = np.roll(edges, 1, axis=0)
     cross = before[:, 0] * edges[:, 1] - before[:, 1] * edges[:, 0]
     turn = np.arctan2(cross, (before * edges).sum(axis=1))
-    if turn.sum() < 0:
+    if turn.sum() < -np.pi:  # a multiple of 2 pi; of a figure of eight it is zero
         return polygon(vertices[::-1], label)
     if np.abs(turn).max() > np.pi - 1e-9:
         i = int(np.argmax(np.abs(turn)))

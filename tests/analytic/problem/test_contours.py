@@ -208,6 +208,7 @@ def test_mirror_symmetry(one, other, height):
         ([[0, 0], [1, 0], [2, 0]], "total turn|degenerate|convex"),
         ([[0, 1], [1, 0], [2, 1], [1, 0.5]], r"vertex 3, \(1, 0.5\)"),
         ([[0, 0], [1, 1], [1, 0], [0, 1]], "crosses itself|dent"),
+        ([[687, -915], [1631, -218], [-1901, 332], [125, 1520], [139, 815]], "crosses itself"),
         (
             [[np.cos(a), np.sin(a)] for a in 2 * np.pi * np.arange(5) * 2 / 5],
             "winding 2 times",

@@ -19,6 +19,7 @@ from compare.commands.main import main
 CPU_SECONDS = 60
 STUCK_SECONDS = 900  # of the clock; then the campaign itself is ended, and says where it was
 MEGABYTES = 2000
+ALONE = 300  # MB, of the command and its libraries before it does anything
 ADDRESSES = 8_000_000_000  # bytes; more is refused before the machine suffers
 USELESS = ("None:", "; see ...", "out of memory", "internal error", "Traceback", " = : must be")
 
@@ -71,6 +72,7 @@ def _in_this_process(trial: Trial, place: Path) -> Outcome:
     here, words, code = Path.cwd(), sys.argv, None
     begin = time.process_time()
     _forget_peak()
+    others = _peak() - ALONE  # what trials before this one have left in this process
     try:
         os.chdir(place)
         sys.argv = ["vibrissa", *trial.words]
@@ -86,7 +88,7 @@ def _in_this_process(trial: Trial, place: Path) -> Outcome:
     finally:
         sys.argv = words
         os.chdir(here)
-    return _judged(code, error.getvalue(), time.process_time() - begin, _peak())
+    return _judged(code, error.getvalue(), time.process_time() - begin, _peak() - others)
 
 
 def _in_own_process(trial: Trial, place: Path) -> Outcome:
