@@ -11,8 +11,8 @@ from tests.fuzz.inputs.trial import Trial
 def options(dice: Dice) -> Trial:
     """Any command with any options."""
     known = get_command(app).commands
-    name = dice.pick(*known, *known, "fly", "--help", "--version", "")
-    words = [name] if name else []
+    name = dice.pick(*known, *known, "fly", "--help", "--version")
+    words = [name]
     files = {"file": b"", "good.csv": good_csv(), "short.csv": good_csv()[:300]}
     usual = ("catenary", "parabola", "good.csv", "short.csv", "file", ".", "resolution",
              "nowhere.toml", "/dev/zero", "good.csv/")  # fmt: skip
