@@ -43,7 +43,8 @@ def simulate_sweep(
         moments or from the beam's own moment at its first joint, whichever is worse;
         ``penetration``, how deep the loaded beads are in the obstacle on average [length]; and
         ``extension``, by how much the beam is too long, over its length.
-        ``provenance["events"]["snap_off"]`` is where the simulation let go.
+        ``provenance["events"]["snap_off"]`` is where the simulation let go, and
+        ``provenance["unsettled"]`` counts the stations that are unsettled, by reason.
 
         If the settings let the beam leave the plane of the sweep, there are also the columns
         ``out_of_plane``, the largest distance of any of its points from the plane, and

@@ -100,6 +100,8 @@ def print_sweep(readings: Readings) -> None:
         counts = table["phase"].value_counts()
         found = [f"{counts[phase]} {phase}" for phase in PHASES if phase in counts]
         parts.append(", ".join(found))
+    unsettled = readings.provenance.get("unsettled", {})
+    parts.extend(f"{count} unsettled: {reason}" for reason, count in unsettled.items())
     snap_off = readings.snap_off
     parts.append(
         "no snap-off" if snap_off is None else f"snap-off at foot_x = {snap_off / length:.4f} L"

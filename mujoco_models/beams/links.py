@@ -8,6 +8,7 @@ from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.protocol import FOOT
 
 _MASS = 1e-5  # of a link, any small number: at rest masses do not matter
+_THINNEST = 1e-4  # L; the inertia of a thinner capsule is too small for MuJoCo
 _ARMATURE = 1e-4  # of a joint with unit stiffness: likewise
 
 
@@ -73,11 +74,11 @@ def link_name(link: int) -> str:
 
 
 def _add_capsule(body: mujoco.MjsBody, length: float, radius: float) -> None:
-    """What the eye sees of a link; its mass is there because MuJoCo requires one."""
+    """What the eye sees of a link, and its mass, because MuJoCo requires one."""
     body.add_geom(
         type=mujoco.mjtGeom.mjGEOM_CAPSULE,
         fromto=[0, 0, 0, 0, length, 0],
-        size=[radius, 0, 0],
+        size=[max(radius, _THINNEST), 0, 0],
         contype=0,
         conaffinity=0,
         mass=_MASS,

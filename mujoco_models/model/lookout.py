@@ -49,10 +49,8 @@ class Lookout:
         self._obstacle_geoms = np.array(
             [model.geom(f"{GEOM_PREFIX}{i}").id for i in range(obstacle.geoms)]
         )
-        self._trail: tuple[float, ...] = ()
         self.window = -1
-        right_end = obstacle.place(np.array([np.pi / 2]))
-        self.use_window(obstacle.window_of(float(right_end[0])))
+        self.face(np.pi / 2)  # where a sweep to the left begins
         self.watched: frozenset[int] = frozenset()
         self.watch(frozenset(range(len(beads))))
 
@@ -89,21 +87,16 @@ class Lookout:
         self.use_window(best)
         return True
 
-    def anticipate_window(self) -> None:
-        """Use the window towards which the contact has been moving."""
-        if len(self._trail) == 2:
-            before, last = self._trail
-            self.use_window(self._obstacle.window_of(2 * last - before))
-
-    def leave_trail(self, place: float) -> None:
-        """Remember where the contact rests, for `anticipate_window`.
+    def face(self, slope: float) -> None:
+        """Use the window for a contact at this slope angle.
 
         Parameters
         ----------
-        place : float
-            Along the contour, see `Obstacle.place`.
+        slope : float
+            Of the contour [rad].
         """
-        self._trail = (*self._trail[-1:], place)
+        place = self._obstacle.place(np.array([slope]))
+        self.use_window(self._obstacle.window_of(float(place[0])))
 
     def follow_contact(self, contacts: Contacts) -> None:
         """Use the window that is nearest to the deepest contact, if there is a loaded one.

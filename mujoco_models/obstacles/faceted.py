@@ -22,6 +22,9 @@ _OCTAHEDRON = (
 )
 _FLAT = 1e-5  # rad; MuJoCo's normal of a facet is as good as that
 _POINTED = 1e12  # 1/L
+# rad; a facet that straddles the end of reach is touched at its own slope, a corner there with a
+# bead that may be half a spacing off. A polygon of few corners turns by far more at one of them.
+_SLACK = 0.35
 
 
 class Faceted(Obstacle):
@@ -54,6 +57,12 @@ class Faceted(Obstacle):
         """The largest mean curvature [1/L]."""
         return float(self._curvature.max())
 
+    @property
+    def lowest(self) -> tuple[float, float]:
+        """Its lowest vertex."""
+        x, y = self.vertices[np.argmin(self.vertices[:, 1])]
+        return float(x), float(y)
+
     def curvature(self, slope: Floats) -> Floats:
         """Mean curvature near the vertex at which the slope angle is passed.
 
@@ -81,7 +90,8 @@ class Faceted(Obstacle):
 
     def faces(self, slope: Floats) -> bool:
         """Whether these slope angles are among those at which it can be touched."""
-        slack = np.diff(self.facet_angles, append=self.facet_angles[-1]).max() + 1e-9
+        turn = np.diff(self.facet_angles, append=self.facet_angles[-1]).max()
+        slack = min(turn, _SLACK) + 1e-9
         low, high = self._slopes
         return bool(((slope > low - slack) & (slope < high + slack)).all())
 

@@ -93,6 +93,11 @@ class Primitive(Obstacle):
         """Of all its circles [1/L]."""
         return float(1 / self._circles.radius.min())
 
+    @property
+    def lowest(self) -> tuple[float, float]:
+        """That of the polygon."""
+        return self._outline.lowest
+
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """One geom; not at the origin, or MuJoCo takes it that it never leaves it."""
         spec.worldbody.add_geom(

@@ -39,6 +39,11 @@ class Obstacle(ABC):
         """The sharp edges that the sides of links touch; none if it is smooth to beads."""
         return Corners.none()
 
+    @property
+    @abstractmethod
+    def lowest(self) -> tuple[float, float]:
+        """A lowest point of the contour [L]."""
+
     @abstractmethod
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """Add the geoms to the world body.

@@ -18,8 +18,9 @@ class Numerics:
     stiffening : float
         Loaded contacts convexify the quadratic model by this much [EI/L^3]; their slack is zero at
         rest, and so is the effect there. It matters on the way: at 1e2 the quadratic model leaves
-        the branch before the fold, and the catenary snaps off 1.9e-3 L early with every station
-        "ok". From 3e2 to 1e6 the snap-off moves by less than 7e-5 L.
+        the branch 1.9e-3 L before the catenary's fold, and descents take it there, in three times
+        the time; at 10 stations run out of their budget. From 1e2 to 1e6 the snap-off moves by less
+        than 7e-5 L.
     largest_turn : float
         Of any link in one Newton step [rad]. At 1 the solver jumps to another state at rest, 1.8e-3
         away, which is "ok" by itself; from 0.1 to 0.5 nothing changes.
@@ -34,18 +35,41 @@ class Numerics:
         A link that turns farther than this from one state at rest to the next has left the branch
         [rad]. Too large, and a jump to another branch passes for a step; too small, and every
         step of the foot is halved. From 0.1 to 0.7 nothing changes.
-    fall_reach : int
-        Beads beyond the loaded ones that take part in collisions during a fall, beside one of every
-        link. From 8 to 32 nothing changes.
-    fall_steps : int
-        The most steps of a fall. What has not come to rest by then is relaxed from where it is.
-    fall_inertia, far_inertia : float
-        What shortens the steps of a fall, in units of each joint's stiffness, until it has left the
-        branch and after. With 10 instead of 100 the vibrissa lets go too early; after it has left,
-        0 takes 12 to 15 % fewer evaluations and gives readings equal to 1e-10.
+    largest_shift : float
+        A contact whose slope angle jumps by more than this from one state at rest to the next has
+        left the branch [rad]. A corner that passes from bead to bead turns the force by up to 0.7.
+    flicker : float
+        Newton's method that stops at less than this out of balance has hardly left the branch, but
+        jumps from facet to facet, or from bead to bead: a descent ends that [EI/L].
+    refinements : int
+        Newton steps with MuJoCo's own derivative, where a descent does not end that.
+    difference : float
+        The turn that the derivative is taken by [rad]: short of the depth of a contact over the
+        beam's length, 1e-7, and far above rounding.
+    confirm_step : float
+        A snap-off is confirmed if the beam is carried off with the foot so far beyond the last
+        state at rest [L]: the most by which a wrong stiffness of the solver can displace it.
+    reach : int
+        Beads beyond the loaded ones that take part in collisions during a descent, beside one of
+        every link. From 8 to 32 nothing changes.
+    gentle_turn : float
+        Of any link in a step of a descent, about [rad]. From 1e-3 to 1e-2 beams 1e-4 L before their
+        fold are held, and beams as far beyond are let go; at 1e-3 it takes ten times as long.
+    inertia : float
+        What the steps of a descent begin with, in units of each joint's stiffness; it changes until
+        they are as gentle as that.
+    descent_steps, flicker_steps : int
+        The most steps of a descent that decides, and of one that ends a flicker. 60 are usual; past
+        many corners it takes more.
+    unloaded_steps : int
+        So many steps of a descent in a row without a load, and the beam is free.
     fallen : float
-        A step of a fall that is shorter than this has come to rest [rad]. From 1e-11 to 1e-9
-        nothing changes.
+        A step of a descent that is shorter than this has come to rest [rad].
+    budget : int
+        The most evaluations that a station may take; it is unsettled then. Snap-off takes 500.
+    least_budget : int
+        The budget halves after such a station, down to this, and doubles again after one that
+        settles: a sweep that has lost its way ends in bounded time.
     smallest_step : float
         A jump that a step of the foot as small as this does not prevent is a snap-off [L]. It is
         how well snap-off is located; 1e-6 moves it by less than 1e-4.
@@ -61,10 +85,19 @@ class Numerics:
     ahead: int = 4
     margin: int = 2
     branch_turn: float = 0.35
-    fall_reach: int = 16
-    fall_steps: int = 5000
-    fall_inertia: float = 100.0
-    far_inertia: float = 4.0
+    largest_shift: float = 1.0
+    flicker: float = 1e-4
+    refinements: int = 4
+    difference: float = 1e-8
+    confirm_step: float = 1e-4
+    reach: int = 16
+    gentle_turn: float = 1e-2
+    inertia: float = 100.0
+    descent_steps: int = 1000
+    flicker_steps: int = 100
+    unloaded_steps: int = 20
     fallen: float = 1e-10
+    budget: int = 5000
+    least_budget: int = 400
     smallest_step: float = 1e-5
     load_held: float = 1e-2

@@ -1,4 +1,4 @@
-"""Coming to rest, and falling where there is no rest nearby.
+"""Coming to rest: Newton's method on MuJoCo's own balance of moments.
 
 A station is settled when MuJoCo's springs and contacts, and nothing else, hold the beam to a
 tolerance; how it got there does not matter, and time stepping to the same balance takes hundreds
@@ -9,7 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from analytic.problem.arrays import Floats
 from mujoco_models.model.model import BeamModel
+from mujoco_models.model.stance import stance
 from mujoco_models.sweep.newton import Newton
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.state import State, turned
@@ -40,10 +42,10 @@ def relax(
     """
     lookout, obstacle = model.lookout, model.obstacle
     newton = Newton(model, numerics)
-    state = best = start
-    lookout.watch(_around(model, state.forces, numerics.ahead) or _one_bead_a_link(model))
-    if state.forces:
-        lookout.anticipate_window()
+    state = best = State(start.angles, start.forces)
+    lookout.watch(around(model, state.forces, numerics.ahead) or one_bead_a_link(model))
+    if start.slope is not None:
+        lookout.face(start.slope)
     for _ in range(numerics.iterations):
         residual = float(np.abs(model.imbalance(foot_x, state.angles)).max())
         contacts = model.contacts()
@@ -64,22 +66,19 @@ def relax(
             if (missed := lookout.overlooked(contacts)) is not None:
                 lookout.use_window(obstacle.window_of(missed))
                 continue
-            if loaded.size:
-                lookout.leave_trail(float(loaded.mean()))
-            return replace(state, settled=True)
+            slope = float(slopes.mean()) if slopes.size else None
+            return replace(state, settled=True, stance=stance(model, contacts), slope=slope)
         state = newton.step(state, contacts)
-        if not _around(model, state.forces, numerics.margin) <= lookout.watched:
-            lookout.watch(lookout.watched | _around(model, state.forces, numerics.ahead))
+        if not around(model, state.forces, numerics.margin) <= lookout.watched:
+            lookout.watch(lookout.watched | around(model, state.forces, numerics.ahead))
     model.imbalance(foot_x, best.angles)  # leaves the readings with the state that is returned
-    return best
+    return replace(best, stance=stance(model, model.contacts()))
 
 
-def fall(model: BeamModel, foot_x: float, start: State, numerics: Numerics) -> State:
-    """Where the beam ends, without momentum, with the foot at `foot_x`; not yet at rest.
+def refine(model: BeamModel, foot_x: float, start: State, numerics: Numerics) -> State:
+    """Newton's method with the differences of MuJoCo's moments, from a state that nearly rests.
 
-    Decides what Newton's method cannot: whether a vibrissa without a neighbouring equilibrium has
-    let go. It goes down MuJoCo's own balance in steps as short as an inertia of a hundred times the
-    stiffness makes them, until it has clearly left; ten times coarser, it lets go too early.
+    What `relax` knows of the stiffness of beam and contact takes no part in it.
 
     Parameters
     ----------
@@ -88,32 +87,49 @@ def fall(model: BeamModel, foot_x: float, start: State, numerics: Numerics) -> S
     foot_x : float
         Foot position [L].
     start : State
-        The last state at rest.
+        Where to start from; what is watched then is watched here.
     numerics : Numerics
-        Constants of the way down.
+        Constants of the way there.
 
     Returns
     -------
     State
-        Without forces if the beam has left `start`.
+        The best of its iterates; whether that is at rest, `relax` decides.
     """
-    model.lookout.watch(_around(model, start.forces, numerics.fall_reach) | _one_bead_a_link(model))
-    newton = Newton(model, numerics)
-    state, inertia = start, numerics.fall_inertia
-    for _ in range(numerics.fall_steps):
-        model.imbalance(foot_x, state.angles)
-        after = newton.step(state, model.contacts(), inertia)
-        if turned(after.angles, state.angles) < numerics.fallen:
+    angles, count = start.angles, len(start.angles)
+    best = replace(start, imbalance=np.inf)
+    for _ in range(numerics.refinements):
+        moments = model.imbalance(foot_x, angles)
+        imbalance = float(np.abs(moments).max())
+        if imbalance >= best.imbalance:
             break
-        if turned(after.angles, start.angles) > numerics.branch_turn:
-            inertia = numerics.far_inertia
-        state = after
-    left = turned(state.angles, start.angles) > numerics.branch_turn
-    return State(state.angles, {} if left else start.forces)
+        best = State(angles, start.forces, imbalance)
+        derivative = np.empty((count, count))
+        for i, turn in enumerate(numerics.difference * np.eye(count)):
+            derivative[:, i] = model.imbalance(foot_x, angles + turn) - moments
+        step: Floats = np.linalg.lstsq(derivative / numerics.difference, -moments)[0].astype(float)
+        turn = turned(step, np.zeros(count))
+        angles = angles + step * min(1.0, numerics.largest_turn / max(turn, 1e-300))
+    return best
 
 
-def _around(model: BeamModel, loaded: dict[int, float], reach: int) -> frozenset[int]:
-    """The loaded beads and as many on either side; all past corners, where they are few."""
+def around(model: BeamModel, loaded: dict[int, float], reach: int) -> frozenset[int]:
+    """The loaded beads, and as many on either side; all past corners, where they are few.
+
+    Parameters
+    ----------
+    model : BeamModel
+        Whose beads they are.
+    loaded : dict
+        Contact force by bead [EI/L^2].
+    reach : int
+        How many on either side.
+
+    Returns
+    -------
+    frozenset of int
+        Their numbers.
+    """
     count = len(model.layout.beads)
     if len(model.obstacle.corners):
         return frozenset(range(count) if loaded else ())
@@ -122,7 +138,18 @@ def _around(model: BeamModel, loaded: dict[int, float], reach: int) -> frozenset
     )
 
 
-def _one_bead_a_link(model: BeamModel) -> frozenset[int]:
-    """They see a contact coming long before it is loaded."""
+def one_bead_a_link(model: BeamModel) -> frozenset[int]:
+    """The last bead of each link: they see a contact coming long before it is loaded.
+
+    Parameters
+    ----------
+    model : BeamModel
+        Whose beads they are.
+
+    Returns
+    -------
+    frozenset of int
+        Their numbers.
+    """
     links = model.layout.links
     return frozenset(np.flatnonzero(np.diff(links, append=links[-1] + 1)).tolist())

@@ -93,7 +93,7 @@ class SpatialWalk(Walk):
 
     def _look(self) -> None:
         """See how stiffly the beam is held in the plane, if it touches and rests there."""
-        resting = self._state.settled and bool(self._state.forces)
+        resting = self._shown.settled and bool(self._shown.forces)
         self._held = sideways(self.model) if resting else None
 
     def _resume(self, start: tuple[float, State]) -> None:
@@ -154,7 +154,10 @@ class SpatialWalk(Walk):
             self._departure = departure
         else:
             self._state = self._relax(target, State(angles, {}))
+            self._shown = self._state
             self._look()
             self._departure = None
             if turned(angles, departure.angles) > self._numerics.branch_turn:
                 self.snap_off = departure.foot_x
+        self._shown = self._state
+        self.doubt = None if self._state.settled else "on its way out of the plane"

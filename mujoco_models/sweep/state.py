@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from mujoco_models.model.stance import Stance
 
 
 @dataclass(frozen=True)
@@ -21,12 +22,18 @@ class State:
         Largest moment out of balance at any joint [EI/L].
     settled : bool
         Whether that is below the tolerance, with the whole beam looking at the obstacle.
+    stance : Stance
+        Where the beam is then relative to the object.
+    slope : float or None
+        Slope angle of the contour at the contact, once settled, if there is one [rad].
     """
 
     angles: Floats
     forces: dict[int, float]
     imbalance: float = np.inf
     settled: bool = False
+    stance: Stance = Stance.AHEAD
+    slope: float | None = None
 
     @classmethod
     def straight(cls, joints: int) -> "State":

@@ -2,6 +2,7 @@
 
 import platform
 import time
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import asdict
 from importlib.metadata import version
@@ -58,23 +59,25 @@ def run_sweep(
     begun = time.process_time()
     walk = set_out(case, settings, numerics)
     rows: list[dict[str, Any]] = []
+    doubts: Counter[str] = Counter()
     try:
         # The matrices are small: more threads only wait for each other, on a busy machine for long.
         with threadpool_limits(1):
             for target in case.foot_x / case.beam.length:
                 walk.go_to(float(target))
+                doubts.update([walk.doubt] if walk.doubt else [])
                 rows.append(walk.row())
                 advance()
     except BaseException as error:  # whatever it is, what there is must not be lost
         if isinstance(error, DivergedError):
             rows.append(_DIVERGED)
         if len(rows) > 1:
-            keep(_readings(case, settings, walk, rows, begun))
+            keep(_readings(case, settings, walk, rows, doubts, begun))
         if isinstance(error, DivergedError):
             place = f"station {len(rows)} of {len(case.foot_x)}, foot_x = {target:.6g} L"
             raise DivergedError(f"diverged at {place}: {error}") from error
         raise
-    return _readings(case, settings, walk, rows, begun)
+    return _readings(case, settings, walk, rows, doubts, begun)
 
 
 def set_out(case: Case, settings: Settings, numerics: Numerics | None = None) -> Walk:
@@ -114,7 +117,12 @@ def set_out(case: Case, settings: Settings, numerics: Numerics | None = None) ->
 
 
 def _readings(
-    case: Case, settings: Settings, walk: Walk, rows: list[dict[str, Any]], begun: float
+    case: Case,
+    settings: Settings,
+    walk: Walk,
+    rows: list[dict[str, Any]],
+    doubts: Counter[str],
+    begun: float,
 ) -> Readings:
     """In the units of the case's beam."""
     table = pd.DataFrame(rows)
@@ -136,6 +144,7 @@ def _readings(
         "settings": asdict(settings),
         "obstacle": walk.model.obstacle.label,
         "seconds": round(time.process_time() - begun, 3),
+        "unsettled": dict(doubts),
         "events": {name: None if x is None else x * beam.length for name, x in walk.events.items()},
     }
     extra = [name for name in table if name not in COLUMNS]

@@ -6,32 +6,45 @@ import numpy as np
 
 from mujoco_models.errors import ClampError
 from mujoco_models.model.model import BeamModel
+from mujoco_models.model.stance import Stance
+from mujoco_models.sweep.descent import descend
 from mujoco_models.sweep.numerics import Numerics
-from mujoco_models.sweep.rest import fall, relax
+from mujoco_models.sweep.rest import refine, relax
 from mujoco_models.sweep.state import State, turned
 
 _AT_TIP = 1e-9  # L
 _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
+# What may follow one state at rest without a snap-off.
+_NEIGHBOURS = {
+    (Stance.AHEAD, Stance.AHEAD),
+    (Stance.AHEAD, Stance.NEAR),
+    (Stance.NEAR, Stance.NEAR),
+    (Stance.FAR, Stance.FAR),
+    (Stance.FAR, Stance.PASSED),
+    (Stance.PASSED, Stance.PASSED),
+}
 
 
 class Walk:
-    """The beam on its way: the last state at rest, and the one before it to extrapolate from.
+    """The beam on its way: the last state on the branch, and the one before it.
 
     Parameters
     ----------
     model : BeamModel
         The beam and the obstacle.
     foot_x : float
-        Where the foot of the straight beam starts [L].
+        Where the foot of the straight beam starts, clear of the object [L].
     tolerance : float
         Largest moment out of balance at rest [EI/L].
-    numerics : Numerics
+    numerics : Numerics, optional
         Constants of the way.
 
     Attributes
     ----------
     snap_off : float or None
         Where the last contact was let go [L].
+    doubt : str or None
+        Why the station where the beam is cannot be trusted.
     """
 
     def __init__(
@@ -43,7 +56,11 @@ class Walk:
         self._foot_x = foot_x
         self._state = State.straight(len(model.layout.joints))
         self._before: tuple[float, State] | None = None
+        self._shown = self._state
+        self._budget = self._numerics.budget
+        self._lost: str | None = None
         self.snap_off: float | None = None
+        self.doubt: str | None = None
 
     @property
     def events(self) -> dict[str, float | None]:
@@ -53,60 +70,119 @@ class Walk:
     def go_to(self, target: float) -> None:
         """Follow the branch of equilibria, in smaller steps where it takes them.
 
-        Where even the smallest step leaves the branch, MuJoCo's own gentle motion decides: if it
-        goes far, the vibrissa has snapped off; if it stays, the station did not settle.
+        Where even the smallest step leaves the branch, a descent on MuJoCo's balance decides
+        whether the vibrissa has snapped off. A station that is not reached so is unsettled, and
+        the next one is tried from the last state on the branch.
 
         Parameters
         ----------
         target : float
             Foot position of the next station [L].
         """
+        numerics = self._numerics
+        self.doubt = self._advance(target, self.model.evaluations + self._budget)
+        if self.doubt is None:
+            self._budget = min(2 * self._budget, numerics.budget)
+            self._shown, self.doubt = self._state, self._lost
+        else:
+            self._budget = max(self._budget // 2, numerics.least_budget)
+            # The readings are those of the nearest that there is to a state at rest.
+            self._shown = self._relax(target, self._guess(target))
+
+    def _advance(self, target: float, limit: int) -> str | None:
+        """Go to `target`; why not, if that is not possible."""
         step = target - self._foot_x
         while True:
             trial = target if abs(step) >= abs(target - self._foot_x) else self._foot_x + step
-            state = self._relax(trial, self._guess(trial))
+            state = self._near_rest(trial)
             if self._follows(state):
-                if trial != self._foot_x:
-                    self._before = (self._foot_x, self._state)
-                self._foot_x, self._state = trial, state
-                if trial == target:
-                    return
+                self._accept(trial, state)
                 step *= 2
             elif abs(trial - self._foot_x) > self._numerics.smallest_step:
                 step = (trial - self._foot_x) / 2
             else:
-                self._let_go((self._foot_x + trial) / 2, target)
-                return
+                trouble = self._decide((self._foot_x + trial) / 2, target)
+                if trouble is not None:
+                    return trouble
+                step = target - self._foot_x
+            if self._foot_x == target:
+                return None
+            if self.model.evaluations > limit:
+                return f"not at rest after {self._budget} evaluations"
 
-    def _let_go(self, where: float, target: float) -> None:
-        fallen = fall(self.model, target, self._state, self._numerics)
-        if not fallen.forces:
+    def _decide(self, where: float, target: float) -> str | None:
+        """Go on a little where no neighbour was found: held, or let go; else say what is wrong."""
+        last, numerics = self._state, self._numerics
+        ahead = target - self._foot_x
+        foot_x = self._foot_x + np.copysign(min(abs(ahead), numerics.confirm_step), ahead)
+        gone = descend(self.model, foot_x, last, numerics, numerics.descent_steps)
+        rest = self._thoroughly(foot_x, gone)
+        if not rest.settled:
+            return "no state at rest was found near the last one, and no snap-off"
+        let_go = last.stance is Stance.NEAR and rest.stance in (Stance.FAR, Stance.PASSED)
+        # From corner to corner a contact jumps; on a smooth contour it moves.
+        jumps = last.stance is rest.stance and len(self.model.obstacle.corners) > 0
+        if not (let_go or jumps or self._follows(rest)):
+            if last.stance is rest.stance:
+                return "the contact jumped"
+            self._lost = "the contact was lost without a snap-off"
+            if last.stance is Stance.AHEAD:
+                self._lost = "the object was passed without a contact"
+        if let_go and last.load > numerics.load_held:
             self.snap_off = where
-        self._state = self._relax(target, fallen)
-        self._foot_x, self._before = target, None
+        self._accept(foot_x, rest)
+        self._before = None
+        return None
+
+    def _accept(self, foot_x: float, state: State) -> None:
+        if foot_x != self._foot_x:
+            self._before = (self._foot_x, self._state)
+        self._foot_x, self._state = foot_x, state
+
+    def _near_rest(self, foot_x: float) -> State:
+        """From the last state on; what stops a short step, a descent decides."""
+        short = abs(foot_x - self._foot_x) < self._numerics.confirm_step
+        go = self._relax if short else self._thoroughly
+        return go(foot_x, self._guess(foot_x))
 
     def _relax(self, foot_x: float, start: State) -> State:
         return relax(self.model, foot_x, start, self._tolerance, self._numerics)
+
+    def _thoroughly(self, foot_x: float, start: State) -> State:
+        """At rest, if Newton's method gets there, or a descent, or Newton's with differences."""
+        model, numerics = self.model, self._numerics
+        state = self._relax(foot_x, start)
+        if not state.settled and state.imbalance < numerics.flicker:
+            near = descend(model, foot_x, state, numerics, numerics.flicker_steps)
+            state = self._relax(foot_x, near)
+        if not state.settled and state.imbalance < numerics.flicker:
+            state = self._relax(foot_x, refine(model, foot_x, state, numerics))
+        return state
 
     def _guess(self, foot_x: float) -> State:
         """The last state, carried on along the branch; so is the place of its load."""
         state = self._state
         if self._before is None:
-            return State(state.angles, state.forces)
+            return State(state.angles, state.forces, slope=state.slope)
         x, before = self._before
         ahead = (foot_x - self._foot_x) / (self._foot_x - x)
-        forces = state.forces
+        forces, slope = state.forces, state.slope
         last = len(self.model.layout.beads) - 1
         if state.forces and before.forces and max(*state.forces, *before.forces) <= last:
             shift = round(ahead * (state.loaded_bead - before.loaded_bead))
             forces = {min(max(i + shift, 0), last): f for i, f in forces.items()}
-        return State(state.angles + ahead * (state.angles - before.angles), forces)
+        if slope is not None and before.slope is not None:
+            slope += ahead * (slope - before.slope)
+        angles = state.angles + ahead * (state.angles - before.angles)
+        return State(angles, forces, slope=slope)
 
     def _follows(self, state: State) -> bool:
         """Whether `state` is the neighbour of the last one on the branch."""
-        near = turned(state.angles, self._state.angles) < self._numerics.branch_turn
-        let_go = self._state.load > self._numerics.load_held and not state.forces
-        return state.settled and near and not let_go
+        last, numerics = self._state, self._numerics
+        near = turned(state.angles, last.angles) < numerics.branch_turn
+        if last.slope is not None and state.slope is not None:
+            near &= abs(state.slope - last.slope) < numerics.largest_shift
+        return state.settled and near and (last.stance, state.stance) in _NEIGHBOURS
 
     def row(self) -> dict[str, Any]:
         """The readings of the state that the beam is in.
@@ -122,7 +198,7 @@ class Walk:
             If the clamp's sensors differ from what holds the beam by more than its residual can
             explain.
         """
-        model, state = self.model, self._state
+        model, state = self.model, self._shown
         clamp = model.clamp()
         contacts = model.contacts()
         loaded = contacts.loaded
@@ -133,7 +209,7 @@ class Walk:
                 ("contact_angle", "contact_arc_length", "contact_x", "contact_y"), np.nan
             ),
             "tip_angle": np.pi / 2 + float(state.angles.sum()),
-            "status": "ok" if state.settled else "unsettled",
+            "status": "ok" if self.doubt is None else "unsettled",
             "residual": state.imbalance,
             "discrepancy": model.discrepancy(),
             "penetration": 0.0,

@@ -15,7 +15,6 @@ from analytic import (
     Sweep,
     circle,
     ellipse,
-    find_events,
     mesh_section,
     named_case,
     polygon,
@@ -92,20 +91,16 @@ def test_a_files_mesh_goes_where_it_is_put(tmp_path):
     np.testing.assert_allclose(mirrored["force_y"], table["force_y"], atol=1e-6)
 
 
-def test_a_tilted_side_is_touched_earlier(tmp_path):
+def test_a_tilted_side_is_refused_if_its_section_is_not_what_is_touched(tmp_path):
     """A cone: a bead of radius r touches sides tilted by 45 degrees at r sqrt(2)."""
     cone = trimesh.creation.cone(1.0, 1.0, sections=400)
     profile = mesh_section(_file(cone, tmp_path), offset=(0, 1.2), height=0.2)
     assert profile.solid.tilt == pytest.approx(np.sqrt(0.5), abs=1e-4)
-    found = swept(profile, segments=40)
-    assert "by up to 7.1e-01" in found.provenance["obstacle"]
-    thicker = Beam(radius=Beam().radius * np.sqrt(2))
-    as_planned, as_found = (
-        find_events(profile, beam).snap_off.foot_x for beam in (Beam(), thicker)
-    )
-    assert abs(as_found - as_planned) > 1.5e-3
-    # The chain's own shift at N = 40 is 1e-4.
-    assert found.snap_off == pytest.approx(as_found, abs=4e-4)
+    with pytest.raises(InputError, match=r"tilt of mesh body.stl = 0.79 rad .* touch it 2.1e-03 L"):
+        swept(profile)
+    thin = Case(Beam(radius=1e-4), profile, Sweep(stations=12))  # r (sqrt(2) - 1) = 4e-5
+    obstacle = simulate_sweep(thin, Settings(segments=10)).provenance["obstacle"]
+    assert "by up to 7.1e-01" in obstacle
 
 
 def _file(body, tmp_path):

@@ -61,9 +61,17 @@ VARIED = {
     "ahead": (3, 8),
     "margin": (1, 3),
     "branch_turn": (0.1, 0.7),
-    "fall_reach": (8, 32),
-    "fall_inertia": (50.0, 1000.0),
-    "far_inertia": (0.0, 20.0),
+    "largest_shift": (0.3, 2.0),
+    "flicker": (1e-6, 1e-2),
+    "confirm_step": (3e-5, 1e-3),
+    "reach": (8, 32),
+    "gentle_turn": (1e-3, 2e-2),
+    "inertia": (10.0, 1000.0),
+    "descent_steps": (200, 2000),
+    "flicker_steps": (20, 300),
+    "refinements": (1, 8),
+    "difference": (3e-9, 3e-8),
+    "unloaded_steps": (5, 50),
     "fallen": (1e-11, 1e-9),
     "load_held": (1e-3, 0.1),
 }
@@ -93,17 +101,16 @@ def test_no_constant_of_the_way_shows(constant, usual):
 
 
 @pytest.mark.slow
-def test_too_little_stiffening_lets_go_early():
-    """Why it is what it is; if this no longer holds, its reason is out of date."""
+@pytest.mark.parametrize("stiffening", [1e2, 3e2, 1e6])
+def test_a_stiffness_that_stalls_early_does_not_let_go_early(stiffening):
+    """At 1e2 Newton's method stalls 1.9e-3 before the fold; the descent says that it is held."""
     from mujoco_models.sweep.numerics import Numerics
     from mujoco_models.sweep.sweep import run_sweep
 
     case, expected = named_case("catenary"), simulated_sweep("catenary").snap_off
-    soft = run_sweep(case, Settings(), numerics=Numerics(stiffening=1e2))
-    assert abs(soft.snap_off - expected) > 1e-3
-    for enough in (3e2, 1e6):
-        found = run_sweep(case, Settings(), numerics=Numerics(stiffening=enough))
-        assert abs(found.snap_off - expected) < 1e-4
+    found = run_sweep(case, Settings(), numerics=Numerics(stiffening=stiffening))
+    assert (found.table["status"] == "ok").all()
+    assert abs(found.snap_off - expected) < 1e-4  # observed 5e-5
 
 
 @pytest.mark.slow

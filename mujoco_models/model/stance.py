@@ -1,0 +1,52 @@
+"""Where the beam is relative to the object: what of a sweep has happened."""
+
+from enum import Enum
+
+import numpy as np
+
+from mujoco_models.model.contacts import Contacts
+from mujoco_models.model.model import BeamModel
+
+_POKES = -0.05  # cosine; a tip that pokes at right angles is on neither side
+
+
+class Stance(Enum):
+    """Where a beam, whose foot moves to the left, is relative to the object."""
+
+    AHEAD = "free, the object is ahead"
+    NEAR = "touches, with its left side"
+    FAR = "touches, with its right side"
+    PASSED = "free, the object is behind"
+
+
+def stance(model: BeamModel, contacts: Contacts) -> Stance:
+    """The stance of the last evaluated configuration.
+
+    A sweep goes from AHEAD to NEAR, and by snap-off to FAR or PASSED. Any other change of stance is
+    no neighbour in a sweep: the beam was let through the object.
+
+    Parameters
+    ----------
+    model : BeamModel
+        Evaluated.
+    contacts : Contacts
+        Of that configuration.
+
+    Returns
+    -------
+    Stance
+        By the sides of the links that are loaded, or by where the object's lowest point is.
+    """
+    tip = model.bead_positions(np.array([len(model.layout.beads) - 1]))
+    axis = np.vstack([model.joint_positions(), tip])
+    loaded = contacts.loaded
+    if loaded.any():
+        heading = np.diff(axis, axis=0)[contacts.link[loaded]]
+        heading /= np.hypot(*heading.T)[:, None]
+        right = np.column_stack([heading[:, 1], -heading[:, 0]])
+        load = contacts.distance[loaded] / contacts.distance[loaded].sum()
+        side = load @ (contacts.normal[loaded] * right).sum(axis=1)
+        return Stance.NEAR if side > _POKES else Stance.FAR
+    x, y = model.obstacle.lowest
+    beside = float(np.interp(y, np.maximum.accumulate(axis[:, 1]), axis[:, 0]))
+    return Stance.AHEAD if beside > x else Stance.PASSED

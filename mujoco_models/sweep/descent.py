@@ -1,0 +1,59 @@
+"""Where a beam without a neighbouring state at rest goes: down, on MuJoCo's own balance.
+
+It decides what Newton's method cannot: whether the vibrissa has let go. The descent ends where
+MuJoCo's moments balance. What the solver knows of the stiffness only scales its steps, so that each
+turns the beam by little: a beam 1e-4 L before its fold stays, one as far beyond it leaves.
+"""
+
+import numpy as np
+
+from mujoco_models.model.model import BeamModel
+from mujoco_models.sweep.newton import Newton
+from mujoco_models.sweep.numerics import Numerics
+from mujoco_models.sweep.rest import around, one_bead_a_link
+from mujoco_models.sweep.state import State, turned
+
+_SHORTER, _LONGER = 2.0, 0.25  # the most by which inertia changes from one step to the next
+
+
+def descend(
+    model: BeamModel, foot_x: float, start: State, numerics: Numerics, steps: int
+) -> State:
+    """Let the beam go down, with the foot at `foot_x`, until it is free or rests.
+
+    Parameters
+    ----------
+    model : BeamModel
+        The beam and the obstacle.
+    foot_x : float
+        Foot position [L].
+    start : State
+        The last state at rest, or nearly.
+    numerics : Numerics
+        Constants of the way down.
+    steps : int
+        The most that it may take.
+
+    Returns
+    -------
+    State
+        Without forces if the beam has lost its contact; else where it came to rest, or where it was
+        after these steps. Whether that is a state at rest, `relax` decides.
+    """
+    model.lookout.watch(around(model, start.forces, numerics.reach) | one_bead_a_link(model))
+    if start.slope is not None:
+        model.lookout.face(start.slope)
+    newton = Newton(model, numerics)
+    state, inertia, unloaded = start, numerics.inertia, 0
+    for _ in range(steps):
+        model.imbalance(foot_x, state.angles)
+        contacts = model.contacts()
+        model.lookout.follow_contact(contacts)
+        after = newton.step(state, contacts, inertia)
+        turn = turned(after.angles, state.angles)
+        unloaded = 0 if after.forces else unloaded + 1
+        state = after
+        if unloaded > numerics.unloaded_steps or turn < numerics.fallen:
+            break
+        inertia *= float(np.clip(turn / numerics.gentle_turn, _LONGER, _SHORTER))
+    return state

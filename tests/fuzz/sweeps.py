@@ -1,0 +1,280 @@
+"""Random MuJoCo sweeps against the closed form: ``python -m tests.fuzz.sweeps N SEED``.
+
+What is to be found are silent errors: stations that are "ok" and wrong. A line a sweep says how far
+off the stations are that are "ok", how many are not, what a station costs, and, as flags:
+
+- ``silent``: the stations that are "ok" disagree by more than ten times what segments, facets,
+  beads and softness explain;
+- ``lost``: a station is "ok" and free where the closed form touches, well before its snap-off;
+- ``unsettled``: more than one station in a hundred is not "ok";
+- ``slow``: more than 100 ms of CPU a station;
+- ``snap-off``: both snap off, more than ten times that error apart, or only one does.
+"""
+
+import re
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from rich.console import Console
+from rich.table import Table
+
+from analytic import (
+    CLAMP_READINGS,
+    Beam,
+    Case,
+    Contour,
+    InputError,
+    Profile,
+    Readings,
+    Sweep,
+    catenary,
+    circle,
+    ellipse,
+    mesh_section,
+    parabola,
+    polygon,
+    solve_sweep,
+)
+from mujoco_models import Settings, available_beams, simulate_sweep
+
+KINDS = ("round", "needle", "small", "smooth", "polygon", "mesh")
+_TIMES = 10.0  # an error that is more times what is expected is silent
+_SLOW = 100.0  # ms a station
+_EDGE = 0.02  # L; so near to a snap-off, phases may differ
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One random sweep."""
+
+    kind: str
+    case: Case
+    settings: Settings
+
+    @property
+    def label(self) -> str:
+        s = self.settings
+        return (
+            f"{self.case.profile.label}; r {self.case.beam.radius:.3g}, {s.beam} {s.segments}, "
+            f"{s.contour_points} points, k {s.contact_stiffness:.1e}, "
+            f"{self.case.sweep.stations} stations"
+        )
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of it."""
+
+    rms: float
+    expected: float
+    ok: float
+    milliseconds: float
+    flags: tuple[str, ...]
+
+
+def trial(seed: int, folder: Path, kind: str | None = None) -> Trial:
+    """The trial of this seed; a mesh's file is put into `folder`."""
+    draw = np.random.default_rng(seed)
+    while True:
+        chosen = kind or str(draw.choice(KINDS))
+        try:
+            return _drawn(chosen, draw, folder / f"{seed}.stl")
+        except (InputError, ValueError):  # out of reach, under the foot, nothing cut
+            continue
+
+
+def _drawn(kind: str, draw: np.random.Generator, file: Path) -> Trial:
+    height = float(draw.uniform(0.15, 0.85))
+    profile = {
+        "round": _round, "needle": _needle, "small": _small,
+        "smooth": _smooth, "polygon": _polygon, "mesh": lambda d, h: _mesh(d, h, file),
+    }[kind](draw, height)  # fmt: skip
+    beam = Beam(radius=float(np.exp(draw.uniform(np.log(0.001), np.log(0.012)))))
+    settings = Settings(
+        beam=str(draw.choice(available_beams())),  # type: ignore[arg-type]
+        segments=int(draw.integers(10, 121)),
+        contour_points=int(np.exp(draw.uniform(np.log(100), np.log(5000)))),
+        contact_stiffness=float(np.exp(draw.uniform(np.log(1e4), np.log(5e7)))),
+    )
+    sweep = Sweep(stations=int(draw.choice([12, 30, 60, 120])))
+    return Trial(kind, Case(beam=beam, profile=profile, sweep=sweep), settings)
+
+
+def _round(draw: np.random.Generator, height: float) -> Contour:
+    across, upward = np.exp(draw.uniform(np.log(0.1), np.log(3), size=2))
+    return ellipse((float(across), float(upward)), (0.0, height))
+
+
+def _needle(draw: np.random.Generator, height: float) -> Contour:
+    thin, long = float(draw.uniform(0.05, 0.3)), float(draw.uniform(3, 13))
+    return ellipse((thin, long) if draw.random() < 0.7 else (long, thin), (0.0, height))
+
+
+def _small(draw: np.random.Generator, height: float) -> Contour:
+    return circle(float(np.exp(draw.uniform(np.log(0.002), np.log(0.1)))), (0.0, height))
+
+
+def _smooth(draw: np.random.Generator, height: float) -> Contour:
+    kind, a = int(draw.integers(3)), float(np.exp(draw.uniform(np.log(0.2), np.log(3))))
+    if kind == 0:
+        return catenary(a, height - 1)
+    if kind == 1:
+        return parabola(a, height)
+    # Support function p = 1 + e cos(n (alpha - f)), convex while e < 1/(n^2 - 1).
+    n, f, size = int(draw.integers(2, 6)), float(draw.uniform(0, 6.28)), float(draw.uniform(0.1, 1))
+    e = 0.8 * float(draw.random()) / (n**2 - 1)
+
+    def support(alpha: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        phase = n * (alpha - f)
+        return size * (1 + e * np.cos(phase)), -size * e * n * np.sin(phase)
+
+    def xi(alpha: np.ndarray) -> np.ndarray:
+        p, dp = support(alpha)
+        return p * np.sin(alpha) + dp * np.cos(alpha)
+
+    def eta(alpha: np.ndarray) -> np.ndarray:
+        p, dp = support(alpha)
+        return -p * np.cos(alpha) + dp * np.sin(alpha)
+
+    low = float(eta(np.linspace(-1.57, 1.57, 2001)).min())
+    return Profile(
+        xi,
+        lambda alpha: eta(alpha) - low + height,
+        (-np.pi / 2, np.pi / 2),
+        f"support n={n} e={e:.3g}",
+    )
+
+
+def _polygon(draw: np.random.Generator, height: float) -> Contour:
+    corners = round(float(np.exp(draw.uniform(np.log(3), np.log(200)))))
+    angles = np.sort(draw.uniform(0, 2 * np.pi, corners)) if draw.random() < 0.5 else (
+        2 * np.pi * np.arange(corners) / corners + draw.uniform(0, 6.28)
+    )  # fmt: skip
+    size = np.exp(draw.uniform(np.log(0.1), np.log(1.5), size=2))
+    points = size * np.column_stack([np.cos(angles), np.sin(angles)])
+    points[:, 1] += height - points[:, 1].min()
+    return polygon(points, f"{corners}-gon")
+
+
+def _mesh(draw: np.random.Generator, height: float, file: Path) -> Contour:
+    size = float(np.exp(draw.uniform(np.log(0.15), np.log(1.2))))
+    kind = int(draw.integers(5))
+    body = (
+        trimesh.creation.box(extents=[size, size, 1]),
+        trimesh.creation.cylinder(radius=size, height=1, sections=int(draw.integers(6, 500))),
+        trimesh.creation.icosphere(subdivisions=int(draw.integers(1, 5)), radius=size),
+        trimesh.convex.convex_hull(size * draw.normal(size=(int(draw.integers(8, 300)), 3))),
+        trimesh.creation.cone(radius=size, height=1.0, sections=64),
+    )[kind]
+    if draw.random() < 0.4:
+        turn = trimesh.transformations.rotation_matrix(draw.uniform(0, 0.8), draw.normal(size=3))
+        body.apply_transform(turn)
+    body.export(file)
+    section = body.section(plane_origin=[0, 0, 0.05], plane_normal=[0, 0, 1])
+    if section is None:
+        raise ValueError("nothing cut")
+    return mesh_section(
+        file, offset=(0.0, height - float(section.vertices[:, 1].min())), height=0.05
+    )
+
+
+def judge(made: Trial, reference: Readings, found: Readings, seconds: float) -> Outcome:
+    """Compare station by station, where both say "ok"."""
+    table, exact = found.table, reference.table
+    ok = (table["status"] == "ok").to_numpy()
+    both = ok & (exact["status"] == "ok").to_numpy()
+    x, snap = found.values("foot_x"), (reference.snap_off, found.snap_off)
+    away = np.ones(len(x), dtype=bool)
+    for place in snap:
+        if place is not None:
+            away &= np.abs(x - place) > _EDGE
+    rms = 0.0
+    for name in CLAMP_READINGS:
+        scale = np.abs(exact[name]).max()
+        error = (table[name] - exact[name]).to_numpy()[both & away]
+        if scale > 0 and error.size:
+            rms = max(rms, float(np.sqrt(np.mean(error**2)) / scale))
+    expected = explained(made, found.provenance["obstacle"], exact["force_y"].abs().max())
+    touches = (exact["phase"] != "free").to_numpy()
+    free = (table["phase"] == "free").to_numpy()
+    flags = []
+    if rms > _TIMES * expected:
+        flags.append("silent")
+    if (both & away & touches & free).any():
+        flags.append("lost")
+    if (~ok).mean() > 0.01:
+        flags.append("unsettled")
+    if 1e3 * seconds / len(table) > _SLOW:
+        flags.append("slow")
+    passed = [place is not None for place in snap]
+    if passed[0] != passed[1] or (
+        all(passed) and abs(snap[0] - snap[1]) > max(_TIMES * expected, 1e-3)
+    ):
+        flags.append("snap-off")
+    return Outcome(rms, expected, float(ok.mean()), 1e3 * seconds / len(table), tuple(flags))
+
+
+def explained(made: Trial, obstacle: str, force: float) -> float:
+    """What the numerics explain, roughly: segments, facets, softness."""
+    settings, profile = made.settings, made.case.profile
+    beam = 3 / settings.segments**2
+    corners = made.kind in ("polygon", "mesh")  # where a joint's sphere still holds one a little
+    facets = 1e-3 if corners else np.pi / settings.contour_points / 2
+    chord = re.search("chord error ([^ ]+) L", obstacle)  # long on what is nearly flat
+    height = float(profile.at(profile.parameter(np.array([0.0]))).eta[0])
+    facets += 3 * float(chord[1]) / height if chord else 0.0
+    return float(beam + facets + force / settings.contact_stiffness / made.case.beam.radius / 10)
+
+
+def main(count: int, seed: int, kind: str | None = None) -> list[tuple[Trial, Outcome | str]]:
+    """Run that many trials; prints a line each."""
+    console, results = Console(width=190), []
+    with tempfile.TemporaryDirectory() as folder:
+        for number in range(seed, seed + count):
+            made = trial(number, Path(folder), kind)
+            begun = time.process_time()
+            outcome: Outcome | str
+            try:
+                found = simulate_sweep(made.case, made.settings)
+                seconds = time.process_time() - begun
+                outcome = judge(made, solve_sweep(made.case), found, seconds)
+                said = (
+                    f"rms {outcome.rms:.1e} ({outcome.expected:.1e}), ok {outcome.ok:5.1%}, "
+                    f"{outcome.milliseconds:6.1f} ms, {' '.join(outcome.flags)}"
+                )
+            except InputError as error:
+                outcome = said = f"refused: {error}"
+            except Exception as error:  # whatever it is, it is what is looked for
+                outcome = said = f"FAILED: {type(error).__name__}: {error}"
+            results.append((made, outcome))
+            console.print(
+                f"{number} {made.kind}: {said}  [{made.label}]", markup=False, highlight=False
+            )
+    _summary(console, results)
+    return results
+
+
+def _summary(console: Console, results: list[tuple[Trial, Outcome | str]]) -> None:
+    table = Table("", "count", title=f"{len(results)} sweeps")
+    done = [o for _, o in results if isinstance(o, Outcome)]
+    for flag in ("silent", "lost", "unsettled", "slow", "snap-off"):
+        table.add_row(flag, str(sum(flag in o.flags for o in done)))
+    said = [o for _, o in results if isinstance(o, str)]
+    table.add_row("refused", str(sum(s.startswith("refused") for s in said)))
+    table.add_row("failed", str(sum(s.startswith("FAILED") for s in said)))
+    if done:
+        table.add_row(
+            "median rms / explained", f"{np.median([o.rms / o.expected for o in done]):.2f}"
+        )
+        table.add_row("stations ok", f"{np.mean([o.ok for o in done]):.2%}")
+        table.add_row("median ms a station", f"{np.median([o.milliseconds for o in done]):.1f}")
+    console.print(table)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), int(sys.argv[2]), *sys.argv[3:4])

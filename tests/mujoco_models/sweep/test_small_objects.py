@@ -1,0 +1,69 @@
+"""No object is too small, or too near between two stations, to be touched."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from analytic import Beam, Case, Sweep, circle, named_case, solve_sweep
+from mujoco_models import Settings, simulate_sweep
+from mujoco_models.beams.chain import Chain
+from mujoco_models.sweep.numerics import Numerics
+from mujoco_models.sweep.sweep import run_sweep
+
+SMALL = [(0.1, 5), (0.05, 8), (0.02, 12)]
+SMALLER = [pytest.param(*s, marks=pytest.mark.slow) for s in [(0.05, 12), (0.01, 20), (0.002, 60)]]
+
+
+@pytest.mark.parametrize(("radius", "stations"), SMALL + SMALLER)
+def test_a_small_object_is_touched_between_stations(radius, stations):
+    """Steps of the foot up to three times the object's width."""
+    case = Case(profile=circle(radius, (0.0, 0.5)), sweep=Sweep(stations=stations))
+    found = simulate_sweep(case, Settings(segments=20))
+    exact = solve_sweep(case)
+    assert (found.table["status"] == "ok").all()
+    assert (found.table["phase"] == exact.table["phase"]).all()
+    # Observed at most 4e-4: an object thinner than the beads' spacing.
+    assert found.snap_off == pytest.approx(exact.snap_off, abs=1e-3)
+
+
+def test_a_thin_vibrissa_is_no_trouble():
+    """MuJoCo refuses bodies whose inertia is that of so thin a link."""
+    case = Case(Beam(radius=1e-5), named_case("parabola").profile, Sweep(stations=12))
+    found = simulate_sweep(case, Settings(segments=10, contour_points=400))
+    assert (found.table["status"] == "ok").all()
+    assert found.snap_off == pytest.approx(solve_sweep(case).snap_off, abs=2e-3)
+
+
+PARABOLA = Case(profile=named_case("parabola").profile, sweep=Sweep(stations=12))
+COARSE = Settings(segments=10, contour_points=800)
+
+
+@cache
+def sound():
+    return run_sweep(PARABOLA, COARSE)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("factor", [0.7, 1.3])
+def test_a_wrong_stiffness_of_the_solver_does_not_move_the_snap_off_unseen(factor, monkeypatch):
+    """30 % off, Newton's method stalls 0.03 L before the fold: MuJoCo's own balance decides."""
+    expected, right = sound(), Chain.stiffness
+    monkeypatch.setattr(Chain, "stiffness", lambda self, angles: factor * right(self, angles))
+    found = run_sweep(PARABOLA, COARSE, numerics=Numerics(budget=2000))
+    ok = (found.table["status"] == "ok").to_numpy()
+    error = np.abs(found.values("force_y") - expected.values("force_y"))
+    assert error[ok].max() < 1e-6
+    if found.snap_off is not None:
+        assert found.snap_off == pytest.approx(expected.snap_off, abs=1.1e-3)
+    else:
+        assert not ok.all()
+
+
+def test_a_station_costs_bounded_effort():
+    """Held to two evaluations, hardly a station comes to rest, and each says so."""
+    found = run_sweep(PARABOLA, COARSE, numerics=Numerics(iterations=2, budget=50, least_budget=10))
+    touching = sound().table["phase"] != "free"
+    assert (found.table.loc[touching, "status"] == "unsettled").any()
+    assert sum(found.provenance["unsettled"].values()) == (found.table["status"] != "ok").sum()
+    assert any("evaluations" in reason for reason in found.provenance["unsettled"])
