@@ -16,9 +16,7 @@ from mujoco_models.sweep.state import State, turned
 _SHORTER, _LONGER = 2.0, 0.25  # the most by which inertia changes from one step to the next
 
 
-def descend(
-    model: BeamModel, foot_x: float, start: State, numerics: Numerics, steps: int
-) -> State:
+def descend(model: BeamModel, foot_x: float, start: State, numerics: Numerics, steps: int) -> State:
     """Let the beam go down, with the foot at `foot_x`, until it is free or rests.
 
     Parameters
