@@ -309,7 +309,7 @@ class Readings:
         list of matplotlib.axes.Axes
             One a reading: ``force_x``, ``force_y``, ``moment_z``.
         """
-        return plot(self.table, self.trusted, self.source)
+        return plot(self.table, self.beam, self.trusted, self.source)
 
     def __repr__(self) -> str:
         return as_text(self.table, self.beam, self.source, self.gaps)

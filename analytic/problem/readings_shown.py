@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _ROWS = 8
+_SI = {"foot_x": "m", "force_x": "N", "force_y": "N", "moment_z": "N m"}
 
 
 def as_text(table: pd.DataFrame, beam: Beam, source: str, gaps: int) -> str:
@@ -35,8 +36,8 @@ def as_text(table: pd.DataFrame, beam: Beam, source: str, gaps: int) -> str:
     lines = [
         f"Readings ({source}): {len(table)} stations, "
         f"foot_x from {foot_x.iloc[0]:.6g} to {foot_x.iloc[-1]:.6g}",
-        f"  beam: length {beam.length:g}, flexural rigidity {beam.flexural_rigidity:g}, "
-        f"radius {beam.radius:g}",
+        f"  beam{' (SI)' if beam.si else ''}: length {beam.length:g}, "
+        f"flexural rigidity {beam.flexural_rigidity:g}, radius {beam.radius:g}",
         f"  largest magnitudes: {largest}",
     ]
     for name in ("phase", "status"):
@@ -67,13 +68,13 @@ def as_html(table: pd.DataFrame, text: str) -> str:
     return f"<pre>{escape(text)}</pre>{rows}"
 
 
-def plot(table: pd.DataFrame, trusted: Booleans, source: str) -> "list[Axes]":
+def plot(table: pd.DataFrame, beam: Beam, trusted: Booleans, source: str) -> "list[Axes]":
     """Force and moment at the clamp over the foot position.
 
     Parameters
     ----------
-    table : pandas.DataFrame
-        That of the readings.
+    table, beam
+        As in `Readings`.
     trusted : array of bool, shape (stations,)
         The others are marked.
     source : str
@@ -91,10 +92,14 @@ def plot(table: pd.DataFrame, trusted: Booleans, source: str) -> "list[Axes]":
     for ax, name in zip(axes, CLAMP_READINGS, strict=True):
         ax.plot(foot_x, table[name], ".-", markersize=3, linewidth=0.8)
         ax.plot(foot_x[~trusted], table[name][~trusted], "x", color="tab:red", label="not trusted")
-        ax.set_ylabel(name)
-    axes[-1].set_xlabel("foot_x")
+        ax.set_ylabel(_with_unit(name, beam))
+    axes[-1].set_xlabel(_with_unit("foot_x", beam))
     axes[0].set_title(source.replace("$", r"\$"))
     if not trusted.all():
         axes[0].legend()
     figure.align_ylabels()
     return list(axes)
+
+
+def _with_unit(name: str, beam: Beam) -> str:
+    return f"{name} [{_SI[name]}]" if beam.si else name

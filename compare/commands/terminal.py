@@ -22,12 +22,13 @@ from rich.progress import (
 from rich.table import Column, Table
 from rich.text import Text
 
-from analytic import CLAMP_READINGS, PHASES, Readings
+from analytic import CLAMP_READINGS, PHASES, Beam, Readings
 from compare.comparison import Comparison
 from compare.explain.budget import Budget
 from compare.read.assumed import ASSUMED
 from compare.read.rig import OWN_UNITS
 from compare.show.figures.budget_bars import headline
+from compare.show.quantities import quantity
 from compare.show.side_by_side import SideBySide
 from compare.show.verdict import why
 from compare.simulate.target import Followed
@@ -173,6 +174,7 @@ def print_reconstruction(readings: Readings, found: pd.DataFrame) -> None:
         words.append(
             f"x from {np.nanmin(x) / length:.4g} to {np.nanmax(x) / length:.4g} L, "
             f"y from {np.nanmin(y) / length:.4g} to {np.nanmax(y) / length:.4g} L"
+            + (f" (L = {quantity(length, 'length', readings.beam)})" if readings.beam.si else "")
         )
     print_line(f"{readings.source}: {'; '.join(words)}")
 
@@ -211,14 +213,17 @@ def _summary(comparison: Comparison) -> Table:
         table.add_row(name, f"{d.rms:.1e}", f"{d.max:.1e}", f"{d.at / length:.4g} L", d.phase)
     table.add_section()
     shift = comparison.snap_off.difference
-    agreement = comparison.phase_agreement()
+    alike, right = comparison.phases_alike(), comparison.phase_agreement().get("candidate")
     table.add_row("snap-off", "", "none" if shift is None else f"{shift / length:+.1e} L", "", "")
-    if agreement:
-        table.add_row("phases", "", f"{min(agreement.values()):.1%} right", "", "")
+    if alike is not None:
+        known = "" if right is None else f"{right:.1%} right"
+        table.add_row("phases", "", f"{alike:.1%} alike", "", known)
     offset = comparison.offset
     if offset.value or offset.uncertainty:
         width = f"+- {offset.uncertainty / length:.1g} L"
-        table.add_row("offset", "", f"{offset.value / length:+.4g} L", width, "")
+        beam = comparison.reference.beam
+        own = quantity(offset.value, "length", beam) if beam != Beam() else ""
+        table.add_row("offset", "", f"{offset.value / length:+.4g} L", width, own)
     if any(comparison.noise.level.values()):
         table.add_row("noise", "", f"{max(comparison.noise.level.values()):.1e}", "", "")
     return table

@@ -81,6 +81,20 @@ class Measurement:
             if table.to_numpy().sum()
         }
 
+    def phases_alike(self) -> float | None:
+        """Share of the candidate's stations whose judged phase is that of the reference there.
+
+        Returns
+        -------
+        float or None
+            Of the stations where both are known; None if there are none.
+        """
+        counts, table = self.alignment.counts, self.alignment.table
+        judged = self.judged["candidate"].phase[table["station"].to_numpy()]
+        alike = counts["free"] + int((judged == table["phase"].to_numpy()).sum())
+        known = counts["free"] + counts["one_free"] + counts["compared"]
+        return alike / known if known else None
+
     def __repr__(self) -> str:
         """The sweeps, and how far they are apart."""
         far = ", ".join(f"{name} {d.rms:.1e}" for name, d in self.disagreement.items())

@@ -322,8 +322,25 @@ class CaseFile(Table):
         -------
         Case
             The problem.
+
+        Raises
+        ------
+        InputError
+            If it is none that can be solved.
         """
-        return Case(*self.physics(folder), self.sweep.build(), self.name or name)
+        beam, contour = self.physics(folder)
+        try:
+            return Case(beam, contour, self.sweep.build(), self.name or name)
+        except InputError as error:
+            is_mesh = isinstance(self.profile, MeshTable)
+            if is_mesh and beam.si and "scale" not in self.profile.model_fields_set:
+                raise InputError(
+                    "profile.scale",
+                    "missing, so the mesh file's numbers are taken for metres",
+                    'the size of their unit, scale = "1 mm" for millimetres',
+                    f"add it ({error})",
+                ) from error
+            raise
 
 
 class BeamFile(Table):

@@ -8,7 +8,7 @@ from typing import Any
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from analytic import CLAMP_READINGS, PHASES, Readings
+from analytic import CLAMP_READINGS, PHASES, Beam, Readings
 from analytic.problem.files import write_whole
 from compare.comparison import Comparison
 from compare.explain.budget import UNRESOLVED, Budget
@@ -22,6 +22,7 @@ from compare.show.figures.over_foot import unit
 from compare.show.figures.phases import phase_criterion
 from compare.show.figures.readings import reading_panels, readings, snap_off_panels
 from compare.show.page import document, embedded, inline_svg, png, render, words
+from compare.show.quantities import Kind, quantity
 from compare.show.style import PHASE_LETTERS
 from compare.show.verdict import absent_transitions, verdict, why, worst_reading
 
@@ -167,6 +168,10 @@ def report_page(
         phases=[p for p in PHASES if p in set(comparison.alignment.table["phase"])],
         letters=PHASE_LETTERS,
         units=_units(comparison.reference),
+        sizes=_sizes(comparison.reference.beam),
+        si=comparison.reference.beam.si,
+        offset=_offset(comparison),
+        alike=comparison.phases_alike(),
         recorded=_known(comparison),
         colophon=colophon(),
         limited={name: _LIMITED.get(name, _OF_LARGEST) for name in found["tolerances"]},
@@ -225,6 +230,24 @@ def _units(readings: Readings) -> dict[str, float]:
         "length": beam.length,
         **{name: unit(readings, name) for name in CLAMP_READINGS},
     }
+
+
+def _sizes(beam: Beam) -> dict[str, str]:
+    """What the page's units are, with the readings' own unit where it is known."""
+    values: dict[Kind, float] = {
+        "length": beam.length,
+        "force": beam.force_unit,
+        "moment": beam.moment_unit,
+    }
+    return {kind: quantity(value, kind, beam) for kind, value in values.items()}
+
+
+def _offset(comparison: Comparison) -> str:
+    """The offset in the readings' own unit; empty if that is L."""
+    beam, offset = comparison.reference.beam, comparison.offset
+    if beam == Beam() or not (offset.value or offset.uncertainty):
+        return ""
+    return " ± ".join(quantity(x, "length", beam) for x in (offset.value, offset.uncertainty))
 
 
 def _known(comparison: Comparison) -> dict[str, dict[str, str]]:

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 
 from analytic import CLAMP_READINGS, Readings
 from compare.comparison import Comparison, compare
-from compare.show.figures.over_foot import shade_reference
+from compare.show.figures.over_foot import foot_label, shade_reference
 from compare.show.figures.thinning import draw
-from compare.show.style import FOOT, LARGE, LINE_STYLES, SERIES, SMALL, SYMBOLS, label
+from compare.show.style import LARGE, LINE_STYLES, SERIES, SMALL, SYMBOLS, label
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ def picture(found: SideBySide) -> Figure:
             )
         ax.ticklabel_format(axis="y", scilimits=(-2, 2))
         ax.set_title(SYMBOLS[name], fontsize=LARGE)
-        ax.set_xlabel(FOOT)
+        ax.set_xlabel(foot_label(first.reference))
     axes[0].set_ylabel(f"difference from {label(found.reference)}\nrelative to largest magnitude")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(

@@ -18,6 +18,7 @@ from analytic.problem.arrays import Words
 from compare.comparison import Comparison
 from compare.show.figures.over_foot import foot, on_vibrissa
 from compare.show.figures.thinning import cloud, draw
+from compare.show.quantities import quantity
 from compare.show.style import (
     BODY,
     FAINT,
@@ -61,9 +62,10 @@ def geometry(comparison: Comparison) -> Figure:
         ax.set_title(f"{which}: {label(readings.source)}", loc="left", fontsize=NORMAL)
         ax.set_ylabel("$y$ / $L$")
         ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
-    foot_x = foot(comparison.reference)
+    foot_x, beam = foot(comparison.reference), comparison.reference.beam
+    size = f"$L$ = {quantity(beam.length, 'length', beam)}; " if beam.si else ""
     direction = "right" if foot_x[-1] > foot_x[0] else "left"
-    axes[-1].set_xlabel(f"$x$ / $L$   (the foot moves to the {direction} along $y = 0$)")
+    axes[-1].set_xlabel(f"$x$ / $L$   ({size}the foot moves to the {direction} along $y = 0$)")
     handles = [
         *_phase_handles(),
         Line2D([], [], **_OBJECT, label="object"),
@@ -114,7 +116,9 @@ def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
     draw(ax, x, y, **_CONTACT | {"markersize": 2.5}, label="reconstructed contact")
     if not kept.size:
         ax.text(0.5, 0.5, "no contact found", transform=ax.transAxes, ha="center")
-    ax.set_xlabel(f"$x$ / $L$   ($L$ = {scale:g} of the readings' unit)")
+    beam = readings.beam
+    own = "" if beam.si else " of the readings' unit"
+    ax.set_xlabel(f"$x$ / $L$   ($L$ = {quantity(scale, 'length', beam)}{own})")
     ax.set_ylabel("$y$ / $L$")
     ax.axhline(0, color=FAINT, linewidth=0.8)
     figure.legend(

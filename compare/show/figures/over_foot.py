@@ -12,7 +12,17 @@ from analytic.problem.arrays import Floats, Words
 from compare.comparison import Comparison
 from compare.sense.phases import Classification
 from compare.show.figures.thinning import stretches
-from compare.show.style import CANDIDATE, PHASE_COLOURS, PHASE_NAMES, REFERENCE
+from compare.show.quantities import Kind, quantity
+from compare.show.style import (
+    CANDIDATE,
+    FOOT,
+    PHASE_COLOURS,
+    PHASE_NAMES,
+    REFERENCE,
+    SYMBOLS,
+    UNITS,
+    axis_label,
+)
 
 LINE: dict[str, Any] = {"color": REFERENCE, "linewidth": 3.0}
 """How the reference is drawn: so wide that dots upon it hide it nowhere."""
@@ -69,6 +79,45 @@ def unit(readings: Readings, name: str) -> float:
         In the readings' own unit.
     """
     return readings.beam.moment_unit if name == "moment_z" else readings.beam.force_unit
+
+
+def reading_label(readings: Readings, name: str) -> str:
+    """A reading's symbol and the unit it is drawn in, with what that is where it is known.
+
+    Parameters
+    ----------
+    readings : Readings
+        The sweep.
+    name : str
+        Of a clamp reading, or ``contact_arc_length``.
+
+    Returns
+    -------
+    str
+        As ``$F_{Ax}$ / ($EI/L^2$ = 0.8 mN)``.
+    """
+    if not readings.beam.si or name not in CLAMP_READINGS:
+        return axis_label(name)
+    kind: Kind = "moment" if name == "moment_z" else "force"
+    size = quantity(unit(readings, name), kind, readings.beam)
+    return f"{SYMBOLS[name]} / ({UNITS[name]} = {size})"
+
+
+def foot_label(readings: Readings) -> str:
+    """What an axis of foot positions is called.
+
+    Parameters
+    ----------
+    readings : Readings
+        The sweep.
+
+    Returns
+    -------
+    str
+        With the length of the vibrissa, where its unit is known.
+    """
+    beam = readings.beam
+    return FOOT + (f"   ($L$ = {quantity(beam.length, 'length', beam)})" if beam.si else "")
 
 
 def scaled(readings: Readings, judged: Classification, name: str) -> Floats:

@@ -3,9 +3,16 @@
 from matplotlib.figure import Figure
 
 from compare.comparison import Comparison
-from compare.show.figures.over_foot import LINE, dots, foot, on_vibrissa, shade_reference
+from compare.show.figures.over_foot import (
+    LINE,
+    dots,
+    foot,
+    foot_label,
+    on_vibrissa,
+    shade_reference,
+)
 from compare.show.figures.thinning import draw
-from compare.show.style import CANDIDATE, FOOT, GREY, PAGE_WIDTH, REFERENCE, SMALL, label
+from compare.show.style import CANDIDATE, GREY, PAGE_WIDTH, REFERENCE, SMALL, label
 
 
 def phase_criterion(comparison: Comparison) -> Figure:
@@ -35,7 +42,9 @@ def phase_criterion(comparison: Comparison) -> Figure:
         ax.axhline(expected, color=GREY, linewidth=0.8, linestyle="--")
     axes[0].set_ylabel(r"$(2F_{Ay} - M_{Az}^2)\,/\,2f$" + "\nzero in Phase B")
     axes[1].set_ylabel("contact $s_1$ / $L$\none in Phase A")
-    axes[1].set_xlabel(f"{FOOT}   (dotted: transitions found from the clamp)")
+    axes[1].set_xlabel(
+        f"{foot_label(comparison.reference)}   (dotted: transitions found from the clamp)"
+    )
     length = comparison.reference.beam.length
     for place in comparison.transitions.values():
         for where, colour in ((place.reference, REFERENCE), (place.candidate, CANDIDATE)):

@@ -13,8 +13,10 @@ from compare.show.figures.over_foot import (
     LINE,
     dots,
     foot,
+    foot_label,
     key,
     on_vibrissa,
+    reading_label,
     scaled,
     shade_reference,
     unit,
@@ -22,13 +24,11 @@ from compare.show.figures.over_foot import (
 from compare.show.figures.thinning import draw
 from compare.show.style import (
     CANDIDATE,
-    FOOT,
     INK,
     LARGE,
     REFERENCE,
     SMALL,
     SYMBOLS,
-    axis_label,
     label,
 )
 
@@ -132,10 +132,10 @@ def _draw_reading(upper: Axes, lower: Axes, comparison: Comparison, name: str) -
     draw(upper, *curve, label=label(reference.source), **LINE)
     points = foot(candidate), scaled(candidate, comparison.judged["candidate"], name)
     draw(upper, *points, label=label(candidate.source), **dots(comparison))
-    upper.set_title(axis_label(name), fontsize=LARGE)
+    upper.set_title(reading_label(reference, name), fontsize=LARGE)
     lower.axhline(0, color=INK, linewidth=0.8)
     draw(lower, *_difference(comparison, name), **dots(comparison) | {"markersize": _ALONE})
-    lower.set_xlabel(FOOT)
+    lower.set_xlabel(foot_label(reference))
     lower.ticklabel_format(axis="y", scilimits=(-2, 2))
 
 

@@ -302,6 +302,59 @@ def test_compare_with_a_rig(rig):
     assert found["offset"]["value"] == pytest.approx(-2e-3, abs=2e-4)
 
 
+def test_a_case_is_a_reference_and_its_offset_is_applied(rig):
+    """The vibrissa, the limits and the name are the case's."""
+    (rig / "own").mkdir()
+    (rig / "own" / "analytic.parquet").write_bytes((rig / "analytic.parquet").read_bytes())
+    words = ("rig.csv", *RIG_COLUMNS, "--noise", "0.003", "--offset", "auto")
+    done = vibrissa("compare", "case.toml", *words, cwd=rig)
+    assert done.returncode == 0, done.stdout + done.stderr
+    for reference in ("analytic.parquet", "own/analytic.parquet"):
+        vibrissa("compare", reference, *words, cwd=rig)
+    names = {path.name for path in (rig / "results").iterdir()}
+    assert names == {"case-rig", "analytic-rig", "own-analytic-rig"}
+    found = json.loads((rig / "results" / "case-rig" / "comparison.json").read_text())
+    given = ("--beam", "case.toml", *RIG_COLUMNS, "--offset", found["offset"]["value"])
+    done = vibrissa("reconstruct", "rig.csv", *given, "--out", "out", cwd=rig)
+    assert done.returncode == 0, done.stderr
+    import pandas as pd
+
+    from analytic import Readings
+
+    points = pd.read_csv(rig / "out" / "points.csv")
+    foot_x = Readings.read(rig / "analytic.parquet").values("foot_x")
+    np.testing.assert_allclose(points["foot_x"], foot_x, atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("reconstruct", "rig.csv", *RIG_COLUMNS), "vibrissa = none given"),
+        (("reconstruct", "rig.csv"), "--column foot_x="),
+        (("compare", "rig.csv", "rig.csv", *RIG_COLUMNS), "--column foot_x="),
+        (("compare", "nowhere.toml", "rig.csv"), "nowhere.toml"),
+        (("compare", "case.toml", "rig.csv", "--reference-beam", "case.toml"), "reference"),
+        (("reconstruct", "analytic.parquet", "--offset", "nan"), "offset = nan"),
+    ],
+)
+def test_what_is_missing_is_asked_for(rig, words, said):
+    done = vibrissa(*words, cwd=rig)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not (rig / "results").exists()
+
+
+def test_that_length_and_rigidity_are_one_is_said(tmp_path):
+    from analytic import SENSED, named_case, solve_sweep
+
+    sweep = solve_sweep(named_case("parabola"))
+    sweep.table[list(SENSED)].to_csv(tmp_path / "bare.csv", index=False)
+    done = vibrissa("reconstruct", "bare.csv", "--out", "out", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "L = EI = 1 is assumed" in done.stderr
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

@@ -166,3 +166,15 @@ def test_a_key_in_many_tables_takes_no_memory(tmp_path):
         assert "at most 32 levels deep" in refused(tmp_path, f"[{key}]\n")
         assert time.process_time() - begin < 5
     assert "levels" not in refused(tmp_path, "x" * 1_000_000 + " = 1\n" + "# 1.2.3, " * 50_000)
+
+
+def test_a_mesh_without_a_scale_beside_units(tmp_path):
+    """Its numbers are metres: far out of reach if they were millimetres."""
+    import trimesh
+
+    trimesh.creation.icosphere(subdivisions=2, radius=20).export(tmp_path / "ball.stl")
+    mesh = UNITED[: UNITED.index('"circle"')] + '"mesh"\nfile = "ball.stl"\noffset = [0, "45 mm"]\n'
+    assert 'scale = "1 mm"' in refused(tmp_path, mesh)
+    path = tmp_path / "case.toml"
+    path.write_text(mesh + 'scale = "1 mm"\nhull = true\n')
+    assert load_job(str(path)).case.beam.si

@@ -1,0 +1,86 @@
+"""Numbers with their unit, where the case has units."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import SENSED, Beam, Case, Readings, circle, named_case, solve_sweep
+from compare import compare
+from compare.commands.terminal import print_comparison
+from compare.show.figures.over_foot import foot_label, reading_label
+from compare.show.quantities import quantity
+from compare.show.report import report_page
+
+SI = Beam(0.05, 2e-6, 0.25e-3, si=True)
+
+
+@pytest.mark.parametrize(
+    ("value", "kind", "text"),
+    [
+        (0.05, "length", "50 mm"),
+        (-2.012e-3, "length", "-2.012 mm"),
+        (1.5, "length", "1.5 m"),
+        (8e-4, "force", "0.8 mN"),
+        (4e-5, "moment", "40 µN m"),
+        (1e-12, "length", "1e-12 m"),
+        (0.0, "length", "0 m"),
+    ],
+)
+def test_the_prefix_that_keeps_a_number_readable(value, kind, text):
+    assert quantity(value, kind, SI) == text
+    assert quantity(value, kind, Beam()) == f"{value:.4g}"
+
+
+@pytest.fixture(scope="module")
+def exact() -> Readings:
+    return solve_sweep(Case(SI, circle(0.04, lowest=(0.0, 0.02))))
+
+
+def measured(exact: Readings) -> Readings:
+    """The same stations 2 mm off, without phases."""
+    table = exact.table[list(SENSED)]
+    return replace(exact, table=table.assign(foot_x=table["foot_x"] + 2e-3), source="rig")
+
+
+def test_a_case_with_units_names_them(exact, capsys, tmp_path):
+    found = compare(exact, measured(exact), offset=2e-3)
+    page = report_page(found, {})
+    assert "<i>L</i> = 50 mm, forces in <i>EI</i>/<i>L</i>² = 0.8 mN" in page
+    assert "(2 mm ± 0 m)" in page
+    assert reading_label(exact, "moment_z").endswith("= 40 µN m)")
+    assert "50 mm" in foot_label(exact)
+    assert [ax.get_ylabel() for ax in exact.plot()] == [
+        "force_x [N]",
+        "force_y [N]",
+        "moment_z [N m]",
+    ]
+    print_comparison(found)
+    assert "2 mm" in capsys.readouterr().out
+    exact.write(tmp_path / "a.parquet")
+    assert Readings.read(tmp_path / "a.parquet").beam.si
+
+
+def test_a_case_without_units_names_none():
+    exact = solve_sweep(named_case("parabola"))
+    assert "of the readings' own units" in report_page(compare(exact, exact), {})
+    assert foot_label(exact) == "foot $x_0$ / $L$"
+    assert exact.plot()[0].get_ylabel() == "force_x"
+
+
+def test_phases_are_those_of_the_candidate(exact, capsys):
+    """A measured sweep that is wrong has no phases of its own that could be right."""
+    rig = measured(exact)
+    print_comparison(compare(exact, rig, offset=2e-3))
+    shown = capsys.readouterr().out
+    assert "100.0% alike" in shown
+    assert "right" not in shown
+    wrong = rig.table.assign(moment_z=0.3 * rig.table["moment_z"])
+    found = compare(exact, replace(rig, table=wrong), offset=2e-3)
+    share = found.phases_alike()
+    assert share is not None
+    assert share < 0.6
+    assert "the candidate's true ones are not known" in report_page(found, {})
+    assert found.to_dict()["phases"]["agreement"] == 1.0  # of those whose truth is recorded
+    lost = replace(exact, table=exact.table.assign(force_y=np.nan))
+    assert compare(exact, lost).phases_alike() is None
