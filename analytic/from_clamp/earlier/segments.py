@@ -1,0 +1,92 @@
+"""A vibrissa of straight segments, bent joint by joint from the contact to the base.
+
+B. W. Quist and M. J. Z. Hartmann, Mechanical signals at the base of a rat vibrissa: the effect of
+intrinsic vibrissa curvature and implications for tactile exploration, Journal of Neurophysiology
+107, 2012. Their model takes the force to be normal to the vibrissa, which it is at a tangential
+contact; at the tip it is not, and the answer is off whatever the number of segments.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from analytic.from_clamp.earlier.sensed import Answer, Sensed
+from analytic.problem.arrays import Booleans, Floats
+
+_HALVINGS = 52  # of a segment: to rounding
+
+
+class _Bent(NamedTuple):
+    """The base as seen from the contact, whose tangent is the x-axis; arrays of shape (n,)."""
+
+    x: Floats
+    y: Floats
+    turned: Floats
+
+
+def by_segments(sensed: Sensed, segments: int = 40, half_cell: bool = False) -> Answer:
+    """The contact from which the segments turn the base by as much as the force says.
+
+    Parameters
+    ----------
+    sensed : Sensed
+        Loaded stations.
+    segments : int
+        Number of segments of the whole vibrissa.
+    half_cell : bool
+        Whether the vibrissa also bends over the half of the last segment that belongs to the clamp,
+        which makes the model one of second order. As published, that segment is rigid, and the
+        model of first order.
+
+    Returns
+    -------
+    Answer
+        None where no contact on the vibrissa turns it so far.
+    """
+    force = np.hypot(sensed.across, sensed.along)
+    # Where the force is normal to the vibrissa, at the contact, the base is turned away by so much.
+    turn = np.arctan2(sensed.along, sensed.across)
+    half = 0.5 / segments if half_cell else 0.0
+    whole, found = _bracket(force, turn, segments, half)
+    low, high = np.zeros_like(force), np.full_like(force, 1 / segments)
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        short = _bend(force, middle, whole, segments, half).turned < turn
+        low, high = np.where(short, middle, low), np.where(short, high, middle)
+    bent = _bend(force, high, whole, segments, half)
+    cos, sin = np.cos(bent.turned), np.sin(bent.turned)
+    height, across = -(cos * bent.x + sin * bent.y), cos * bent.y - sin * bent.x
+    return Answer(sensed.foot_x + np.abs(across), height).where(found)
+
+
+def _bracket(force: Floats, turn: Floats, segments: int, half: float) -> tuple[Floats, Booleans]:
+    """How many whole segments there are between the base and the first contact that fits."""
+    h = 1 / segments
+    x, y, turned = np.full_like(force, -h), np.zeros_like(force), np.zeros_like(force)
+    whole = np.zeros_like(force)
+    found = turned - half * x * force >= turn  # the contact is on the first segment
+    for number in range(1, segments):
+        x, y, turned = _joint(force, x, y, turned, h)
+        now = ~found & (turned - half * x * force >= turn)
+        whole[now] = number
+        found |= now
+    return whole, found
+
+
+def _bend(force: Floats, rest: Floats, whole: Floats, segments: int, half: float) -> _Bent:
+    """From a contact at `rest` beyond so many whole segments."""
+    x, y, turned = -rest, np.zeros_like(force), np.zeros_like(force)
+    for number in range(int(whole.max(initial=0))):
+        there = number < whole
+        nx, ny, nturned = _joint(force, x, y, turned, 1 / segments)
+        x, y = np.where(there, nx, x), np.where(there, ny, y)
+        turned = np.where(there, nturned, turned)
+    return _Bent(x, y, turned - half * x * force)
+
+
+def _joint(
+    force: Floats, x: Floats, y: Floats, turned: Floats, h: float
+) -> tuple[Floats, Floats, Floats]:
+    """Bend at a joint, and go on to the next."""
+    turned = turned - force * x * h
+    return x - h * np.cos(turned), y - h * np.sin(turned), turned

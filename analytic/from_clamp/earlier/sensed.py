@@ -1,0 +1,49 @@
+"""What an earlier method is given, and what it answers."""
+
+from typing import NamedTuple
+
+from analytic.problem.arrays import Booleans, Floats
+
+
+class Sensed(NamedTuple):
+    """Loaded stations of a sweep, arrays of shape (n,)."""
+
+    foot_x: Floats
+    """Foot position [L]."""
+    across: Floats
+    """Force of the clamp across the vibrissa, -F_x, Q in the formulas [EI/L^2]."""
+    along: Floats
+    """Force of the clamp along the vibrissa, F_y, P in the formulas [EI/L^2]."""
+    moment: Floats
+    """Moment of the clamp, M [EI/L]."""
+    travel: Floats
+    """Way of the foot since the first contact [L]."""
+
+
+class Answer(NamedTuple):
+    """The contact on the vibrissa's axis, arrays of shape (n,); NaN where there is no answer."""
+
+    x: Floats
+    y: Floats
+    """Position [L]."""
+
+    def where(self, valid: Booleans) -> "Answer":
+        """The same, with no answer where a method's assumptions do not hold.
+
+        Parameters
+        ----------
+        valid : array of bool, shape (n,)
+            Where they do.
+
+        Returns
+        -------
+        Answer
+            NaN elsewhere.
+        """
+        return Answer(*(_masked(values, valid) for values in self))
+
+
+def _masked(values: Floats, valid: Booleans) -> Floats:
+    found = values.copy()
+    found[~valid] = float("nan")
+    return found
