@@ -1,0 +1,98 @@
+"""Contacts from the clamp readings by an earlier method, on the terms of `reconstruct`."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+from analytic.from_clamp.contact import LONGEST, dimensionless, sides
+from analytic.from_clamp.earlier.methods import METHODS
+from analytic.from_clamp.earlier.sensed import Sensed
+from analytic.from_clamp.phases import judge_phases
+from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.columns import SENSED
+from analytic.problem.errors import InputError
+from analytic.problem.readings import Readings
+
+
+def reconstruct_earlier(
+    readings: Readings,
+    method: str,
+    noise: Mapping[str, float] | None = None,
+    first_contact: float | None = None,
+) -> pd.DataFrame:
+    """Contact points by one of the methods that were there before the closed form.
+
+    Parameters
+    ----------
+    readings : Readings
+        Only the four sensed columns are used, and ``status`` as in `reconstruct`.
+    method : str
+        Name of one of `METHODS`.
+    noise : mapping, optional
+        Standard deviation of each sensed column's noise, in its unit: decides where there is a
+        load.
+    first_contact : float, optional
+        Foot position of the first contact [length]. If it is not given, it is where the moments of
+        the first two loaded stations extrapolate to zero.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a station: ``contact_x``, ``contact_y`` [length], on the body's surface if the method
+        knows the force's direction, else on the vibrissa's axis; ``phase``, judged as `reconstruct`
+        does; ``status``: ``"ok"``, ``"free"``, ``"gap"``, ``"no answer"`` where the method's
+        assumptions do not hold, or ``"longer than the vibrissa"`` where the contact would be beyond
+        1.1 L. NaN where the status is not ``"ok"``.
+
+    Raises
+    ------
+    InputError
+        If there is no such method.
+    """
+    if method not in METHODS:
+        raise InputError("method", repr(method), f"one of {', '.join(METHODS)}", "choose one")
+    chosen = METHODS[method]
+    sensed = dimensionless(readings)
+    gap = np.isnan(sensed).any(axis=0)
+    phase = np.where(gap, "gap", judge_phases(readings, noise).phase)
+    loaded = ~gap & (phase != "free")
+    side = sides(sensed)
+    foot_x, force_x, force_y, moment = (side * sensed)[:, loaded]
+    first = _first_contact(readings, sensed, loaded) if first_contact is None else first_contact
+    travel = side[0, loaded] * first / readings.beam.length - foot_x
+    answer = chosen.estimate(Sensed(foot_x, -force_x, force_y, moment, travel))
+    reach = np.hypot(answer.x - foot_x, answer.y)
+    x, y = answer
+    if "force" in chosen.needs:
+        normal = np.arctan2(-force_x, force_y)
+        radius = readings.beam.radius / readings.beam.length
+        x, y = x - radius * np.sin(normal), y + radius * np.cos(normal)
+    status = np.where(gap, "gap", "free").astype(object)
+    with np.errstate(invalid="ignore"):
+        status[loaded] = np.where(
+            np.isnan(x), "no answer", np.where(reach > LONGEST, "longer than the vibrissa", "ok")
+        )
+    found = {
+        name: np.full(len(phase), np.nan) for name in ("contact_x", "contact_y")
+    }
+    found["contact_x"][loaded] = side[0, loaded] * x * readings.beam.length
+    found["contact_y"][loaded] = y * readings.beam.length
+    for values in found.values():
+        values[status != "ok"] = np.nan
+    return pd.DataFrame({**found, "phase": phase, "status": status.astype(str)})
+
+
+def _first_contact(readings: Readings, sensed: Floats, loaded: Booleans) -> float:
+    """Where the moment of the first two loaded stations goes to zero, behind the last free one."""
+    at = np.flatnonzero(loaded)
+    foot_x = readings.values(SENSED[0])
+    if len(at) < 2:
+        return float(foot_x[at[0]]) if len(at) else 0.0
+    first, second = at[:2]
+    moment = sensed[3]
+    share = moment[first] / (moment[second] - moment[first])
+    back = float(foot_x[first] - share * (foot_x[second] - foot_x[first]))
+    free = float(foot_x[first - 1]) if first else back
+    low, high = sorted((float(foot_x[first]), free))
+    return min(max(back, low), high)

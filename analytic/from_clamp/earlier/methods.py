@@ -1,0 +1,95 @@
+"""The earlier methods by name: who published them, what each needs to know and takes for granted."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from analytic.from_clamp.earlier import integrated, segments, small_deflection
+from analytic.from_clamp.earlier.sensed import Answer, Sensed
+
+
+@dataclass(frozen=True)
+class Method:
+    """A way to find the contact from the clamp.
+
+    Attributes
+    ----------
+    source : str
+        Author and year.
+    needs : tuple of str
+        What it has to know: of ``"moment"``, ``"force"``, ``"rigidity"``, ``"first contact"``,
+        ``"slope"`` and ``"length"``.
+    assumes : str
+        What it takes for granted, in a few words.
+    estimate : callable
+        The contact on the vibrissa's axis from `Sensed`.
+    """
+
+    source: str
+    needs: tuple[str, ...]
+    assumes: str
+    estimate: Callable[[Sensed], Answer]
+
+
+METHODS: dict[str, Method] = {
+    "binary": Method(
+        "binary whiskers of mobile robots",
+        ("moment", "length"),
+        "the vibrissa stays straight",
+        small_deflection.binary,
+    ),
+    "kaneko": Method(
+        "Kaneko, Kanayama and Tsuji 1998",
+        ("moment", "rigidity", "first contact"),
+        "small deflection, a point object",
+        small_deflection.from_moment_and_travel,
+    ),
+    "kim-moeller": Method(
+        "Kim and Moeller 2007",
+        ("slope", "first contact"),
+        "small deflection, a point object",
+        small_deflection.from_slope_and_travel,
+    ),
+    "birdwell": Method(
+        "Birdwell and others 2007",
+        ("moment", "force", "rigidity"),
+        "small deflection",
+        small_deflection.from_force_and_moment,
+    ),
+    "birdwell-cone": Method(
+        "Birdwell and others 2007",
+        ("moment", "force", "rigidity"),
+        "small deflection, a cone that ends in a point",
+        small_deflection.from_force_and_moment_of_cone,
+    ),
+    "beam-column": Method(
+        "Timoshenko and Gere 1961",
+        ("moment", "force", "rigidity"),
+        "small slopes",
+        small_deflection.from_beam_column,
+    ),
+    "scholz-rahn": Method(
+        "Scholz and Rahn 2004",
+        ("moment", "force", "rigidity", "length"),
+        "a straight cylinder",
+        integrated.in_plane,
+    ),
+    "clements-rahn": Method(
+        "Clements and Rahn 2006",
+        ("moment", "force", "rigidity", "length"),
+        "a straight cylinder, in space",
+        integrated.in_space,
+    ),
+    "quist-hartmann": Method(
+        "Quist and Hartmann 2012",
+        ("force", "rigidity", "length"),
+        "the force is normal to the vibrissa; 40 segments, the last one rigid",
+        segments.by_segments,
+    ),
+    "quist-hartmann-half-cell": Method(
+        "Quist and Hartmann 2012, with half a segment that bends at the clamp",
+        ("force", "rigidity", "length"),
+        "the force is normal to the vibrissa; 40 segments",
+        partial(segments.by_segments, half_cell=True),
+    ),
+}
