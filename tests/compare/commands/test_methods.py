@@ -1,0 +1,41 @@
+"""The command ``methods``."""
+
+import pandas as pd
+import pytest
+
+from analytic import named_case, solve_sweep
+from tests.compare.command import vibrissa
+
+
+def test_a_case_and_a_file_of_its_readings_are_alike(tmp_path):
+    solve_sweep(named_case("parabola")).write(tmp_path / "mine.parquet")
+    for given in ("parabola", "mine.parquet"):
+        done = vibrissa(
+            "methods", given, "--method", "kaneko,elastica", "--noise", "0,0.01", cwd=tmp_path
+        )
+        assert done.returncode == 0, done.stderr
+        assert "kaneko" in done.stdout
+    tables = [
+        pd.read_csv(tmp_path / "results" / name / "methods.csv").drop(columns="seconds")
+        for name in ("parabola-methods", "mine-methods")
+    ]
+    pd.testing.assert_frame_equal(*tables)
+    assert (tmp_path / "results" / "mine-methods" / "methods.png").exists()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("parabola", "--method", "elastic"),
+        ("parabola", "--noise", "1%"),
+        ("parabola", "--noise", "nan"),
+        ("parabola", "--noise", "0,0.1,0.2,0.3"),
+        ("missing.parquet",),
+        ("parabole",),
+    ],
+)
+def test_bad_input_is_one_line(arguments, tmp_path):
+    done = vibrissa("methods", *arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert not list(tmp_path.iterdir())
