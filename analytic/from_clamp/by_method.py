@@ -73,9 +73,7 @@ def reconstruct_earlier(
         status[loaded] = np.where(
             np.isnan(x), "no answer", np.where(reach > LONGEST, "longer than the vibrissa", "ok")
         )
-    found = {
-        name: np.full(len(phase), np.nan) for name in ("contact_x", "contact_y")
-    }
+    found = {name: np.full(len(phase), np.nan) for name in ("contact_x", "contact_y")}
     found["contact_x"][loaded] = side[0, loaded] * x * readings.beam.length
     found["contact_y"][loaded] = y * readings.beam.length
     for values in found.values():

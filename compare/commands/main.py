@@ -12,7 +12,7 @@ import typer
 from typer.exceptions import TyperException
 
 from analytic.problem.errors import InputError
-from compare.commands import budget, readings, study, sweeps
+from compare.commands import budget, methods, readings, study, sweeps
 
 BAD_INPUT = 2
 _LONGEST = 800  # characters of an error
@@ -33,6 +33,7 @@ COMMANDS: tuple[Callable[..., int], ...] = (
     readings.compare,
     readings.reconstruct,
     readings.side_by_side,
+    methods.methods,
     budget.budget,
     budget.findings,
     study.study,

@@ -30,6 +30,7 @@ from compare.read.rig import OWN_UNITS
 from compare.show.figures.budget_bars import headline
 from compare.show.quantities import quantity
 from compare.show.side_by_side import SideBySide
+from compare.show.style import PHASE_LETTERS
 from compare.show.verdict import why
 from compare.simulate.target import Followed
 
@@ -282,6 +283,39 @@ def print_advice(advice: Followed) -> None:
         print_line(f"  {what}: {error:.1e} rms, {1e3 * seconds:.1f} ms a station")
     if not advice.reached:
         print_line("  The target was missed: ask for a little less.")
+
+
+def print_methods(found: pd.DataFrame, title: str) -> None:
+    """Print each method's median error by noise, and how many contacts it has an answer for.
+
+    Parameters
+    ----------
+    found : pandas.DataFrame
+        As `compare.measure.methods.method_errors` has it.
+    title : str
+        Which sweep.
+    """
+    levels = sorted(found["noise"].unique())
+    table = Table(
+        Column("method", no_wrap=True), "phase", Column("answered", justify="right"),
+        *(f"noise {level:g}" if level else "no noise" for level in levels),
+        title=Text(f"Median error of the contact, over L: {title}"),
+    )  # fmt: skip
+    for method, rows in found.groupby("method", sort=False):
+        name = str(method)
+        for phase, by_noise in rows.groupby("phase", sort=False):
+            by = by_noise.set_index("noise")
+            if not by["contacts"][levels[0]]:
+                continue
+            medians = (by["median"][level] for level in levels)
+            table.add_row(
+                name,
+                PHASE_LETTERS[str(phase)],
+                f"{by['answered'][levels[0]]:.0%}",
+                *("-" if np.isnan(x) else f"{x:.1e}" for x in medians),
+            )
+            name = ""
+    _output().print(table)
 
 
 def print_side_by_side(found: SideBySide) -> None:

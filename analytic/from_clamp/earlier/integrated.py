@@ -140,6 +140,7 @@ def _up_to_zero(
         atol=_TOLERANCE,
         dense_output=True,
     ).sol
+    assert way is not None  # asked for
 
     def at(s: Floats) -> Floats:
         """Each station's state at its own arc length."""

@@ -1,4 +1,4 @@
-"""The earlier methods by name: who published them, what each needs to know and takes for granted."""
+"""The earlier methods by name: who published them, what each needs and takes for granted."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

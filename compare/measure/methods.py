@@ -1,0 +1,114 @@
+"""How well each method finds the contact, on equal readings."""
+
+import time
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from analytic import CLAMP_READINGS, InputError, Readings, reconstruct, reconstruct_by_decision
+from analytic.from_clamp.by_method import reconstruct_earlier
+from analytic.from_clamp.earlier.methods import METHODS
+from analytic.problem.arrays import Floats
+from compare.sense.noise import with_noise
+
+OWN = ("elastica", "decision")
+"""The paper's: in closed form, and its way of deciding the phase and integrating."""
+NAMES = (*METHODS, *OWN)
+_NEEDED = ("moment", "force", "rigidity")
+NEEDS = {name: METHODS[name].needs if name in METHODS else _NEEDED for name in NAMES}
+"""What each has to know beside the foot's position."""
+NOISE = (0.0, 1e-3, 1e-2)
+_PHASES = ("tip", "tangent")
+_EXACT = 1e-6  # of criterion (26), for readings without noise
+_SIGMAS = 4.0  # times the noise; the criterion has errors of its size
+
+
+def method_errors(
+    truth: Readings,
+    methods: Iterable[str] = NAMES,
+    noise: Iterable[float] = NOISE,
+    seed: int = 0,
+) -> pd.DataFrame:
+    """Contact error of each method, by phase and by noise of the clamp's readings.
+
+    Parameters
+    ----------
+    truth : Readings
+        A sweep with its contacts: exact, or another model's. Its clamp readings are given to the
+        methods, its contacts are what they should find, its phases those that are counted.
+    methods : iterable of str
+        Names from `NAMES`.
+    noise : iterable of float
+        Standard deviations, over each clamp reading's largest magnitude.
+    seed : int
+        Of the noise.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a method, level of noise and phase: ``method``, ``noise``, ``phase``, ``contacts``,
+        ``answered`` (share of them), ``median``, ``rms`` and ``worst`` error over L of those that
+        were answered, NaN if none was, and ``seconds`` a contact.
+
+    Raises
+    ------
+    InputError
+        If there is no such method, or the readings have no contacts.
+    """
+    chosen = list(methods)
+    for name in chosen:
+        if name not in NAMES:
+            raise InputError("method", repr(name), f"one of {', '.join(NAMES)}", "choose one")
+    if not {"contact_x", "contact_y", "phase"} <= set(truth.table):
+        raise InputError(
+            f"contacts of the readings ({truth.source})",
+            "missing",
+            "columns contact_x, contact_y and phase",
+            "methods are held against contacts that are known: take a model's readings",
+        )
+    rows = [
+        row
+        for level in noise
+        for sensed in [with_noise(truth, dict.fromkeys(CLAMP_READINGS, level), seed)]
+        for name in chosen
+        for row in _errors(truth, sensed, name, level)
+    ]
+    return pd.DataFrame(rows)
+
+
+def _errors(
+    truth: Readings, sensed: Readings, method: str, level: float
+) -> Iterator[dict[str, Any]]:
+    begun = time.process_time()
+    found = _contacts(sensed, method, level)
+    seconds = time.process_time() - begun
+    off = [found[name].to_numpy() - truth.values(name) for name in ("contact_x", "contact_y")]
+    error = np.hypot(*off) / truth.beam.length
+    phase = truth.table["phase"].to_numpy()
+    touching = int(np.isin(phase, _PHASES).sum())
+    for name in _PHASES:
+        here: Floats = error[(phase == name) & truth.trusted]
+        answered = here[np.isfinite(here)]
+        yield {
+            "method": method,
+            "noise": level,
+            "phase": name,
+            "contacts": len(here),
+            "answered": len(answered) / len(here) if len(here) else np.nan,
+            "median": float(np.median(answered)) if answered.size else np.nan,
+            "rms": float(np.sqrt(np.mean(answered**2))) if answered.size else np.nan,
+            "worst": float(answered.max()) if answered.size else np.nan,
+            "seconds": seconds / max(touching, 1),
+        }
+
+
+def _contacts(sensed: Readings, method: str, level: float) -> pd.DataFrame:
+    if method == "elastica":
+        return reconstruct(sensed)
+    if method == "decision":
+        # Where noise makes an impossible force, the square root of the closed form is none.
+        with np.errstate(invalid="ignore"):
+            return reconstruct_by_decision(sensed, tolerance=max(_EXACT, _SIGMAS * level))
+    return reconstruct_earlier(sensed, method)

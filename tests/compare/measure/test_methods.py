@@ -1,0 +1,65 @@
+"""All methods on the same readings."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import Case, InputError, Readings, Sweep, circle, named_case, solve_sweep
+from compare.measure.methods import NAMES, OWN, method_errors
+
+EXACT = ("elastica", "decision", "scholz-rahn", "clements-rahn")
+CIRCLE = Case(profile=circle(1.0, (0.0, 0.4)), sweep=Sweep(60))
+
+
+def test_those_that_know_the_elastica_are_exact_without_noise():
+    found = method_errors(solve_sweep(CIRCLE), EXACT, noise=[0.0])
+    assert (found["answered"] == 1).all()
+    assert found["worst"].max() < 1e-10
+
+
+def test_every_method_answers_or_says_that_it_cannot():
+    found = method_errors(solve_sweep(CIRCLE), noise=[0.0, 0.01])
+    assert set(found["method"]) == set(NAMES)
+    assert len(found) == len(NAMES) * 2 * 2
+    assert found["answered"].between(0, 1).all()
+    # Nowhere a wild number: the farthest wrong answer is still on the vibrissa.
+    assert found["worst"].max() < 2.2
+    assert (found["median"].isna() == (found["answered"] == 0)).all()
+
+
+def test_noise_is_felt_in_proportion():
+    found = method_errors(solve_sweep(named_case("catenary")), OWN, noise=[1e-4, 1e-3])
+    tangent = found[(found["phase"] == "tangent") & (found["method"] == "elastica")]
+    small, large = tangent["median"]
+    assert large / small == pytest.approx(10, rel=0.3)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_sweep_to_the_right_is_found_as_well_as_its_mirror_image(name):
+    left = solve_sweep(named_case("catenary"))
+    right = solve_sweep(replace(named_case("catenary"), sweep=Sweep(200, direction="right")))
+    one, other = (method_errors(sweep, [name], noise=[0.0]) for sweep in (left, right))
+    assert other["answered"].to_numpy() == pytest.approx(one["answered"].to_numpy())
+    np.testing.assert_allclose(other["worst"], one["worst"], rtol=1e-6, atol=1e-12)
+
+
+def test_units_do_not_matter():
+    case = named_case("catenary")
+    length = 0.05
+    beam = replace(case.beam, length=length, flexural_rigidity=1e-5, radius=0.005 * length)
+    scaled = solve_sweep(replace(case, beam=beam, profile=case.profile.scaled(length)))
+    one, other = (method_errors(s, noise=[0.0]) for s in (solve_sweep(case), scaled))
+    np.testing.assert_allclose(other["median"], one["median"], rtol=1e-6, atol=1e-12)
+
+
+def test_a_name_that_there_is_not():
+    with pytest.raises(InputError, match="method = 'kanecko'"):
+        method_errors(solve_sweep(CIRCLE), ["kanecko"])
+
+
+def test_readings_without_contacts_cannot_judge():
+    sweep = solve_sweep(CIRCLE)
+    bare = Readings(sweep.table[["foot_x", "force_x", "force_y", "moment_z"]], sweep.beam)
+    with pytest.raises(InputError, match="contacts of the readings"):
+        method_errors(bare)
