@@ -61,6 +61,8 @@ bench: develop   ## speed, side by side on one core; ARGS="analytic mujoco stepp
 results: $(RUNS) | install ## results/README.md: all named cases, all beams there are; goes on where it stopped
 	$(BIN)/python -m compare.simulate.overview results/overview.png
 	$(BIN)/vibrissa analytic catenary --figures --out results/pictures
+	$(BIN)/vibrissa methods catenary --out results/pictures
+	cp results/pictures/methods.png results/methods-catenary.png
 	$(BIN)/vibrissa animate catenary --stations 60 --out results/pictures
 	cp results/pictures/figure-15.png results/pictures/still-2.png results/
 	$(BIN)/vibrissa findings results/runs --out results

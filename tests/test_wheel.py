@@ -41,6 +41,7 @@ COMMANDS = {
     "compare": (1, "compare a/analytic.parquet a/mujoco-chain.parquet"),
     "side-by-side": (1, "side-by-side a/analytic.parquet a/mujoco-chain.parquet --out side"),
     "reconstruct": (0, "reconstruct a/analytic.parquet --out a"),
+    "methods": (0, "methods mine.toml --out methods"),
     "run": (1, "run mine.toml --out runs/mine --budget"),
     "budget": (1, "budget mine.toml --out b"),  # undecided: ten segments
     "findings": (0, "findings runs --out found"),

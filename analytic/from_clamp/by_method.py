@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from analytic.from_clamp.contact import LONGEST, dimensionless, sides
-from analytic.from_clamp.earlier.methods import METHODS
+from analytic.from_clamp.earlier.methods import METHODS, NAMES
 from analytic.from_clamp.earlier.sensed import Sensed
 from analytic.from_clamp.phases import judge_phases
 from analytic.problem.arrays import Booleans, Floats
@@ -51,7 +51,7 @@ def reconstruct_earlier(
         If there is no such method.
     """
     if method not in METHODS:
-        raise InputError("method", repr(method), f"one of {', '.join(METHODS)}", "choose one")
+        raise InputError("method", repr(method), f"one of {', '.join(NAMES)}", "choose one")
     chosen = METHODS[method]
     sensed = dimensionless(readings)
     gap = np.isnan(sensed).any(axis=0)

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from analytic.checks.integration import integrate_span
+from analytic.from_clamp.by_method import reconstruct_earlier
 from analytic.from_clamp.contact import (
     LONGEST,
     UNLOADED,
@@ -32,7 +33,10 @@ _CLEAR = 0.1  # of the largest force; with less, noise makes of a contact what i
 
 
 def reconstruct(
-    readings: Readings, noise: Mapping[str, float] | None = None, seed: int = 0
+    readings: Readings,
+    noise: Mapping[str, float] | None = None,
+    seed: int = 0,
+    method: str = "elastica",
 ) -> pd.DataFrame:
     """Contact points from foot position, clamp force and clamp moment, in closed form.
 
@@ -50,6 +54,11 @@ def reconstruct(
         exact. ``relative_noise(readings, 0.01)`` is one per cent of each largest magnitude.
     seed : int
         Of the samples of the noise.
+    method : str
+        ``"elastica"`` is the closed form, ``"decision"`` the paper's way
+        (`reconstruct_by_decision`); the names of earlier methods are in
+        `analytic.from_clamp.earlier.methods.METHODS`, and what they return is in
+        `reconstruct_earlier`.
 
     Returns
     -------
@@ -66,11 +75,15 @@ def reconstruct(
     Raises
     ------
     InputError
-        If `noise` is no such mapping, or the vibrissa is curved at rest, its clamp turns, or the
-        object rubs.
+        If `noise` is no such mapping, there is no such method, or the vibrissa is curved at rest,
+        its clamp turns, or the object rubs.
     """
     require("readings", readings, Readings, "as Readings(table, beam)")
     readings.require_plain("the reconstruction")
+    if method == "decision":
+        return reconstruct_by_decision(readings)
+    if method != "elastica":
+        return reconstruct_earlier(readings, method, noise)
     judged = judge_phases(readings, noise)
     found = contact_table(readings, judged)
     if noise is not None:

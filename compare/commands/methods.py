@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from analytic.problem.errors import InputError
-from compare.commands.options import AGREES, OutFolder
+from compare.commands.options import AGREES, out_folder
 from compare.commands.output import output_folder
 from compare.read.suffixes import TABLES
 
@@ -15,7 +15,7 @@ def methods(
     case: Annotated[
         str, typer.Argument(help="A case, for its closed form, or a model's file of readings.")
     ],
-    out: OutFolder = None,
+    out: Annotated[Path | None, out_folder("results/CASE-methods")] = None,
     method: Annotated[
         str | None,
         typer.Option(metavar="A,B,...", help="Which methods; all if left out.", show_default=False),
@@ -26,8 +26,9 @@ def methods(
 ) -> int:
     """How well every method finds the contact from the clamp."""
     from analytic import Readings, solve_sweep
+    from analytic.from_clamp.earlier.methods import NAMES
     from compare.commands import terminal
-    from compare.measure.methods import NAMES, method_errors
+    from compare.measure.methods import method_errors
 
     path = Path(case)
     if path.suffix.lower() in TABLES:

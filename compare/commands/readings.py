@@ -133,6 +133,10 @@ def reconstruct(
             "vibrissa's unit of length, metres beside units.",
         ),
     ] = 0.0,
+    method: Annotated[
+        str,
+        typer.Option(metavar="A,B,...", help="Which methods; `vibrissa methods` compares them."),
+    ] = "elastica",
 ) -> int:
     """Find the object from the clamp readings alone."""
     import numpy as np
@@ -151,21 +155,26 @@ def reconstruct(
     }
     readings = replace(readings, table=readings.table.assign(**known))
     level = None if noise is None else relative_noise(readings, noise)
-    found = reconstruct_contour(readings, level)
-    require_beam(found, readings)
+    methods = [name.strip() for name in method.split(",")]
+    contacts = {name: reconstruct_contour(readings, level, method=name) for name in methods}
+    if "elastica" in contacts:
+        require_beam(contacts["elastica"], readings)
     with output_folder(out or Path("results") / f"{distinct_name(file)}-reconstructed") as folder:
         from analytic.problem.files import write_whole
         from compare.show.figures.geometry import reconstruction
         from compare.show.page import save_figure
 
-        points = found.assign(foot_x=readings.values("foot_x"))
-        path = write_whole(folder / "points.csv", points.to_csv(index=False))
         terminal.note_rows(readings)
-        terminal.print_reconstruction(readings, found)
-        terminal.print_written(path)
-        with waiting("drawing"):
-            drawn = save_figure(reconstruction(readings, found), folder / "reconstruction.png")
-        terminal.print_written(drawn)
+        for name, found in contacts.items():
+            points = found.assign(foot_x=readings.values("foot_x"))
+            end = "" if name == "elastica" else f"-{name}"
+            path = write_whole(folder / f"points{end}.csv", points.to_csv(index=False))
+            terminal.print_reconstruction(readings, found, name)
+            terminal.print_written(path)
+            with waiting("drawing"):
+                picture = reconstruction(readings, found)
+                drawn = save_figure(picture, folder / f"reconstruction{end}.png")
+            terminal.print_written(drawn)
     return AGREES
 
 

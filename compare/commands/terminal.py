@@ -148,7 +148,7 @@ def note_rows(readings: Readings) -> None:
         )
 
 
-def print_reconstruction(readings: Readings, found: pd.DataFrame) -> None:
+def print_reconstruction(readings: Readings, found: pd.DataFrame, method: str) -> None:
     """Print what a reconstruction found, in a line.
 
     Parameters
@@ -157,6 +157,8 @@ def print_reconstruction(readings: Readings, found: pd.DataFrame) -> None:
         What the contact was found from.
     found : pandas.DataFrame
         As `analytic.reconstruct` returns it.
+    method : str
+        By which method.
     """
     counts = found["phase"].value_counts()
     touching = int(np.isfinite(found["contact_x"].to_numpy(dtype=float)).sum())
@@ -177,7 +179,11 @@ def print_reconstruction(readings: Readings, found: pd.DataFrame) -> None:
             f"y from {np.nanmin(y) / length:.4g} to {np.nanmax(y) / length:.4g} L"
             + (f" (L = {quantity(length, 'length', readings.beam)})" if readings.beam.si else "")
         )
-    print_line(f"{readings.source}: {'; '.join(words)}")
+    unanswered = int((found["status"] == "no answer").sum())
+    if unanswered:
+        words.append(f"{unanswered} to which the method has no answer")
+    by = "" if method == "elastica" else f", {method}"
+    print_line(f"{readings.source}{by}: {'; '.join(words)}")
 
 
 def print_comparison(comparison: Comparison) -> None:

@@ -8,17 +8,10 @@ import numpy as np
 import pandas as pd
 
 from analytic import CLAMP_READINGS, InputError, Readings, reconstruct, reconstruct_by_decision
-from analytic.from_clamp.by_method import reconstruct_earlier
-from analytic.from_clamp.earlier.methods import METHODS
+from analytic.from_clamp.earlier.methods import NAMES
 from analytic.problem.arrays import Floats
 from compare.sense.noise import with_noise
 
-OWN = ("elastica", "decision")
-"""The paper's: in closed form, and its way of deciding the phase and integrating."""
-NAMES = (*METHODS, *OWN)
-_NEEDED = ("moment", "force", "rigidity")
-NEEDS = {name: METHODS[name].needs if name in METHODS else _NEEDED for name in NAMES}
-"""What each has to know beside the foot's position."""
 NOISE = (0.0, 1e-3, 1e-2)
 _PHASES = ("tip", "tangent")
 _EXACT = 1e-6  # of criterion (26), for readings without noise
@@ -105,10 +98,8 @@ def _errors(
 
 
 def _contacts(sensed: Readings, method: str, level: float) -> pd.DataFrame:
-    if method == "elastica":
-        return reconstruct(sensed)
-    if method == "decision":
-        # Where noise makes an impossible force, the square root of the closed form is none.
-        with np.errstate(invalid="ignore"):
-            return reconstruct_by_decision(sensed, tolerance=max(_EXACT, _SIGMAS * level))
-    return reconstruct_earlier(sensed, method)
+    if method != "decision":
+        return reconstruct(sensed, method=method)
+    # Where noise makes an impossible force, the square root of the closed form is none.
+    with np.errstate(invalid="ignore"):
+        return reconstruct_by_decision(sensed, tolerance=max(_EXACT, _SIGMAS * level))

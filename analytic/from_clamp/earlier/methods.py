@@ -93,3 +93,7 @@ METHODS: dict[str, Method] = {
         partial(segments.by_segments, half_cell=True),
     ),
 }
+
+OWN = ("elastica", "decision")
+"""The paper's: in closed form, and its way to decide the phase first and integrate then."""
+NAMES = (*METHODS, *OWN)

@@ -100,7 +100,9 @@ def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
     if "contour" in readings.provenance:
         xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
         ax.plot(xi, eta, color=FAINT, linewidth=3, label="object", zorder=0)
-    there = np.isfinite(on_vibrissa(found["contact_arc_length"].to_numpy() / scale))
+    there = np.isfinite(found["contact_x"].to_numpy())
+    if "contact_arc_length" in found:  # not every method knows it
+        there &= np.isfinite(on_vibrissa(found["contact_arc_length"].to_numpy() / scale))
     x, y = (np.where(there, found[name] / scale, np.nan) for name in ("contact_x", "contact_y"))
     kept = cloud(x, y)
     if "uncertainty" in found:

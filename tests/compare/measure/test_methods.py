@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from analytic import Case, InputError, Readings, Sweep, circle, named_case, solve_sweep
-from compare.measure.methods import NAMES, OWN, method_errors
+from analytic.from_clamp.earlier.methods import NAMES, OWN
+from compare.measure.methods import method_errors
 
 EXACT = ("elastica", "decision", "scholz-rahn", "clements-rahn")
 CIRCLE = Case(profile=circle(1.0, (0.0, 0.4)), sweep=Sweep(60))
