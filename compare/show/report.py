@@ -220,6 +220,7 @@ def _figures(
 
 
 def _sentence(text: str) -> str:
+    text = text.replace("`", "")  # a mark of code on a terminal and in Markdown
     return text and f"{text[0].upper()}{text[1:].rstrip('.')}."
 
 
