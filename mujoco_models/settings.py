@@ -30,6 +30,8 @@ class Settings:
         Points of the obstacle's mesh along the contour, at equal steps of slope angle.
     contact_stiffness : float
         Force over penetration of a contact [EI/L^3].
+    corner_radius : float
+        Of the thin edges that stand for an object's sharp corners [L].
     clamp : str
         Where the beam first bends: half a cell from the clamp, ``"second-order"`` in 1/N, or a
         whole one, ``"naive"`` (first order; for comparison).
@@ -53,6 +55,7 @@ class Settings:
     segments: StrictInt = 40
     contour_points: StrictInt = 3200
     contact_stiffness: StrictFloat = 1e7
+    corner_radius: StrictFloat = 1e-6
     clamp: ClampKind = "second-order"
     obstacle: ObstacleKind = "mesh"
     tolerance: StrictFloat = 1e-8
@@ -76,6 +79,7 @@ class Settings:
             ("segments", Integral, 2, 1000, "40 is usual"),
             ("contour_points", Integral, 8, 50_000, "3200 is usual"),
             ("contact_stiffness", Real, 1e3, 1e9, "1e7 is usual"),
+            ("corner_radius", Real, 1e-9, 1e-3, "1e-6 is usual"),
             ("tolerance", Real, 1e-11, 1e-2, "1e-8 is usual"),
         ):
             value = getattr(self, name)

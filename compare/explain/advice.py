@@ -85,6 +85,7 @@ def advise(found: Budget, runs: Mapping[str, Readings], coarser: Readings, targe
         + (parts["facets"][i] * (base.contour_points / points) ** fall[i]) ** 2
         + (parts["softness"][i] * base.contact_stiffness / stiffness) ** 2
         + parts["unexplained"][i] ** 2
+        + parts.get("corner", np.zeros(len(CLAMP_READINGS)))[i] ** 2
         for i in range(len(CLAMP_READINGS))
     ]
     error = np.sqrt(np.max(squares, axis=0))

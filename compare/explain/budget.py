@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
-from compare.explain.changes import STIFFER
+from compare.explain.changes import SHARPER, STIFFER
 from compare.explain.convergence import convergence
 from compare.explain.suspects import Suspect, suspects
 from compare.explain.variations import shifted_inward, stretched
@@ -20,6 +20,7 @@ PARTS = (
     "discretisation",
     "facets",
     "softness",
+    "corner",
     "unrest",
     "sensor",
     "extension",
@@ -50,7 +51,7 @@ class Budget:
     Attributes
     ----------
     parts : dict
-        `Part` by name and reading.
+        `Part` by name and reading; ``corner`` only if MuJoCo's object has sharp ones.
     disagreement : dict
         Root mean square by reading, over the stations in contact and trusted in all sweeps: fewer
         than a comparison's, where some of them failed to settle.
@@ -151,14 +152,17 @@ def budget(
     order = _order(run["stiff"] - run["two"], run["two"] - run["four"])
     limit = _limit(run["stiff"], run["two"], run["four"], order)
     from_two = run["four"] + (run["four"] - run["two"]) / (2**order - 1)
+    hard = "sharp" if "sharp" in run else "smooth"  # but for its contacts, which are harder next
     signals = {
         "discretisation": run["stiff"] - limit,
         "facets": run["calm"] - run["smooth"],
-        "softness": (run["smooth"] - run["stiff"]) * STIFFER / (STIFFER - 1),
+        "softness": (run[hard] - run["stiff"]) * STIFFER / (STIFFER - 1),
         "unrest": run["base"] - run["calm"],
         "sensor": _sensor(base, kept, scale),
         "extension": stretched(signatures, base.values("extension")[kept]),
     }
+    if "sharp" in run:  # linear in the edges' radius
+        signals["corner"] = (run["smooth"] - run["sharp"]) * SHARPER / (SHARPER - 1)
     total = run["base"] - truth
     signals["unexplained"] = total - np.sum(list(signals.values()), axis=0)
     rms = {name: _rms(part) for name, part in signals.items()}
@@ -170,6 +174,8 @@ def budget(
         "sensor": rms["sensor"],
         "extension": rms["extension"],
     }
+    if "corner" in rms:
+        uncertainty["corner"] = _SAFETY * rms["corner"] / (SHARPER - 1)
     uncertainty["unexplained"] = np.sqrt(np.sum([u**2 for u in uncertainty.values()], axis=0))
     unresolved = np.hypot(uncertainty["unexplained"], UNRESOLVED)
     within = bool((rms["unexplained"] <= unresolved).all())
@@ -183,6 +189,7 @@ def budget(
         signatures, base.values("penetration")[kept] / beam.length, beam.radius / beam.length
     )
     checks = {"softness": shifted}
+    names = [name for name in PARTS if name in signals]
     if faceted is not None:
         checks["facets"] = signal(faceted) - truth
     return Budget(
@@ -191,7 +198,7 @@ def budget(
                 reading: Part(float(rms[name][i]), float(uncertainty[name][i]))
                 for i, reading in enumerate(CLAMP_READINGS)
             }
-            for name in PARTS
+            for name in names
         },
         _by_reading(total),
         {
@@ -203,7 +210,7 @@ def budget(
         },
         order,
         within and resolved,
-        max(PARTS, key=lambda name: float(np.linalg.norm(rms[name]))),
+        max(names, key=lambda name: float(np.linalg.norm(rms[name]))),
         suspects(signals["unexplained"], signatures, float(np.linalg.norm(unresolved))),
         int(kept.sum()),
         convergence(exact, [runs[name] for name in ("stiff", "two", "four")], kept),

@@ -179,6 +179,7 @@ _REMEDIES = {
     "discretisation": "more segments lower",
     "facets": "more points of the mesh's contour lower",
     "softness": "a stiffer contact lowers in proportion",
+    "corner": "a smaller corner_radius lowers in proportion",
     "unrest": "a smaller tolerance of rest lowers",
     "sensor": "is the sensors' own: compare them with the sum of the contacts",
     "extension": "a beam that cannot be stretched would not have",

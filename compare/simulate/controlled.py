@@ -38,7 +38,8 @@ def measure_budget(
         If the settings leave no room to refine, or no station is in contact in all sweeps.
     """
     smooth = has_primitive(case)
-    runs = simulate_all(case, controlled_changes(settings, smooth), advance)
+    changes = controlled_changes(settings, smooth, has_corners(case, settings))
+    runs = simulate_all(case, changes, advance)
     faceted = None
     if smooth and settings.obstacle == "mesh":
         faceted = on_polygon(case, settings.contour_points)
@@ -116,9 +117,32 @@ def has_primitive(case: Case) -> bool:
     """
     from mujoco_models.obstacles.primitive import Primitive
 
-    leftward = case.mirrored() if case.sweep.direction == "right" else case
     try:
-        Primitive.of(leftward)
+        Primitive.of(_leftward(case))
     except InputError:
         return False
     return True
+
+
+def has_corners(case: Case, settings: Settings) -> bool:
+    """Whether MuJoCo's object has edges at sharp corners.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+    settings : Settings
+        Which object stands for the case's contour.
+
+    Returns
+    -------
+    bool
+        False for a smooth contour, and for a polygon that is as good as smooth.
+    """
+    from mujoco_models.obstacles.kinds import place
+
+    return len(place(_leftward(case), settings).corners) > 0
+
+
+def _leftward(case: Case) -> Case:
+    return case.mirrored() if case.sweep.direction == "right" else case

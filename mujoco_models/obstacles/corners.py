@@ -17,7 +17,6 @@ EDGE_PREFIX = "edge"
 LINKS = 2  # the bit of contype and conaffinity by which links and edges collide
 SHARP = 2e-3  # rad; polygons that turn less at all corners are smooth to beads, to 1e-3 of a force
 _TURN = 1e-9  # rad; what turns less is no corner
-_RADIUS = 1e-6  # L; of an edge, which MuJoCo takes for a thin capsule
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,10 +29,13 @@ class Corners:
         Where each edge begins and ends [L].
     outward : array, shape (m, 2)
         Unit vectors half-way between the normals of the two facets.
+    radius : float
+        Of the capsules that MuJoCo takes for edges, which reach as far outward as those [L].
     """
 
     ends: Floats
     outward: Floats
+    radius: float
 
     @classmethod
     def none(cls) -> "Corners":
@@ -44,10 +46,10 @@ class Corners:
         Corners
             Without an edge.
         """
-        return cls(np.zeros((0, 2, 3)), np.zeros((0, 2)))
+        return cls(np.zeros((0, 2, 3)), np.zeros((0, 2)), 0.0)
 
     @classmethod
-    def of(cls, vertices: Floats, edges: Floats) -> "Corners":
+    def of(cls, vertices: Floats, edges: Floats, radius: float) -> "Corners":
         """Those of a polygon, if one is sharp.
 
         Parameters
@@ -56,6 +58,8 @@ class Corners:
             Lower side of the section, from left to right; its ends are corners too [L].
         edges : array, shape (n, 2, 3)
             The ends of the edge through each vertex [L].
+        radius : float
+            See the attributes [L].
 
         Returns
         -------
@@ -69,7 +73,7 @@ class Corners:
         sharp = turn > _TURN
         bisector = ((angles[1:] + angles[:-1]) / 2)[sharp]
         outward = np.column_stack([np.sin(bisector), -np.cos(bisector)])
-        return cls(edges[sharp], outward)
+        return cls(edges[sharp], outward, radius)
 
     def __len__(self) -> int:
         return len(self.ends)
@@ -102,13 +106,13 @@ class Corners:
         spec : mujoco.MjSpec
             Changed in place.
         """
-        inset = np.insert(_RADIUS * self.outward, 2, 0.0, axis=1)
+        inset = np.insert(self.radius * self.outward, 2, 0.0, axis=1)
         for i, (begin, end) in enumerate(self.ends - inset[:, None]):
             spec.worldbody.add_geom(
                 name=f"{EDGE_PREFIX}{i}",
                 type=mujoco.mjtGeom.mjGEOM_CAPSULE,
                 fromto=[*begin, *end],
-                size=[_RADIUS, 0, 0],
+                size=[self.radius, 0, 0],
                 contype=LINKS,
                 conaffinity=0,
                 condim=1,

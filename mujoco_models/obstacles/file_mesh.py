@@ -35,6 +35,8 @@ class FileMesh(Faceted):
         Whose contour is the section of `solid`.
     solid : ConvexMesh
         In units of the vibrissa's length.
+    corner_radius : float
+        Of the edges at sharp corners [L].
 
     Raises
     ------
@@ -45,7 +47,7 @@ class FileMesh(Faceted):
 
     geoms = 1
 
-    def __init__(self, case: Case, solid: ConvexMesh) -> None:
+    def __init__(self, case: Case, solid: ConvexMesh, corner_radius: float) -> None:
         if len(solid.vertices) > _MOST_VERTICES:
             raise InputError(
                 f"mesh {solid.name}",
@@ -66,7 +68,7 @@ class FileMesh(Faceted):
         body = case.profile.scaled(1 / case.beam.length)
         last, first = case.reach
         super().__init__(body.outline(last, first, 0), touchable(case))
-        self._solid = solid
+        self._solid, self._corner_radius = solid, corner_radius
 
     @property
     def label(self) -> str:
@@ -88,7 +90,7 @@ class FileMesh(Faceted):
     @cached_property
     def corners(self) -> Corners:
         """Where the mesh's own edges cross the plane of the sweep."""
-        return Corners.of(self.vertices, self._edges())
+        return Corners.of(self.vertices, self._edges(), self._corner_radius)
 
     def _edges(self) -> Floats:
         """The edge through each vertex of the section, shape (n, 2, 3) [L].

@@ -33,5 +33,5 @@ def place(case: Case, settings: Settings) -> Obstacle:
         return Primitive.of(case)
     solid = case.profile.scaled(1 / case.beam.length).solid
     if isinstance(solid, ConvexMesh):
-        return FileMesh(case, solid)
-    return Prism.of(case, settings.contour_points)
+        return FileMesh(case, solid, settings.corner_radius)
+    return Prism.of(case, settings.contour_points, settings.corner_radius)

@@ -18,6 +18,7 @@ from analytic.problem.case import Case
 from analytic.problem.contours.polygon import Polygon
 from mujoco_models.obstacles.corners import Corners, upright
 from mujoco_models.obstacles.faceted import Faceted, add_hull, touchable
+from mujoco_models.settings import Settings
 
 _FINE = 32  # vertices at full resolution on either side of a window's centre, at least
 _SPAN = 4.0  # radii of the vibrissa that they span, at least: a link may rest on several beads
@@ -42,18 +43,25 @@ class Prism(Faceted):
         Whether the contour is that polygon; else the polygon is inscribed in it.
     radius : float
         Of the vibrissa [L].
+    corner_radius : float
+        Of the edges at sharp corners [L].
     """
 
     def __init__(
-        self, vertices: Floats, slopes: tuple[float, float], exact: bool, radius: float
+        self,
+        vertices: Floats,
+        slopes: tuple[float, float],
+        exact: bool,
+        radius: float,
+        corner_radius: float,
     ) -> None:
         super().__init__(vertices, slopes)
-        self._exact = exact
+        self._exact, self._corner_radius = exact, corner_radius
         facet = float(np.median(np.hypot(*np.diff(vertices, axis=0).T)))
         self._fine = max(_FINE, math.ceil(_SPAN * radius / facet))
 
     @classmethod
-    def of(cls, case: Case, points: int) -> "Prism":
+    def of(cls, case: Case, points: int, corner_radius: float = Settings.corner_radius) -> "Prism":
         """The part of the case's object that the vibrissa can reach.
 
         It has `points` vertices if the contour is curved, or else those of the contour. Where the
@@ -66,6 +74,8 @@ class Prism(Faceted):
             Of a sweep to the left.
         points : int
             Of the polygon, if the contour is curved.
+        corner_radius : float
+            Of the edges at sharp corners [L].
 
         Returns
         -------
@@ -79,7 +89,8 @@ class Prism(Faceted):
         heading = np.column_stack([np.cos(ends.alpha), np.sin(ends.alpha)])
         beyond = inscribed[[0, -1]] + _BEYOND * heading * [[-1], [1]]
         vertices = np.concatenate([beyond[:1][cut[:1]], inscribed, beyond[1:][cut[1:]]])
-        return cls(vertices, touchable(case), isinstance(body, Polygon), case.radius)
+        exact = isinstance(body, Polygon)
+        return cls(vertices, touchable(case), exact, case.radius, corner_radius)
 
     @property
     def label(self) -> str:
@@ -113,7 +124,8 @@ class Prism(Faceted):
         """Those of a polygon; one that is inscribed in a smooth contour has none of its own."""
         if not self._exact:
             return Corners.none()
-        return Corners.of(self.vertices, upright(self.vertices, _HALF_DEPTH))
+        edges = upright(self.vertices, _HALF_DEPTH)
+        return Corners.of(self.vertices, edges, self._corner_radius)
 
     def place(self, slope: Floats) -> Floats:
         """The number of the vertex at which the slope angle is passed."""

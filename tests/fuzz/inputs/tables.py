@@ -11,8 +11,8 @@ KEYS = {
     "profile": ("kind", "a", "c", "radius", "lowest", "semi_axes", "points", "scale", "file",
                 "right_radius", "left_radius", "height", "axes", "offset", "hull", "tolerance"),
     "sweep": ("stations", "start", "stop", "direction"),
-    "mujoco": ("beam", "segments", "contour_points", "contact_stiffness", "clamp", "obstacle",
-               "tolerance", "planar"),
+    "mujoco": ("beam", "segments", "contour_points", "contact_stiffness", "corner_radius",
+               "clamp", "obstacle", "tolerance", "planar"),
     "tolerances": ("rms", "max", "snap_off", "force_x", "nonsense"),
 }  # fmt: skip
 
