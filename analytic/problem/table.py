@@ -173,7 +173,7 @@ def _check_words(
         row = int(np.argmax(unknown))
         raise InputError(
             f"column {name}, {place(row)},",
-            _few([str(column.iloc[row])]),
+            _few([repr(str(column.iloc[row]))]),
             f"one of {', '.join(allowed)}",
             "fix the column or drop it",
         )

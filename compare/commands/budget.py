@@ -16,7 +16,7 @@ from compare.commands.options import (
     Segments,
     Stations,
 )
-from compare.commands.output import ended_by_signals, output_folder
+from compare.commands.output import output_folder
 
 
 def budget(
@@ -54,8 +54,7 @@ def budget(
             terminal.print_written(write_whole(folder / name, content))
         advice = None
         if target is not None:
-            with ended_by_signals():
-                advice = follow_advice(job.case, found, runs, target)
+            advice = follow_advice(job.case, found, runs, target)
             with_advice = budget_files(found, advice.to_dict())["budget.json"]
             write_whole(folder / "budget.json", with_advice)
             terminal.print_advice(advice)

@@ -1,11 +1,10 @@
-"""Sweeps in MuJoCo as the commands do them: with a progress bar, and ended well by signals."""
+"""Sweeps in MuJoCo as the commands do them: with a progress bar, and kept as far as they came."""
 
 from pathlib import Path
 
 import typer
 
 from analytic import Readings
-from compare.commands.output import ended_by_signals
 from compare.commands.terminal import progress
 from compare.explain.budget import Budget
 from compare.explain.changes import controlled_changes
@@ -41,10 +40,7 @@ def simulated(job: Job, folder: Path) -> Readings:
         stations = f"{len(partial.table)} of {job.case.sweep.stations} stations"
         typer.echo(f"vibrissa: kept {stations} in {path}", err=True)
 
-    with (
-        ended_by_signals(),
-        progress(f"MuJoCo {job.settings.beam}", job.case.sweep.stations) as advance,
-    ):
+    with progress(f"MuJoCo {job.settings.beam}", job.case.sweep.stations) as advance:
         readings = simulate_sweep(job.case, job.settings, advance, keep)
     readings.write(folder / f"{name}.parquet")
     return readings
@@ -64,5 +60,5 @@ def measured_budget(job: Job) -> tuple[Budget, dict[str, Readings]]:
         As `compare.simulate.controlled.measure_budget` returns them.
     """
     changes = len(set(controlled_changes(job.settings).values()))
-    with ended_by_signals(), progress("controlled changes", changes) as advance:
+    with progress("controlled changes", changes) as advance:
         return measure_budget(job.case, job.settings, advance)

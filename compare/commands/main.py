@@ -13,6 +13,7 @@ from typer.exceptions import TyperException
 
 from analytic.problem.errors import InputError
 from compare.commands import budget, methods, readings, study, sweeps
+from compare.commands.output import ended_by_signals
 
 BAD_INPUT = 2
 _LONGEST = 800  # characters of an error
@@ -43,12 +44,16 @@ COMMANDS: tuple[Callable[..., int], ...] = (
 
 
 def _saying_what_ended_it(command: Callable[..., int]) -> Callable[..., int]:
-    """The command, whose interrupt typer would turn into an exit code without a word."""
+    """The command, ended by signals in order: what is unfinished goes, and a line says why.
+
+    Typer would turn an interrupt into an exit code without a word.
+    """
 
     @wraps(command)
     def run(*given: Any, **named: Any) -> int:  # noqa: ANN401  # as the command takes them
         try:
-            return command(*given, **named)
+            with ended_by_signals():
+                return command(*given, **named)
         except KeyboardInterrupt as error:
             raise typer.Abort(str(error)) from error
 

@@ -1,7 +1,9 @@
 """The folder that a command writes to, and signals that end it."""
 
 import signal
+import sys
 import tempfile
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -80,22 +82,26 @@ def distinct_name(path: Path) -> str:
 def ended_by_signals() -> Iterator[None]:
     """Let SIGTERM and SIGHUP end the work as Ctrl-C does, so that what there is can be kept.
 
-    Processes that were started for the work end at once.
+    Processes that were started for the work end at once. A signal that is ignored, as SIGHUP under
+    ``nohup``, stays so; and outside the main thread, where Python allows no handlers, all do.
 
     Raises
     ------
     Ended
         When one of the signals arrives.
     """
-    from multiprocessing import active_children
 
     def end(number: int, _: FrameType | None) -> None:
-        for child in active_children():
-            child.terminate()
+        if "multiprocessing" in sys.modules:  # else nothing was started
+            for child in sys.modules["multiprocessing"].active_children():
+                child.terminate()
         raise Ended(_SIGNALS[signal.Signals(number).name])
 
     known = [getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)]
-    before = {number: signal.signal(number, end) for number in known}
+    heard = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
+    if threading.current_thread() is not threading.main_thread():
+        heard = []
+    before = {number: signal.signal(number, end) for number in heard}
     try:
         yield
     finally:

@@ -138,7 +138,7 @@ def test_a_table_of_ones_own():
         (lambda: Readings(FOUR), "`Readings.of`"),
         (lambda: Readings.of(FOUR, beam=1.0), "a float"),
         (lambda: Readings.of(FOUR, source=3), "a int"),
-        (lambda: Readings.of({**FOUR, "phase": ["free", "tip", "loose"]}), "row 2, = loose"),
+        (lambda: Readings.of({**FOUR, "phase": ["free", "tip", "loose"]}), "row 2, = 'loose'"),
         (lambda: Readings.of({**FOUR, "phase": [["free"], None, 1]}), "row 0"),
         (lambda: Readings.of(FOUR, provenance={"events": [1]}), "provenance.events"),
         (lambda: Readings.of(FOUR, provenance={"events": {"snap_off": "x"}}), "provenance.events"),

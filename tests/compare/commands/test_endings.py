@@ -7,9 +7,11 @@ import sys
 import time
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 from analytic import Readings
+from compare.commands.output import Ended, ended_by_signals
 
 COMMAND = [sys.executable, "-c", "from compare.commands.main import main; main()"]
 
@@ -90,6 +92,44 @@ def test_a_budget_that_is_ended_leaves_no_process_and_no_folder(tmp_path, way):
         assert process.returncode == 2
         assert len(error.splitlines()) == 1, error
         assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("way", [signal.SIGINT, signal.SIGTERM])
+def test_a_study_that_is_ended_goes_on_where_it_was(tmp_path, way):
+    (tmp_path / "grid.toml").write_text(
+        'study = { case = "catenary", beams = [] }\n'
+        "axes.beam.radius = { from = 0.001, to = 0.01, count = 5000 }\n"
+    )
+    words = ["study", "grid.toml", "--out", "out", "--workers", "1"]
+    with subprocess.Popen([*COMMAND, *words], cwd=tmp_path, **PIPES) as process:
+        end = time.monotonic() + 120
+        while not any(file.stat().st_size > 5000 for file in tmp_path.rglob(".journal*")):
+            assert time.monotonic() < end
+            time.sleep(0.05)
+        workers = children(process.pid)
+        process.send_signal(way)
+        _, error = process.communicate(timeout=60)
+    assert process.returncode == 2
+    assert len(error.splitlines()) == 1, error
+    assert list(tmp_path.rglob(".*")) == []  # the journal has become a part
+    assert len(pd.read_parquet(tmp_path / "out" / "runs")) >= 5
+    end = time.monotonic() + 60
+    while any(map(alive, workers)):
+        assert time.monotonic() < end
+        time.sleep(0.1)
+
+
+def test_nohup_is_respected(tmp_path):
+    """A signal that whoever started the command ignores is ignored."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with ended_by_signals():
+            os.kill(os.getpid(), signal.SIGHUP)
+            with pytest.raises(Ended, match="SIGTERM"):
+                os.kill(os.getpid(), signal.SIGTERM)
+    finally:
+        signal.signal(signal.SIGHUP, before)
 
 
 @pytest.mark.slow
