@@ -36,6 +36,22 @@ def is_clear(centreline: Contour, contact: States) -> Booleans:
         False where another part of the vibrissa would be inside; looked at in 16 places of the
         loaded span and 16 of the free end.
     """
+    clear = _bends_one_way(contact)
+    left = np.flatnonzero(~clear)
+    if left.size:
+        clear[left] = _is_outside(centreline, contact.at(left))
+    return clear
+
+
+def _bends_one_way(contact: States) -> Booleans:
+    """Whether the slope falls all along: the vibrissa is then below the tangent at its contact."""
+    natural, _, mu, radius = contact.vibrissa
+    at_contact = natural - mu * radius * contact.force
+    bent = (at_contact <= 0) & (natural <= contact.moment) & ~contact.beyond
+    return np.asarray(bent & (natural <= 0))
+
+
+def _is_outside(centreline: Contour, contact: States) -> Booleans:
     x, y = (np.concatenate(parts) for parts in zip(_loaded(contact), _free(contact), strict=True))
     return np.asarray(_outside(centreline, x, y).all(axis=0))
 
@@ -66,12 +82,16 @@ def _loaded(contact: States) -> tuple[Floats, Floats]:
     """Places of the loaded span, shape (16, n)."""
     natural, _, mu, radius = contact.vibrissa
     lean = np.arctan(mu)
-    part = back_to_clamp(
-        np.maximum(contact.excess, 0.0) - lean,
-        natural - mu * radius * contact.force,
-        np.sqrt(1 + mu**2) * contact.force,
-        contact.arc_length * _PLACES[:, None],
+    length = contact.arc_length * _PLACES[:, None]
+    theta, kappa, force = (
+        np.broadcast_to(values, length.shape)
+        for values in (
+            np.maximum(contact.excess, 0.0) - lean,
+            natural - mu * radius * contact.force,
+            np.sqrt(1 + mu**2) * contact.force,
+        )
     )
+    part = back_to_clamp(theta, kappa, force, length)
     sin, cos = np.sin(contact.point.alpha + lean), np.cos(contact.point.alpha + lean)
     return (
         contact.point.xi - part.along * cos + part.across * sin,

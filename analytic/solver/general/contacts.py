@@ -9,10 +9,13 @@ from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
 from analytic.solver.equilibria import equilibria
+from analytic.solver.general.dense import between, nodes
 from analytic.solver.general.newton import solve
 from analytic.solver.general.path import Path, follow
 from analytic.solver.general.states import States, Vibrissa, states, with_rates
 
+_MANY = 2000  # contacts; then only a part is solved from the path
+_EVERY = 20  # contact
 _STEPS = 8  # from the paper's vibrissa
 _BALANCED = 1e-12  # L, rad
 
@@ -46,6 +49,18 @@ def contacts(centreline: Contour, t: Floats, vibrissa: Vibrissa) -> States:
     reach = contact_range(centreline)
     touch = first_touch(centreline, reach, vibrissa.natural_curvature)
     path = follow(centreline, vibrissa, touch, reach)
+    if len(t) < _MANY:
+        z = _solved(centreline, vibrissa, path, t)
+    else:
+        some = np.unique(np.append(np.sort(t)[::_EVERY], t.max()))
+        known = nodes(centreline, vibrissa, some, _solved(centreline, vibrissa, path, some))
+        z, found = between(centreline, vibrissa, known, t)
+        z[~found] = _solved(centreline, vibrissa, path, t[~found])
+    return states(centreline.at(t), z[:, 0], z[:, 1], vibrissa)
+
+
+def _solved(centreline: Contour, vibrissa: Vibrissa, path: Path, t: Floats) -> Floats:
+    """Force and excess at each contour parameter, shape (n, 2); NaN where there is no contact."""
     point = centreline.at(t)
     z, missed = _balanced(point, vibrissa, _on_path(path, t))
     left = np.flatnonzero(~(missed <= _BALANCED))
@@ -53,7 +68,7 @@ def contacts(centreline: Contour, t: Floats, vibrissa: Vibrissa) -> States:
         at = ContourPoint(*(values[left] for values in point))
         z[left], missed[left] = _from_plain(centreline, t[left], at, vibrissa)
     z[~(missed <= _BALANCED)] = np.nan
-    return states(point, z[:, 0], z[:, 1], vibrissa)
+    return z
 
 
 def _on_path(path: Path, t: Floats) -> Floats:

@@ -21,7 +21,7 @@ _ROUNDING = 1e-12  # of the misses: one that does not fall any more is as small 
 _NEWTON = 10
 _ASIDE = 1e-9  # of a step: a kink nearer than that is the one that the step starts from
 INSIDE = -5e-324  # an excess of nothing, in Phase B
-_LEAST = 1e-9  # of a cell, and of a rate: where something is least
+_LEAST = 1e-8  # of a rate: what is least is then exact to its square
 _SEARCHES = 40
 _T, _F, _W = range(3)
 
@@ -133,20 +133,21 @@ class Curve(NamedTuple):
         normal = chord / _scale(begin.z) ** 2
         low, high = 0.0, 1.0
         rate_low, rate_high = rate(begin), rate(end)
-        found = None
-        for _ in range(_SEARCHES):
-            share = low + (high - low) * np.clip(rate_low / (rate_low - rate_high), 0.05, 0.95)
+        found, last = None, 0.0
+        for _ in range(_SEARCHES):  # regula falsi, as the Illinois method has it
+            share = low + (high - low) * rate_low / (rate_low - rate_high)
             found = self._corrected(begin.z + share * chord, normal)
             if found is None:
                 return None
             found = _along(found, normal)
             here = rate(found)
-            if here < 0:
-                low, rate_low = share, here
-            else:
-                high, rate_high = share, here
-            if high - low < _LEAST or abs(here) < _LEAST:
+            if abs(here) < _LEAST:
                 break
+            if here < 0:
+                low, rate_low, rate_high = share, here, rate_high / (2 if here * last > 0 else 1)
+            else:
+                high, rate_high, rate_low = share, here, rate_low / (2 if here * last > 0 else 1)
+            last = here
         return found
 
     def _places(self, old: Floats, new: Floats) -> list[tuple[float, int, float, float]]:
@@ -174,10 +175,8 @@ class Curve(NamedTuple):
             self.centreline.at(z[:1]), z[1:2].copy(), z[2:3].copy(), self.vibrissa
         )
         slopes = np.concatenate([rates.twist, rates.above])
-        (a, b, c), (d, e, f) = slopes.tolist()
-        across = b * f - c * e, c * d - a * f, a * e - b * d
-        size = math.hypot(across[0], across[1] / max(1.0, z[_F]), across[2])
-        direction = np.array(across) / (size or math.nan)
+        direction = _cross(slopes[0], slopes[1])
+        direction = direction / (_size(direction, z) or math.nan)
         misses = np.array([here.twist[0], here.up[0] - here.point.eta[0]])
         point = Point(
             z,
@@ -196,18 +195,18 @@ class Curve(NamedTuple):
         missed = np.inf
         for _ in range(_NEWTON):
             point, misses, slopes = self._with_direction(z)
-            if not np.isfinite(point.direction).all():
+            before, missed = missed, float(np.abs(misses).max())
+            if not math.isfinite(missed + float(point.direction.sum())):
                 return None
-            before, missed = missed, np.abs(misses).max()
             if missed < close or (missed < _ROUNDING and missed >= before / 2):
                 return point
-            matrix = np.vstack([slopes, normal])
-            try:
-                z = z - np.linalg.solve(matrix, np.append(misses, 0.0))
-                z[pinned] = value
-            except np.linalg.LinAlgError:
+            u, v = _cross(slopes[1], normal), _cross(normal, slopes[0])  # Cramer's rule
+            determinant = float(slopes[0] @ u)
+            if determinant == 0:
                 return None
-            if z[_F] < 0 or not self.t_range[0] - 1 < z[_T] < self.t_range[1] + 1:
+            z = z - (misses[0] * u + misses[1] * v) / determinant
+            z[pinned] = value
+            if not z[_F] >= 0 or not self.t_range[0] - 1 < z[_T] < self.t_range[1] + 1:
                 return None
         return None
 
@@ -224,7 +223,13 @@ def _scale(z: Floats) -> Floats:
 
 
 def _size(way: Floats, at: Floats) -> float:
-    return float(np.linalg.norm(way / _scale(at)))
+    return math.hypot(way[_T], way[_F] / max(1.0, at[_F]), way[_W])
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    """`np.cross` of two short vectors, ten times as fast."""
+    (u, v, w), (x, y, z) = a.tolist(), b.tolist()
+    return np.array([v * z - w * y, w * x - u * z, u * y - v * x])
 
 
 def turning(here: Point, new: Point) -> float:

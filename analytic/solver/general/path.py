@@ -19,7 +19,7 @@ from analytic.solver.general.states import Vibrissa
 _STEP = 0.02  # of the curve's length, at first
 _LARGEST = 0.5
 _SMALLEST = 1e-7
-_TURN = 0.2  # rad; of the curve's direction between neighbours
+_TURN = 0.3  # rad; of the curve's direction between neighbours
 _MOST = 4000  # points
 _HALVINGS = 20  # of a cell, to begin Newton's method from
 

@@ -22,6 +22,8 @@ from scipy.special import ellipj, elliprd
 
 from analytic.problem.arrays import Booleans, Floats
 
+_TINY = 1e-300  # instead of nothing, to divide by
+
 
 class Start(NamedTuple):
     """The clamp's end of the span, as seen from the contact; arrays of one shape."""
@@ -54,12 +56,11 @@ def back_to_clamp(theta: Floats, kappa: Floats, force: Floats, length: Floats) -
     Start
         Of the same shape, dimensionless; right for spans of up to one period.
     """
-    theta, kappa, force, length = np.broadcast_arrays(theta, kappa, force, length)
     chi = np.pi / 4 - theta / 2
     p1, g1, v1 = np.sin(chi), np.cos(chi), -kappa / 2
     energy = force * p1**2 + v1**2
     swings = energy <= force  # the pendulum does; else it turns over
-    larger = np.maximum(np.where(swings, force, energy), 1e-300)
+    larger = np.maximum(np.where(swings, force, energy), _TINY)
     m = np.where(swings, energy, force) / larger
     root = np.sqrt(larger)
     sn, cn, dn, _ = ellipj(root * length, m)
@@ -71,8 +72,8 @@ def back_to_clamp(theta: Floats, kappa: Floats, force: Floats, length: Floats) -
     D = 1 - p1**2 * F_SS
     p = (p1 * c * d - S * v1 * g1) / D
     g = (g1 * d + p1 * v1 * S * c) / D
-    with np.errstate(divide="ignore", invalid="ignore"):
-        fall = np.where(c >= 0, S**2 / (1 + c), (1 - c) / force)  # (1 - c)/F
+    # (1 - c)/F, as it is best where the force is small or large.
+    fall = np.where(c >= 0, S**2 / (1 + np.maximum(c, 0)), (1 - c) / np.maximum(force, _TINY))
     gained = (v1 * (p1**2 * S**2 - fall) + p1 * g1 * S * d) / D  # (v - v1)/F
     across = length - 2 * (down + p1 * p * S)
     return Start(p, g, kappa - 2 * force * gained, 2 * gained, across, S < 0)

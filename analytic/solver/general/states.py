@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import ContourPoint
 from analytic.solver.general.span import back_to_clamp
@@ -97,6 +97,32 @@ class States(NamedTuple):
     beyond: Booleans
     """Whether the span is longer than half a period: it then has two inflections and buckles."""
     vibrissa: Vibrissa
+
+    def at(self, which: Integers) -> "States":
+        """Some of the states.
+
+        Parameters
+        ----------
+        which : array of int, shape (m,)
+            Their numbers.
+
+        Returns
+        -------
+        States
+            Of m contacts.
+        """
+        point = ContourPoint(*(values[which] for values in self.point))
+        return States(
+            point,
+            self.force[which],
+            self.excess[which],
+            self.moment[which],
+            self.up[which],
+            self.reach[which],
+            self.twist[which],
+            self.beyond[which],
+            self.vibrissa,
+        )
 
     @property
     def tangent(self) -> Booleans:
