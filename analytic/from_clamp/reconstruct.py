@@ -29,6 +29,7 @@ from analytic.solver.elastica import span
 _SAMPLES = 400  # of the noise, a station
 _AT_ONCE = 10_000  # stations whose samples are in memory, 130 MB for each number of them
 _COVERAGE = 0.95
+_LARGE = 0.99  # quantile of the forces that is called the largest
 _CLEAR = 0.1  # of the largest force; with less, noise makes of a contact what it likes
 
 
@@ -162,12 +163,15 @@ def clearly_loaded(readings: Readings) -> Booleans:
     Returns
     -------
     array of bool, shape (stations,)
-        Whether the force is more than a tenth of the largest, and does not drown in noise.
+        Whether the station is trusted, and its force more than a tenth of the largest and not
+        drowned in noise. One station of 100 does not count as the largest: it may be a spike.
     """
     force = np.hypot(readings.values("force_x"), readings.values("force_y"))
+    force = np.where(readings.trusted, force, 0.0)
+    large = float(np.quantile(force, _LARGE, method="lower"))
     felt = force > UNLOADED * readings.beam.force_unit
     drowned = felt & (judge_phases(readings).phase == "free")
-    return np.asarray((force > _CLEAR * np.nanmax(force, initial=0.0)) & ~drowned, dtype=bool)
+    return np.asarray(felt & (force > _CLEAR * large) & ~drowned, dtype=bool)
 
 
 def reconstruct_by_decision(readings: Readings, tolerance: float = 1e-6) -> pd.DataFrame:

@@ -130,3 +130,11 @@ def test_moments_as_instruments_write_them(unit, size):
     assert unit_in_si(unit, "N m") == pytest.approx(size)
     assert is_unit(unit)
     assert not is_unit("Weg")
+
+
+def test_a_spike_is_no_wrong_vibrissa():
+    sweep = solve_sweep(named_case("parabola"))
+    table = sweep.table[list(SENSED)].copy()
+    table.loc[100, ["force_x", "force_y"]] = 1e6
+    table.loc[50:55, "moment_z"] = np.nan
+    assert read_measured(table).provenance[ASSUMED] == "L = EI = 1"
