@@ -5,8 +5,9 @@ import sys
 import mujoco
 import numpy as np
 import pytest
+import trimesh
 
-from analytic import Beam, Case, InputError, Readings, Sweep, catenary, circle
+from analytic import Case, InputError, Readings, Sweep, circle, mesh_section
 from compare.commands.main import main
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
@@ -139,8 +140,9 @@ def test_a_study_calls_it_diverged(not_a_number, tmp_path):
     assert "station" in row["reason"]
 
 
-def test_what_mujoco_cannot_compile_is_one_line():
-    thin = Case(Beam(radius=1e-5), catenary(0.5, -0.8), Sweep(stations=5))
-    with pytest.raises(InputError, match=r"mass and inertia .* too thin") as refused:
-        simulate_sweep(thin, Settings(segments=8, contour_points=100))
+def test_what_mujoco_cannot_compile_is_one_line(tmp_path):
+    trimesh.creation.icosphere(subdivisions=1).export(tmp_path / "ball.stl")
+    speck = mesh_section(tmp_path / "ball.stl", scale=1e-4, offset=(0.0, 0.4))
+    with pytest.raises(InputError, match=r"mesh .* too small for MuJoCo") as refused:
+        simulate_sweep(Case(profile=speck, sweep=Sweep(stations=5)), Settings(segments=8))
     assert "\n" not in str(refused.value)
