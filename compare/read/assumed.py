@@ -11,6 +11,9 @@ from analytic.from_clamp.reconstruct import clearly_loaded
 ASSUMED = "vibrissa_assumed"
 """In the provenance of a sweep whose vibrissa nobody named."""
 
+BEAM_WANTED = "use --beam FILE, for a reference --reference-beam FILE (in Python beam=Beam(...))"
+"""What to do about a missing vibrissa."""
+
 _LOOKED_AT = 2000  # stations
 # Of readings that are of L = EI = 1 and have 5 % of noise at most 0.18 were of no elastica, and
 # contacts got at most 0.9 L off the contour (25 objects); with 1 %, 0.01 and 0.2 L.
@@ -52,7 +55,7 @@ def assumed_of(readings: Readings) -> Readings:
             "vibrissa",
             "none given",
             f"the one that was measured ({why} L = EI = 1)",
-            "use --beam FILE (in Python a Beam), in the units of the readings",
+            BEAM_WANTED,
         )
     return replace(readings, provenance={**readings.provenance, ASSUMED: "L = EI = 1"})
 

@@ -16,7 +16,7 @@ from analytic.problem.arrays import Floats
 from analytic.problem.files import as_path
 from analytic.problem.readings_file import is_ours
 from analytic.problem.table import Place, as_numbers, row_number
-from compare.read.assumed import assumed_of
+from compare.read.assumed import BEAM_WANTED, assumed_of
 from compare.read.case import read_beam
 from compare.read.dialect import read_text_table
 from compare.read.suffixes import TEXTS
@@ -138,7 +138,7 @@ def _check_beam(beam: Path | Beam | None, found: Beam | None) -> None:
             "vibrissa",
             "none given",
             "given in units, as the columns are",
-            "use --beam FILE, for a reference --reference-beam FILE (in Python beam=Beam(...))",
+            BEAM_WANTED,
         )
     if isinstance(beam, Path) and not found.si:
         raise InputError(
