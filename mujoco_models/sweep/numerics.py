@@ -39,8 +39,9 @@ class Numerics:
         A contact whose slope angle jumps by more than this from one state at rest to the next has
         left the branch [rad]. A corner that passes from bead to bead turns the force by up to 0.7.
     flicker : float
-        Newton's method that stops at less than this out of balance has hardly left the branch, but
-        jumps from facet to facet, or from bead to bead: a descent ends that [EI/L].
+        Newton's method that stops at less than this out of balance, over 1 + the load, has hardly
+        left the branch, but jumps from facet to facet, or from bead to bead: a descent ends that
+        [EI/L]. At a hundredth of it, the tips of needles take steps ten times as short.
     refinements : int
         Newton steps with MuJoCo's own derivative, where a descent does not end that.
     difference : float

@@ -152,10 +152,11 @@ class Walk:
         """At rest, if Newton's method gets there, or a descent, or Newton's with differences."""
         model, numerics = self.model, self._numerics
         state = self._relax(foot_x, start)
-        if not state.settled and state.imbalance < numerics.flicker:
+        flicker = numerics.flicker * (1 + self._state.load)
+        if not state.settled and state.imbalance < flicker:
             near = descend(model, foot_x, state, numerics, numerics.flicker_steps)
             state = self._relax(foot_x, near)
-        if not state.settled and state.imbalance < numerics.flicker:
+        if not state.settled and state.imbalance < flicker:
             state = self._relax(foot_x, refine(model, foot_x, state, numerics))
         return state
 
