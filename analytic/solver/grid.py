@@ -20,6 +20,7 @@ _RISE = 0.15  # the largest change of the height, relative
 _TRUST = 0.05  # by how much a mean slope may lie outside those at the ends, of the larger one
 _FLAT = 1e-12  # L; changes of the foot position and the surplus that are rounding, or nearly
 _LEVELS = 40  # of halving: a cell is rounding then
+_AT_END, _INSIDE = 2, 16  # times that so many points are put where the reach ends
 _MOST = 2000  # points more: beyond, derivatives are lost in rounding, as next to an upright side
 
 
@@ -154,6 +155,8 @@ def folded(centreline: Contour, grid: Floats) -> Floats:
     first = centreline.at(grid[:1])
     begin = np.array([[grid[0]], first.xi, [np.nan], [0.0]])
     samples = np.hstack([begin, _sample(centreline, grid[1:])])
+    for _ in range(_AT_END):
+        samples = _merged(samples, _sample(centreline, _end_of_reach(samples)))
     for _ in range(_LEVELS):
         t, foot_x, rate, _ = samples
         new = middles(t, doubtful(t, foot_x, rate))
@@ -164,6 +167,17 @@ def folded(centreline: Contour, grid: Floats) -> Floats:
     unreachable = np.flatnonzero(np.isnan(samples[1]))
     end = unreachable[0] if unreachable.size else samples.shape[1]
     return np.asarray(samples[[0, 1, 3], :end])
+
+
+def _end_of_reach(samples: Floats) -> Floats:
+    """Places between the last sample within reach and the next one; none if all are within reach.
+
+    Past a nearly sharp edge x0 may dip a last time there, within a small part of a cell.
+    """
+    gone = np.flatnonzero(np.isnan(samples[1]))
+    if gone.size == 0:
+        return np.zeros(0)
+    return np.linspace(samples[0, gone[0] - 1], samples[0, gone[0]], _INSIDE + 2)[1:-1]
 
 
 def _folds(centreline: Contour, samples: Floats) -> Floats:

@@ -41,6 +41,12 @@ def test_more_random_contours(kind):
         assert (outcome == "refused") or (outcome, found) == ("solved", []), seed
 
 
+@pytest.mark.parametrize("seed", [31000000007497, 31000000014387])
+def test_a_last_fold_next_to_the_end_of_reach(seed):
+    """Past a nearly sharp edge x0 dips once more: missed, the snap-off was up to 0.03 L early."""
+    assert trial("nearly polygon", seed) == ("solved", [])
+
+
 @pytest.mark.parametrize("event", ["first_contact", "phase_b_start", "phase_b_end", "snap_off"])
 @pytest.mark.parametrize("aside", [0.0, 1e-12, -1e-12, 1e-9, -1e-9])
 def test_stations_on_events_are_as_good_as_others(event, aside):
