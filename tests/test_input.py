@@ -133,3 +133,9 @@ def test_things_of_another_kind(call, said):
     with pytest.raises(InputError) as refused:
         call()
     assert said in str(refused.value)
+
+
+@pytest.mark.parametrize("name", ["", " ", "\n", "a\tb", "\u202e", "x\x00"])
+def test_names_that_do_not_show_are_quoted(name):
+    assert ascii(name) in str(InputError("file", name, "a name", "choose one"))
+    assert "größe" in str(InputError("file", "größe", "a name", "choose one"))

@@ -1,5 +1,7 @@
 """The one exception for input that cannot be used."""
 
+from pathlib import PurePath
+
 
 class InputError(ValueError):
     """Input that states no solvable problem, reported in one line.
@@ -27,7 +29,10 @@ class InputError(ValueError):
 
 def _written(value: object) -> str:
     try:
-        return str(value)
+        text = str(value)
+        if isinstance(value, str | PurePath) and not (text.strip() and text.isprintable()):
+            return ascii(text)  # a name of blanks or of signs that do not show
+        return text
     except ValueError:  # Python refuses to write thousands of digits
         return "an integer of thousands of digits"
 
