@@ -38,6 +38,9 @@ class Numerics:
     largest_shift : float
         A contact whose slope angle jumps by more than this from one state at rest to the next has
         left the branch [rad]. A corner that passes from bead to bead turns the force by up to 0.7.
+    facet_shift : float
+        The same where the obstacle has sharp corners. At 1.0 a tip goes on to rest on the next
+        facet while it is still held on its own, at one station in 1,600 of random polygons.
     flicker : float
         Newton's method that stops at less than this out of balance, over 1 + the load, has hardly
         left the branch, but jumps from facet to facet, or from bead to bead: a descent ends that
@@ -87,6 +90,7 @@ class Numerics:
     margin: int = 2
     branch_turn: float = 0.35
     largest_shift: float = 1.0
+    facet_shift: float = 0.1
     flicker: float = 1e-4
     refinements: int = 4
     difference: float = 1e-8

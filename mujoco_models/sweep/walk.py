@@ -182,7 +182,9 @@ class Walk:
         last, numerics = self._state, self._numerics
         near = turned(state.angles, last.angles) < numerics.branch_turn
         if last.slope is not None and state.slope is not None:
-            near &= abs(state.slope - last.slope) < numerics.largest_shift
+            cornered = len(self.model.obstacle.corners) > 0
+            largest = numerics.facet_shift if cornered else numerics.largest_shift
+            near &= abs(state.slope - last.slope) < largest
         return state.settled and near and (last.stance, state.stance) in _NEIGHBOURS
 
     def row(self) -> dict[str, Any]:
