@@ -7,7 +7,7 @@ import pandas as pd
 
 from analytic.checks.integration import integrate_span
 from analytic.problem.readings import Readings
-from analytic.problem.support import support_of
+from analytic.problem.support import is_plain, support_of
 
 
 def certify(readings: Readings) -> pd.DataFrame:
@@ -27,16 +27,18 @@ def certify(readings: Readings) -> pd.DataFrame:
         A row a station, dimensionless. ``residual_boundary`` is the largest of the misses of the
         contact's position, of its curvature (the natural one, less what friction's couple on the
         surface adds), of the slope there (the contour's in Phase B, the tip's in Phase A) and of
-        the force's direction, normal to the contour, or off it by friction's angle; and of what the
-        arc length exceeds L by. For the paper's vibrissa it is that of what the slope falls below
-        the contour's by on the way, too: above it the vibrissa stays below the tangent at the
-        contact, and so outside a convex body. ``residual_moment`` is that of
-        M = F_y (xi - x0) - F_x eta + mu r f. Zero where the vibrissa is free, NaN where the
-        readings have no contact to check.
+        the force's direction, normal to the contour, or off it by friction's angle; of what the arc
+        length exceeds L by; and of the tip's slope, if it comes from inside the object. For the
+        paper's vibrissa it is that of what the slope falls below the contour's by on the way, too:
+        above it the vibrissa stays below the tangent at the contact, and so outside a convex body.
+        ``residual_moment`` is that of M = F_y (xi - x0) - F_x eta + mu r f. Zero where the vibrissa
+        is free, NaN where the readings have no contact to check.
     """
-    if readings.bends_left:
+    clamp_stiffness, friction = support_of(readings.provenance)
+    beam, foot_x = readings.beam, readings.values("foot_x")
+    plain = is_plain(beam, clamp_stiffness, friction)
+    if readings.bends_left if plain else foot_x[-1] > foot_x[0]:
         return certify(readings.mirrored())
-    beam = readings.beam
     length = beam.length
     force_x = readings.values("force_x") / beam.force_unit
     force_y = readings.values("force_y") / beam.force_unit
@@ -49,12 +51,10 @@ def certify(readings: Readings) -> pd.DataFrame:
     arc_length = readings.values("contact_arc_length") / length
     phase = readings.table["phase"].to_numpy()
     slope = np.where(phase == "tangent", alpha, readings.values("tip_angle"))
-    clamp_stiffness, friction = support_of(readings.provenance)
     compliance, natural = beam.moment_unit / clamp_stiffness, beam.natural_curvature * length
     # Friction acts on the surface, and turns the force by the friction angle.
     arm = friction / math.sqrt(1 + friction**2) * beam.radius / length
     couple = arm * np.hypot(force_x, force_y)
-    plain = compliance == natural == friction == 0
 
     touching = np.isfinite(arc_length)
     boundary = np.where(phase == "free", 0.0, np.nan)
@@ -75,6 +75,7 @@ def certify(readings: Readings) -> pd.DataFrame:
             end.kappa - natural + couple[touching],
             (np.arctan2(-force_x, force_y) - math.atan(friction) - alpha)[touching],
             np.maximum(0.0, arc_length[touching] - 1),
+            np.maximum(0.0, slope[touching] - alpha[touching] - np.pi),
             np.maximum(0.0, alpha[touching] - (end.least_phi if plain else slope[touching])),
         ]
         boundary[touching] = np.abs(misses).max(axis=0)

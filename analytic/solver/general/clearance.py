@@ -40,14 +40,26 @@ def is_clear(centreline: Contour, contact: States) -> Booleans:
     left = np.flatnonzero(~clear)
     if left.size:
         clear[left] = _is_outside(centreline, contact.at(left))
-    return clear
+    return clear & _starts_outside(contact)
+
+
+def _starts_outside(contact: States) -> Booleans:
+    """Whether a vibrissa leaves its contact to the outside of the object.
+
+    A tip comes from below the tangent there; a vibrissa that goes along is not curved more than the
+    object.
+    """
+    point, natural = contact.point, contact.vibrissa.natural_curvature
+    below = contact.excess <= np.pi + _INSIDE
+    flatter = natural * point.stretch <= point.turning * (1 + _INSIDE)
+    return np.asarray(below & (flatter | ~contact.tangent))
 
 
 def _bends_one_way(contact: States) -> Booleans:
     """Whether the slope falls all along: the vibrissa is then below the tangent at its contact."""
     natural, _, mu, radius = contact.vibrissa
     at_contact = natural - mu * radius * contact.force
-    bent = (at_contact <= 0) & (natural <= contact.moment) & ~contact.beyond
+    bent = (at_contact <= 0) & (natural <= contact.moment) & (contact.swing < np.pi)
     return np.asarray(bent & (natural <= 0))
 
 

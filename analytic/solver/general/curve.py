@@ -35,8 +35,8 @@ class Point(NamedTuple):
     foot_x: float
     rate: float
     """Foot position [L] and its derivative by the curve's length."""
-    beyond: bool = False
-    """Whether the span is longer than half a period."""
+    swing: float = 0.0
+    """Amplitude of the span [rad]; see `States`."""
 
 
 class Curve(NamedTuple):
@@ -183,7 +183,7 @@ class Curve(NamedTuple):
             direction,
             float(here.foot_x[0]),
             float(rates.foot_x[0] @ direction),
-            bool(here.beyond[0]),
+            float(here.swing[0]),
         )
         return point, misses, slopes
 

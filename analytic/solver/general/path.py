@@ -16,10 +16,14 @@ from analytic.problem.rest import Touch
 from analytic.solver.general.curve import INSIDE, Curve, Point, turning
 from analytic.solver.general.states import Vibrissa
 
-_STEP = 0.02  # of the curve's length, at first
+# By how much the curve may turn between neighbours [rad], and its first step; finer if it is lost.
+_STEPS = ((0.3, 0.02), (0.05, 0.004))
 _LARGEST = 0.5
 _SMALLEST = 1e-7
-_TURN = 0.3  # rad; of the curve's direction between neighbours
+_BUCKLES, _NEAR = 0.75 * np.pi, 0.05  # rad; a curve close to another one: shorter steps stay on it
+_TRUST = 0.1  # by how much a mean rate may lie outside those at the ends, of the larger one
+_FLAT = 1e-5  # L; the same, of a rate that is next to nothing
+_SHORT = 1e-3  # of the curve's length: nothing hides there
 _MOST = 4000  # points
 _HALVINGS = 20  # of a cell, to begin Newton's method from
 
@@ -196,21 +200,11 @@ def follow(
     # A curved vibrissa comes as far up as its length when it is straightened, and no farther.
     reach = reach[0], centreline.t_range[1]
     curve = Curve(centreline, vibrissa, reach, centreline.breaks())
-    points = [curve.start(touch.t, touch.excess)]
-    length, bend = _STEP, np.zeros(3)
-    while len(points) < _MOST and length > _SMALLEST and not _ended(points, reach):
-        here = points[-1]
-        ahead = curve.advance(here, length, bend)
-        turn = turning(here, ahead[0]) if ahead else np.inf
-        if turn > 2 * _TURN:
-            length /= 2
-            continue
-        points.extend(ahead)
-        bend = np.zeros(3)
-        if len(ahead) == 1:
-            bend = (ahead[0].direction - here.direction) / length
-            length = min(_LARGEST, length * min(2.0, max(0.5, _TURN / max(turn, 1e-3))))
-    complete = _ended(points, reach)
+    for turn, step in _STEPS:
+        points = _points(curve, touch, turn, step)
+        complete = _ended(points, reach)
+        if complete:
+            break
     points = _with_turns(curve, points)
     return Path(
         np.array([point.z for point in points]),
@@ -221,12 +215,45 @@ def follow(
     )
 
 
+def _points(curve: Curve, touch: Touch, largest: float, length: float) -> list[Point]:
+    """Points of the curve between which it turns by an angle at most, from a first step on."""
+    points, bend = [curve.start(touch.t, touch.excess)], np.zeros(3)
+    while len(points) < _MOST and length > _SMALLEST and not _ended(points, curve.t_range):
+        here = points[-1]
+        if here.swing > _BUCKLES:
+            length = min(length, _NEAR)
+        ahead = curve.advance(here, length, bend)
+        turn = turning(here, ahead[0]) if ahead else np.inf
+        if turn > 2 * largest or (length > _SHORT and _hides(here, ahead[0])):
+            length /= 2
+            continue
+        points.extend(ahead)
+        bend = np.zeros(3)
+        if len(ahead) == 1:
+            bend = (ahead[0].direction - here.direction) / length
+            length = min(_LARGEST, length * min(2.0, max(0.5, largest / max(turn, 1e-3))))
+    return points
+
+
+def _hides(begin: Point, end: Point) -> bool:
+    """Whether the foot position may turn between two points though its rates do not show it.
+
+    It does not if the mean rate lies between those at the ends, nearly.
+    """
+    way = end.z - begin.z
+    way[1] /= max(1.0, begin.z[1])
+    mean = (end.foot_x - begin.foot_x) / np.linalg.norm(way)
+    low, high = sorted((begin.rate, end.rate))
+    slack = _TRUST * max(-low, high) + _FLAT
+    return not low - slack <= mean <= high + slack
+
+
 def _ended(points: list[Point], reach: tuple[float, float]) -> bool:
     """Whether the vibrissa has let go, is out of reach, or buckled after it lost its hold."""
     if len(points) == 1:
         return False
     here = points[-1]
-    return here.z[1] == 0 or here.z[0] in reach or (here.beyond and here.rate > 0)
+    return here.z[1] == 0 or here.z[0] in reach or (here.swing > np.pi and here.rate > 0)
 
 
 def _with_turns(curve: Curve, points: list[Point]) -> list[Point]:

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ellipj, elliprd
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.arrays import Floats
 
 _TINY = 1e-300  # instead of nothing, to divide by
 
@@ -35,8 +35,8 @@ class Start(NamedTuple):
     along: Floats
     across: Floats
     """Integrals of cos(theta) and sin(theta) from the clamp to the contact."""
-    beyond: Booleans
-    """Whether the span is longer than half a period."""
+    swing: Floats
+    """Amplitude of the span: pi at half a period [rad]."""
 
 
 def back_to_clamp(theta: Floats, kappa: Floats, force: Floats, length: Floats) -> Start:
@@ -76,7 +76,9 @@ def back_to_clamp(theta: Floats, kappa: Floats, force: Floats, length: Floats) -
     fall = np.where(c >= 0, S**2 / (1 + np.maximum(c, 0)), (1 - c) / np.maximum(force, _TINY))
     gained = (v1 * (p1**2 * S**2 - fall) + p1 * g1 * S * d) / D  # (v - v1)/F
     across = length - 2 * (down + p1 * p * S)
-    return Start(p, g, kappa - 2 * force * gained, 2 * gained, across, S < 0)
+    return Start(
+        p, g, kappa - 2 * force * gained, 2 * gained, across, np.arctan2(sn, cn) % (2 * np.pi)
+    )
 
 
 def _second_kind(S: Floats, cn: Floats, dn: Floats, m: Floats, root: Floats) -> Floats:

@@ -94,8 +94,8 @@ class States(NamedTuple):
     """Height of the contact above the foot and its distance from it along x."""
     twist: Floats
     """What the slope at the clamp misses [rad]; zero in balance."""
-    beyond: Booleans
-    """Whether the span is longer than half a period: it then has two inflections and buckles."""
+    swing: Floats
+    """Amplitude of the span: from pi on, half a period, it is one that buckles [rad]."""
     vibrissa: Vibrissa
 
     def at(self, which: Integers) -> "States":
@@ -120,7 +120,7 @@ class States(NamedTuple):
             self.up[which],
             self.reach[which],
             self.twist[which],
-            self.beyond[which],
+            self.swing[which],
             self.vibrissa,
         )
 
@@ -183,7 +183,7 @@ def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibriss
         start.along * sin + start.across * cos,
         start.along * cos - start.across * sin,
         compliance * moment - 2 * turned,
-        start.beyond,
+        start.swing,
         vibrissa,
     )
 
@@ -230,8 +230,8 @@ def with_rates(
         excess + step_w * _BY_EXCESS[:, None],
         vibrissa,
     )
-    moment, up, reach, twist, beyond = (values[0] for values in found[3:8])
-    here = States(point, force, excess, moment, up, reach, twist, beyond, vibrissa)
+    moment, up, reach, twist, swing = (values[0] for values in found[3:8])
+    here = States(point, force, excess, moment, up, reach, twist, swing, vibrissa)
     sin, cos = np.sin(point.alpha), np.cos(point.alpha)
     by_t = (
         point.turning,

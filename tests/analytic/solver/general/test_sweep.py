@@ -233,3 +233,24 @@ def test_units():
     moment = other.values("moment_z") / beam.moment_unit
     np.testing.assert_allclose(moment, one.values("moment_z"), atol=1e-11)
     assert find_events(circle(50.0, lowest=(0, 20.0)), beam).snap_off.foot_x < 0
+
+
+def test_curve_stays_on_its_branch_next_to_buckling():
+    """A second branch passes by at a force of 12; steps that are too long continue on that one."""
+    profile = named_case("two-circles").profile
+    natural, stiffness = 0.4274252018552831, 1.1212627039210912
+    beam = Beam(natural_curvature=natural)
+    found = find_events(profile, beam, clamp_stiffness=stiffness)
+    # In steps a fifth as long, shorter by far than the distance of the branches.
+    assert found.snap_off.foot_x == pytest.approx(-1.121800216572, abs=1e-11)
+
+
+@pytest.mark.parametrize("profile", [named_case("two-circles").profile, circle(1, lowest=(0, 0.4))])
+def test_certificate_and_status_agree_on_a_vibrissa_that_is_curved_a_lot(profile):
+    """Its tip would come from inside the object, or another part of it would be there."""
+    case = case_of(profile, 1.226642782643863, stations=60)
+    closed, certified = solve_sweep(case), solve_sweep(case, certified=True)
+    assert list(certified.table["status"]) == list(closed.table["status"])
+    assert set(certified.table["status"]) == {"ok", "touches again"}
+    excess = closed.values("tip_angle") - closed.values("contact_angle")
+    assert np.nanmax(excess[(closed.table["phase"] == "tip")]) <= np.pi
