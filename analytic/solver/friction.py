@@ -3,7 +3,9 @@
 Sliding on, the object holds the vibrissa back along its tangent with mu times the normal force.
 The elastica is integrated from the contact to the clamp by the classical Runge-Kutta method, and
 three unknowns (where on the contour, how strong, and the free arc length or slope) are found by
-Newton's method from the frictionless state.
+Newton's method from the frictionless state. It shares nothing with the closed form of a case with
+friction (`analytic.solver.general`), and takes either sign of it at the frictionless stations: what
+a budget asks.
 """
 
 from dataclasses import replace

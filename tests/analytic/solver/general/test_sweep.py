@@ -23,6 +23,7 @@ from analytic import (
     polygon,
     solve_contact,
     solve_sweep,
+    with_friction,
 )
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import arc, first_touch
@@ -126,6 +127,20 @@ def test_limit_is_smooth(name):
     assert 1e-7 < np.abs(once).max() < 1e-3
     # The next order is smaller by 1e-6 times how strongly the first one acts, where it does most.
     np.testing.assert_allclose(twice, 2 * once, atol=1e-4 * np.abs(once).max())
+
+
+@pytest.mark.parametrize("name", ["catenary", "two-circles"])
+def test_friction_by_integration(name):
+    """The Runge-Kutta method from the contact and Newton's, which share nothing with this one."""
+    plain = replace(named_case(name), sweep=Sweep(30))
+    integrated = with_friction(plain, 0.2)
+    closed = solve_sweep(replace(plain, friction=0.2))
+    both = (integrated.table["phase"] != "free") & (integrated.table["status"] == "ok")
+    assert both.sum() > 20
+    for column in READ:
+        difference = integrated.values(column) - closed.values(column)
+        # 1e-7: 200 steps of a fourth-order method, stopped at misses of 1e-9 at the clamp.
+        assert np.abs(difference[both]).max() < 1e-7
 
 
 def test_mirror():
