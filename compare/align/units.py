@@ -12,6 +12,7 @@ from compare.sense.phases import Classification, classify
 # One unit of length in another: mm, cm, dm, m and inches, the larger in the smaller.
 _LENGTHS = (10.0, 100.0, 1000.0, 25.4, 2.54, 39.3701)
 _SUSPICIOUS = 4.0  # times as large: no error of a model, but half a sweep may be as much shorter
+_FARTHEST = 12.0  # decades; beyond, it is no unit, and numbers overflow
 _LOADED = 0.1  # of the largest force; the stations whose magnitudes are compared
 _LARGE = 0.9  # quantile of a reading's magnitudes; a spike does not count
 _FITS, _BETTER = 0.1, 0.5  # rms over the largest magnitude, and times that of the unit as given
@@ -34,7 +35,7 @@ def in_units_of(reference: Readings, candidate: Readings) -> Readings:
     """
     with np.errstate(divide="ignore", invalid="ignore"):  # a dead channel has no unit
         decades = np.log10(_magnitudes(candidate) / _magnitudes(reference))
-    far = np.isfinite(decades) & (np.abs(decades) > np.log10(_SUSPICIOUS))
+    far = (np.abs(decades) > np.log10(_SUSPICIOUS)) & (np.abs(decades) < _FARTHEST)
     if not far.any():
         return candidate
     changed = {

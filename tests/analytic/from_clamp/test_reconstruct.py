@@ -20,6 +20,7 @@ from analytic import (
     require_beam,
     solve_sweep,
 )
+from tests.conftest import exact_sweep
 
 
 def missed(found, table):
@@ -60,8 +61,17 @@ def test_in_other_units():
     assert missed(reconstruct(large), large.table).max() < 50 * 1e-13
 
 
-@pytest.mark.parametrize("level", [1e-2, pytest.param(1e-4, marks=pytest.mark.slow)])
+def test_uncertainty_covers_the_error_of_a_parabola():
+    covers(exact_sweep("parabola"), 1e-2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("level", [1e-2, 1e-4])
 def test_uncertainty_covers_the_error(exact, level):
+    covers(exact, level)
+
+
+def covers(exact, level):
     """95 % of the contacts of 30 noisy sweeps lie within what is stated: 5,000, so +-1 %."""
     noise = relative_noise(exact, level)
     covered = counted = 0

@@ -6,8 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
+from analytic import Readings
 from tests.compare.command import vibrissa
 
 CASE = """
@@ -39,6 +41,7 @@ stations = 30
 """
 
 
+@pytest.mark.slow
 def test_run_writes_what_it_promises(tmp_path):
     (tmp_path / "case.toml").write_text(CASE)
     done = vibrissa("run", "case.toml", "--out", "out", "--segments", 40, cwd=tmp_path)
@@ -91,7 +94,7 @@ def test_units(tmp_path):
     (tmp_path / "case.toml").write_text(UNITS)
     done = vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    from analytic import Readings, named_case, solve_sweep
+    from analytic import named_case, solve_sweep
 
     sweep = Readings.read(tmp_path / "analytic.parquet")
     assert sweep.beam.length == pytest.approx(0.05)
@@ -180,8 +183,6 @@ def test_alone_it_prints_its_help_and_is_no_success(tmp_path):
 
 
 def test_points_and_counts_have_the_phases_of_a_comparison(tmp_path):
-    import pandas as pd
-
     from analytic import CLAMP_READINGS, Sweep, named_case, solve_sweep
     from compare import classify
     from compare.sense.noise import with_noise
@@ -217,8 +218,6 @@ def test_a_terminal_shows_what_is_being_done(monkeypatch):
 
 def test_reconstruction_of_a_rigs_file(tmp_path):
     """Own column names, millimetres and millinewtons, and the vibrissa given by a file."""
-    from analytic import Readings
-
     (tmp_path / "case.toml").write_text(UNITS)
     vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
     sweep = Readings.read(tmp_path / "analytic.parquet")
@@ -233,8 +232,6 @@ def test_reconstruction_of_a_rigs_file(tmp_path):
         "reconstruct", "rig.csv", "--beam", "case.toml", *words, "--out", "out", cwd=tmp_path
     )
     assert done.returncode == 0, done.stderr
-    import pandas as pd
-
     points = pd.read_csv(tmp_path / "out" / "points.csv")
     np.testing.assert_allclose(points["contact_x"], sweep.values("contact_x"), atol=1e-12)
     assert (tmp_path / "out" / "reconstruction.png").exists()
@@ -257,8 +254,6 @@ RIG_COLUMNS = tuple(word for column in RIG for word in ("--column", column))
 @pytest.fixture
 def rig(tmp_path) -> Path:
     """A folder with a sweep in SI units and the same from a rig: mm, mN, 2 mm off, 0.3 % noise."""
-    from analytic import Readings
-
     (tmp_path / "case.toml").write_text(UNITS.replace("stations = 30", "stations = 120"))
     vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
     sweep = Readings.read(tmp_path / "analytic.parquet")
@@ -272,8 +267,6 @@ def rig(tmp_path) -> Path:
         values = sweep.values(name) * unit
         noise = 3e-3 * np.abs(values).max() * rng.standard_normal(len(values))
         columns[column] = values + noise
-    import pandas as pd
-
     pd.DataFrame(columns).to_csv(tmp_path / "rig.csv", index=False)
     return tmp_path
 
@@ -302,6 +295,7 @@ def test_compare_with_a_rig(rig):
     assert found["offset"]["value"] == pytest.approx(-2e-3, abs=2e-4)
 
 
+@pytest.mark.slow
 def test_a_case_is_a_reference_and_its_offset_is_applied(rig):
     """The vibrissa, the limits and the name are the case's."""
     (rig / "own").mkdir()
@@ -317,10 +311,6 @@ def test_a_case_is_a_reference_and_its_offset_is_applied(rig):
     given = ("--beam", "case.toml", *RIG_COLUMNS, "--offset", found["offset"]["value"])
     done = vibrissa("reconstruct", "rig.csv", *given, "--out", "out", cwd=rig)
     assert done.returncode == 0, done.stderr
-    import pandas as pd
-
-    from analytic import Readings
-
     points = pd.read_csv(rig / "out" / "points.csv")
     foot_x = Readings.read(rig / "analytic.parquet").values("foot_x")
     np.testing.assert_allclose(points["foot_x"], foot_x, atol=1e-4)

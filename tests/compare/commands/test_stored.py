@@ -46,6 +46,7 @@ def test_the_report_of_a_run_again(tmp_path):
     assert stored.budget.convergence.keys() == {8, 16, 32}
 
 
+@pytest.mark.slow
 def test_a_report_of_two_sweeps_that_nobody_compared_yet(tmp_path, sweep):
     sweep.write(tmp_path / "analytic.parquet")
     sweep.write(tmp_path / "mujoco-rod.parquet")

@@ -124,6 +124,7 @@ def test_bad_input_in_one_line(folder, study):
     assert not (folder / "out").exists()
 
 
+@pytest.mark.slow
 def test_a_simulated_study_and_its_report(folder, study, command):
     (folder / "grid.toml").write_text(SIMULATED)
     assert study().returncode == 0
