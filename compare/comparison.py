@@ -18,7 +18,7 @@ from compare.measure.measurement import Measurement, measure
 from compare.sense.noise import checked_level, noise_level
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.axes import Axes
 
 _SHOWN = 6  # failures in the short form
 
@@ -107,17 +107,15 @@ class Comparison(Measurement):
         )
         return found
 
-    def plot(self) -> Figure:
-        """The readings of both sweeps over the foot position, and their differences.
+    def plot(self) -> list[Axes]:
+        """Draw the clamp readings of both sweeps over the foot position.
 
         Returns
         -------
-        matplotlib.figure.Figure
-            A notebook shows it; ``figure.savefig("picture.png")`` writes it.
+        list of matplotlib.axes.Axes
+            One a reading; a notebook shows them.
         """
-        from compare.show.figures.readings import readings  # matplotlib is slow to load
-
-        return readings(self)
+        return self.candidate.plot(self.reference.plot())
 
     def __repr__(self) -> str:
         """The verdict, the disagreement of each reading, and what failed."""

@@ -1,6 +1,6 @@
 """One sweep's readings: the table that every engine, rig and comparison speaks."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -301,15 +301,20 @@ class Readings:
                 f"readings file {path}", "unusable", "one sweep", str(error)
             ) from error
 
-    def plot(self) -> "list[Axes]":
+    def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         """Draw force and moment at the clamp over the foot position.
+
+        Parameters
+        ----------
+        axes : sequence of matplotlib.axes.Axes, optional
+            What ``plot`` of other readings returned, to draw these into.
 
         Returns
         -------
         list of matplotlib.axes.Axes
             One a reading: ``force_x``, ``force_y``, ``moment_z``.
         """
-        return plot(self.table, self.beam, self.trusted, self.source)
+        return plot(self.table, self.beam, self.trusted, self.source, axes)
 
     def __repr__(self) -> str:
         return as_text(self.table, self.beam, self.source, self.gaps)

@@ -1,5 +1,6 @@
 """How one sweep looks: in a terminal, in a notebook, as a picture."""
 
+from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
@@ -68,7 +69,13 @@ def as_html(table: pd.DataFrame, text: str) -> str:
     return f"<pre>{escape(text)}</pre>{rows}"
 
 
-def plot(table: pd.DataFrame, beam: Beam, trusted: Booleans, source: str) -> "list[Axes]":
+def plot(
+    table: pd.DataFrame,
+    beam: Beam,
+    trusted: Booleans,
+    source: str,
+    axes: "Sequence[Axes] | None" = None,
+) -> "list[Axes]":
     """Force and moment at the clamp over the foot position.
 
     Parameters
@@ -78,26 +85,30 @@ def plot(table: pd.DataFrame, beam: Beam, trusted: Booleans, source: str) -> "li
     trusted : array of bool, shape (stations,)
         The others are marked.
     source : str
-        The title.
+        What the lines are called.
+    axes : sequence of matplotlib.axes.Axes, optional
+        Those of other readings, to draw these into; new ones if not given.
 
     Returns
     -------
     list of matplotlib.axes.Axes
         One a reading.
     """
-    import matplotlib.pyplot as plt  # a third of a second, and most users draw nothing
+    if axes is None:
+        import matplotlib.pyplot as plt  # a third of a second, and most users draw nothing
 
-    figure, axes = plt.subplots(len(CLAMP_READINGS), sharex=True, layout="constrained")
-    foot_x = table["foot_x"]
+        figure, axes = plt.subplots(len(CLAMP_READINGS), sharex=True, layout="constrained")
+        axes[-1].set_xlabel(_with_unit("foot_x", beam))
+        for ax, name in zip(axes, CLAMP_READINGS, strict=True):
+            ax.set_ylabel(_with_unit(name, beam))
+        figure.align_ylabels()
+    foot_x, label = table["foot_x"], source.replace("$", r"\$")
     for ax, name in zip(axes, CLAMP_READINGS, strict=True):
-        ax.plot(foot_x, table[name], ".-", markersize=3, linewidth=0.8)
-        ax.plot(foot_x[~trusted], table[name][~trusted], "x", color="tab:red", label="not trusted")
-        ax.set_ylabel(_with_unit(name, beam))
-    axes[-1].set_xlabel(_with_unit("foot_x", beam))
-    axes[0].set_title(source.replace("$", r"\$"))
-    if not trusted.all():
-        axes[0].legend()
-    figure.align_ylabels()
+        ax.plot(foot_x, table[name], ".-", markersize=3, linewidth=0.8, label=label)
+        if not trusted.all():
+            there = table[name][~trusted]
+            ax.plot(foot_x[~trusted], there, "x", color="tab:red", label="not trusted")
+    axes[0].legend()
     return list(axes)
 
 

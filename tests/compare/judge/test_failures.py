@@ -88,4 +88,4 @@ def test_it_fits_a_screen():
             assert len(shown) < 2500
             assert len(shown.splitlines()) < 24
     assert "opposite sign of force_y" in repr(found)
-    assert found.plot().axes
+    assert [len(ax.lines) for ax in found.plot()] == [2, 2, 2]
