@@ -43,6 +43,7 @@ COMMANDS = {
     "reconstruct": (0, "reconstruct a/analytic.parquet --out a"),
     "methods": (0, "methods mine.toml --out methods"),
     "run": (1, "run mine.toml --out runs/mine --budget"),
+    "report": (1, "report runs/mine"),
     "budget": (1, "budget mine.toml --out b"),  # undecided: ten segments
     "findings": (0, "findings runs --out found"),
     "animate": (0, "animate mine.toml --out anim"),

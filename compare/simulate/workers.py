@@ -2,8 +2,9 @@
 
 import os
 import signal
+from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from multiprocessing import get_all_start_methods, get_context
 from multiprocessing.connection import Connection
 from threading import Thread
@@ -56,7 +57,8 @@ class Workers(ProcessPoolExecutor):
         self._watched, self._held = context.Pipe(duplex=False)
         super().__init__(count, context, _begin_work, (self._watched,))
         try:
-            self.submit(os.getpid).result(timeout=_START)
+            with _nothing_from_here():
+                self.submit(os.getpid).result(timeout=_START)
         except (BrokenExecutor, OSError, TimeoutError) as error:
             self.shutdown(wait=False, cancel_futures=True)
             reason = " ".join(str(error).split()) or type(error).__name__
@@ -90,6 +92,23 @@ class Workers(ProcessPoolExecutor):
         trace: TracebackType | None,
     ) -> None:
         self.shutdown(wait=error is None, cancel_futures=error is not None)
+
+
+@contextmanager
+def _nothing_from_here() -> Iterator[None]:
+    """Let a server that starts meanwhile import no module of the folder that it starts in.
+
+    It would take a user's ``compare.py`` there for ours; the workers' own path is their leader's.
+    """
+    before = os.environ.get("PYTHONSAFEPATH")
+    os.environ["PYTHONSAFEPATH"] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ["PYTHONSAFEPATH"]
+        else:
+            os.environ["PYTHONSAFEPATH"] = before
 
 
 def _begin_work(watched: Connection) -> None:
