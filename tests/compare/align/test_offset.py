@@ -45,7 +45,8 @@ def hits(name: str, stations: int, level: float, seeds: range) -> list[bool]:
     return within
 
 
-@pytest.mark.parametrize("level", [1e-3, pytest.param(1e-2, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("level", [1e-3, 1e-2])
 def test_the_interval_covers(level):
     """Of 40, 34 or fewer hits would happen once in 35 samples of a true 95 % interval."""
     assert sum(hits("parabola", 157, level, range(40))) >= 34
@@ -76,6 +77,7 @@ def test_without_noise(case, exact, planted):
     assert found(exact, displaced(other, planted)).value == pytest.approx(planted, abs=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("planted", PLANTED)
 def test_a_model_that_differs(exact, simulated, planted):
     """MuJoCo's systematic difference looks like an offset of at most 1.8e-4 L, as observed.

@@ -240,6 +240,7 @@ def test_friction_left_on_is_suspected():
     assert found.suspects[0].change == pytest.approx(FRICTION, rel=0.2)
 
 
+@pytest.mark.slow
 def test_friction_of_nothing_is_the_closed_form(case):
     """Runge and Kutta's method against elliptic integrals. Observed: at most 1.2e-9."""
     exact, found = solve_sweep(case), with_friction(case, 0.0)
@@ -248,6 +249,7 @@ def test_friction_of_nothing_is_the_closed_form(case):
         assert np.abs(found.values(name) - exact.values(name)).max() < 5e-9 * scale, name
 
 
+@pytest.mark.slow
 def test_friction_holds_back_and_is_the_mirror_image_to_the_right():
     with_it = with_friction(CASE, 0.1)
     inside = CASE.foot_x > solve_sweep(CASE).snap_off + 0.2

@@ -38,6 +38,7 @@ def usual(request):
     return case, settings, simulate_sweep(case, settings)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [0.1, 10])
 @pytest.mark.parametrize("quantity", ["time step", "mass", "armature"])
 def test_readings_do_not_depend_on(quantity, factor, usual, monkeypatch):
