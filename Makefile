@@ -63,6 +63,9 @@ results: $(RUNS) | install ## results/README.md: all named cases, all beams ther
 	$(BIN)/vibrissa analytic catenary --figures --out results/pictures
 	$(BIN)/vibrissa methods catenary --out results/pictures
 	cp results/pictures/methods.png results/methods-catenary.png
+	$(BIN)/vibrissa study resolution --out results/resolution
+	$(BIN)/vibrissa study-report results/resolution
+	cp results/resolution/report/disagreement-mujoco.segments.png results/study-resolution.png
 	$(BIN)/vibrissa animate catenary --stations 60 --out results/pictures
 	cp results/pictures/figure-15.png results/pictures/still-2.png results/
 	$(BIN)/vibrissa findings results/runs --out results
