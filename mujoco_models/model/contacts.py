@@ -1,6 +1,6 @@
 """The contacts that MuJoCo reports."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -9,6 +9,9 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from mujoco_models.beams.layout import Layout
 from mujoco_models.model.sides import FUSED, Sides
 from mujoco_models.model.surface import CONTACT_GAP, Surface
+
+_AT_TIP = 1e-9  # L
+_NOWHERE = dict.fromkeys(("contact_angle", "contact_arc_length", "contact_x", "contact_y"), np.nan)
 
 
 class Contacts(NamedTuple):
@@ -120,6 +123,35 @@ class Contacts(NamedTuple):
     def loaded(self) -> Booleans:
         """Which of them carry a load, shape (n,)."""
         return np.asarray(self.distance < 0)
+
+    def as_reading(self, place: Floats) -> dict[str, Any]:
+        """Phase and contact as a row of readings has them: the loaded contacts' mean, by force.
+
+        Parameters
+        ----------
+        place : array, shape (n, 3)
+            Where MuJoCo has each contact [L].
+
+        Returns
+        -------
+        dict
+            ``phase``, the columns of the contact, and ``penetration``, dimensionless; free, with
+            NaN, if none is loaded.
+        """
+        loaded = self.loaded
+        if not loaded.any():
+            return {"phase": "free", **_NOWHERE, "penetration": 0.0}
+        weight = self.distance[loaded] / self.distance[loaded].sum()
+        normal, s = weight @ self.normal[loaded], self.arc_length[loaded]
+        x, y = weight @ place[loaded, :2]
+        return {
+            "phase": "tip" if s.min() > 1 - _AT_TIP else "tangent",
+            "contact_angle": float(np.arctan2(normal[0], -normal[1])),
+            "contact_arc_length": float(weight @ s),
+            "contact_x": float(x),
+            "contact_y": float(y),
+            "penetration": float(-weight @ self.distance[loaded]),
+        }
 
     @property
     def slope(self) -> Floats:

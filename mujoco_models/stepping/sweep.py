@@ -27,9 +27,6 @@ from mujoco_models.settings import Settings
 from mujoco_models.stepping.model import MovingModel
 from mujoco_models.stepping.record import Record, Sample
 
-_AT_TIP = 1e-9  # L
-_NOWHERE = dict.fromkeys(("contact_angle", "contact_arc_length", "contact_x", "contact_y"), np.nan)
-
 
 def run_motion(
     case: Case,
@@ -120,28 +117,12 @@ def _drive(model: MovingModel, motion: Motion, record: Record, advance: Callable
 
 def _state(model: MovingModel, contacts: Contacts, speed: float) -> dict[str, Any]:
     """Contact and energy of the last step, dimensionless."""
-    found: dict[str, Any] = {
-        "phase": "free",
-        **_NOWHERE,
+    return {
+        **contacts.as_reading(model.data.contact.pos),
         "tip_angle": model.tip_angle,
         "status": "ok",
         "kinetic_share": model.kinetic_share(speed),
-        "penetration": 0.0,
     }
-    loaded = contacts.loaded
-    if loaded.any():
-        weight = contacts.distance[loaded] / contacts.distance[loaded].sum()
-        normal, s = weight @ contacts.normal[loaded], contacts.arc_length[loaded]
-        x, y = weight @ model.data.contact.pos[loaded, :2]
-        found |= {
-            "phase": "tip" if s.min() > 1 - _AT_TIP else "tangent",
-            "contact_angle": float(np.arctan2(normal[0], -normal[1])),
-            "contact_arc_length": float(weight @ s),
-            "contact_x": float(x),
-            "contact_y": float(y),
-            "penetration": float(-weight @ contacts.distance[loaded]),
-        }
-    return found
 
 
 def _readings(

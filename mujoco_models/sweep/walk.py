@@ -12,7 +12,6 @@ from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.rest import refine, relax
 from mujoco_models.sweep.state import State, turned
 
-_AT_TIP = 1e-9  # L
 _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
 # What may follow one state at rest without a snap-off.
 _NEIGHBOURS = {
@@ -203,34 +202,16 @@ class Walk:
         """
         model, state = self.model, self._shown
         clamp = model.clamp()
-        contacts = model.contacts()
-        loaded = contacts.loaded
         row: dict[str, Any] = {
             **clamp._asdict(),
-            "phase": "free",
-            **dict.fromkeys(
-                ("contact_angle", "contact_arc_length", "contact_x", "contact_y"), np.nan
-            ),
+            **model.contacts().as_reading(model.data.contact.pos),
             "tip_angle": np.pi / 2 + float(state.angles.sum()),
             "status": "ok" if self.doubt is None else "unsettled",
             "residual": state.imbalance,
             "discrepancy": model.discrepancy(),
-            "penetration": 0.0,
             "extension": model.extension(),
         }
         out_of_balance = len(state.angles) * state.imbalance  # of which the sensors feel the sum
         if state.settled and row["discrepancy"] > _DISCREPANCY + out_of_balance:
             raise ClampError(self._foot_x, row["discrepancy"], _DISCREPANCY)
-        if loaded.any():
-            weight = -contacts.distance[loaded] / -contacts.distance[loaded].sum()
-            normal, s = weight @ contacts.normal[loaded], contacts.arc_length[loaded]
-            x, y = weight @ model.data.contact.pos[loaded, :2]
-            row |= {
-                "phase": "tip" if s.min() > 1 - _AT_TIP else "tangent",
-                "contact_angle": float(np.arctan2(normal[0], -normal[1])),
-                "contact_arc_length": float(weight @ s),
-                "contact_x": float(x),
-                "contact_y": float(y),
-                "penetration": float(-weight @ contacts.distance[loaded]),
-            }
         return row
