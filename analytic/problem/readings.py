@@ -16,7 +16,7 @@ from analytic.problem.errors import InputError, require
 from analytic.problem.files import as_path
 from analytic.problem.readings_file import read_file, write_file
 from analytic.problem.readings_shown import as_html, as_text, plot
-from analytic.problem.support import require_plain, support_of
+from analytic.problem.support import beyond_the_paper, require_plain, support_of
 from analytic.problem.table import Place, checked_table, mirrored_table, row_number
 
 if TYPE_CHECKING:
@@ -176,6 +176,16 @@ class Readings:
         """
         return float(np.nansum(self.values("moment_z"))) < 0
 
+    @property
+    def support(self) -> tuple[float, float]:
+        """Clamp stiffness [force length/rad] and friction, as the provenance has them."""
+        return support_of(self.provenance)
+
+    @property
+    def beyond_the_paper(self) -> dict[str, float]:
+        """What of vibrissa, clamp and contact is not the paper's, by what it is."""
+        return beyond_the_paper(self.beam, *self.support)
+
     def require_plain(self, who: str) -> None:
         """Refuse readings of a vibrissa that is not the paper's.
 
@@ -190,7 +200,7 @@ class Readings:
             If the vibrissa is curved at rest or, as the provenance has it, its clamp turns or the
             object rubs.
         """
-        require_plain(who, self.beam, *support_of(self.provenance))
+        require_plain(who, self.beam, *self.support)
 
     def mirrored(self) -> "Readings":
         """The readings in a mirror, x to -x.
@@ -317,7 +327,7 @@ class Readings:
         return plot(self.table, self.beam, self.trusted, self.source, axes)
 
     def __repr__(self) -> str:
-        return as_text(self.table, self.beam, self.source, self.gaps)
+        return as_text(self.table, self.beam, self.source, self.gaps, self.beyond_the_paper)
 
     def _repr_html_(self) -> str:
         return as_html(self.table, repr(self))

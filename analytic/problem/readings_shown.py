@@ -1,6 +1,6 @@
 """How one sweep looks: in a terminal, in a notebook, as a picture."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,9 @@ _ROWS = 8
 _SI = {"foot_x": "m", "force_x": "N", "force_y": "N", "moment_z": "N m"}
 
 
-def as_text(table: pd.DataFrame, beam: Beam, source: str, gaps: int) -> str:
+def as_text(
+    table: pd.DataFrame, beam: Beam, source: str, gaps: int, beyond: Mapping[str, float]
+) -> str:
     """A sweep in a few lines: how long, how large, which phases.
 
     Parameters
@@ -26,6 +28,8 @@ def as_text(table: pd.DataFrame, beam: Beam, source: str, gaps: int) -> str:
         As in `Readings`.
     gaps : int
         Stations at which a force or the moment is missing.
+    beyond : mapping
+        What is not the paper's vibrissa, as `beyond_the_paper` has it.
 
     Returns
     -------
@@ -38,7 +42,8 @@ def as_text(table: pd.DataFrame, beam: Beam, source: str, gaps: int) -> str:
         f"Readings ({source}): {len(table)} stations, "
         f"foot_x from {foot_x.iloc[0]:.6g} to {foot_x.iloc[-1]:.6g}",
         f"  beam{' (SI)' if beam.si else ''}: length {beam.length:g}, "
-        f"flexural rigidity {beam.flexural_rigidity:g}, radius {beam.radius:g}",
+        f"flexural rigidity {beam.flexural_rigidity:g}, radius {beam.radius:g}"
+        + "".join(f", {name} {value:g}" for name, value in beyond.items()),
         f"  largest magnitudes: {largest}",
     ]
     for name in ("phase", "status"):

@@ -39,7 +39,8 @@ def check_support(clamp_stiffness: object, friction: object, beam: Beam, signed:
             "clamp_stiffness",
             clamp_stiffness,
             f"at least {softest:g}, a hundredth of EI/L, or infinite",
-            "it is moment by angle; leave it out for a rigid clamp",
+            "it is moment by angle ([support] rotational_stiffness of a case file);"
+            " leave it out for a rigid clamp",
         )
     least = -_MOST_FRICTION if signed else 0.0
     if not (is_finite_number(friction) and least <= friction <= _MOST_FRICTION):
@@ -100,6 +101,31 @@ def require_plain(
         if value != plain:
             allowed = f"{plain:g}: {who} cannot take it into account"
             raise InputError(name, value, allowed, "leave it out")
+
+
+def beyond_the_paper(
+    beam: Beam, clamp_stiffness: float = math.inf, friction: float = 0.0
+) -> dict[str, float]:
+    """What of a vibrissa, its clamp and its contact is not the paper's.
+
+    Parameters
+    ----------
+    beam : Beam
+        The vibrissa.
+    clamp_stiffness, friction : float
+        Of its clamp and contact.
+
+    Returns
+    -------
+    dict
+        Numbers by what they are; empty for the paper's vibrissa.
+    """
+    numbers = (
+        ("natural curvature", beam.natural_curvature, 0.0),
+        ("clamp stiffness", clamp_stiffness, math.inf),
+        ("friction", friction, 0.0),
+    )
+    return {name: value for name, value, plain in numbers if value != plain}
 
 
 def support_of(provenance: Mapping[str, Any]) -> tuple[float, float]:

@@ -34,6 +34,11 @@ from compare.show.style import PHASE_LETTERS
 from compare.show.verdict import why
 from compare.simulate.target import Followed
 
+_MEANINGS = {
+    "touches again": ": another part of the vibrissa would lie in the object, no readings",
+    "sticks": ": it does not slide on, the readings are those of one that does",
+}
+
 
 def print_line(text: str) -> None:
     """Print a line as it is: no markup, no folding.
@@ -98,6 +103,7 @@ def print_sweep(readings: Readings) -> None:
     """
     table, length = readings.table, readings.beam.length
     parts = [f"{int(readings.trusted.sum())} of {len(table)} stations ok"]
+    parts += _untrusted(readings)
     if "phase" in table:
         counts = table["phase"].value_counts()
         found = [f"{counts[phase]} {phase}" for phase in PHASES if phase in counts]
@@ -116,7 +122,23 @@ def print_sweep(readings: Readings) -> None:
         if name in table:
             worst = np.nanmax(table[name].to_numpy(dtype=float), initial=0.0)
             parts.append(f"{name.replace('_', ' ')} at most {worst:.1e}{unit}")
+    parts += [f"{name} {value:g}" for name, value in readings.beyond_the_paper.items()]
     print_line(f"{readings.source}: {'; '.join(parts)}")
+
+
+def _untrusted(readings: Readings) -> list[str]:
+    """How many stations have a status that nothing else is said of, where, and what it means."""
+    if "status" not in readings.table:
+        return []
+    said = []
+    for name, group in readings.table.groupby("status", sort=False)["foot_x"]:
+        if name in ("ok", "unsettled"):
+            continue
+        ends = (x / readings.beam.length for x in (group.iloc[0], group.iloc[-1]))
+        where = " to ".join(f"{x:.4f}" for x in ends)
+        meaning = _MEANINGS.get(str(name), "")
+        said.append(f"{len(group)} {name} (foot_x {where} L{meaning})")
+    return said
 
 
 def note_rows(readings: Readings) -> None:

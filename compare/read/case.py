@@ -16,6 +16,7 @@ from compare.read.tables import BeamFile, CaseFile, Table
 from compare.read.toml import Place, TomlFile
 from mujoco_models.settings import Settings
 
+_WITH_UNITS = ("beam", "support", "profile", "sweep")
 _Schema = TypeVar("_Schema", bound=Table)
 
 
@@ -128,7 +129,7 @@ def _check_units(file: Table, tables: Mapping[str, Any], place: Place) -> None:
     bare: list[list[str]] = []
     united: list[list[str]] = []
     left_out: list[list[str]] = []
-    for name in filter(type(file).model_fields.__contains__, ("beam", "profile", "sweep")):
+    for name in filter(type(file).model_fields.__contains__, _WITH_UNITS):
         given, schema = tables.get(name, {}), type(getattr(file, name))
         # A shape whose scale has a unit is itself in units of the scale.
         relative = name == "profile" and isinstance(given.get("scale"), str)

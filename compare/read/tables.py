@@ -1,9 +1,10 @@
 """The tables of a case file: what each of them may hold, and what is built from it."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self, get_args
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self, get_args
 
 from pydantic import (
     AfterValidator,
@@ -32,6 +33,7 @@ from analytic import (
     through_points,
     two_circles,
 )
+from analytic.problem.support import check_support
 from compare.read.complaints import plain_name
 from compare.read.units import in_si
 from mujoco_models.settings import Settings
@@ -64,6 +66,7 @@ _EXAMPLES = {
     "m": ("length", "50 mm"),
     "1/m": ("inverse length", "0.5 1/mm"),
     "N m^2": ("force times length squared", "2 N mm^2"),
+    "N m/rad": ("moment by angle", "0.3 mN m/rad"),
 }
 
 
@@ -83,6 +86,7 @@ class Pair:
 Length = Annotated[float, BeforeValidator(Dimension("m"))]
 PerLength = Annotated[float, BeforeValidator(Dimension("1/m"))]
 Rigidity = Annotated[float, BeforeValidator(Dimension("N m^2"))]
+RotationalStiffness = Annotated[float, BeforeValidator(Dimension("N m/rad"))]
 Two = Annotated[tuple[Length, Length], Field(strict=False)]
 Point = Annotated[Two, BeforeValidator(Pair("x, y"))]
 SemiAxes = Annotated[Two, BeforeValidator(Pair("along x, along y"))]
@@ -117,6 +121,7 @@ class BeamTable(Table):
     length: Length = 1.0
     flexural_rigidity: Rigidity = 1.0
     radius: Length | None = None
+    natural_curvature: PerLength = 0.0
     _si: bool = PrivateAttr(default=False)
 
     @model_validator(mode="wrap")
@@ -135,7 +140,27 @@ class BeamTable(Table):
             In the units of the file, or SI.
         """
         radius = Beam().radius * self.length if self.radius is None else self.radius
-        return Beam(self.length, self.flexural_rigidity, radius, si=self._si)
+        return Beam(
+            self.length,
+            self.flexural_rigidity,
+            radius,
+            natural_curvature=self.natural_curvature,
+            si=self._si,
+        )
+
+
+class SupportTable(Table):
+    """How the vibrissa is held; rigidly, if nothing is said."""
+
+    rotational_stiffness: (
+        Annotated[RotationalStiffness, Field(gt=0, allow_inf_nan=False)] | None
+    ) = None
+
+
+class ContactTable(Table):
+    """How the vibrissa slides along the object."""
+
+    friction: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)] = 0.0
 
 
 class ProfileTable(Table):
@@ -261,6 +286,16 @@ class SweepTable(Table):
         return Sweep(self.stations, self.start, self.stop, self.direction)
 
 
+class Physics(NamedTuple):
+    """A problem without a sweep, in the units of the file, or SI."""
+
+    beam: Beam
+    profile: Contour
+    clamp_stiffness: float
+    """[force length/rad]; infinite if rigid."""
+    friction: float
+
+
 class CaseFile(Table):
     """What a case file holds; dimensions in one system of units, SI if units are given.
 
@@ -268,7 +303,7 @@ class CaseFile(Table):
     ----------
     name : str, optional
         What files and reports call the case.
-    beam, profile, sweep : table
+    beam, support, contact, profile, sweep : table
         The physics.
     mujoco : Settings
         The numerics of the simulation.
@@ -278,6 +313,8 @@ class CaseFile(Table):
 
     name: FileName | None = None
     beam: BeamTable = BeamTable()
+    support: SupportTable = SupportTable()
+    contact: ContactTable = ContactTable()
     profile: Annotated[
         CatenaryTable
         | ParabolaTable
@@ -293,8 +330,8 @@ class CaseFile(Table):
     mujoco: Annotated[Settings, Field(default_factory=Settings)]
     tolerances: dict[str, Any] = {}
 
-    def physics(self, folder: Path) -> tuple[Beam, Contour]:
-        """The vibrissa and the object, without a sweep.
+    def physics(self, folder: Path) -> Physics:
+        """The vibrissa, how it is held and rubs, and the object, without a sweep.
 
         Parameters
         ----------
@@ -303,10 +340,23 @@ class CaseFile(Table):
 
         Returns
         -------
-        Beam, Contour
+        Physics
             In the units of the file, or SI.
+
+        Raises
+        ------
+        InputError
+            If a number is out of range.
         """
-        return self.beam.build(), self.profile.build(folder)
+        stiffness = self.support.rotational_stiffness
+        found = Physics(
+            self.beam.build(),
+            self.profile.build(folder),
+            math.inf if stiffness is None else stiffness,
+            self.contact.friction,
+        )
+        check_support(found.clamp_stiffness, found.friction, found.beam, signed=False)
+        return found
 
     def case(self, folder: Path, name: str) -> Case:
         """The whole problem.
@@ -328,9 +378,16 @@ class CaseFile(Table):
         InputError
             If it is none that can be solved.
         """
-        beam, contour = self.physics(folder)
+        beam, contour, clamp_stiffness, friction = self.physics(folder)
         try:
-            return Case(beam, contour, self.sweep.build(), self.name or name)
+            return Case(
+                beam,
+                contour,
+                self.sweep.build(),
+                self.name or name,
+                clamp_stiffness=clamp_stiffness,
+                friction=friction,
+            )
         except InputError as error:
             is_mesh = isinstance(self.profile, MeshTable)
             if is_mesh and beam.si and "scale" not in self.profile.model_fields_set:

@@ -265,12 +265,14 @@ def _known(comparison: Comparison) -> dict[str, dict[str, str]]:
 
 
 def _recorded(readings: Readings) -> dict[str, str]:
-    beam = (f"{words(name)} {getattr(readings.beam, name):g}" for name in _BEAM)
+    beam = {words(name): getattr(readings.beam, name) for name in _BEAM}
+    beam |= readings.beyond_the_paper
     provenance = dict(readings.provenance)
+    provenance.pop("support", None)
     settings = provenance.pop("settings", {})
     numerics = settings if isinstance(settings, Mapping) else {"settings": settings}
     recorded = {
-        "vibrissa": ", ".join(beam),
+        "vibrissa": ", ".join(f"{name} {value:g}" for name, value in beam.items()),
         "stations": len(readings.table),
         **{name: value for name, value in provenance.items() if name not in _BULKY},
         **numerics,

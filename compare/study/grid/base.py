@@ -17,6 +17,10 @@ from compare.study.grid.sensor import SensorNoise
 from compare.study.grid.study import BEAM, MESH, flatten
 
 _VARIED = (*CASE_TABLES, "noise")
+_KEYS = {
+    "clamp_stiffness": ["support", "rotational_stiffness"],
+    "friction": ["contact", "friction"],
+}
 
 
 class Base:
@@ -45,7 +49,7 @@ class Base:
             self._built(checked)
         except InputError as error:
             named, _, _ = str(error).partition(" = ")
-            where = file.place(named.split(".") if "." in named else ["profile"])
+            where = file.place(_KEYS.get(named, named.split(".") if "." in named else ["profile"]))
             raise InputError(where, "unusable", "usable", str(error)) from error
         tables = checked.model_dump(include=set(CASE_TABLES)) | {"noise": self._noise.model_dump()}
         self.values = {key: value for key, value in flatten(tables).items() if value is not None}

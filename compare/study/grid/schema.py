@@ -9,7 +9,7 @@ from compare.study.grid.axes import Sample
 from compare.study.grid.sensor import SensorNoise
 from compare.study.grid.study import Record
 
-CASE_TABLES = ("beam", "profile", "sweep", "mujoco")
+CASE_TABLES = ("beam", "support", "contact", "profile", "sweep", "mujoco")
 # A day: no sweep of this project takes so long, and the alarm that ends a run must not overflow.
 _LONGEST = 86_400.0
 
@@ -34,6 +34,8 @@ class StudyFile(Table):
     sample: Sample | None = None
     noise: SensorNoise = SensorNoise()
     beam: dict[str, Any] = Field(default_factory=dict)
+    support: dict[str, Any] = Field(default_factory=dict)
+    contact: dict[str, Any] = Field(default_factory=dict)
     profile: dict[str, Any] = Field(default_factory=dict)
     sweep: dict[str, Any] = Field(default_factory=dict)
     mujoco: dict[str, Any] = Field(default_factory=dict)

@@ -4,8 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from analytic import CLAMP_READINGS, Beam, Contour, Readings, find_events, reconstruct
+from analytic import CLAMP_READINGS, Direction, Readings, find_events, reconstruct
 from compare.comparison import compare
+from compare.read.tables import Physics
 from compare.sense.transitions import TRANSITIONS
 from compare.study.grid.study import Record
 
@@ -41,31 +42,36 @@ COLUMNS: Mapping[Record, Mapping[str, str]] = {
 """Columns of a row by what is recorded, with their Arrow types; see `events` and the others."""
 
 
-def events(beam: Beam, profile: Contour) -> dict[str, float | bool | None]:
+def events(physics: Physics, direction: Direction = "left") -> dict[str, float | bool | None]:
     """Find the events of the sweep in closed form.
 
     Parameters
     ----------
-    beam : Beam
-        The vibrissa.
-    profile : Contour
-        The object.
+    physics : Physics
+        The vibrissa, how it is held and rubs, and the object.
+    direction : {"left", "right"}
+        Where the foot moves to.
 
     Returns
     -------
     dict
         ``contact_length_minimum`` [L] is that of eq. 21 of Behn and others: Phase B exists where
-        it is less than 1 and the sweep gets there before the snap-off. ``event_*`` are foot
+        it is less than 1 and the sweep gets there before the snap-off; with friction, a natural
+        curvature or an elastic clamp it is NaN where there is no Phase B. ``event_*`` are foot
         positions [length], None where there is no such event.
     """
-    found = find_events(profile, beam)
+    beam, profile, clamp_stiffness, friction = physics
+    if direction == "right":
+        beam, profile = beam.mirrored(), profile.mirrored()
+    found = find_events(profile, beam, clamp_stiffness=clamp_stiffness, friction=friction)
+    way = -1 if direction == "right" else 1
     places = {name: getattr(found, name) for name in _EVENTS}
     minimum = found.contact_length_minimum.contact_arc_length
     return {
         "phase_b_exists": found.phase_b_start is not None,
         "contact_length_minimum": float(minimum) / beam.length,
         **{
-            f"event_{name}": None if event is None else float(event.foot_x)
+            f"event_{name}": None if event is None else way * float(event.foot_x)
             for name, event in places.items()
         },
     }

@@ -182,7 +182,7 @@ def _measure(recipe: Recipe, parameters: dict[str, Value], readings: dict[str, R
     file, noise = case_file({**recipe.base, **parameters})
     row: Row = {"seed": noise.seed}
     if "events" in recipe.record:
-        row |= metrics.events(*file.physics(Path()))
+        row |= metrics.events(file.physics(Path()), file.sweep.direction)
     if set(recipe.record) == {"events"} and not recipe.simulate:
         return row
     case = file.case(Path(), "run")

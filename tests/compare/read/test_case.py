@@ -1,5 +1,6 @@
 """Case files: what they may not hold, and where it stands."""
 
+import math
 import time
 
 import pytest
@@ -178,3 +179,43 @@ def test_a_mesh_without_a_scale_beside_units(tmp_path):
     path = tmp_path / "case.toml"
     path.write_text(mesh + 'scale = "1 mm"\nhull = true\n')
     assert load_job(str(path)).case.beam.si
+
+
+REAL = UNITED.replace(
+    "[profile]",
+    'natural_curvature = "-6 1/m"\n[support]\nrotational_stiffness = "5.585e-3 mN m/deg"\n'
+    "[contact]\nfriction = 0.2\n[profile]",
+)
+
+
+def test_friction_clamp_and_natural_curvature_have_keys(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(REAL)
+    case = load_job(str(path)).case
+    assert (case.beam.natural_curvature, case.friction) == (-6.0, 0.2)
+    assert case.clamp_stiffness == pytest.approx(5.585e-6 * 180 / math.pi)
+    path.write_text(CIRCLE + "[support]\n[contact]\n")
+    assert load_job(str(path)).case.is_plain
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("0.2", "-0.2"), "line 8: contact.friction = -0.2: must be greater than or equal to 0"),
+        (("0.2", "1.5"), "line 8: contact.friction = 1.5"),
+        (("0.2", "nan"), "line 8: contact.friction = nan"),
+        (('"5.585e-3 mN m/deg"', "5.0"), "line 6: support.rotational_stiffness = without a unit"),
+        (("mN m/deg", "mN"), "a known unit of moment by angle, as '0.3 mN m/rad'"),
+        (("5.585e-3", "0"), "line 6: support.rotational_stiffness"),
+        (("5.585e-3", "-1"), "line 6: support.rotational_stiffness"),
+        (("5.585e-3", "1e-9"), "a hundredth of EI/L"),
+        (('"-6 1/m"', "-6"), "line 4: beam.natural_curvature = without a unit"),
+        (('"-6 1/m"', "inf"), "beam.natural_curvature"),
+        (("-6 1/m", "-40 1/m"), "overhangs"),
+        (("-6 1/m", "-70 1/m"), "curved back to the foot line"),
+        (("friction", "mu"), "line 8: contact.mu = 0.2: must be one of the keys friction"),
+    ],
+)
+def test_what_these_keys_may_not_hold(tmp_path, change, said):
+    assert change[0] in REAL
+    assert said in refused(tmp_path, REAL.replace(*change))

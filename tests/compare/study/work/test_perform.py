@@ -6,7 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import Case, catenary, find_events, reconstruct, relative_noise, solve_sweep
+from analytic import (
+    Beam,
+    Case,
+    Sweep,
+    catenary,
+    find_events,
+    reconstruct,
+    relative_noise,
+    solve_sweep,
+)
 from compare import compare
 from compare.study.grid.sensor import SensorNoise
 from compare.study.work import perform as running
@@ -28,6 +37,30 @@ def test_a_row_holds_what_the_library_finds(plan_of):
     assert row["event_snap_off"] == find_events(case.profile, case.beam).snap_off.foot_x
     assert row["phase_b_exists"] is True
     assert set(result.readings) == {"analytic", "candidate"}
+
+
+def test_events_are_those_of_the_whole_case(plan_of):
+    """They were those of the paper's vibrissa in a sweep to the left, whatever the case was."""
+    plan = plan_of("""
+        study = { case = "catenary", beams = [], record = ["events"] }
+        beam.natural_curvature = -0.3
+        support.rotational_stiffness = 8.0
+        axes.contact.friction = [0.0, 0.2]
+        axes.sweep.direction = ["left", "right"]
+    """)
+    for run in plan:
+        row = perform(Recipe.of(plan.study), run).row
+        case = Case(
+            Beam(natural_curvature=-0.3),
+            catenary(0.5, -0.8),
+            Sweep(2, direction=run.parameters["sweep.direction"]),
+            clamp_stiffness=8.0,
+            friction=run.parameters["contact.friction"],
+        )
+        assert (row["outcome"], row["reason"]) == ("done", "")
+        for name, place in solve_sweep(case).provenance["events"].items():
+            if name != "out_of_plane":
+                assert row[f"event_{name}"] == pytest.approx(place, rel=1e-9)
 
 
 def named(stations):
