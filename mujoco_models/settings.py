@@ -12,6 +12,7 @@ BeamKind: TypeAlias = Literal["chain", "rod", "cable"]
 ClampKind: TypeAlias = Literal["second-order", "naive"]
 ObstacleKind: TypeAlias = Literal["mesh", "primitive"]
 BEAMS, CLAMPS, OBSTACLES = map(get_args, (BeamKind, ClampKind, ObstacleKind))
+CONTACT_STIFFNESSES = 1e3, 1e9  # EI/L^3; the least and the largest
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,7 @@ class Settings:
         for name, kind, low, high, remedy in (
             ("segments", Integral, 2, 1000, "40 is usual"),
             ("contour_points", Integral, 8, 50_000, "3200 is usual"),
-            ("contact_stiffness", Real, 1e3, 1e9, "1e7 is usual"),
+            ("contact_stiffness", Real, *CONTACT_STIFFNESSES, "1e7 is usual"),
             ("corner_radius", Real, 1e-9, 1e-3, "1e-6 is usual"),
             ("tolerance", Real, 1e-11, 1e-2, "1e-8 is usual"),
         ):

@@ -94,7 +94,7 @@ def simulate_motion(
     motion : Motion, optional
         Speed, time step, integrator, damping and contact.
     settings : Settings, optional
-        Beam, segments, obstacle and contact stiffness; its `tolerance` does not matter.
+        Beam, segments and obstacle; contact stiffness and tolerance are those of a sweep at rest.
     advance : callable, optional
         Called after every station, for progress bars.
     keep : callable, optional

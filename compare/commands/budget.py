@@ -15,6 +15,7 @@ from compare.commands.options import (
     Out,
     Segments,
     Stations,
+    refuse_motion,
 )
 from compare.commands.output import output_folder
 
@@ -36,6 +37,7 @@ def budget(
     """Measure what the disagreement is made of."""
     changes = Changes(stations, segments, beam, obstacle)
     job = changes.job(case)
+    refuse_motion(job, "budget")
     from compare.explain.advice import check_target
 
     if target is not None:

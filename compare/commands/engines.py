@@ -1,5 +1,6 @@
 """Sweeps in MuJoCo as the commands do them: with a progress bar, and kept as far as they came."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import typer
@@ -10,7 +11,8 @@ from compare.explain.budget import Budget
 from compare.explain.changes import controlled_changes
 from compare.read.case import Job
 from compare.simulate.controlled import measure_budget
-from mujoco_models import simulate_sweep
+from mujoco_models import simulate_motion, simulate_sweep
+from mujoco_models.settings import CONTACT_STIFFNESSES
 
 
 def simulated(job: Job, folder: Path) -> Readings:
@@ -19,9 +21,9 @@ def simulated(job: Job, folder: Path) -> Readings:
     Parameters
     ----------
     job : Job
-        Case and settings.
+        Case, settings, and the motion, if there is one.
     folder : Path
-        Where ``mujoco-BEAM.parquet`` is written, or ``mujoco-BEAM.partial.parquet``.
+        Where the file of `sweep_file` is written, or the same with ``.partial`` in its name.
 
     Returns
     -------
@@ -33,17 +35,63 @@ def simulated(job: Job, folder: Path) -> Readings:
     InputError, DivergedError
         As `mujoco_models.simulate_sweep` does.
     """
-    name = f"mujoco-{job.settings.beam}"
+    name = sweep_file(job)
 
     def keep(partial: Readings) -> None:
-        path = partial.write(folder / f"{name}.partial.parquet")
+        path = partial.write(folder / Path(name).with_suffix(".partial.parquet"))
         stations = f"{len(partial.table)} of {job.case.sweep.stations} stations"
         typer.echo(f"vibrissa: kept {stations} in {path}", err=True)
 
     with progress(f"MuJoCo {job.settings.beam}", job.case.sweep.stations) as advance:
-        readings = simulate_sweep(job.case, job.settings, advance, keep)
-    readings.write(folder / f"{name}.parquet")
+        if job.motion is None:
+            readings = simulate_sweep(job.case, job.settings, advance, keep)
+        else:
+            readings = simulate_motion(job.case, job.motion, job.settings, advance, keep)
+    readings.write(folder / name)
     return readings
+
+
+def sweep_file(job: Job) -> str:
+    """What the file of a sweep in MuJoCo is called.
+
+    Parameters
+    ----------
+    job : Job
+        Case, settings, and the motion, if there is one.
+
+    Returns
+    -------
+    str
+        ``mujoco-BEAM.parquet``, or ``mujoco-BEAM-in-motion.parquet``.
+    """
+    return f"mujoco-{job.settings.beam}{'-in-motion' if job.motion else ''}.parquet"
+
+
+def at_rest(job: Job) -> Readings:
+    """The sweep at rest that a sweep in motion tends to, if it is slow enough.
+
+    Parameters
+    ----------
+    job : Job
+        With a motion; its contacts have the same stiffness at rest, unless they are MuJoCo's own.
+
+    Returns
+    -------
+    Readings
+        All of it.
+
+    Raises
+    ------
+    InputError, DivergedError
+        As `mujoco_models.simulate_sweep` does.
+    """
+    settings = job.settings
+    if job.motion is not None and job.motion.solref is None:
+        least, largest = CONTACT_STIFFNESSES
+        stiffness = min(max(job.motion.stiffness, least), largest)
+        settings = replace(settings, contact_stiffness=stiffness)
+    with progress("at rest", job.case.sweep.stations) as advance:
+        return simulate_sweep(job.case, settings, advance)
 
 
 def measured_budget(job: Job) -> tuple[Budget, dict[str, Readings]]:

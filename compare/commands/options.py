@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from analytic.problem.errors import InputError
+from mujoco_models.motion import Motion
 from mujoco_models.settings import BeamKind, ObstacleKind
 
 if TYPE_CHECKING:
@@ -65,6 +66,17 @@ Obstacle = Annotated[
 Spatial = Annotated[
     bool, typer.Option("--spatial", help="Let MuJoCo's beam leave the plane of the sweep.")
 ]
+InMotion = Annotated[
+    bool, typer.Option("--motion", help="Let the foot move as [motion] says, or at 0.01 L/T1.")
+]
+Speed = Annotated[
+    float | None,
+    typer.Option(metavar="V", help="Of the foot in motion [L/T1].", show_default="the case's"),
+]
+Timestep = Annotated[
+    float | None,
+    typer.Option(metavar="DT", help="MuJoCo's, in motion [T1].", show_default="the case's"),
+]
 BeamFile = Annotated[
     Path | None,
     typer.Option(
@@ -93,6 +105,9 @@ class Changes:
     beam: BeamKind | None = None
     obstacle: ObstacleKind | None = None
     spatial: bool = False
+    motion: bool = False
+    speed: float | None = None
+    timestep: float | None = None
 
     def job(self, name: str) -> "Job":
         """The job of that name or TOML file, with these changes.
@@ -125,7 +140,16 @@ class Changes:
             "planar": False if self.spatial else None,
         }
         given = {key: value for key, value in named.items() if value is not None}
-        return replace(job, case=case, settings=replace(job.settings, **given))
+        return replace(
+            job, case=case, settings=replace(job.settings, **given), motion=self._moved(job.motion)
+        )
+
+    def _moved(self, motion: Motion | None) -> Motion | None:
+        named = {"speed": self.speed, "timestep": self.timestep}
+        given = {key: value for key, value in named.items() if value is not None}
+        if motion is None and not (self.motion or given):
+            return None
+        return replace(motion or Motion(), **given)
 
     def folder(self, out: Path | None, case: str) -> Path:
         """Where the results go by default: runs that differ do not overwrite each other.
@@ -148,8 +172,32 @@ class Changes:
             *([f"{self.segments}-segments"] if self.segments is not None else []),
             *([f"{self.stations}-stations"] if self.stations is not None else []),
             *(["spatial"] if self.spatial else []),
+            *(["in-motion"] if self.motion else []),
+            *([f"speed-{self.speed:g}"] if self.speed is not None else []),
+            *([f"timestep-{self.timestep:g}"] if self.timestep is not None else []),
         ]
         return out or Path("results") / "-".join(words)
+
+
+def refuse_motion(job: "Job", command: str) -> None:
+    """Refuse a case in motion where only sweeps at rest are known.
+
+    Parameters
+    ----------
+    job : Job
+        The case.
+    command : str
+        Who refuses it.
+
+    Raises
+    ------
+    InputError
+        If the case is in motion.
+    """
+    if job.motion is not None:
+        raise InputError(
+            command, "of a sweep in motion", "of a sweep at rest", "take [motion] out of the case"
+        )
 
 
 def number_or_auto(option: str, text: str) -> float | Literal["auto"]:

@@ -14,11 +14,15 @@ from compare.commands.options import (
     Beam,
     CaseName,
     Changes,
+    InMotion,
     Obstacle,
     Out,
     Segments,
     Spatial,
+    Speed,
     Stations,
+    Timestep,
+    refuse_motion,
 )
 from compare.commands.output import output_folder
 from compare.commands.waiting import waiting
@@ -37,14 +41,23 @@ def run(
     ] = False,
     obstacle: Obstacle = None,
     spatial: Spatial = False,
+    motion: InMotion = False,
+    speed: Speed = None,
+    timestep: Timestep = None,
 ) -> int:
-    """Sweep in both models, compare, and write the report."""
-    changes = Changes(stations, segments, beam, obstacle, spatial)
+    """Sweep in both models, compare, and write the report.
+
+    In motion, if the case has a [motion] table or an option asks for it; the same model is then
+    also swept at rest, to see what the motion adds.
+    """
+    changes = Changes(stations, segments, beam, obstacle, spatial, motion, speed, timestep)
     job = changes.job(case)
+    if with_budget:
+        refuse_motion(job, "--budget")
     with output_folder(changes.folder(out, job.case.name)) as folder:
         from analytic import solve_sweep
         from compare.commands import terminal
-        from compare.commands.engines import measured_budget, simulated
+        from compare.commands.engines import at_rest, measured_budget, simulated, sweep_file
         from compare.comparison import compare
         from compare.show.animation import write_animation
         from compare.show.report import Film, write_report
@@ -55,10 +68,11 @@ def run(
         if with_budget:
             found, runs = measured_budget(job)
             candidate = runs["base"]
-            candidate.write(folder / f"mujoco-{job.settings.beam}.parquet")
+            candidate.write(folder / sweep_file(job))
         else:
             candidate = simulated(job, folder)
         comparison = compare(exact, candidate, job.tolerances)
+        rest = at_rest(job) if job.motion else None
         if found is not None:
             terminal.print_budget(found, job.case.name)
         with terminal.progress("frames", _FRAMES) as advance:
@@ -66,6 +80,10 @@ def run(
         with waiting("drawing"):
             written = write_report(comparison, folder, found, Film.of(folder))
         terminal.print_comparison(comparison)
+        if rest is not None:
+            rest.write(folder / "at-rest.parquet")
+            terminal.print_sweep(candidate)
+            terminal.print_at_rest(compare(exact, rest), compare(rest, candidate))
         terminal.print_written(written)
         return AGREES if comparison.agrees else DISAGREES
 
@@ -134,16 +152,19 @@ def simulate(
     beam: Beam = None,
     obstacle: Obstacle = None,
     spatial: Spatial = False,
+    motion: InMotion = False,
+    speed: Speed = None,
+    timestep: Timestep = None,
 ) -> int:
-    """Sweep in MuJoCo."""
-    changes = Changes(stations, segments, beam, obstacle, spatial)
+    """Sweep in MuJoCo, at rest at every station or in motion."""
+    changes = Changes(stations, segments, beam, obstacle, spatial, motion, speed, timestep)
     job = changes.job(case)
     with output_folder(changes.folder(out, job.case.name)) as folder:
         from compare.commands import terminal
-        from compare.commands.engines import simulated
+        from compare.commands.engines import simulated, sweep_file
 
         terminal.print_sweep(simulated(job, folder))
-        terminal.print_written(folder / f"mujoco-{job.settings.beam}.parquet")
+        terminal.print_written(folder / sweep_file(job))
         return AGREES
 
 
@@ -156,6 +177,7 @@ def view(
 ) -> int:
     """Show the sweep in MuJoCo's interactive viewer."""
     job = Changes(stations, segments, beam, obstacle).job(case)
+    refuse_motion(job, "view")
     from mujoco_models import view_sweep
 
     view_sweep(job.case, job.settings)

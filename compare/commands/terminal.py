@@ -122,6 +122,10 @@ def print_sweep(readings: Readings) -> None:
         if name in table:
             worst = np.nanmax(table[name].to_numpy(dtype=float), initial=0.0)
             parts.append(f"{name.replace('_', ' ')} at most {worst:.1e}{unit}")
+    if "kinetic_share" in readings.table:
+        touching = table.loc[table["phase"] != "free", "kinetic_share"].to_numpy(dtype=float)
+        parts.append(f"kinetic share in contact at most {np.nanmax(touching, initial=0.0):.1e}")
+        parts.append(f"{table['time'].max():.4g} T1")
     parts += [f"{name} {value:g}" for name, value in readings.beyond_the_paper.items()]
     print_line(f"{readings.source}: {'; '.join(parts)}")
 
@@ -139,6 +143,27 @@ def _untrusted(readings: Readings) -> list[str]:
         meaning = _MEANINGS.get(str(name), "")
         said.append(f"{len(group)} {name} (foot_x {where} L{meaning})")
     return said
+
+
+def print_at_rest(rest: Comparison, motion: Comparison) -> None:
+    """Print what of a disagreement in motion is there at rest, and what the motion adds.
+
+    Parameters
+    ----------
+    rest : Comparison
+        Of the closed form and the same model at rest.
+    motion : Comparison
+        Of the model at rest and in motion.
+    """
+    settings = rest.candidate.provenance["settings"]
+    for what, found in (
+        (f"at rest, with contacts of {settings['contact_stiffness']:.1e} EI/L^3", rest),
+        ("what the motion adds to that", motion),
+    ):
+        shift = found.snap_off.difference
+        sizes = (f"{name} {found.disagreement[name].rms:.1e}" for name in CLAMP_READINGS)
+        late = "" if shift is None else f"; snap-off {shift / rest.reference.beam.length:+.1e} L"
+        print_line(f"{what}: {', '.join(sizes)}{late}")
 
 
 def note_rows(readings: Readings) -> None:

@@ -224,7 +224,7 @@ _CONVENTIONS = {
 
 
 def is_smooth_model(readings: Readings) -> bool:
-    """Whether a sweep is of a beam in segments past a smooth contour, as far as it says.
+    """Whether a sweep is of a beam in segments at rest past a smooth contour, as far as it says.
 
     Parameters
     ----------
@@ -238,6 +238,8 @@ def is_smooth_model(readings: Readings) -> bool:
     """
     settings = readings.provenance.get("settings")
     if not (isinstance(settings, Mapping) and "segments" in settings):
+        return False
+    if "motion" in readings.provenance:
         return False
     contour = np.asarray(readings.provenance.get("contour", []), dtype=float)
     if contour.ndim != 2 or contour.shape[1] < 3:

@@ -14,6 +14,7 @@ from compare.read.complaints import complaint, name_of
 from compare.read.limits import tolerances_of
 from compare.read.tables import BeamFile, CaseFile, Table
 from compare.read.toml import Place, TomlFile
+from mujoco_models.motion import Motion
 from mujoco_models.settings import Settings
 
 _WITH_UNITS = ("beam", "support", "profile", "sweep")
@@ -22,11 +23,24 @@ _Schema = TypeVar("_Schema", bound=Table)
 
 @dataclass(frozen=True)
 class Job:
-    """A case, how MuJoCo is to simulate it, and how far the two models may disagree."""
+    """A case, how MuJoCo is to simulate it, and how far the two models may disagree.
+
+    Attributes
+    ----------
+    case : Case
+        The problem.
+    settings : Settings
+        The numerics.
+    tolerances : Tolerances
+        The limits.
+    motion : Motion or None
+        How the foot moves; None if MuJoCo's beam is at rest at every station.
+    """
 
     case: Case
     settings: Settings
     tolerances: Tolerances = field(default_factory=Tolerances)
+    motion: Motion | None = None
 
 
 def load_job(name_or_path: str) -> Job:
@@ -63,7 +77,9 @@ def load_job(name_or_path: str) -> Job:
     case_file = validate(file.tables, file.place)
     limits = tolerances_of(case_file.tolerances, file.place)
     name = case_file.name or name_of(path)
-    return Job(case_file.case(path.parent, name), case_file.mujoco, limits)
+    case = case_file.case(path.parent, name)
+    motion = case_file.motion and case_file.motion.build(case.beam)
+    return Job(case, case_file.mujoco, limits, motion)
 
 
 def validate(tables: Mapping[str, Any], place: Place) -> CaseFile:

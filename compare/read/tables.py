@@ -35,6 +35,7 @@ from analytic import (
 )
 from analytic.problem.support import check_support
 from compare.read.complaints import plain_name
+from compare.read.motion import MotionTable
 from compare.read.units import in_si
 from mujoco_models.settings import Settings
 
@@ -307,6 +308,8 @@ class CaseFile(Table):
         The physics.
     mujoco : Settings
         The numerics of the simulation.
+    motion : table, optional
+        How the foot moves, if it is not at rest at every station (`compare.read.motion`).
     tolerances : table
         How far two sweeps of the case may disagree (`compare.read.limits`).
     """
@@ -328,6 +331,7 @@ class CaseFile(Table):
     ]
     sweep: SweepTable = SweepTable()
     mujoco: Annotated[Settings, Field(default_factory=Settings)]
+    motion: MotionTable | None = None
     tolerances: dict[str, Any] = {}
 
     def physics(self, folder: Path) -> Physics:

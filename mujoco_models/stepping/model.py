@@ -54,8 +54,6 @@ class MovingModel:
         Of the vibrissa [L].
     obstacle : Obstacle
         What it is swept past.
-    contact_stiffness : float
-        Force over penetration at rest, unless the motion states MuJoCo's own parameters [EI/L^3].
     motion : Motion
         How it is stepped.
     foot_x : float
@@ -76,7 +74,6 @@ class MovingModel:
         beam: Beam,
         radius: float,
         obstacle: Obstacle,
-        contact_stiffness: float,
         motion: Motion,
         foot_x: float,
     ) -> None:
@@ -85,7 +82,7 @@ class MovingModel:
         self.data = mujoco.MjData(self.model)
         links = len(beam.layout.joints)
         self._surface = Surface.of(self.model, links, obstacle.corners, radius)
-        self._set_contacts(contact_stiffness, motion)
+        self._set_contacts(motion)
         self.time = 0.0
         self._lookout = Lookout(self.model, self.data, self._surface.beads, obstacle, radius)
         self._foot = self.model.body(FOOT).id
@@ -93,13 +90,13 @@ class MovingModel:
         mujoco.mj_forward(self.model, self.data)
         self._look()
 
-    def _set_contacts(self, stiffness: float, motion: Motion) -> None:
+    def _set_contacts(self, motion: Motion) -> None:
         """As `BeamModel` does, or MuJoCo's own parameters."""
         model = self.model
         geoms = np.concatenate([self._surface.beads, self._surface.sides])
         if motion.solref is None:
             weight = model.body_invweight0[model.geom_bodyid[geoms], 0]
-            k = stiffness * (1 - motion.solimp) * weight
+            k = motion.stiffness * (1 - motion.solimp) * weight
             model.geom_solref[geoms] = np.column_stack([-k, -2 * np.sqrt(k)])
         else:
             model.geom_solref[geoms] = motion.solref

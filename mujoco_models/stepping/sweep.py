@@ -88,7 +88,7 @@ def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> Mo
     if len(obstacle.corners) == 0:
         spacing = bead_spacing(settings.segments, case.radius, obstacle.largest_curvature)
     beam = build(settings, spacing)
-    return MovingModel(beam, case.radius, obstacle, settings.contact_stiffness, motion, start)
+    return MovingModel(beam, case.radius, obstacle, motion, start)
 
 
 def _drive(model: MovingModel, motion: Motion, record: Record, advance: Callable[[], None]) -> None:

@@ -1,0 +1,167 @@
+"""The ``[motion]`` table of a case file: natural units, or quantities with units."""
+
+import math
+from dataclasses import dataclass, fields
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, PlainValidator
+from pydantic_core import PydanticCustomError
+
+from analytic import Beam, InputError
+from compare.read.units import in_si
+from mujoco_models.motion import ConeKind, IntegratorKind, Motion, SolverKind
+
+_EXAMPLES = {"m/s": "10 mm/s", "s": "1 ms", "1/s": "500 Hz", "kg/m^3": "7850 kg/m^3"}
+_FIRST_ROOT = 1.8751040687119611  # of cos(x) cosh(x) = -1: the first vibration of a cantilever
+
+
+class InSI(float):
+    """A number that was given with a unit."""
+
+
+@dataclass(frozen=True)
+class _Quantity:
+    """A validator: a number, or a text with a unit of `unit`, which becomes SI and `InSI`."""
+
+    unit: str
+
+    def __call__(self, value: object) -> float:
+        """The number."""
+        try:
+            if isinstance(value, int | float) and not isinstance(value, bool):
+                return float(value)
+            if isinstance(value, str):
+                return InSI(in_si(value, self.unit))
+        except (InputError, OverflowError):
+            pass
+        raise PydanticCustomError(
+            "quantity",
+            "a number, or a text with a known unit of {unit}, as '{example}'",
+            {"unit": self.unit, "example": _EXAMPLES[self.unit]},
+        )
+
+
+Speed = Annotated[float, PlainValidator(_Quantity("m/s"))]
+Time = Annotated[float, PlainValidator(_Quantity("s"))]
+Rate = Annotated[float, PlainValidator(_Quantity("1/s"))]
+Density = Annotated[float, PlainValidator(_Quantity("kg/m^3"))]
+Contact = Annotated[tuple[Time, float], Field(strict=False)]
+
+
+class MotionTable(BaseModel):
+    """How the foot moves and MuJoCo steps; see `mujoco_models.Motion`.
+
+    Plain numbers are in natural units, L and the first period T1 of the free vibrissa. Texts with a
+    unit need to know T1 in seconds: by ``period`` itself, or by the ``density`` of a round and
+    solid vibrissa, whose dimensions then have units, too.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    period: Time | None = None
+    density: Density | None = None
+    speed: Speed = Motion.speed
+    timestep: Time = Motion.timestep
+    integrator: IntegratorKind = Motion.integrator
+    damping_ratio: float = Motion.damping_ratio
+    armature: float = Motion.armature
+    contact_stiffness: float | None = Motion.contact_stiffness
+    solref: Contact | None = Motion.solref
+    solimp: float = Motion.solimp
+    solver: SolverKind = Motion.solver
+    cone: ConeKind = Motion.cone
+    friction: float = Motion.friction
+    ramp: Time = Motion.ramp
+    average: float = Motion.average
+    cutoff: Rate | None = Motion.cutoff
+
+    def build(self, beam: Beam) -> Motion:
+        """The motion.
+
+        Parameters
+        ----------
+        beam : Beam
+            Of the case.
+
+        Returns
+        -------
+        Motion
+            In natural units.
+
+        Raises
+        ------
+        InputError
+            If a number is out of its range, or there are units and nothing says what T1 is.
+        """
+        period = self._period(beam)
+        times = self.timestep, self.ramp, *(self.solref or ())[:1]
+        given = [x for x in (self.speed, *times, self.cutoff) if isinstance(x, InSI)]
+        if given and period is None:
+            raise InputError(
+                "motion",
+                "with quantities that have units",
+                "with the period T1 of the free vibrissa, or its density, too",
+                'add period = "28 ms" or density = "7850 kg/m^3", or give numbers in L and T1',
+            )
+        if isinstance(self.speed, InSI) and not beam.si:
+            raise InputError(
+                "motion.speed",
+                f"{float(self.speed):g} m/s",
+                "a number, in L/T1, where the vibrissa's length has no unit",
+                "give the length with a unit, or the speed without",
+            )
+        unit = period or 1.0
+        natural: dict[str, Any] = {f.name: getattr(self, f.name) for f in fields(Motion)}
+        natural["speed"] = _over(self.speed, beam.length / unit)
+        natural["timestep"], natural["ramp"] = _over(self.timestep, unit), _over(self.ramp, unit)
+        if self.solref is not None:
+            natural["solref"] = (_over(self.solref[0], unit), self.solref[1])
+        if self.cutoff is not None:
+            natural["cutoff"] = _over(self.cutoff, 1 / unit)
+        return Motion(**natural)
+
+    def _period(self, beam: Beam) -> float | None:
+        """T1 [s], if it can be known."""
+        for name, value in (("period", self.period), ("density", self.density)):
+            if value is not None and not (value > 0 and math.isfinite(value)):
+                raise InputError(f"motion.{name}", value, "positive", "correct it")
+        if self.period is not None and self.density is not None:
+            raise InputError(
+                "motion.density", self.density, "left out where the period is given", "take one"
+            )
+        if self.density is None:
+            return self.period
+        if not beam.si:
+            raise InputError(
+                "motion.density",
+                self.density,
+                "left out where the vibrissa's dimensions have no units",
+                "give the dimensions with units, or the period",
+            )
+        return first_period(beam, self.density)
+
+
+def first_period(beam: Beam, density: float) -> float:
+    """First period of the free vibrissa, T1 = 2 pi (L/1.8751)^2 sqrt(rho A/EI).
+
+    That is Euler's and Bernoulli's cantilever: S. S. Rao, Mechanical Vibrations, chapter 8.
+
+    Parameters
+    ----------
+    beam : Beam
+        In SI; round and solid.
+    density : float
+        Of its material [kg/m^3].
+
+    Returns
+    -------
+    float
+        T1 [s].
+    """
+    mass = density * math.pi * beam.radius**2
+    slowness = math.sqrt(mass / beam.flexural_rigidity)
+    return 2 * math.pi * (beam.length / _FIRST_ROOT) ** 2 * slowness
+
+
+def _over(value: float, unit: float) -> float:
+    return float(value) / unit if isinstance(value, InSI) else float(value)
