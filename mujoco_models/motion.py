@@ -108,7 +108,9 @@ class Motion:
         if self.cutoff is not None:
             _check("cutoff", self.cutoff, 1e-3, 1e9, "in 1/T1; leave it out for no filter")
         if self.contact_stiffness is not None:
-            _check("contact_stiffness", self.contact_stiffness, *CONTACT_STIFFNESSES, "1e4 is usual")
+            _check(
+                "contact_stiffness", self.contact_stiffness, *CONTACT_STIFFNESSES, "1e4 is usual"
+            )
         if self.solref is not None:
             if self.contact_stiffness is not None:
                 raise InputError(

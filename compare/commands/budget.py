@@ -15,7 +15,6 @@ from compare.commands.options import (
     Out,
     Segments,
     Stations,
-    refuse_motion,
 )
 from compare.commands.output import output_folder
 
@@ -36,8 +35,7 @@ def budget(
 ) -> int:
     """Measure what the disagreement is made of."""
     changes = Changes(stations, segments, beam, obstacle)
-    job = changes.job(case)
-    refuse_motion(job, "budget")
+    job = changes.job_at_rest(case, "budget")
     from compare.explain.advice import check_target
 
     if target is not None:

@@ -144,8 +144,38 @@ class Changes:
             job, case=case, settings=replace(job.settings, **given), motion=self._moved(job.motion)
         )
 
+    def job_at_rest(self, name: str, command: str) -> "Job":
+        """The job, as `job` makes it, for what knows sweeps at rest only.
+
+        Parameters
+        ----------
+        name : str
+            A named case, or the path of a TOML file.
+        command : str
+            Who asks.
+
+        Returns
+        -------
+        Job
+            Without a motion.
+
+        Raises
+        ------
+        InputError
+            As `job` does, or if the case is in motion.
+        """
+        job = self.job(name)
+        if job.motion is not None:
+            raise InputError(
+                command,
+                "of a sweep in motion",
+                "of a sweep at rest",
+                "take [motion] out of the case",
+            )
+        return job
+
     def _moved(self, motion: Motion | None) -> Motion | None:
-        named = {"speed": self.speed, "timestep": self.timestep}
+        named: dict[str, Any] = {"speed": self.speed, "timestep": self.timestep}
         given = {key: value for key, value in named.items() if value is not None}
         if motion is None and not (self.motion or given):
             return None
@@ -177,27 +207,6 @@ class Changes:
             *([f"timestep-{self.timestep:g}"] if self.timestep is not None else []),
         ]
         return out or Path("results") / "-".join(words)
-
-
-def refuse_motion(job: "Job", command: str) -> None:
-    """Refuse a case in motion where only sweeps at rest are known.
-
-    Parameters
-    ----------
-    job : Job
-        The case.
-    command : str
-        Who refuses it.
-
-    Raises
-    ------
-    InputError
-        If the case is in motion.
-    """
-    if job.motion is not None:
-        raise InputError(
-            command, "of a sweep in motion", "of a sweep at rest", "take [motion] out of the case"
-        )
 
 
 def number_or_auto(option: str, text: str) -> float | Literal["auto"]:

@@ -22,7 +22,6 @@ from compare.commands.options import (
     Speed,
     Stations,
     Timestep,
-    refuse_motion,
 )
 from compare.commands.output import output_folder
 from compare.commands.waiting import waiting
@@ -51,9 +50,7 @@ def run(
     also swept at rest, to see what the motion adds.
     """
     changes = Changes(stations, segments, beam, obstacle, spatial, motion, speed, timestep)
-    job = changes.job(case)
-    if with_budget:
-        refuse_motion(job, "--budget")
+    job = changes.job_at_rest(case, "--budget") if with_budget else changes.job(case)
     with output_folder(changes.folder(out, job.case.name)) as folder:
         from analytic import solve_sweep
         from compare.commands import terminal
@@ -176,8 +173,7 @@ def view(
     obstacle: Obstacle = None,
 ) -> int:
     """Show the sweep in MuJoCo's interactive viewer."""
-    job = Changes(stations, segments, beam, obstacle).job(case)
-    refuse_motion(job, "view")
+    job = Changes(stations, segments, beam, obstacle).job_at_rest(case, "view")
     from mujoco_models import view_sweep
 
     view_sweep(job.case, job.settings)

@@ -36,6 +36,8 @@ from compare.simulate.target import Followed
 
 _MEANINGS = {
     "touches again": ": another part of the vibrissa would lie in the object, no readings",
+    "chattering": ": the contact was lost more than once between two stations",
+    "lost": ": no contact, between stations with one",
     "sticks": ": it does not slide on, the readings are those of one that does",
 }
 

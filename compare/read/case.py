@@ -78,7 +78,8 @@ def load_job(name_or_path: str) -> Job:
     limits = tolerances_of(case_file.tolerances, file.place)
     name = case_file.name or name_of(path)
     case = case_file.case(path.parent, name)
-    motion = case_file.motion and case_file.motion.build(case.beam)
+    moved = case_file.motion
+    motion = None if moved is None else moved.build(case.beam)
     return Job(case, case_file.mujoco, limits, motion)
 
 

@@ -1,6 +1,7 @@
 """The base case of a study file: what each run is a variation of, and what a key of it may be."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from functools import partial
 from typing import Any
 
@@ -51,7 +52,7 @@ class Base:
             named, _, _ = str(error).partition(" = ")
             where = file.place(_KEYS.get(named, named.split(".") if "." in named else ["profile"]))
             raise InputError(where, "unusable", "usable", str(error)) from error
-        tables = checked.model_dump(include=set(CASE_TABLES)) | {"noise": self._noise.model_dump()}
+        tables = _plain(checked) | {"noise": self._noise.model_dump()}
         self.values = {key: value for key, value in flatten(tables).items() if value is not None}
         if MESH in self.values:
             self.values[MESH] = self._path(self.values[MESH])
@@ -131,12 +132,17 @@ class Base:
             self._built(checked)
         except InputError as error:
             raise InputError(where, shown(value), "usable", str(error)) from error
-        return checked.model_dump(include={table})[table][key]
+        plain = _plain(checked)[table]
+        if key not in plain:  # what only converts units of a motion
+            raise InputError(where, shown(value), "in natural units", "vary what it is a unit of")
+        return plain[key]
 
     def _built(self, case: CaseFile) -> None:
         """Raise if the parts of a case cannot be made."""
         case.physics(self._folder)
         case.sweep.build()
+        if case.motion is not None:
+            case.motion.build(case.beam.build())
 
     def _overlaid(self, content: StudyFile) -> dict[str, Any]:
         """The base case's tables with the study's own over them."""
@@ -163,6 +169,14 @@ class Base:
     def _path(self, name: str) -> str:
         """A mesh file's path, whole: a run may be done in another folder."""
         return str((self._folder / name).resolve())
+
+
+def _plain(case: CaseFile) -> dict[str, Any]:
+    """The tables of a case as plain numbers and words, a motion in natural units."""
+    tables = case.model_dump(include={*CASE_TABLES} - {"motion"})
+    if case.motion is not None:
+        tables["motion"] = asdict(case.motion.build(case.beam.build()))
+    return tables
 
 
 def _at(place: str, _: Sequence[str]) -> str:

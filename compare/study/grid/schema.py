@@ -9,7 +9,7 @@ from compare.study.grid.axes import Sample
 from compare.study.grid.sensor import SensorNoise
 from compare.study.grid.study import Record
 
-CASE_TABLES = ("beam", "support", "contact", "profile", "sweep", "mujoco")
+CASE_TABLES = ("beam", "support", "contact", "profile", "sweep", "mujoco", "motion")
 # A day: no sweep of this project takes so long, and the alarm that ends a run must not overflow.
 _LONGEST = 86_400.0
 
@@ -39,3 +39,4 @@ class StudyFile(Table):
     profile: dict[str, Any] = Field(default_factory=dict)
     sweep: dict[str, Any] = Field(default_factory=dict)
     mujoco: dict[str, Any] = Field(default_factory=dict)
+    motion: dict[str, Any] = Field(default_factory=dict)

@@ -12,6 +12,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
+import numpy as np
+
 from analytic import InputError, Readings, solve_sweep
 from compare.judge.tolerances import Tolerances
 from compare.study.grid.axes import Value
@@ -32,6 +34,8 @@ _ABOUT = {
     "system": "string",
     "host": "string",
 }
+# Of the stations; in motion the first contact and the last bounce, whatever the settings.
+_BOUNCES = 0.1
 _IDENTITY = {"run": "string", "outcome": "string", "reason": "string"}
 RECORDED = {
     **_IDENTITY,
@@ -189,10 +193,14 @@ def _measure(recipe: Recipe, parameters: dict[str, Value], readings: dict[str, R
     reference = solve_sweep(case)
     simulated = reference
     if recipe.simulate:
-        from mujoco_models import simulate_sweep  # MuJoCo is imported only where it is used
+        from mujoco_models import simulate_motion, simulate_sweep  # only where MuJoCo is used
 
         begin = time.perf_counter()
-        simulated = simulate_sweep(case, file.mujoco, _deadline(begin + recipe.timeout))
+        deadline = _deadline(begin + recipe.timeout)
+        if file.motion is None:
+            simulated = simulate_sweep(case, file.mujoco, deadline)
+        else:
+            simulated = simulate_motion(case, file.motion.build(case.beam), file.mujoco, deadline)
         row["seconds_candidate"] = time.perf_counter() - begin
         row |= _trust(simulated)
     candidate = noise.add_to(simulated)
@@ -215,6 +223,10 @@ def _trust(simulated: Readings) -> Row:
         count = int((status == outcome).sum())
         if count > Tolerances().untrusted * len(status):
             return {"outcome": outcome, "reason": f"{count} of {len(status)} stations {outcome}"}
+    bouncing = int(np.isin(status, ("chattering", "lost")).sum())
+    if bouncing > _BOUNCES * len(status):
+        reason = f"{bouncing} of {len(status)} stations chattering or without contact"
+        return {"outcome": "unsettled", "reason": reason}
     return {}
 
 

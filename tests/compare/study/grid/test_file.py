@@ -210,6 +210,28 @@ def test_edited_sources_are_other_runs(plan_of):
 
 
 def test_shipped_studies_are_valid():
-    assert len(shipped_studies()) == 5
+    assert len(shipped_studies()) == 6
     for name in shipped_studies():
         assert len(Plan.of(load_study(name))) > 10
+
+
+def test_a_motion_varies_in_natural_units(plan_of):
+    study = """
+        study.case = "catenary"
+        study.beams = ["chain"]
+        axes.motion.speed = [0.1, 0.2]
+    """
+    runs = parameters(plan_of(study))
+    assert [run["motion.speed"] for run in runs] == [0.1, 0.2]
+    plan = plan_of(study + "motion.timestep = 0.01")
+    assert plan.study.base["motion.timestep"] == 0.01
+    steel = """
+        beam = { length = "100 mm", flexural_rigidity = "6.4e-4 N m^2", radius = "0.25 mm" }
+        profile = { kind = "circle", radius = "80 mm", lowest = ["0 mm", "40 mm"] }
+        motion = { period = "28 ms" }
+        study.beams = ["chain"]
+    """
+    plan = plan_of(steel + 'axes.motion.speed = ["1 m/s", "2 m/s"]')
+    assert [run["motion.speed"] for run in parameters(plan)] == pytest.approx([0.28, 0.56])
+    with pytest.raises(InputError, match="in natural units"):
+        plan_of(steel + 'axes.motion.period = ["28 ms", "30 ms"]')

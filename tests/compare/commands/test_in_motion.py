@@ -1,0 +1,60 @@
+"""`vibrissa run` and `simulate` of a sweep in motion."""
+
+import json
+
+import pytest
+
+from analytic import Readings
+from tests.compare.command import vibrissa
+
+FAST = ("--segments", "10", "--obstacle", "primitive", "--stations", "40", "--speed", "0.4")
+
+
+@pytest.mark.slow
+def test_run_compares_with_the_closed_form_and_with_rest(tmp_path):
+    done = vibrissa("run", "catenary", *FAST, "--out", "out", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "what the motion adds to that: force_x" in done.stdout
+    moved = Readings.read(tmp_path / "out" / "mujoco-chain-in-motion.parquet")
+    assert {"time", "kinetic_share", "contact_losses", "force_x_raw"} <= set(moved.table)
+    assert moved.provenance["motion"]["speed"] == 0.4
+    # The stiffest contact that does not chatter, 4/dt^2, in motion and at rest.
+    rest = Readings.read(tmp_path / "out" / "at-rest.parquet")
+    assert rest.provenance["settings"]["contact_stiffness"] == pytest.approx(1e4)
+    found = json.loads((tmp_path / "out" / "comparison.json").read_text())
+    # Its limits are those of a sweep at rest: nothing but convention stands behind them here.
+    assert "chain of 40" not in found["tolerance_reasons"]["rms"]
+    assert vibrissa("report", "out", cwd=tmp_path).returncode == 1
+
+
+def test_simulate_says_what_moved(tmp_path):
+    done = vibrissa("simulate", "catenary", *FAST, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "kinetic share in contact at most" in done.stdout
+    folder = "catenary-primitive-10-segments-40-stations-speed-0.4"
+    assert (tmp_path / "results" / folder / "mujoco-chain-in-motion.parquet").is_file()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--speed", "0"), "motion.speed"),
+        (("--motion", "--spatial"), "mujoco.planar"),
+        (("--timestep", "9"), "motion.timestep"),
+    ],
+)
+def test_bad_motions_are_refused(tmp_path, words, said):
+    done = vibrissa("simulate", "catenary", *words, cwd=tmp_path)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_what_knows_no_motion_says_so(tmp_path):
+    (tmp_path / "case.toml").write_text(
+        '[profile]\nkind = "circle"\nradius = 1.0\nlowest = [0.0, 0.4]\n[motion]\nspeed = 0.1\n'
+    )
+    for words in (("view",), ("budget",)):
+        done = vibrissa(*words, "case.toml", cwd=tmp_path)
+        assert done.returncode == 2
+        assert "motion" in done.stderr
