@@ -7,7 +7,7 @@ import pandas as pd
 
 from analytic.checks.integration import integrate_span
 from analytic.problem.readings import Readings
-from analytic.problem.support import is_plain, support_of
+from analytic.problem.support import is_plain, require_plain, support_of
 
 
 def certify(readings: Readings) -> pd.DataFrame:
@@ -36,6 +36,8 @@ def certify(readings: Readings) -> pd.DataFrame:
     """
     clamp_stiffness, friction = support_of(readings.provenance)
     beam, foot_x = readings.beam, readings.values("foot_x")
+    if beam.varies:
+        require_plain("the certificate", beam)
     plain = is_plain(beam, clamp_stiffness, friction)
     if readings.bends_left if plain else foot_x[-1] > foot_x[0]:
         return certify(readings.mirrored())
@@ -51,7 +53,8 @@ def certify(readings: Readings) -> pd.DataFrame:
     arc_length = readings.values("contact_arc_length") / length
     phase = readings.table["phase"].to_numpy()
     slope = np.where(phase == "tangent", alpha, readings.values("tip_angle"))
-    compliance, natural = beam.moment_unit / clamp_stiffness, beam.natural_curvature * length
+    compliance = beam.moment_unit / clamp_stiffness
+    natural = float(beam.curvature_at(0.0)) * length
     # Friction acts on the surface, and turns the force by the friction angle.
     arm = friction / math.sqrt(1 + friction**2) * beam.radius / length
     couple = arm * np.hypot(force_x, force_y)

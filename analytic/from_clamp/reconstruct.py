@@ -145,8 +145,7 @@ def require_beam(found: pd.DataFrame, readings: Readings) -> None:
         )
     raise InputError(
         "vibrissa",
-        f"of length {readings.beam.length:g} and flexural rigidity "
-        f"{readings.beam.flexural_rigidity:g}",
+        f"of length {readings.beam.length:g} and flexural rigidity {readings.beam.base_rigidity:g}",
         f"the one that was measured ({impossible} this one)",
         f"check its units, and those of {readings.source}",
     )

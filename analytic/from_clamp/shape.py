@@ -79,6 +79,6 @@ def curvatures(readings: Readings, x: Floats, y: Floats) -> Floats:
     """
     readings.require_plain("the curvature from the clamp")
     foot_x, force_x, force_y, moment = (readings.values(name)[:, None] for name in SENSED)
-    kappa = (force_y * (x - foot_x) - force_x * y - moment) / readings.beam.flexural_rigidity
+    kappa = (force_y * (x - foot_x) - force_x * y - moment) / readings.beam.base_rigidity
     kappa[:, -1] = 0.0
     return kappa

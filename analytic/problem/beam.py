@@ -1,10 +1,27 @@
-"""The vibrissa: an inextensible elastic beam with a round tip, straight or an arc at rest."""
+"""The vibrissa: an inextensible elastic beam with a round tip, uniform or not, straight or not."""
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TypeAlias, cast
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from analytic.problem.along import Along
+from analytic.problem.arrays import Floats
+from analytic.problem.beam_checks import (
+    checked_curvature,
+    checked_length,
+    checked_radii,
+    checked_rigidity,
+)
 from analytic.problem.errors import InputError
-from analytic.problem.numbers import is_finite_number
+from analytic.problem.unloaded import Unloaded
+
+Varying: TypeAlias = float | Callable[[Floats], Floats] | Sequence[tuple[float, float]] | Along
+"""A number, a function of arc length, or pairs (arc length, value) from clamp to tip."""
 
 
 @dataclass(frozen=True)
@@ -15,14 +32,23 @@ class Beam:
     ----------
     length : float
         Length L from the clamp to the centre of the round tip [length].
-    flexural_rigidity : float
-        Flexural rigidity EI [force length^2].
+    flexural_rigidity : float, or function or table of arc length
+        Flexural rigidity EI [force length^2]. A function maps an array of arc lengths from the
+        clamp, 0 to `length`, to an array of the same shape; it may have a few kinks and jumps. A
+        table has pairs (arc length, value), the first at 0 and the last at `length`; between them
+        monotone cubics interpolate (PCHIP). The beam keeps either as an `Along`.
     radius : float
         Radius of the cross-section and of the tip [length]; 0 is the paper's thin vibrissa, which
         only the analytic side can handle.
-    natural_curvature : float
-        Of the vibrissa at rest [1/length]: an arc from the upright clamp, positive to the left of
-        its way from clamp to tip; 0 is the paper's straight vibrissa.
+    tip_radius : float, optional
+        Of a cone: radius at the tip [length]; that at the clamp is `radius`, and between it is
+        linear. If the flexural rigidity is a number, it is that at the clamp, and the rest follows
+        the fourth power of the radius; else it is as given. An object is touched by the cone's
+        surface: at arc length s its contour feels a sphere of the radius there about the axis.
+    natural_curvature : float, or function or table of arc length
+        Of the vibrissa at rest [1/length], given like the flexural rigidity: an arc from the
+        upright clamp if it is a number, positive to the left of its way from clamp to tip; 0 is the
+        paper's straight vibrissa.
     si : bool
         Whether these numbers, and all that belong to them, are known to be in metres and newtons,
         as those of a case whose quantities have units. Only reports and pictures use it: they
@@ -31,48 +57,35 @@ class Beam:
     Raises
     ------
     InputError
-        If a value is not a finite number, length or rigidity is not positive, the units of force
-        and moment that follow overflow, the radius is negative or not small against the length, or
-        the vibrissa at rest is curved back to the foot line.
+        If a value is not finite, length or rigidity is somewhere not positive, the units of force
+        and moment that follow overflow, the radius is negative or not small against the length, the
+        tip's is not positive or larger, or the vibrissa at rest is curved back to the foot line.
     """
 
     length: float = 1.0
-    flexural_rigidity: float = 1.0
+    flexural_rigidity: Varying = 1.0
     radius: float = 0.005
-    natural_curvature: float = field(default=0.0, kw_only=True)
+    natural_curvature: Varying = field(default=0.0, kw_only=True)
+    tip_radius: float | None = field(default=None, kw_only=True)
     si: bool = field(default=False, kw_only=True, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        for name in ("length", "flexural_rigidity"):
-            value = getattr(self, name)
-            if not (is_finite_number(value) and value > 0):
-                raise InputError(
-                    f"beam.{name}", value, "positive and finite", "give it in the units of the case"
-                )
-        if not (is_finite_number(self.radius) and 0 <= self.radius < 0.1 * self.length):
-            raise InputError(
-                "beam.radius",
-                self.radius,
-                f"finite, not negative and below a tenth of the length ({self.length:g})",
-                "a vibrissa is slender: check the units of radius and length",
-            )
+        length = checked_length(self.length)
+        radius, tip_radius = checked_radii(self.radius, self.tip_radius, length)
+        for name, value in (
+            ("length", length),
+            ("flexural_rigidity", checked_rigidity(self.flexural_rigidity, length)),
+            ("radius", radius),
+            ("tip_radius", tip_radius),
+            ("natural_curvature", checked_curvature(self.natural_curvature, length)),
+        ):
+            object.__setattr__(self, name, value)
         if not isinstance(self.si, bool):
             raise InputError("beam.si", repr(self.si), "True or False", "leave it out")
-        turn = self.natural_curvature
-        if not (is_finite_number(turn) and abs(turn) * self.length < math.pi):
-            raise InputError(
-                "beam.natural_curvature",
-                turn,
-                f"finite and within {math.pi / self.length:.6g} of zero, where the vibrissa at rest"
-                " is curved back to the foot line",
-                "it is an inverse length, positive to the left",
-            )
-        for name in ("length", "flexural_rigidity", "radius", "natural_curvature"):
-            object.__setattr__(self, name, float(getattr(self, name)))
         if not self._has_units():
             raise InputError(
                 "beam.flexural_rigidity",
-                f"{self.flexural_rigidity:g} with a length of {self.length:g}",
+                f"{self.base_rigidity:g} with a length of {self.length:g}",
                 "such that EI/L^2 and EI/L are numbers",
                 "choose units nearer to the case",
             )
@@ -80,12 +93,116 @@ class Beam:
     @property
     def force_unit(self) -> float:
         """EI/L^2, in which the dimensionless solution counts forces [force]."""
-        return self.flexural_rigidity / self.length**2
+        return self.base_rigidity / self.length**2
 
     @property
     def moment_unit(self) -> float:
         """EI/L, in which the dimensionless solution counts moments [force length]."""
-        return self.flexural_rigidity / self.length
+        return self.base_rigidity / self.length
+
+    @property
+    def varies(self) -> bool:
+        """Whether flexural rigidity, radius or natural curvature vary along the vibrissa."""
+        given = self.flexural_rigidity, self.natural_curvature
+        return any(isinstance(value, Along) for value in given) or self._is_cone
+
+    @cached_property
+    def base_rigidity(self) -> float:
+        """Flexural rigidity at the clamp [force length^2]."""
+        rigidity = self._rigidity
+        return float(rigidity(np.zeros(1))[0]) if isinstance(rigidity, Along) else rigidity
+
+    @cached_property
+    def unloaded(self) -> Unloaded:
+        """Shape and radius at rest, dimensionless."""
+        natural, length = self._natural, self.length
+        if isinstance(natural, Along):
+            curvature: float | Along = natural.times(length, 1 / length)
+        else:
+            curvature = natural * length
+        tip = self.radius if self.tip_radius is None else self.tip_radius
+        return Unloaded(curvature, self.radius / length, tip / length)
+
+    def rigidity_at(self, s: ArrayLike) -> Floats:
+        """Flexural rigidity EI.
+
+        Parameters
+        ----------
+        s : array_like, any shape
+            Arc length from the clamp, 0 to `length` [length].
+
+        Returns
+        -------
+        array, shape of `s`
+            [force length^2].
+        """
+        s, rigidity = np.asarray(s, dtype=float), self._rigidity
+        if isinstance(rigidity, Along):
+            return rigidity(s)
+        if self._is_cone:
+            return rigidity * (self.radius_at(s) / self.radius) ** 4
+        return np.full_like(s, rigidity)
+
+    def curvature_at(self, s: ArrayLike) -> Floats:
+        """Natural curvature.
+
+        Parameters
+        ----------
+        s : array_like, any shape
+            Arc length from the clamp, 0 to `length` [length].
+
+        Returns
+        -------
+        array, shape of `s`
+            Positive to the left of the way from clamp to tip [1/length].
+        """
+        s, natural = np.asarray(s, dtype=float), self._natural
+        return natural(s) if isinstance(natural, Along) else np.full_like(s, natural)
+
+    def radius_at(self, s: ArrayLike) -> Floats:
+        """Radius of the cross-section.
+
+        Parameters
+        ----------
+        s : array_like, any shape
+            Arc length from the clamp, 0 to `length` [length].
+
+        Returns
+        -------
+        array, shape of `s`
+            [length].
+        """
+        s = np.asarray(s, dtype=float)
+        tip = self.radius if self.tip_radius is None else self.tip_radius
+        return self.radius + (tip - self.radius) * s / self.length
+
+    def scaled(self, length: float = 1.0, rigidity: float = 1.0) -> "Beam":
+        """The vibrissa with another length or flexural rigidity.
+
+        Parameters
+        ----------
+        length, rigidity : float
+            By which they are multiplied. What varies along the vibrissa is stretched with it.
+
+        Returns
+        -------
+        Beam
+            As it is else.
+        """
+        old_rigidity, natural = self._rigidity, self._natural
+        if isinstance(natural, Along):
+            natural = natural.times(1, length)
+        stiffer = (
+            old_rigidity.times(rigidity, length)
+            if isinstance(old_rigidity, Along)
+            else old_rigidity * rigidity
+        )
+        return replace(
+            self,
+            length=self.length * length,
+            flexural_rigidity=stiffer,
+            natural_curvature=natural,
+        )
 
     def mirrored(self) -> "Beam":
         """The mirror image, x to -x.
@@ -95,9 +212,23 @@ class Beam:
         Beam
             Curved the other way at rest.
         """
-        if self.natural_curvature == 0:
+        natural = self._natural
+        if natural == 0:
             return self
-        return replace(self, natural_curvature=-self.natural_curvature)
+        opposite = natural.times(-1) if isinstance(natural, Along) else -natural
+        return replace(self, natural_curvature=opposite)
+
+    @property
+    def _is_cone(self) -> bool:
+        return self.tip_radius not in (None, self.radius)
+
+    @property
+    def _rigidity(self) -> float | Along:
+        return cast("float | Along", self.flexural_rigidity)  # since __post_init__
+
+    @property
+    def _natural(self) -> float | Along:
+        return cast("float | Along", self.natural_curvature)
 
     def _has_units(self) -> bool:
         try:

@@ -1,8 +1,9 @@
 """The problem: a vibrissa, a contour, and the positions of its foot."""
 
 import hashlib
+import json
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal, TypeAlias, get_args
 
@@ -145,8 +146,8 @@ class Case:
 
     @cached_property
     def centreline(self) -> Contour:
-        """The contour that the centreline feels, in units of the vibrissa's length."""
-        return self.profile.scaled(1 / self.beam.length).offset(self.radius)
+        """The contour that the centreline feels, a cone's at its tip; in units of the length."""
+        return self.profile.scaled(1 / self.beam.length).offset(self.beam.unloaded.tip_radius)
 
     @cached_property
     def reach(self) -> tuple[float, float]:
@@ -158,7 +159,7 @@ class Case:
 
     @property
     def is_plain(self) -> bool:
-        """Whether the vibrissa is the paper's: straight at rest, its clamp rigid, no friction."""
+        """Whether the vibrissa is the paper's: straight, uniform, its clamp rigid, no friction."""
         return is_plain(self.beam, self.clamp_stiffness, self.friction)
 
     def require_plain(self, who: str) -> None:
@@ -172,13 +173,13 @@ class Case:
         Raises
         ------
         InputError
-            If the vibrissa is curved at rest, its clamp turns, or it rubs.
+            If the vibrissa is curved at rest or not uniform, its clamp turns, or it rubs.
         """
         require_plain(who, self.beam, self.clamp_stiffness, self.friction)
 
     @property
     def radius(self) -> float:
-        """The beam's radius in units of its length."""
+        """The beam's radius, a cone's at the clamp, in units of its length."""
         return self.beam.radius / self.beam.length
 
     @cached_property
@@ -194,16 +195,21 @@ class Case:
         beam = self.beam
         numbers = np.concatenate(
             [
-                [beam.length, beam.flexural_rigidity, beam.radius, self._start, self._stop],
+                [beam.length, beam.base_rigidity, beam.radius, self._start, self._stop],
                 [self.sweep.stations],
                 point.xi,
                 point.eta,
             ]
         )
         if not self.is_plain:
-            beyond = beam.natural_curvature, self.clamp_stiffness, self.friction
+            base_curvature = float(beam.curvature_at(0.0))
+            beyond = base_curvature, self.clamp_stiffness, self.friction
             numbers = np.append(numbers, beyond)
         text = " ".join(f"{x:.12e}" for x in numbers)
+        if beam.varies:
+            given = asdict(beam)
+            names = "flexural_rigidity", "tip_radius", "natural_curvature"
+            text += json.dumps([given[name] for name in names])
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     def provenance(self) -> dict[str, Any]:
@@ -269,12 +275,11 @@ class Case:
 
     @cached_property
     def _first_contact(self) -> float:
-        if self.beam.natural_curvature != 0:
-            natural = self.beam.natural_curvature * self.beam.length
+        if self.beam.natural_curvature != 0 or self.beam.varies:
             if self._way > 0:
-                mirrored = self.centreline.mirrored()
-                return -first_touch(mirrored, contact_range(mirrored), -natural).foot_x
-            return first_touch(self.centreline, self.reach, natural).foot_x
+                mirrored, rest = self.centreline.mirrored(), self.beam.mirrored().unloaded
+                return -first_touch(mirrored, contact_range(mirrored), rest).foot_x
+            return first_touch(self.centreline, self.reach, self.beam.unloaded).foot_x
         left, right = self.reach
         first = left if self._way > 0 else right
         return float(self.centreline.at(np.array([first])).xi[0])

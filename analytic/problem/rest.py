@@ -1,15 +1,16 @@
-"""The unloaded vibrissa of constant natural curvature, an arc, and what it touches first."""
+"""What the unloaded vibrissa touches first."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.contours.contour import Contour
+from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.errors import InputError
 from analytic.problem.roots import zeros
+from analytic.problem.unloaded import Unloaded
 
-_SAMPLES = 513  # of the contour, between which its distance from the arc has one minimum
+_SAMPLES = 513  # of the contour, between which its distance from the vibrissa has one minimum
 
 
 class Touch(NamedTuple):
@@ -18,42 +19,21 @@ class Touch(NamedTuple):
     t: float
     """Contour parameter."""
     excess: float
-    """phi1 - alpha >= 0 at the tip, s1 - 1 < 0 elsewhere."""
+    """phi1 - alpha >= 0 at the tip, less a cone's lean; s1 - 1 < 0 elsewhere."""
     foot_x: float
 
 
-def arc(natural: float, s: Floats) -> tuple[Floats, Floats, Floats]:
-    """The unloaded vibrissa.
-
-    Parameters
-    ----------
-    natural : float
-        Natural curvature [1/L].
-    s : array, any shape
-        Arc length from the clamp [L].
-
-    Returns
-    -------
-    x, y, phi : array, shape of `s`
-        Position as seen from the foot [L], slope angle [rad].
-    """
-    turn = natural * s
-    half = np.sinc(turn / 2 / np.pi)  # sin(u/2)/(u/2)
-    chord = s * half
-    return -chord * np.sin(turn / 2), chord * np.cos(turn / 2), np.pi / 2 + turn
-
-
-def first_touch(centreline: Contour, reach: tuple[float, float], natural: float) -> Touch:
+def first_touch(centreline: Contour, reach: tuple[float, float], rest: Unloaded) -> Touch:
     """What the unloaded vibrissa touches first when its foot comes from the right.
 
     Parameters
     ----------
     centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length.
+        Contour that the centreline feels at the tip, in units of the vibrissa's length.
     reach : tuple of float
         Contour parameters of the leftmost and the rightmost point not above the length.
-    natural : float
-        Natural curvature, less than pi/2 [1/L].
+    rest : Unloaded
+        The vibrissa at rest; it turns by less than pi/2.
 
     Returns
     -------
@@ -65,7 +45,7 @@ def first_touch(centreline: Contour, reach: tuple[float, float], natural: float)
     InputError
         If the vibrissa at rest passes below the object.
     """
-    _, tip_y, tip_angle = (float(v) for v in arc(natural, np.array(1.0)))
+    _, tip_y, tip_angle = (float(v) for v in rest.at(np.array(1.0)))
     first = reach[1]
     lowest = float(centreline.parameter(np.zeros(1))[0])
 
@@ -87,14 +67,12 @@ def first_touch(centreline: Contour, reach: tuple[float, float], natural: float)
     )
 
     def arc_length(t: Floats) -> Floats:
-        """Arc length at which the vibrissa is as high as the contour at t."""
-        with np.errstate(invalid="ignore"):
-            turn = np.arcsin(np.clip(natural * height(t), -1, 1))
-        return np.where(natural == 0, height(t), turn / (natural or 1.0))
+        return _arc_length(centreline.at(t), rest)
 
     def lean(t: Floats) -> Floats:
         """Positive where the contour is steeper than the vibrissa beside it."""
-        return centreline.at(t).alpha - np.pi / 2 - natural * arc_length(t)
+        point = centreline.at(t)
+        return point.alpha + rest.lean - rest.at(_arc_length(point, rest))[2]
 
     grid = np.linspace(top, lowest, _SAMPLES)
     steep = lean(grid)
@@ -102,7 +80,7 @@ def first_touch(centreline: Contour, reach: tuple[float, float], natural: float)
     if not at_tip and steep[0] < 0:
         raise InputError(
             "beam.natural_curvature",
-            f"{natural:.6g}/L",
+            f"{float(rest.curvature(np.array(1.0))):.6g}/L at the tip",
             "such that the vibrissa at rest does not lean over the object from its upper side "
             f"({centreline.label})",
             "lessen it; only the object's lower side can be touched",
@@ -113,9 +91,23 @@ def first_touch(centreline: Contour, reach: tuple[float, float], natural: float)
     lengths = arc_length(places)
     lengths[0] = 1.0 if at_tip else lengths[0]
     point = centreline.at(places)
-    feet = point.xi - arc(natural, lengths)[0]
+    feet = point.xi + rest.taper(lengths) * np.sin(point.alpha) - rest.at(lengths)[0]
     best = int(np.argmax(feet))
     excess = float(lengths[best] - 1)
     if best == 0 and at_tip:
-        excess = max(tip_angle - float(point.alpha[0]), 0.0)
+        excess = max(tip_angle - float(point.alpha[0]) - rest.lean, 0.0)
     return Touch(float(places[best]), excess, float(feet[best]))
+
+
+def _arc_length(point: ContourPoint, rest: Unloaded) -> Floats:
+    """Arc length at which the vibrissa at rest is as high as the contour at given points."""
+    if not rest.is_arc:
+
+        def above(s: Floats) -> Floats:
+            return rest.at(s)[1] + rest.taper(s) * np.cos(point.alpha) - point.eta
+
+        return zeros(above, np.zeros_like(point.eta), np.ones_like(point.eta))
+    natural = rest.natural
+    assert isinstance(natural, float)
+    turn = np.arcsin(np.clip(natural * point.eta, -1, 1))
+    return point.eta if natural == 0 else turn / natural

@@ -4,13 +4,14 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from analytic.problem.along import Along
 from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import is_finite_number
 
 _MOST_FRICTION = 1.0
 _SOFTEST = 0.01  # EI/L
-_MOST_CURVED = math.pi / 2  # 1/L; beyond, the vibrissa at rest leans over itself
+_MOST_TURNED = math.pi / 2  # rad; beyond, the vibrissa at rest leans over itself
 
 
 def check_support(clamp_stiffness: object, friction: object, beam: Beam, signed: bool) -> None:
@@ -47,17 +48,26 @@ def check_support(clamp_stiffness: object, friction: object, beam: Beam, signed:
         raise InputError(
             "friction", friction, f"from {least:g} to {_MOST_FRICTION:g}", "0.1 to 0.5 is usual"
         )
-    if abs(beam.natural_curvature) * beam.length > _MOST_CURVED:
+    natural = beam.natural_curvature
+    overhangs = "the vibrissa at rest overhangs, and no contact of it is solved"
+    if isinstance(natural, float) and abs(natural) * beam.length > _MOST_TURNED:
         raise InputError(
             "beam.natural_curvature",
-            beam.natural_curvature,
-            f"within {_MOST_CURVED / beam.length:.6g} of zero",
-            "beyond, the vibrissa at rest overhangs, and no contact of it is solved",
+            natural,
+            f"within {_MOST_TURNED / beam.length:.6g} of zero",
+            f"beyond, {overhangs}",
+        )
+    if beam.unloaded.most_turned > _MOST_TURNED * (1 + 1e-12):
+        raise InputError(
+            "beam.natural_curvature",
+            f"such that the vibrissa turns by {beam.unloaded.most_turned:.6g} rad",
+            f"such that it turns by at most {_MOST_TURNED:.6g} rad",
+            f"beyond, {overhangs}",
         )
 
 
 def is_plain(beam: Beam, clamp_stiffness: float, friction: float) -> bool:
-    """Whether a vibrissa is the paper's: straight at rest, rigidly clamped, without friction.
+    """Whether a vibrissa is the paper's: straight, uniform, rigidly clamped, without friction.
 
     Parameters
     ----------
@@ -71,7 +81,8 @@ def is_plain(beam: Beam, clamp_stiffness: float, friction: float) -> bool:
     bool
         Whether it is.
     """
-    return beam.natural_curvature == 0 and clamp_stiffness == math.inf and friction == 0
+    straight = beam.natural_curvature == 0 and not beam.varies
+    return straight and clamp_stiffness == math.inf and friction == 0
 
 
 def require_plain(
@@ -91,8 +102,14 @@ def require_plain(
     Raises
     ------
     InputError
-        If the vibrissa is curved at rest, its clamp turns, or it rubs.
+        If the vibrissa is curved at rest or not uniform, its clamp turns, or it rubs.
     """
+    if isinstance(beam.flexural_rigidity, Along):
+        allowed = f"a number: {who} cannot take it into account"
+        raise InputError("beam.flexural_rigidity", beam.flexural_rigidity, allowed, "give a mean")
+    if beam.tip_radius not in (None, beam.radius):
+        allowed = f"{beam.radius:g}: {who} cannot take it into account"
+        raise InputError("beam.tip_radius", beam.tip_radius, allowed, "leave it out")
     for name, value, plain in (
         ("beam.natural_curvature", beam.natural_curvature, 0.0),
         ("clamp_stiffness", clamp_stiffness, math.inf),

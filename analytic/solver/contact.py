@@ -72,7 +72,7 @@ def solve_contact(
             "between -pi/2 and pi/2 rad, the slope angles of the lower side of a body",
             "angles are in rad",
         )
-    centreline = profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
+    centreline = profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
     t = centreline.parameter(angles)
     if is_plain(beam, clamp_stiffness, friction):
         return pd.DataFrame(to_columns(equilibria(centreline, t), beam))

@@ -101,7 +101,7 @@ def find_events(
     require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
     require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
     check_support(clamp_stiffness, friction, beam, signed=False)
-    centreline = profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
+    centreline = profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
     reach = contact_range(centreline)
     if not is_plain(beam, clamp_stiffness, friction):
         vibrissa = Vibrissa.of(beam, clamp_stiffness, friction)
@@ -131,7 +131,7 @@ def find_events(
 def _general_events(
     centreline: Contour, reach: tuple[float, float], vibrissa: Vibrissa, beam: Beam
 ) -> Events:
-    touch = first_touch(centreline, reach, vibrissa.natural_curvature)
+    touch = first_touch(centreline, reach, vibrissa.unloaded)
     path = follow(centreline, vibrissa, touch, reach)
     if not path.complete:
         place = f"beyond foot_x = {path.foot_x[-1] * beam.length:.6g}"

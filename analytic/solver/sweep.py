@@ -128,7 +128,6 @@ def _free(case: Case) -> dict[str, Column]:
     for name in CLAMP_READINGS:
         columns[name] = np.zeros(count)
     columns["phase"] = np.full(count, "free", dtype="<U11")
-    turn = case.beam.natural_curvature * case.beam.length
-    columns["tip_angle"] = np.full(count, np.pi / 2 + turn)
+    columns["tip_angle"] = np.full(count, case.beam.unloaded.at(np.array(1.0))[2])
     columns["status"] = np.full(count, "ok", dtype="<U13")
     return columns

@@ -145,8 +145,8 @@ def _same_beam(reference: Readings, candidate: Readings) -> bool:
     one, other = reference.beam, candidate.beam
     return bool(
         np.allclose(
-            [one.length, one.flexural_rigidity],
-            [other.length, other.flexural_rigidity],
+            [one.length, one.base_rigidity],
+            [other.length, other.base_rigidity],
             rtol=1e-9,
             atol=0,
         )

@@ -33,10 +33,8 @@ def variations(case: Case) -> dict[str, Readings]:
     shift = STEP * length
     same = replace(case.sweep, start=start, stop=stop)
     cases = {
-        "flexural_rigidity": replace(
-            case, beam=replace(beam, flexural_rigidity=beam.flexural_rigidity * (1 + STEP))
-        ),
-        "length": replace(case, beam=replace(beam, length=length * (1 + STEP))),
+        "flexural_rigidity": replace(case, beam=beam.scaled(rigidity=1 + STEP)),
+        "length": replace(case, beam=beam.scaled(length=1 + STEP)),
         "radius": replace(case, beam=replace(beam, radius=beam.radius * (1 + STEP))),
         "foot_x": case,
     }

@@ -10,7 +10,6 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.contours.contour import Contour
-from analytic.problem.rest import arc
 from analytic.problem.roots import zeros
 from analytic.solver.general.span import back_to_clamp
 from analytic.solver.general.states import States, Vibrissa
@@ -85,7 +84,7 @@ def is_rest_clear(centreline: Contour, vibrissa: Vibrissa, foot_x: Floats) -> Bo
     array of bool, shape (n,)
         False where some of its 16 places would be inside.
     """
-    x, y, _ = arc(vibrissa.natural_curvature, _PLACES[:, None])
+    x, y, _ = vibrissa.unloaded.at(_PLACES[:, None])
     outside = _outside(centreline, x + foot_x, np.broadcast_to(y, (y.size, foot_x.size)))
     return np.asarray(outside.all(axis=0))
 
@@ -114,7 +113,7 @@ def _loaded(contact: States) -> tuple[Floats, Floats]:
 def _free(contact: States) -> tuple[Floats, Floats]:
     """Places of the free end, an arc that starts along the contour, shape (16, n)."""
     length = (1 - contact.arc_length) * _PLACES[:, None]
-    x, y, _ = arc(contact.vibrissa.natural_curvature, length)
+    x, y, _ = contact.vibrissa.unloaded.at(length)
     sin, cos = np.sin(contact.tip_angle), np.cos(contact.tip_angle)
     return contact.point.xi + x * sin + y * cos, contact.point.eta + y * sin - x * cos
 

@@ -47,7 +47,7 @@ def contacts(centreline: Contour, t: Floats, vibrissa: Vibrissa) -> States:
         If the vibrissa cannot reach the contour.
     """
     reach = contact_range(centreline)
-    touch = first_touch(centreline, reach, vibrissa.natural_curvature)
+    touch = first_touch(centreline, reach, vibrissa.unloaded)
     path = follow(centreline, vibrissa, touch, reach)
     if len(t) < _MANY:
         z = _solved(centreline, vibrissa, path, t)

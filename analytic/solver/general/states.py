@@ -15,6 +15,8 @@ import numpy as np
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import ContourPoint
+from analytic.problem.support import require_plain
+from analytic.problem.unloaded import Unloaded
 from analytic.solver.general.span import back_to_clamp
 
 # Differences of second order, to one side: a force is not negative, and a phase ends where w = 0.
@@ -52,12 +54,19 @@ class Vibrissa(NamedTuple):
         Vibrissa
             Dimensionless.
         """
+        if beam.varies:
+            require_plain("the closed form", beam)
         return cls(
-            beam.natural_curvature * beam.length,
+            float(beam.curvature_at(0.0)) * beam.length,
             beam.moment_unit / clamp_stiffness,
             friction,
             beam.radius / beam.length,
         )
+
+    @property
+    def unloaded(self) -> Unloaded:
+        """Its shape and radius at rest."""
+        return Unloaded(self.natural_curvature, self.radius, self.radius)
 
     def scaled(self, share: float) -> "Vibrissa":
         """The vibrissa a part of the way from the paper's to this one, its radius as it is.

@@ -43,7 +43,7 @@ def solve(case: Case) -> Solved:
     beam = case.beam
     vibrissa = Vibrissa.of(beam, case.clamp_stiffness, case.friction)
     centreline, foot_x = case.centreline, case.foot_x / beam.length
-    touch = first_touch(centreline, case.reach, vibrissa.natural_curvature)
+    touch = first_touch(centreline, case.reach, vibrissa.unloaded)
     path = follow(centreline, vibrissa, touch, case.reach)
     last = path.foot_x[path.snap_off]
     held = (foot_x < path.foot_x[0]) & (foot_x >= last - _ROUNDING * max(1.0, abs(last)))

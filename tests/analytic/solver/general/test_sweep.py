@@ -26,7 +26,8 @@ from analytic import (
     with_friction,
 )
 from analytic.problem.reach import contact_range
-from analytic.problem.rest import arc, first_touch
+from analytic.problem.rest import first_touch
+from analytic.problem.unloaded import Unloaded
 from analytic.solver.general.path import follow
 from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.stations import solve_stations
@@ -91,7 +92,7 @@ def test_limit_is_the_papers_vibrissa(name):
     plain = solve_sweep(named_case(name))
     case = named_case(name)
     vibrissa = Vibrissa(radius=case.radius)
-    touch = first_touch(case.centreline, case.reach, 0.0)
+    touch = first_touch(case.centreline, case.reach, Unloaded())
     path = follow(case.centreline, vibrissa, touch, case.reach)
     events = plain.provenance["events"]
     for event, i in path.events().items():
@@ -186,10 +187,10 @@ def test_snap_off_is_a_fold_and_friction_delays_it():
 @pytest.mark.parametrize("profile", [parabola(1.0, 0.4), parabola(30.0, 0.4), SQUARE])
 def test_first_contact_is_that_of_two_rigid_bodies(natural, profile):
     reach = contact_range(profile)
-    found = first_touch(profile, reach, natural)
+    found = first_touch(profile, reach, Unloaded(natural))
     # Where the arc, moved to the right by more than its distance from the contour, ends touching.
     s = np.linspace(0, 1, 40001)[1:]
-    x, y, _ = arc(natural, s)
+    x, y, _ = Unloaded(natural).at(s)
     grid = profile.at(np.linspace(profile.parameter(np.zeros(1))[0], reach[1], 20001))
     inside = (y > grid.eta.min()) & (y <= grid.eta.max())
     feet = np.interp(y[inside], grid.eta, grid.xi) - x[inside]

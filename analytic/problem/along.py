@@ -1,0 +1,333 @@
+"""A quantity that varies along the vibrissa: a function of arc length, piece by piece.
+
+Functions and tables become Chebyshev series, to rounding. So the quantity is a value: it can be
+compared, hashed, pickled and written to a file, and integrated exactly.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from analytic.problem.arrays import Floats
+from analytic.problem.errors import InputError
+
+_DEGREE = 24
+_TAIL = 3  # coefficients, of a series that is exact they are rounding
+_EXACT = 1e-13  # of a piece's largest value; the solution is good to 1e-10
+_LEAST = 1e-2  # of the largest value of all; less counts as that
+_HALVINGS = 44  # then a piece is 1e-13 L wide, and what is in it is a jump
+_FIRST = 8  # pieces of a function that are looked at; nothing narrower is seen for sure
+_MOST_PIECES = 200
+_MOST_LOOKS = 20_000  # at an interval of a function
+_NARROW = 1e-12  # of the length
+_ROUNDING = 4 * float(np.finfo(float).eps)
+_NODES = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
+_TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, _DEGREE))
+_CUBIC = 4  # coefficients
+_SPANS = 1e-9  # of the length; by how much a table's ends may miss the vibrissa's
+
+
+@dataclass(frozen=True, repr=False)
+class Along:
+    """A function of arc length as a Chebyshev series on each piece of the vibrissa.
+
+    Parameters
+    ----------
+    ends : tuple of float
+        Arc lengths at which n pieces begin and end, ascending [length].
+    series : tuple of tuple of float
+        Coefficients of each piece's series, in its own unit.
+
+    Raises
+    ------
+    InputError
+        If these are not n + 1 ascending numbers and n series of finite numbers.
+    """
+
+    ends: tuple[float, ...]
+    series: tuple[tuple[float, ...], ...]
+
+    def __post_init__(self) -> None:
+        try:
+            ends = tuple(float(end) for end in self.ends)
+            series = tuple(tuple(float(c) for c in piece) for piece in self.series)
+            whole = (
+                len(ends) == len(series) + 1 > 1
+                and all(series)
+                and bool((np.diff(ends) > 0).all())
+                and bool(np.isfinite(np.concatenate([ends, *series])).all())
+            )
+        except (TypeError, ValueError):
+            whole = False
+        if not whole:
+            raise InputError(
+                "series along the vibrissa",
+                "other numbers",
+                "ascending ends of pieces, and finite coefficients for each",
+                "give a function of arc length, or pairs (arc length, value)",
+            )
+        object.__setattr__(self, "ends", ends)
+        object.__setattr__(self, "series", series)
+
+    @classmethod
+    def of(cls, name: str, given: object, length: float) -> "float | Along":
+        """What was given as a function of arc length or as a table.
+
+        Between a table's points the monotone cubics of Fritsch and Butland interpolate
+        (`scipy.interpolate.PchipInterpolator`): smooth, and never beyond its neighbours.
+
+        Parameters
+        ----------
+        name : str
+            What an error calls it.
+        given : object
+            A function that maps an array of arc lengths to one of the same shape, with a few kinks
+            and jumps at most; pairs (arc length, value) from clamp to tip; or an `Along`.
+        length : float
+            Of the vibrissa [length].
+
+        Returns
+        -------
+        Along or float
+            A number if the quantity is the same everywhere.
+
+        Raises
+        ------
+        InputError
+            If it is none of these, does not span the vibrissa, or a value is not finite.
+        """
+        if isinstance(given, Mapping):  # as a file has it
+            given = cls(given.get("ends", ()), given.get("series", ()))
+        if isinstance(given, cls):
+            found = given
+            _check_span(name, found.ends[0], found.ends[-1], length)
+        elif callable(given):
+            found = _sampled(name, given, length)
+        else:
+            found = _interpolated(name, given, length)
+        constant = {piece[0] for piece in found.series if len(piece) == 1}
+        if len(constant) == 1 and all(len(piece) == 1 for piece in found.series):
+            return constant.pop()
+        return found
+
+    def __repr__(self) -> str:
+        ends = (
+            f"{float(self(np.array(self.ends[0]))):g} to {float(self(np.array(self.ends[-1]))):g}"
+        )
+        return f"<{ends} along s = {self.ends[0]:g} to {self.ends[-1]:g}>"
+
+    def __format__(self, _: str) -> str:
+        return repr(self)
+
+    def __call__(self, s: Floats) -> Floats:
+        """Values at arc lengths.
+
+        Parameters
+        ----------
+        s : array, any shape
+            Arc lengths from the clamp [length]; beyond the ends, those are meant.
+
+        Returns
+        -------
+        array, shape of `s`
+            The values.
+        """
+        s = np.clip(s, self.ends[0], self.ends[-1])
+        i = np.searchsorted(self._inner, s, side="right")
+        x = (s - self._middle[i]) / self._half[i]
+        above, value = np.zeros_like(x), np.zeros_like(x)
+        for coefficient in self._coefficients[:0:-1]:  # Clenshaw's recurrence
+            value, above = coefficient[i] + 2 * x * value - above, value
+        return np.asarray(self._coefficients[0][i] + x * value - above)
+
+    def times(self, factor: float, stretch: float = 1.0) -> "Along":
+        """The same in other units.
+
+        Parameters
+        ----------
+        factor : float
+            By which the values are multiplied.
+        stretch : float
+            By which the arc lengths are.
+
+        Returns
+        -------
+        Along
+            New values along a new length.
+        """
+        return Along(
+            tuple(end * stretch for end in self.ends),
+            tuple(tuple(c * factor for c in piece) for piece in self.series),
+        )
+
+    def integral(self) -> "Along":
+        """The integral from the clamp.
+
+        Returns
+        -------
+        Along
+            Exact but for rounding, and continuous.
+        """
+        series, reached = [], 0.0
+        for piece, half in zip(self.series, self._half, strict=True):
+            found = half * chebyshev.chebint(piece, lbnd=-1)
+            found[0] += reached
+            reached = float(found.sum())
+            series.append(tuple(found.tolist()))
+        return Along(self.ends, tuple(series))
+
+    def first_not_positive(self) -> float | None:
+        """Where the quantity is first zero or negative.
+
+        Returns
+        -------
+        float or None
+            Arc length [length]; None if it is positive throughout.
+        """
+        for piece, middle, half in zip(self.series, self._middle, self._half, strict=True):
+            roots = chebyshev.chebroots(piece) if len(piece) > 1 else np.empty(0)
+            real = roots.real[(abs(roots.imag) < 1e-12) & (abs(roots.real) <= 1)]
+            at = np.sort(np.concatenate([[-1.0], real, [1.0]]))
+            values = chebyshev.chebval(np.append(at, (at[1:] + at[:-1]) / 2), piece)
+            low = np.append(at, (at[1:] + at[:-1]) / 2)[values <= 0]
+            if low.size:
+                return float(middle + half * low.min())
+        return None
+
+    @cached_property
+    def _inner(self) -> Floats:
+        return np.array(self.ends[1:-1])
+
+    @cached_property
+    def _middle(self) -> Floats:
+        return (np.array(self.ends[1:]) + self.ends[:-1]) / 2
+
+    @cached_property
+    def _half(self) -> Floats:
+        return np.diff(self.ends) / 2
+
+    @cached_property
+    def _coefficients(self) -> Floats:
+        """By degree and piece."""
+        found = np.zeros((max(map(len, self.series)), len(self.series)))
+        for i, piece in enumerate(self.series):
+            found[: len(piece), i] = piece
+        return found
+
+
+def _check_span(name: str, begin: float, end: float, length: float) -> None:
+    if not max(abs(begin), abs(end - length)) <= _SPANS * length:
+        raise InputError(
+            name,
+            f"from s = {begin:g} to {end:g}",
+            f"from the clamp, s = 0, to the tip, s = {length:g}",
+            "give all of the vibrissa, in the unit of its length",
+        )
+
+
+def _interpolated(name: str, given: object, length: float) -> Along:
+    from scipy.interpolate import PchipInterpolator  # slow to load, and few need it
+
+    try:
+        table = np.array(given, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        table = np.empty(0)
+    if table.ndim != 2 or table.shape[1:] != (2,) or not 2 <= len(table) <= _MOST_PIECES:
+        raise InputError(
+            name,
+            f"{given!r}"[:80],
+            f"a number, a function of arc length, or 2 to {_MOST_PIECES} pairs (arc length, value)",
+            "as 1.0, or [(0, 1.0), (1, 0.5)]",
+        )
+    s, values = table.T
+    wrong = ~(np.isfinite(table).all(axis=1) & np.append(True, np.diff(s) > 0))
+    if wrong.any():
+        i = int(np.argmax(wrong))
+        raise InputError(
+            f"{name}, pair {i}",
+            tuple(table[i].tolist()),
+            "finite and after the one before",
+            "correct or drop it",
+        )
+    _check_span(name, s[0], s[-1], length)
+    s[0], s[-1] = 0.0, length
+    curve = PchipInterpolator(s, values)
+    half, middle = np.diff(s) / 2, (s[1:] + s[:-1]) / 2
+    nodes = np.cos(np.pi * (np.arange(_CUBIC) + 0.5) / _CUBIC)
+    at = curve(middle[:, None] + half[:, None] * nodes)
+    series = np.linalg.solve(chebyshev.chebvander(nodes, _CUBIC - 1), at.T).T
+    return Along(tuple(s.tolist()), tuple(_trimmed(piece) for piece in series))
+
+
+def _sampled(name: str, function: Callable[[Floats], Floats], length: float) -> Along:
+    """The series of a function, on pieces that are halved until it is exact there."""
+
+    def series_on(begin: float, end: float) -> tuple[Floats, bool]:
+        nodes = (begin + end) / 2 + (end - begin) / 2 * _NODES
+        values = _values(name, function, nodes)
+        if values.min() == values.max():
+            return values[:1], True
+        found = _TO_SERIES @ values
+        size = max(float(np.abs(values).max()), _LEAST * largest)
+        return found, bool(np.abs(found[-_TAIL:]).max() <= _EXACT * size)
+
+    largest = float(np.abs(_values(name, function, np.linspace(0, length, 65))).max())
+    ends, pieces = [0.0], list[Floats]()
+    marks = np.linspace(0, length, _FIRST + 1).tolist()
+    ahead = list(pairwise(marks))[::-1]
+    for _ in range(_MOST_LOOKS):
+        if not ahead:
+            break
+        begin, end = ahead.pop()
+        found, exact = series_on(begin, end)
+        if not exact and end - begin > length / 2**_HALVINGS:
+            middle = (begin + end) / 2
+            ahead += [(middle, end), (begin, middle)]
+        elif end - begin > _NARROW * length:  # else a kink or a jump
+            # The halves that led to a kink are one smooth piece.
+            while pieces and _NARROW * length < ends[-1] - ends[-2]:
+                joined, smooth = series_on(ends[-2], end)
+                if not smooth:
+                    break
+                found = joined
+                del ends[-1], pieces[-1]
+            ends.append(end)
+            pieces.append(found)
+    if ahead or len(pieces) > _MOST_PIECES:
+        raise InputError(
+            name,
+            f"a function that is rough at s = {begin:g}",
+            "smooth but for a few kinks and jumps",
+            "or give pairs (arc length, value)",
+        )
+    ends[-1] = length
+    return Along(tuple(ends), tuple(_trimmed(piece) for piece in pieces))
+
+
+def _values(name: str, function: Callable[[Floats], Floats], s: Floats) -> Floats:
+    try:
+        with np.errstate(all="ignore"):  # what is not finite is reported
+            found = np.broadcast_to(np.asarray(function(s), dtype=float), s.shape)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            name,
+            "a function that takes no array of arc lengths",
+            "one that maps an array of arc lengths to one of the same shape",
+            f"write it with NumPy functions ({error})",
+        ) from error
+    wrong = ~np.isfinite(found)
+    if wrong.any():
+        i = int(np.argmax(wrong))
+        raise InputError(name, f"{found[i]} at s = {s[i]:g}", "finite all along", "correct it")
+    return found
+
+
+def _trimmed(series: Floats) -> tuple[float, ...]:
+    """The series without what is rounding at its end."""
+    counts = np.flatnonzero(np.abs(series) > _ROUNDING * np.abs(series).max())
+    last = int(counts[-1]) if counts.size else 0
+    return tuple(series[: last + 1].tolist())

@@ -1,0 +1,161 @@
+"""What a vibrissa's numbers, functions and tables must be."""
+
+import math
+
+import numpy as np
+
+from analytic.problem.along import Along
+from analytic.problem.errors import InputError
+from analytic.problem.numbers import is_finite_number
+from analytic.problem.unloaded import Unloaded
+
+_PLACES = 257  # at which a vibrissa at rest is looked at
+
+
+def checked_length(given: object) -> float:
+    """The length of a vibrissa.
+
+    Parameters
+    ----------
+    given : object
+        Anything.
+
+    Returns
+    -------
+    float
+        [length].
+
+    Raises
+    ------
+    InputError
+        If it is not positive and finite.
+    """
+    if not (is_finite_number(given) and given > 0):
+        raise InputError(
+            "beam.length", given, "positive and finite", "give it in the units of the case"
+        )
+    return float(given)
+
+
+def checked_rigidity(given: object, length: float) -> float | Along:
+    """The flexural rigidity of a vibrissa.
+
+    Parameters
+    ----------
+    given : object
+        A number, or a function or table of arc length.
+    length : float
+        Of the vibrissa [length].
+
+    Returns
+    -------
+    float or Along
+        [force length^2].
+
+    Raises
+    ------
+    InputError
+        If it is not finite and positive all along.
+    """
+    name = "beam.flexural_rigidity"
+    found = Along.of(name, given, length) if _may_vary(given) else given
+    if isinstance(found, Along):
+        place = found.first_not_positive()
+        if place is not None:
+            value = float(found(np.array(place)))
+            what = f"{value:g} at s = {place:g}"
+            raise InputError(name, what, "positive all along", "correct it there")
+        return found
+    if not (is_finite_number(found) and found > 0):
+        raise InputError(name, found, "positive and finite", "give it in the units of the case")
+    return float(found)
+
+
+def checked_radii(radius: object, tip_radius: object, length: float) -> tuple[float, float | None]:
+    """The radii of a vibrissa at its clamp and at its tip.
+
+    Parameters
+    ----------
+    radius, tip_radius : object
+        Numbers; the second may be None: it is the first.
+    length : float
+        Of the vibrissa [length].
+
+    Returns
+    -------
+    radius : float
+        [length].
+    tip_radius : float or None
+        [length].
+
+    Raises
+    ------
+    InputError
+        If the vibrissa is not slender, or gets thicker or vanishes towards its tip.
+    """
+    if not (is_finite_number(radius) and 0 <= radius < 0.1 * length):
+        raise InputError(
+            "beam.radius",
+            radius,
+            f"finite, not negative and below a tenth of the length ({length:g})",
+            "a vibrissa is slender: check the units of radius and length",
+        )
+    if tip_radius is None:
+        return float(radius), None
+    if not (is_finite_number(tip_radius) and 0 < tip_radius <= radius):
+        raise InputError(
+            "beam.tip_radius",
+            tip_radius,
+            f"positive and at most the radius at the clamp ({radius:g})",
+            f"the radius falls in proportion to s, and may not vanish before or at s = {length:g}",
+        )
+    return float(radius), float(tip_radius)
+
+
+def checked_curvature(given: object, length: float) -> float | Along:
+    """The natural curvature of a vibrissa.
+
+    Parameters
+    ----------
+    given : object
+        A number, or a function or table of arc length.
+    length : float
+        Of the vibrissa [length].
+
+    Returns
+    -------
+    float or Along
+        [1/length].
+
+    Raises
+    ------
+    InputError
+        If it is not finite all along, or the vibrissa at rest is curved back to the foot line.
+    """
+    name, remedy = "beam.natural_curvature", "it is an inverse length, positive to the left"
+    found = Along.of(name, given, length) if _may_vary(given) else given
+    if isinstance(found, Along):
+        s = np.linspace(0, 1, _PLACES)[1:]
+        low = Unloaded(found.times(length, 1 / length)).at(s)[1] <= 0
+        if low.any():
+            raise InputError(
+                name,
+                f"such that the vibrissa at rest is back at the foot line at s = {s[low][0]:.3g} L",
+                "such that it stays above",
+                remedy,
+            )
+        return found
+    if not (is_finite_number(found) and abs(found) * length < math.pi):
+        raise InputError(
+            name,
+            found,
+            f"finite and within {math.pi / length:.6g} of zero, where the vibrissa at rest"
+            " is curved back to the foot line",
+            remedy,
+        )
+    return float(found)
+
+
+def _may_vary(given: object) -> bool:
+    """Whether something is given as a function or a table, not as a number."""
+    return callable(given) or (hasattr(given, "__len__") and not isinstance(given, str | bytes))

@@ -1,0 +1,111 @@
+"""The unloaded vibrissa: its shape at rest and its radius, dimensionless."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from analytic.problem.along import Along
+from analytic.problem.arrays import Floats
+
+_PLACES = 257  # at which the slope of one of varying curvature is looked at
+
+
+@dataclass(frozen=True)
+class Unloaded:
+    """Shape and radius of a vibrissa at rest; arc lengths in units of its length.
+
+    Parameters
+    ----------
+    natural : float or Along
+        Natural curvature, positive to the left of the way from clamp to tip [1/L].
+    base_radius, tip_radius : float
+        Of the cross-section at the clamp and at the tip, linear between [L].
+    """
+
+    natural: float | Along = 0.0
+    base_radius: float = 0.0
+    tip_radius: float = 0.0
+
+    @property
+    def lean(self) -> float:
+        """Angle from the contour's tangent to the axis of a cone that touches it [rad]."""
+        return float(np.arcsin(self.base_radius - self.tip_radius))
+
+    @cached_property
+    def most_turned(self) -> float:
+        """The largest angle by which it turns from the upright, to either side [rad]."""
+        s = np.linspace(0, 1, _PLACES)
+        return float(np.abs(self.at(s)[2] - np.pi / 2).max())
+
+    @property
+    def is_arc(self) -> bool:
+        """Whether curvature and radius are constant."""
+        return not isinstance(self.natural, Along) and self.base_radius == self.tip_radius
+
+    def curvature(self, s: Floats) -> Floats:
+        """Natural curvature.
+
+        Parameters
+        ----------
+        s : array, any shape
+            Arc length from the clamp [L].
+
+        Returns
+        -------
+        array, shape of `s`
+            [1/L].
+        """
+        natural = self.natural
+        return natural(s) if isinstance(natural, Along) else np.full_like(s, natural)
+
+    def taper(self, s: Floats) -> Floats:
+        """By how much the radius exceeds that of the tip.
+
+        Parameters
+        ----------
+        s : array, any shape
+            Arc length from the clamp [L].
+
+        Returns
+        -------
+        array, shape of `s`
+            [L].
+        """
+        return (self.base_radius - self.tip_radius) * (1 - s)
+
+    def at(self, s: Floats) -> tuple[Floats, Floats, Floats]:
+        """Places on the axis.
+
+        Parameters
+        ----------
+        s : array, any shape
+            Arc length from the clamp [L].
+
+        Returns
+        -------
+        x, y, phi : array, shape of `s`
+            Position as seen from the foot [L], slope angle [rad].
+        """
+        natural = self.natural
+        if isinstance(natural, Along):
+            x, y, turn = self._integrals
+            return x(s), y(s), np.pi / 2 + turn(s)
+        turned = natural * s
+        half = np.sinc(turned / 2 / np.pi)  # sin(u/2)/(u/2)
+        chord = s * half
+        return -chord * np.sin(turned / 2), chord * np.cos(turned / 2), np.pi / 2 + turned
+
+    @cached_property
+    def _integrals(self) -> tuple[Along, Along, Along]:
+        assert isinstance(self.natural, Along)
+        turn = self.natural.integral()
+        name = "the vibrissa at rest"
+        x = Along.of(name, lambda s: -np.sin(turn(s)), 1.0)
+        y = Along.of(name, lambda s: np.cos(turn(s)), 1.0)
+        return _integral(x), _integral(y), turn
+
+
+def _integral(rate: float | Along) -> Along:
+    along = rate if isinstance(rate, Along) else Along((0.0, 1.0), ((rate,),))
+    return along.integral()
