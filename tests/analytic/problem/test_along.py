@@ -109,7 +109,7 @@ def test_shape_at_rest_is_the_integral():
         (lambda: Beam(flexural_rigidity=lambda s: np.ones(3)), "one of the same shape"),
         (lambda: Beam(natural_curvature=lambda s: np.sin(1 / (s + 1e-9))), "few kinks and jumps"),
         (lambda: Beam(natural_curvature={"a": 1}), "ascending ends of pieces"),
-        (lambda: Beam(natural_curvature=lambda s: 7 * s), "back at the foot line"),
+        (lambda: Beam(natural_curvature=lambda s: 4 - s), "back at the foot line"),
         (lambda: Case(Beam(natural_curvature=lambda s: 3.5 * s), OBJECT), "overhangs"),
         (lambda: Beam(tip_radius=-0.001), "beam.tip_radius = -0.001"),
         (lambda: Beam(tip_radius=0), "may not vanish"),
