@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from analytic.problem.arrays import Booleans, Floats
-from analytic.problem.beam import Beam
+from analytic.problem.beam import Beam, Varying
 from analytic.problem.columns import SENSED
 from analytic.problem.errors import InputError, require
 from analytic.problem.files import as_path
@@ -182,7 +182,7 @@ class Readings:
         return support_of(self.provenance)
 
     @property
-    def beyond_the_paper(self) -> dict[str, float]:
+    def beyond_the_paper(self) -> dict[str, Varying]:
         """What of vibrissa, clamp and contact is not the paper's, by what it is."""
         return beyond_the_paper(self.beam, *self.support)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from analytic.problem.arrays import Booleans
-from analytic.problem.beam import Beam
+from analytic.problem.beam import Beam, Varying
 from analytic.problem.columns import CLAMP_READINGS
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ _SI = {"foot_x": "m", "force_x": "N", "force_y": "N", "moment_z": "N m"}
 
 
 def as_text(
-    table: pd.DataFrame, beam: Beam, source: str, gaps: int, beyond: Mapping[str, float]
+    table: pd.DataFrame, beam: Beam, source: str, gaps: int, beyond: Mapping[str, Varying]
 ) -> str:
     """A sweep in a few lines: how long, how large, which phases.
 

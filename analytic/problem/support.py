@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from analytic.problem.along import Along
-from analytic.problem.beam import Beam
+from analytic.problem.beam import Beam, Varying
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import is_finite_number
 
@@ -122,7 +122,7 @@ def require_plain(
 
 def beyond_the_paper(
     beam: Beam, clamp_stiffness: float = math.inf, friction: float = 0.0
-) -> dict[str, float]:
+) -> dict[str, Varying]:
     """What of a vibrissa, its clamp and its contact is not the paper's.
 
     Parameters
@@ -135,9 +135,11 @@ def beyond_the_paper(
     Returns
     -------
     dict
-        Numbers by what they are; empty for the paper's vibrissa.
+        Numbers, or how they vary, by what they are; empty for the paper's vibrissa.
     """
-    numbers = (
+    tip_radius = beam.radius if beam.tip_radius is None else beam.tip_radius
+    numbers: tuple[tuple[str, Varying, float], ...] = (
+        ("tip radius", tip_radius, beam.radius),
         ("natural curvature", beam.natural_curvature, 0.0),
         ("clamp stiffness", clamp_stiffness, math.inf),
         ("friction", friction, 0.0),
