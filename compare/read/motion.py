@@ -159,7 +159,7 @@ def first_period(beam: Beam, density: float) -> float:
         T1 [s].
     """
     mass = density * math.pi * beam.radius**2
-    slowness = math.sqrt(mass / beam.flexural_rigidity)
+    slowness = math.sqrt(mass / beam.base_rigidity)
     return 2 * math.pi * (beam.length / _FIRST_ROOT) ** 2 * slowness
 
 
