@@ -8,7 +8,7 @@ from mujoco_models.model.contacts import Contacts
 from mujoco_models.obstacles.protocol import GEOM_PREFIX, Obstacle
 
 _NEAR = 1e-6  # L; beads that are nearer to the obstacle must be watched at rest
-_OVERLOOKED = 1e-6  # L; how deep an unloaded bead may be in the obstacle
+_OVERLOOKED = 1e-6  # L; how deep an unloaded bead may be in the obstacle, or a depth be off
 
 
 class Lookout:
@@ -162,6 +162,39 @@ class Lookout:
             if clearance < inside:
                 return place
         return None
+
+    def belied(self, contacts: Contacts) -> bool:
+        """Whether MuJoCo's depth of a loaded bead is not that of the contour.
+
+        The search over a mesh can end at a vertex far from the nearest one: a window of a circle of
+        radius 0.038 L had facets of 0.11 rad so. If there is another window that has all of the
+        contour around the loaded beads, it is used from now on.
+
+        Parameters
+        ----------
+        contacts : Contacts
+            Of the last evaluated configuration.
+
+        Returns
+        -------
+        bool
+            True if MuJoCo's answer cannot be used.
+        """
+        if not self._obstacle.upright:
+            return False
+        beads = contacts.loaded & (contacts.touch < len(self._beads))
+        if not beads.any():
+            return False
+        points = self._positions()[contacts.touch[beads]]
+        found = np.array([self._obstacle.clearance(point) for point in points])
+        off = np.abs(found[:, 0] - self._radius - contacts.distance[beads])
+        if off.max() < _OVERLOOKED:
+            return False
+        for other in (self.window - 1, self.window + 1):
+            if 0 <= other < self._obstacle.geoms and self._obstacle.is_inside(other, found[:, 1]):
+                self.use_window(other)
+                break
+        return True
 
     def is_crossed(self, joints: Floats) -> bool:
         """Whether a link cuts through an obstacle with corners.

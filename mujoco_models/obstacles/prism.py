@@ -28,8 +28,8 @@ _BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
 # ends, and much more than a penetration, or depths come out wrong.
 _HALF_DEPTH = 1.5
 _SPECK = 1e-4  # L
-_SPECK_REACH = 3.5e-4  # L; a little more than the speck's longest half axis
-_INWARD = 1e-2  # of the way to the middle
+_SPECK_REACH = 3.5  # of its smallest half axis; a little more than its longest one
+_INWARD = (1e-2, 3e-2, 1e-1, 3e-1, 1.0)  # of the way to the middle
 
 
 class Prism(Faceted):
@@ -46,6 +46,8 @@ class Prism(Faceted):
     corner_radius : float
         Of the edges at sharp corners [L].
     """
+
+    upright = True
 
     def __init__(
         self,
@@ -144,15 +146,26 @@ class Prism(Faceted):
         for i, centre in enumerate(self._centres.tolist()):
             polygon = np.vstack([self.vertices[self._kept(centre)], self.outline[-1]])
             ends = [np.insert(polygon, 2, z, axis=1) for z in (-_HALF_DEPTH, _HALF_DEPTH)]
-            inner = self._inside(self.vertices[centre])
-            add_hull(spec, i, np.concatenate(ends), np.append(inner, 0), _SPECK)
+            inner, depth = self._inside(self.vertices[centre], polygon)
+            size = min(_SPECK, depth / _SPECK_REACH)
+            add_hull(spec, i, np.concatenate(ends), np.append(inner, 0), size)
 
-    def _inside(self, here: Floats) -> Floats:
-        """A place near a vertex that is deep enough inside for the speck of a hull."""
-        inner = here + _INWARD * (self.vertices.mean(axis=0) - here)
-        if self.clearance(inner)[0] > -_SPECK_REACH:  # a flat underside has only the roof above
-            inner = here + _INWARD * (self.outline.mean(axis=0) - here)
-        return np.asarray(inner)
+    def _inside(self, here: Floats, polygon: Floats) -> tuple[Floats, float]:
+        """A place near a vertex, and how deep it is in a window's polygon.
+
+        It is deep enough for the speck of a hull, which must not stick out, if there is such a
+        place in the polygon.
+        """
+        middles = (self.vertices, self.outline, polygon)  # a flat underside has only the roof above
+        deepest = here, 0.0
+        for share in _INWARD:
+            for middle in middles:
+                inner = here + share * (middle.mean(axis=0) - here)
+                depth = _depth(inner, polygon)
+                if depth >= _SPECK_REACH * _SPECK:
+                    return inner, depth
+                deepest = max(deepest, (inner, depth), key=lambda found: found[1])
+        return deepest
 
     @cached_property
     def _centres(self) -> Integers:
@@ -170,3 +183,10 @@ class Prism(Faceted):
                 kept.update(int(j) for j in level if 0 <= j < n)
                 at, stride = int(level[-1]), 2 * stride
         return np.array(sorted(kept))
+
+
+def _depth(point: Floats, polygon: Floats) -> float:
+    """How deep a point is in a convex polygon, shape (n, 2), counterclockwise; < 0 outside."""
+    edge = np.roll(polygon, -1, axis=0) - polygon
+    offset = point - polygon
+    return float(((edge[:, 0] * offset[:, 1] - edge[:, 1] * offset[:, 0]) / np.hypot(*edge.T)).min())

@@ -23,6 +23,8 @@ class Obstacle(ABC):
     """Whether the normal turns in jumps, so that a curvature does not say where it turns."""
     geoms: int
     """How many geoms there are."""
+    upright: bool = False
+    """Whether `clearance` is the very distance that MuJoCo's contacts should have."""
 
     @property
     @abstractmethod

@@ -66,6 +66,8 @@ def relax(
             if (missed := lookout.overlooked(contacts)) is not None:
                 lookout.use_window(obstacle.window_of(missed))
                 continue
+            if lookout.belied(contacts):
+                continue
             slope = float(slopes.mean()) if slopes.size else None
             return replace(state, settled=True, stance=stance(model, contacts), slope=slope)
         state = newton.step(state, contacts)
