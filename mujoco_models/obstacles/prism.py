@@ -189,4 +189,6 @@ def _depth(point: Floats, polygon: Floats) -> float:
     """How deep a point is in a convex polygon, shape (n, 2), counterclockwise; < 0 outside."""
     edge = np.roll(polygon, -1, axis=0) - polygon
     offset = point - polygon
-    return float(((edge[:, 0] * offset[:, 1] - edge[:, 1] * offset[:, 0]) / np.hypot(*edge.T)).min())
+    return float(
+        ((edge[:, 0] * offset[:, 1] - edge[:, 1] * offset[:, 0]) / np.hypot(*edge.T)).min()
+    )
