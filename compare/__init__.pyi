@@ -9,3 +9,7 @@ from .read.rig import read_sweeps as read_sweeps
 from .sense.phases import Classification as Classification
 from .sense.phases import classify as classify
 from .testing.gates import assert_agreement as assert_agreement
+from .validate.stated import Input as Input
+from .validate.stated import Uncertainties as Uncertainties
+from .validate.validation import Validation as Validation
+from .validate.validation import validate as validate

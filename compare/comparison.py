@@ -9,18 +9,22 @@ from functools import cached_property
 from html import escape
 from typing import TYPE_CHECKING, Any, Literal
 
-from analytic import PHASES, InputError, Readings
+from analytic import PHASES, Case, InputError, Readings
+from compare.explain.budget import Budget
 from compare.explain.likely import likely_cause
 from compare.judge.allowance import NoiseAllowance, noise_allowance
 from compare.judge.failures import Failure, failures
 from compare.judge.tolerances import CONVENTION, Tolerances
 from compare.measure.measurement import Measurement, measure
 from compare.sense.noise import checked_level, noise_level
+from compare.validate.stated import Input, Uncertainties
+from compare.validate.validation import Side, Validation, validate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _SHOWN = 6  # failures in the short form
+_OF_95 = 1.96  # standard deviations: half the width of an interval that holds 95 % of a normal
 
 
 @dataclass(frozen=True, repr=False)
@@ -33,10 +37,13 @@ class Comparison(Measurement):
         Limits for the verdict.
     noise : NoiseAllowance
         What noise adds to the limits.
+    validation : Validation or None
+        The verdict that knows what is uncertain, if `validated` was asked for it.
     """
 
     tolerances: Tolerances
     noise: NoiseAllowance
+    validation: Validation | None = None
 
     @cached_property
     def exceeded(self) -> tuple[Failure, ...]:
@@ -68,6 +75,47 @@ class Comparison(Measurement):
         """Whether no tolerance is exceeded."""
         return not self.exceeded
 
+    def validated(
+        self,
+        case: Case,
+        stated: Uncertainties,
+        simulation: Side = "reference",
+        budget: Budget | None = None,
+    ) -> Comparison:
+        """The same comparison, held against what is uncertain about it (`validate`).
+
+        An offset that was fitted is uncertain by what its fit leaves, not by what is stated.
+
+        Parameters
+        ----------
+        case : Case
+            What was simulated: the nominal inputs.
+        stated : Uncertainties
+            What is uncertain about them.
+        simulation : {"reference", "candidate"}
+            Which of the two sweeps is the simulation.
+        budget : Budget, optional
+            Of the simulation's numerics.
+
+        Returns
+        -------
+        Comparison
+            With its `validation`.
+        """
+        if self.offset.uncertainty > 0:
+            fitted = Input(self.offset.uncertainty / _OF_95)
+            stated = replace(stated, inputs={**stated.inputs, "foot_x": fitted})
+        found = validate(
+            self,
+            case,
+            stated,
+            simulation=simulation,
+            budget=budget,
+            noise=self.noise,
+            window=self.tolerances.snap_off_window,
+        )
+        return replace(self, validation=found)
+
     def to_dict(self) -> dict[str, Any]:
         """What ``comparison.json`` holds.
 
@@ -84,6 +132,7 @@ class Comparison(Measurement):
                 "likely": self.likely,
                 "offset": asdict(self.offset),
                 "noise": asdict(self.noise),
+                **({} if self.validation is None else {"validation": self.validation.to_dict()}),
                 "disagreement": {name: asdict(d) for name, d in self.disagreement.items()},
                 "phases": {
                     "agreement": min(agreement.values()) if agreement else None,

@@ -97,6 +97,8 @@ def compare(
         comparison = compare_readings(
             expected, measured, limits, offset=given_offset, noise=given_noise
         )
+        if job is not None and job.uncertainties is not None:
+            comparison = comparison.validated(job.case, job.uncertainties)
         called = distinct_name(Path(reference)) if job is None else job.case.name
         default = Path("results") / f"{called}-{distinct_name(candidate)}"
         with output_folder(out or default) as folder:

@@ -3,6 +3,7 @@
 And ``report``, which does what ``run`` does after its sweeps.
 """
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -69,6 +70,9 @@ def run(
         else:
             candidate = simulated(job, folder)
         comparison = compare(exact, candidate, job.tolerances)
+        if job.uncertainties is not None:
+            with waiting("validating"):
+                comparison = comparison.validated(job.case, job.uncertainties, "candidate", found)
         rest = at_rest(job) if job.motion else None
         if found is not None:
             terminal.print_budget(found, job.case.name)
@@ -104,6 +108,7 @@ def report(
 
         with waiting("comparing"):
             comparison = compare(stored.reference, stored.candidate, stored.tolerances)
+            comparison = replace(comparison, validation=stored.validation)
             written = write_report(comparison, folder, stored.budget, Film.of(folder))
         terminal.print_comparison(comparison)
         terminal.print_written(written)

@@ -31,6 +31,7 @@ from compare.show.figures.budget_bars import headline
 from compare.show.quantities import quantity
 from compare.show.side_by_side import SideBySide
 from compare.show.style import PHASE_LETTERS
+from compare.show.validity import validation_lines
 from compare.show.verdict import why
 from compare.simulate.target import Followed
 
@@ -245,6 +246,8 @@ def print_comparison(comparison: Comparison) -> None:
     """
     _output().print(_summary(comparison))
     print_line("relative to each reading's largest magnitude; lengths in L")
+    for line in validation_lines(comparison):
+        print_line(line)
     if comparison.agrees:
         return
     print_line(why(comparison))

@@ -14,6 +14,8 @@ from compare.read.complaints import complaint, name_of
 from compare.read.limits import tolerances_of
 from compare.read.tables import BeamFile, CaseFile, Table
 from compare.read.toml import Place, TomlFile
+from compare.read.uncertainty import uncertainties_of
+from compare.validate.stated import Uncertainties
 from mujoco_models.motion import Motion
 from mujoco_models.settings import Settings
 
@@ -23,7 +25,7 @@ _Schema = TypeVar("_Schema", bound=Table)
 
 @dataclass(frozen=True)
 class Job:
-    """A case, how MuJoCo is to simulate it, and how far the two models may disagree.
+    """A case, how MuJoCo is to simulate it, how far models may disagree, what is uncertain.
 
     Attributes
     ----------
@@ -35,12 +37,15 @@ class Job:
         The limits.
     motion : Motion or None
         How the foot moves; None if MuJoCo's beam is at rest at every station.
+    uncertainties : Uncertainties or None
+        What is uncertain about the case; None if nothing is stated.
     """
 
     case: Case
     settings: Settings
     tolerances: Tolerances = field(default_factory=Tolerances)
     motion: Motion | None = None
+    uncertainties: Uncertainties | None = None
 
 
 def load_job(name_or_path: str) -> Job:
@@ -80,7 +85,8 @@ def load_job(name_or_path: str) -> Job:
     case = case_file.case(path.parent, name)
     moved = case_file.motion
     motion = None if moved is None else moved.build(case.beam)
-    return Job(case, case_file.mujoco, limits, motion)
+    stated = uncertainties_of(case_file.uncertainty, case, file.place)
+    return Job(case, case_file.mujoco, limits, motion, stated)
 
 
 def validate(tables: Mapping[str, Any], place: Place) -> CaseFile:

@@ -5,14 +5,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pydantic import TypeAdapter
+import pandas as pd
+from pydantic import ConfigDict, TypeAdapter
 
 from analytic import InputError, Readings
 from analytic.problem.files import regular_file
 from compare.explain.budget import Budget
 from compare.judge.tolerances import GENERAL, Limit, Tolerances
+from compare.validate.validation import Validation
 
 _LARGEST = 64_000_000  # bytes of a JSON file
+_ANY = ConfigDict(arbitrary_types_allowed=True)  # a table of numbers is one
 _REMEDY = "run it again: vibrissa run CASE --out DIR"
 
 
@@ -28,12 +31,15 @@ class StoredRun:
         Those that the run was judged by; the defaults if it was not.
     budget : Budget or None
         Of the same sweeps, if it was measured.
+    validation : Validation or None
+        Of the same sweeps, if uncertainties were stated.
     """
 
     reference: Readings
     candidate: Readings
     tolerances: Tolerances
     budget: Budget | None
+    validation: Validation | None
 
 
 def read_run(folder: Path) -> StoredRun:
@@ -70,6 +76,7 @@ def read_run(folder: Path) -> StoredRun:
         Readings.read(sweeps[0]),
         _tolerances(folder / "comparison.json"),
         _budget(folder / "budget.json"),
+        _validation(folder),
     )
 
 
@@ -96,6 +103,22 @@ def _budget(file: Path) -> Budget | None:
         return TypeAdapter(Budget).validate_python(_json(file))
     except ValueError as error:
         raise _damaged(file, error) from error
+
+
+def _validation(folder: Path) -> Validation | None:
+    file, table = folder / "comparison.json", folder / "validation.csv"
+    if not (file.exists() and table.exists()):
+        return None
+    found = _json(file)
+    if not isinstance(found, dict) or "validation" not in found:
+        return None
+    try:
+        regular_file(table, "file", _LARGEST)
+        return TypeAdapter(Validation, config=_ANY).validate_python(
+            {**found["validation"], "table": pd.read_csv(table)}
+        )
+    except (OSError, ValueError, TypeError) as error:
+        raise _damaged(table, error) from error
 
 
 def _json(file: Path) -> Any:  # noqa: ANN401  # whatever the file holds

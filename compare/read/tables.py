@@ -312,6 +312,8 @@ class CaseFile(Table):
         How the foot moves, if it is not at rest at every station (`compare.read.motion`).
     tolerances : table
         How far two sweeps of the case may disagree (`compare.read.limits`).
+    uncertainty : table
+        How well the inputs are known (`compare.read.uncertainty`).
     """
 
     name: FileName | None = None
@@ -333,6 +335,7 @@ class CaseFile(Table):
     mujoco: Annotated[Settings, Field(default_factory=Settings)]
     motion: MotionTable | None = None
     tolerances: dict[str, Any] = {}
+    uncertainty: dict[str, Any] = {}
 
     def physics(self, folder: Path) -> Physics:
         """The vibrissa, how it is held and rubs, and the object, without a sweep.

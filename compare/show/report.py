@@ -21,9 +21,11 @@ from compare.show.figures.order_plot import convergence_picture
 from compare.show.figures.over_foot import unit
 from compare.show.figures.phases import phase_criterion
 from compare.show.figures.readings import reading_panels, readings, snap_off_panels
+from compare.show.figures.validation import validation_picture
 from compare.show.page import document, embedded, inline_svg, png, render, words
 from compare.show.quantities import Kind, quantity
 from compare.show.style import PHASE_LETTERS
+from compare.show.validity import standard_of, validation_lines
 from compare.show.verdict import absent_transitions, verdict, why, worst_reading
 
 FIGURES = {"geometry": geometry, "readings": readings, "phases": phase_criterion}
@@ -100,6 +102,10 @@ def write_report(
         f"{name}.png": png(figure) for name, figure in drawn.items()
     }
     contents["comparison.json"] = document(comparison.to_dict())
+    if comparison.validation is not None:
+        drawn["validation"] = validation_picture(comparison, comparison.validation)
+        contents["validation.png"] = png(drawn["validation"])
+        contents["validation.csv"] = comparison.validation.table.to_csv(index=False)
     if budget is not None:
         contents |= budget_files(budget)
     figures = _figures(comparison, drawn, budget)
@@ -176,6 +182,9 @@ def report_page(
         colophon=colophon(),
         limited={name: _LIMITED.get(name, _OF_LARGEST) for name in found["tolerances"]},
         budget=budget,
+        validation=comparison.validation,
+        validity=validation_lines(comparison),
+        standards=_standards(comparison),
         unresolved=UNRESOLVED,
         headline=None if budget is None else headline(budget),
         orders=fitted_orders(budget.convergence) if budget and budget.convergence else {},
@@ -200,6 +209,11 @@ def _figures(
         "phases": "Phase B's criterion and the contact's arc length over the foot position, {}",
         "snap-off": "{} of both models around the snap-off, and their difference",
     }
+    if "validation" in drawn:
+        sections["validation"] = {"": drawn["validation"]}
+        describes["validation"] = (
+            "E = S - D and twice its standard uncertainty over the foot position"
+        )
     if budget is not None:
         sections["budget"] = panels(budget)
         describes["budget"] = (
@@ -249,6 +263,14 @@ def _offset(comparison: Comparison) -> str:
     if beam == Beam() or not (offset.value or offset.uncertainty):
         return ""
     return " ± ".join(quantity(x, "length", beam) for x in (offset.value, offset.uncertainty))
+
+
+def _standards(comparison: Comparison) -> dict[str, str]:
+    """Standard uncertainty of each input, with its unit."""
+    if comparison.validation is None:
+        return {}
+    beam, standard = comparison.reference.beam, comparison.validation.standard
+    return {name: standard_of(name, value, beam) for name, value in standard.items()}
 
 
 def _known(comparison: Comparison) -> dict[str, dict[str, str]]:

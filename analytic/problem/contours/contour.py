@@ -137,3 +137,18 @@ class Contour(ABC):
         Contour
             The mirror image.
         """
+
+    @abstractmethod
+    def raised(self, height: float) -> "Contour":
+        """The contour moved up, away from the foot's line.
+
+        Parameters
+        ----------
+        height : float
+            By how much [length].
+
+        Returns
+        -------
+        Contour
+            The same shape.
+        """

@@ -95,6 +95,10 @@ class Polygon(Contour):
             solid=self.solid and self.solid.scaled(factor),
         )
 
+    def raised(self, height: float) -> "Polygon":
+        """The polygon moved up by `height`; no longer the section of its mesh file."""
+        return replace(self, vertices=self.vertices + np.array([0.0, height]), solid=None)
+
     def mirrored(self) -> "Polygon":
         """The mirror image: x becomes -x; the vertices still run from left to right."""
         vertices = self.vertices[::-1] * [-1, 1]

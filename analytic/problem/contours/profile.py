@@ -125,6 +125,14 @@ class Profile(Contour):
             radius_of_curvature=partial(_scaled, self._stretch, factor),
         )
 
+    def raised(self, height: float) -> "Profile":
+        """The contour moved up by `height`."""
+        return replace(
+            self,
+            eta=partial(_raised, self.eta, height),
+            radius_of_curvature=self._stretch,
+        )
+
     def mirrored(self) -> "Profile":
         """The mirror image: x becomes -x and alpha becomes -alpha."""
         low, high = self.alpha_range
@@ -170,6 +178,10 @@ class Profile(Contour):
 
 def _scaled(curve: Curve, factor: float, alpha: Floats) -> Floats:
     return factor * curve(alpha)
+
+
+def _raised(curve: Curve, height: float, alpha: Floats) -> Floats:
+    return curve(alpha) + height
 
 
 def _mirrored(curve: Curve, sign: int, alpha: Floats) -> Floats:

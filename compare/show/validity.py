@@ -1,0 +1,106 @@
+"""A validation in words: is the disagreement resolved, and what would have to be known better."""
+
+from collections.abc import Iterator
+
+from analytic import Beam
+from compare.comparison import Comparison
+from compare.show.page import short
+from compare.show.quantities import quantity
+from compare.validate.inputs import GAINS, INPUTS
+from compare.validate.spread import NOISE, NUMERICS
+from compare.validate.validation import Validation
+
+_PLAIN = {NOISE: "noise of the data", NUMERICS: "the simulation's numerics"}
+
+
+def validation_lines(comparison: Comparison) -> list[str]:
+    """What a validation comes to.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        With its `validation` or without one.
+
+    Returns
+    -------
+    list of str
+        Sentences: the verdict first, then what decides it; none without a validation.
+    """
+    found = comparison.validation
+    return [] if found is None else [*_lines(found, comparison.reference.beam)]
+
+
+def standard_of(name: str, value: float, beam: Beam) -> str:
+    """A standard uncertainty with its unit, where that is known.
+
+    Parameters
+    ----------
+    name : str
+        Of an input or a gain.
+    value : float
+        In the unit of the case.
+    beam : Beam
+        The vibrissa, which knows whether that is SI.
+
+    Returns
+    -------
+    str
+        As ``"50 µm"``; of a gain ``"1 %"``.
+    """
+    if name in GAINS:
+        return f"{100 * value:.3g} %"
+    dimension = INPUTS[name].dimension
+    if dimension == "m":
+        return quantity(value, "length", beam)
+    return f"{value:.3g} {dimension}".rstrip() if beam.si else f"{value:.3g}"
+
+
+def _lines(found: Validation, beam: Beam) -> Iterator[str]:
+    whole = found.whole
+    sizes = (
+        f"E = {short(whole.error)} rms against {short(whole.limit)} = {whole.coverage:.2f} u_val "
+        f"(u_num {short(whole.u_num)}, u_input {short(whole.u_input)}, u_D {short(whole.u_data)})"
+    )
+    if found.resolved:
+        low, high = whole.error - whole.limit, whole.error + whole.limit
+        yield (
+            f"Validation: the disagreement is resolved, {sizes}: the model, or an input that is "
+            f"not in [uncertainty], is in error by {short(low)} to {short(high)}."
+        )
+    else:
+        yield (
+            f"Validation: the disagreement is not resolved, {sizes}: it is within what is "
+            "uncertain, and neither confirms nor refutes the model beyond that."
+        )
+    if found.simulation == "candidate":
+        yield (
+            "The closed form stands in for an experiment here: both sweeps have the same inputs, "
+            "so this says what an experiment with such inputs could see."
+        )
+    if whole.u_val > 0:
+        yield _dominant(found, beam)
+    yield (
+        f"Noise: {found.noise_source}. Numerics: {found.numerics_source}. The sensitivities miss "
+        f"{found.second_order:.0%} of what {found.samples} samples of the inputs do, "
+        "which is counted."
+    )
+
+
+def _dominant(found: Validation, beam: Beam) -> str:
+    name, share = found.dominant, found.whole.shares[found.dominant]
+    verb = "dominates" if found.dominates else "is the largest part"
+    said = f"{_PLAIN.get(name, name)} {verb} ({share:.0%} of u_val squared)"
+    if found.resolved:
+        return f"{said}."
+    if found.shrink is None:
+        return (
+            f"{said}; even without it the rest hides the disagreement. All uncertainties together "
+            f"would have to shrink to {found.shrink_all:.2g} of what they are."
+        )
+    if name in found.standard:
+        now, then = (
+            standard_of(name, x, beam)
+            for x in (found.standard[name], found.shrink * found.standard[name])
+        )
+        return f"{said}: its standard uncertainty must shrink from {now} to {then} to decide."
+    return f"{said}: it must shrink to {found.shrink:.2g} of what it is to decide."

@@ -1,0 +1,174 @@
+"""The inputs of a case that may be uncertain, and the case with one of them changed."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic import CLAMP_READINGS, Case, Sweep, solve_sweep
+from analytic.problem.arrays import Floats
+
+GAINS = tuple(f"gain_{name}" for name in CLAMP_READINGS)
+"""Of each reading's sensor, relative: its calibration."""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """An input of a case.
+
+    Attributes
+    ----------
+    dimension : str
+        SI unit of its dimension; empty for a plain number.
+    nominal : callable
+        Its value in a case; 0 for a place, which is not known relative to anything.
+    unit : callable
+        What it is compared with: a small change is small against that.
+    changed : callable
+        The case with the input changed by so much; None if the foot's positions change instead.
+    positive : bool
+        Whether it cannot be negative.
+    """
+
+    dimension: str
+    nominal: Callable[[Case], float]
+    unit: Callable[[Case], float]
+    changed: Callable[[Case, float], Case] | None
+    positive: bool = False
+
+
+def _length(case: Case) -> float:
+    return case.beam.length
+
+
+def _of_beam(name: str) -> Callable[[Case, float], Case]:
+    def changed(case: Case, by: float) -> Case:
+        return replace(case, beam=replace(case.beam, **{name: getattr(case.beam, name) + by}))
+
+    return changed
+
+
+INPUTS: dict[str, Kind] = {
+    "flexural_rigidity": Kind(
+        "N m^2",
+        lambda case: case.beam.flexural_rigidity,
+        lambda case: case.beam.flexural_rigidity,
+        _of_beam("flexural_rigidity"),
+        positive=True,
+    ),
+    "length": Kind("m", _length, _length, _of_beam("length"), positive=True),
+    "radius": Kind("m", lambda case: case.beam.radius, _length, _of_beam("radius"), positive=True),
+    "natural_curvature": Kind(
+        "1/m",
+        lambda case: case.beam.natural_curvature,
+        lambda case: 1 / case.beam.length,
+        _of_beam("natural_curvature"),
+    ),
+    "clamp_stiffness": Kind(
+        "N m",
+        lambda case: case.clamp_stiffness,
+        lambda case: case.clamp_stiffness,
+        lambda case, by: replace(case, clamp_stiffness=case.clamp_stiffness + by),
+        positive=True,
+    ),
+    "friction": Kind(
+        "",
+        lambda case: case.friction,
+        lambda case: 1.0,
+        lambda case, by: replace(case, friction=case.friction + by),
+        positive=True,
+    ),
+    "foot_x": Kind("m", lambda case: 0.0, _length, None),
+    "height": Kind(
+        "m",
+        lambda case: 0.0,
+        _length,
+        lambda case, by: replace(case, profile=case.profile.raised(by)),
+    ),
+}
+"""By name; ``height`` is that of the object above the foot's line."""
+
+
+def possible(case: Case, name: str, error: float) -> float:
+    """An input's error that it can have: what would be negative has the other sign.
+
+    So friction that is 0 by the case and uncertain is at most as large as stated.
+
+    Parameters
+    ----------
+    case : Case
+        The nominal problem.
+    name : str
+        Of an input, or of a gain.
+    error : float
+        As drawn, in the input's unit.
+
+    Returns
+    -------
+    float
+        `error`, or what makes an input that cannot be negative positive.
+    """
+    if name in GAINS or not INPUTS[name].positive:
+        return error
+    nominal = INPUTS[name].nominal(case)
+    return abs(nominal + error) - nominal
+
+
+@dataclass(frozen=True)
+class Swept:
+    """What a sensor reads of a case, over the stations of the nominal one.
+
+    Attributes
+    ----------
+    readings : array, shape (3, stations)
+        NaN where the vibrissa is free or has no trusted state.
+    snap_off : float or None
+        Its foot position [length].
+    """
+
+    readings: Floats
+    snap_off: float | None
+
+
+def swept(case: Case, changes: Mapping[str, float] | None = None) -> Swept:
+    """The closed form's sweep of a case whose inputs are off, over the stations of the case.
+
+    Parameters
+    ----------
+    case : Case
+        The nominal problem.
+    changes : mapping, optional
+        By how much each input differs, in its unit.
+
+    Returns
+    -------
+    Swept
+        In the unit of the case; its ``foot_x`` are the nominal ones.
+
+    Raises
+    ------
+    InputError, ArithmeticError
+        If the changed problem is none that can be solved.
+    """
+    changes = {} if changes is None else changes
+    start, stop = (float(x) + changes.get("foot_x", 0.0) for x in case.foot_x[[0, -1]])
+    varied = replace(case, sweep=Sweep(2, direction=case.sweep.direction))
+    gains = np.ones((len(CLAMP_READINGS), 1))
+    for name, by in changes.items():
+        if name in GAINS:
+            gains[GAINS.index(name)] += by
+        elif (change := INPUTS[name].changed) is not None and by != 0:
+            varied = change(varied, by)
+    # A sweep has to start clear of the object: stations are put before the first one.
+    number = case.sweep.stations
+    step = (stop - start) / (number - 1)
+    before = max(0, math.ceil((float(varied.foot_x[0]) - start) / -step))
+    sweep = Sweep(number + before, start - before * step, stop, case.sweep.direction)
+    found = solve_sweep(replace(varied, sweep=sweep))
+    known = found.trusted & (found.table["phase"] != "free").to_numpy()
+    readings = np.stack([np.where(known, found.values(n), np.nan) for n in CLAMP_READINGS])
+    away = changes.get("foot_x", 0.0)
+    return Swept(
+        (gains * readings)[:, before:], None if found.snap_off is None else found.snap_off - away
+    )

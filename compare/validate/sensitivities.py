@@ -1,0 +1,146 @@
+"""What uncertain inputs do to the readings: derivatives of the closed form, and samples of it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic import Case, InputError
+from analytic.problem.arrays import Floats
+from compare.validate.inputs import GAINS, INPUTS, Swept, possible, swept
+from compare.validate.stated import Uncertainties
+
+_STEP = 1e-4  # of an input's unit: derivatives are good to 1e-4 of their largest, next to a fold
+_MOST_FAILED = 0.1  # share of the samples that may be of no solvable problem
+
+
+@dataclass(frozen=True)
+class Sensitivities:
+    """What the inputs of a case do to its readings, over its stations.
+
+    Attributes
+    ----------
+    foot_x : array, shape (stations,)
+        [length]
+    readings : array, shape (inputs, 3, stations)
+        Derivative of the readings by each input, times its standard uncertainty; NaN where the
+        vibrissa is free.
+    snap_off : array, shape (inputs,)
+        The same of the snap-off's foot position [length]; 0 where there is none.
+    samples : array, shape (samples, 3, stations)
+        Change of the readings with all inputs off at once, drawn from what is stated; NaN where
+        the vibrissa is free.
+    predicted : array, shape (samples, 3, stations)
+        What the derivatives make of the same draws.
+    """
+
+    foot_x: Floats
+    readings: Floats
+    snap_off: Floats
+    samples: Floats
+    predicted: Floats
+
+    def at(self, foot_x: Floats) -> "Sensitivities":
+        """The same at other foot positions, interpolated.
+
+        Parameters
+        ----------
+        foot_x : array, shape (n,)
+            [length]
+
+        Returns
+        -------
+        Sensitivities
+            NaN next to where the vibrissa is free.
+        """
+        order = np.argsort(self.foot_x)
+        known = self.foot_x[order]
+        right = np.clip(np.searchsorted(known, foot_x), 1, len(known) - 1)
+        share = np.clip((foot_x - known[right - 1]) / np.diff(known)[right - 1], 0, 1)
+
+        def between(values: Floats) -> Floats:
+            values = values[..., order]
+            low, high = values[..., right - 1], values[..., right]
+            return np.where(share == 0, low, np.where(share == 1, high, low + share * (high - low)))
+
+        return Sensitivities(
+            foot_x,
+            between(self.readings),
+            self.snap_off,
+            between(self.samples),
+            between(self.predicted),
+        )
+
+
+def sensitivities(case: Case, stated: Uncertainties, samples: int, seed: int = 0) -> Sensitivities:
+    """Solve the case with its inputs changed, one by one and all at once.
+
+    Parameters
+    ----------
+    case : Case
+        The nominal problem.
+    stated : Uncertainties
+        Of its inputs.
+    samples : int
+        How many sets of errors are drawn.
+    seed : int
+        Of the draws.
+
+    Returns
+    -------
+    Sensitivities
+        In the unit of the case.
+
+    Raises
+    ------
+    InputError
+        If the case with its inputs changed as stated is often none that can be solved.
+    """
+    nominal = swept(case)
+    slopes = [_slope(case, name, nominal) for name in stated.inputs]
+    shape = (len(slopes), *nominal.readings.shape)
+    readings = np.array([slope for slope, _ in slopes]).reshape(shape)
+    draws = stated.draws(samples, np.random.default_rng(seed)) if slopes else np.zeros((0, 0))
+    changed, drawn, failure = [], [], None
+    for draw in draws.tolist():
+        errors = {n: possible(case, n, x) for n, x in zip(stated.inputs, draw, strict=True)}
+        try:
+            one = swept(case, errors)
+        except (InputError, ArithmeticError) as error:
+            failure = error
+            continue
+        changed.append(one.readings - nominal.readings)
+        drawn.append([*errors.values()])
+    if len(draws) - len(drawn) > _MOST_FAILED * len(draws):
+        raise InputError(
+            "[uncertainty]",
+            f"so large that {len(draws) - len(drawn)} of {len(draws)} cases cannot be solved",
+            "of cases that can",
+            f"state less, or check the units ({failure})",
+        )
+    drawn_ = np.array(drawn).reshape(len(drawn), len(slopes))
+    standard = stated.standard
+    return Sensitivities(
+        case.foot_x,
+        readings * standard[:, None, None],
+        np.array([snap for _, snap in slopes]) * standard,
+        np.array(changed).reshape(len(drawn), *nominal.readings.shape),
+        np.tensordot(drawn_, readings, axes=1),
+    )
+
+
+def _slope(case: Case, name: str, nominal: Swept) -> tuple[Floats, float]:
+    """Derivative of the readings and of the snap-off by an input, on both sides if there are."""
+    if name in GAINS:
+        only = np.zeros_like(nominal.readings)
+        only[GAINS.index(name)] = nominal.readings[GAINS.index(name)]
+        return np.where(np.isnan(nominal.readings), np.nan, only), 0.0
+    kind = INPUTS[name]
+    step = _STEP * kind.unit(case)
+    after = swept(case, {name: step})
+    one_sided = kind.positive and kind.nominal(case) < step
+    before = nominal if one_sided else swept(case, {name: -step})
+    way = step if one_sided else 2 * step
+    snap = 0.0
+    if after.snap_off is not None and before.snap_off is not None:
+        snap = (after.snap_off - before.snap_off) / way
+    return (after.readings - before.readings) / way, snap

@@ -1,0 +1,152 @@
+"""Uncertainties that a user states: of the inputs of a case, and of the measured readings."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from analytic import CLAMP_READINGS, InputError
+from analytic.problem.arrays import Floats
+from compare.validate.inputs import GAINS, INPUTS
+
+Distribution: TypeAlias = Literal["normal", "uniform"]
+
+NAMES = (*INPUTS, *GAINS)
+"""What may be uncertain: inputs of a case, and the gain of each reading's sensor."""
+
+
+@dataclass(frozen=True)
+class Input:
+    """How well an input is known.
+
+    Parameters
+    ----------
+    standard : float
+        Standard uncertainty, in the unit of the case; of a gain relative to 1.
+    distribution : {"normal", "uniform"}
+        Of the values that the input may have.
+    """
+
+    standard: float
+    distribution: Distribution = "normal"
+
+    def __post_init__(self) -> None:
+        if isinstance(self.standard, bool | str) or not 0 <= self.standard < math.inf:
+            raise InputError(
+                "standard uncertainty", self.standard, "a number from 0 up", "correct it"
+            )
+
+    @classmethod
+    def within(cls, half_width: float) -> "Input":
+        """An input that certainly lies within an interval, and nowhere in it more likely.
+
+        The standard uncertainty is the half-width over sqrt(3): Evaluation of measurement data,
+        Guide to the expression of uncertainty in measurement, JCGM 100:2008, section 4.3.7.
+
+        Parameters
+        ----------
+        half_width : float
+            Of the interval, in the unit of the case.
+
+        Returns
+        -------
+        Input
+            Uniformly distributed.
+        """
+        return cls(half_width / math.sqrt(3), "uniform")
+
+
+@dataclass(frozen=True)
+class Uncertainties:
+    """All that is uncertain about a validation but its numerics.
+
+    Parameters
+    ----------
+    inputs : mapping of Input
+        By name, of `NAMES`.
+    noise : mapping
+        Standard deviation of each clamp reading's noise, in its unit. What is left out is
+        estimated from the measured readings.
+    correlations : tuple of (str, str, float)
+        Pairs of normal inputs whose errors go together, with the coefficient of correlation.
+
+    Raises
+    ------
+    InputError
+        If a name is unknown, a number cannot be, or no errors can be correlated so.
+    """
+
+    inputs: Mapping[str, Input] = field(default_factory=dict)
+    noise: Mapping[str, float] = field(default_factory=dict)
+    correlations: tuple[tuple[str, str, float], ...] = ()
+
+    def __post_init__(self) -> None:
+        for name, one in self.inputs.items():
+            if name not in NAMES:
+                raise InputError(
+                    f"uncertainty.{name}", "unknown", f"one of {', '.join(NAMES)}", "correct it"
+                )
+            if not isinstance(one, Input):
+                raise InputError(f"uncertainty.{name}", repr(one), "an Input", "as Input(1e-3)")
+        for name, size in self.noise.items():
+            if name not in CLAMP_READINGS:
+                known = ", ".join(CLAMP_READINGS)
+                raise InputError(
+                    f"uncertainty.noise.{name}", "unknown", f"one of {known}", "fix it"
+                )
+            if isinstance(size, bool | str) or not 0 <= size < math.inf:
+                raise InputError(f"uncertainty.noise.{name}", size, "0 or more", "correct it")
+        normal = [n for n, x in self.inputs.items() if x.distribution == "normal"]
+        for first, second, share in self.correlations:
+            if first == second or not {first, second} <= set(normal) or not -1 <= share <= 1:
+                raise InputError(
+                    "uncertainty.correlations",
+                    f"[{first}, {second}, {share}]",
+                    "two inputs with a standard uncertainty, and a number from -1 to 1",
+                    f"those are {', '.join(normal) or 'none'}",
+                )
+        if np.linalg.eigvalsh(self.correlation).min(initial=0.0) < -1e-9:  # rounding
+            raise InputError(
+                "uncertainty.correlations",
+                [list(x) for x in self.correlations],
+                "such that errors can have them all",
+                "make them smaller",
+            )
+
+    @property
+    def standard(self) -> Floats:
+        """Standard uncertainties of the inputs, shape (inputs,)."""
+        return np.array([one.standard for one in self.inputs.values()])
+
+    @property
+    def correlation(self) -> Floats:
+        """Coefficients of correlation, shape (inputs, inputs)."""
+        place = {name: i for i, name in enumerate(self.inputs)}
+        matrix = np.eye(len(place))
+        for one, other, share in self.correlations:
+            matrix[place[one], place[other]] = matrix[place[other], place[one]] = share
+        return matrix
+
+    def draws(self, count: int, rng: np.random.Generator) -> Floats:
+        """Errors of the inputs, as they are stated.
+
+        Parameters
+        ----------
+        count : int
+            How many sets.
+        rng : numpy.random.Generator
+            Their source.
+
+        Returns
+        -------
+        array, shape (count, inputs)
+            In the units of the inputs.
+        """
+        values, vectors = np.linalg.eigh(self.correlation)
+        root = vectors * np.sqrt(np.maximum(values, 0.0))
+        normal = rng.standard_normal((count, len(values))) @ root.T
+        uniform = math.sqrt(3) * rng.uniform(-1, 1, normal.shape)
+        flat = [one.distribution == "uniform" for one in self.inputs.values()]
+        return np.asarray(np.where(flat, uniform, normal) * self.standard)
