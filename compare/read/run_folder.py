@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
-from pydantic import ConfigDict, TypeAdapter
+from pydantic import TypeAdapter
 
 from analytic import InputError, Readings
 from analytic.problem.files import regular_file
@@ -15,7 +15,6 @@ from compare.judge.tolerances import GENERAL, Limit, Tolerances
 from compare.validate.validation import Validation
 
 _LARGEST = 64_000_000  # bytes of a JSON file
-_ANY = ConfigDict(arbitrary_types_allowed=True)  # a table of numbers is one
 _REMEDY = "run it again: vibrissa run CASE --out DIR"
 
 
@@ -114,7 +113,7 @@ def _validation(folder: Path) -> Validation | None:
         return None
     try:
         regular_file(table, "file", _LARGEST)
-        return TypeAdapter(Validation, config=_ANY).validate_python(
+        return TypeAdapter(Validation).validate_python(
             {**found["validation"], "table": pd.read_csv(table)}
         )
     except (OSError, ValueError, TypeError) as error:

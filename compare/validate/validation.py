@@ -1,10 +1,11 @@
 """The verdict of a validation: is the disagreement larger than what is uncertain about it?"""
 
 from dataclasses import asdict, dataclass, field
-from typing import Any, Literal, TypeAlias
+from typing import Any, ClassVar, Literal, TypeAlias
 
 import numpy as np
 import pandas as pd
+from pydantic import ConfigDict
 
 from analytic import CLAMP_READINGS, Case, InputError, Readings
 from analytic.from_clamp.noise import reading_noise
@@ -111,6 +112,8 @@ class Validation:
         the reading's largest magnitude ``error`` (with its sign), ``u_num``, ``u_input``,
         ``u_data``, ``u_val``.
     """
+
+    __pydantic_config__: ClassVar = ConfigDict(arbitrary_types_allowed=True)  # the table is one
 
     simulation: Side
     whole: Difference
@@ -335,9 +338,9 @@ def _spread(
     stated: Uncertainties, first: Floats, second: Floats, numerics: Floats, level: Floats
 ) -> Spread:
     """All that makes the differences uncertain; the arrays have the shape (..., 3, stations)."""
-    inputs = len(first)
+    inputs, differences = len(first), int(np.prod(first.shape[1:]))
     modes = [first, numerics, second / np.sqrt(max(len(second), 1))]
-    stacked = np.concatenate([part.reshape(len(part), -1) for part in modes])
+    stacked = np.concatenate([part.reshape(len(part), differences) for part in modes])
     correlation = np.eye(len(stacked))
     correlation[:inputs, :inputs] = stated.correlation
     names = (*stated.inputs, *[NUMERICS] * len(numerics), *[SECOND_ORDER] * len(second))

@@ -1,0 +1,87 @@
+"""Uncertainties in a case file, from the command to the report."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import Beam, Case, Sweep, circle, solve_sweep
+from compare import compare
+from compare.read.case import load_job
+from compare.read.run_folder import read_run
+from compare.show.report import write_report
+from tests.compare.command import vibrissa
+
+CASE = """
+[beam]
+length = "50 mm"
+flexural_rigidity = "2e-6 N m^2"
+radius = "0.25 mm"
+[profile]
+kind = "circle"
+radius = "40 mm"
+lowest = ["0 mm", "20 mm"]
+[sweep]
+stations = 100
+[uncertainty]
+flexural_rigidity = { standard = "3 %" }
+foot_x = { standard = "50 um" }
+[uncertainty.noise]
+moment_z = "0.2 mN mm"
+"""
+BEAM = Beam(0.05, 2e-6, 0.25e-3, si=True)
+OBJECT = circle(0.04, (0.0, 0.02))
+
+
+def rig(path, rigidity):
+    """A vibrissa that is stiffer than the case says, with some noise."""
+    exact = solve_sweep(Case(replace(BEAM, flexural_rigidity=rigidity), OBJECT, Sweep(100)))
+    rng = np.random.default_rng(0)
+    noisy = {
+        name: exact.values(name) + 2e-3 * exact.table[name].abs().max() * rng.standard_normal(100)
+        for name in ("force_x", "force_y", "moment_z")
+    }
+    pd.DataFrame({"foot_x": exact.values("foot_x"), **noisy}).to_csv(path, index=False)
+
+
+@pytest.mark.slow
+def test_a_disagreement_within_and_beyond_what_is_uncertain(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
+    for rigidity, resolved in ((2.06e-6, False), (2.3e-6, True)):
+        rig(tmp_path / "rig.csv", rigidity)
+        done = vibrissa("compare", "case.toml", "rig.csv", "--beam", "case.toml", cwd=tmp_path)
+        assert done.returncode == 1, done.stderr
+        said = "the disagreement is resolved" if resolved else "the disagreement is not resolved"
+        assert said in done.stdout
+        assert "flexural_rigidity dominates" in done.stdout
+        assert ("must shrink from 6e-08 N m^2 to" in done.stdout) == (not resolved)
+        folder = tmp_path / "results" / "case-rig"
+        found = json.loads((folder / "comparison.json").read_text(encoding="utf-8"))["validation"]
+        assert found["resolved"] == found["whole"]["resolved"] == resolved
+        assert found["dominant"] == "flexural_rigidity"
+        assert "moment_z stated" in found["noise_source"]
+        table = pd.read_csv(folder / "validation.csv")
+        assert len(table) == 3 * found["stations"]
+        assert table["error"].pow(2).mean() ** 0.5 == found["whole"]["error"]
+        assert "ASME V&amp;V 20" in (folder / "report.html").read_text(encoding="utf-8")
+        assert (folder / "validation.png").exists()
+
+
+@pytest.mark.slow
+def test_a_stored_run_keeps_its_validation(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
+    job = load_job(str(tmp_path / "case.toml"))
+    exact = solve_sweep(job.case)
+    other = replace(exact, table=exact.table.assign(force_x=1.01 * exact.values("force_x")))
+    exact.write(tmp_path / "analytic.parquet")
+    other.write(tmp_path / "mujoco-chain.parquet")
+    found = compare(exact, other).validated(job.case, job.uncertainties, "candidate")
+    write_report(found, tmp_path)
+    stored = read_run(tmp_path).validation
+    assert stored == found.validation
+    np.testing.assert_allclose(stored.table["error"], found.validation.table["error"])
+    done = vibrissa("report", ".", cwd=tmp_path)
+    assert "stands in for an experiment" in done.stdout
+    assert read_run(tmp_path).validation == found.validation

@@ -1,0 +1,93 @@
+"""The table ``[uncertainty]`` of a case file."""
+
+import math
+
+import pytest
+
+from analytic import InputError
+from compare.read.case import load_job
+
+IN_UNITS = """
+[beam]
+length = "50 mm"
+flexural_rigidity = "2e-6 N m^2"
+radius = "0.25 mm"
+[profile]
+kind = "circle"
+radius = "40 mm"
+lowest = ["0 mm", "20 mm"]
+"""
+PLAIN = '[profile]\nkind = "catenary"\na = 0.5\nc = -0.8\n'
+
+
+def stated(tmp_path, table, case=IN_UNITS):
+    path = tmp_path / "case.toml"
+    path.write_text(f"{case}[uncertainty]\n{table}\n", encoding="utf-8")
+    return load_job(str(path)).uncertainties
+
+
+def test_units_and_shares_become_numbers_of_the_case(tmp_path):
+    found = stated(
+        tmp_path,
+        'flexural_rigidity = { standard = "2 %" }\n'
+        'length = { within = "0.1 mm" }\n'
+        'foot_x = { standard = "50 um" }\n'
+        "friction = { within = 0.02 }\n"
+        'gain_moment_z = { standard = "1 %" }\n'
+        'correlations = [["flexural_rigidity", "foot_x", 0.5]]\n'
+        '[uncertainty.noise]\nforce_x = "0.2 mN"\n',
+    )
+    sizes = {name: one.standard for name, one in found.inputs.items()}
+    assert sizes == pytest.approx(
+        {
+            "flexural_rigidity": 4e-8,
+            "length": 1e-4 / math.sqrt(3),
+            "foot_x": 5e-5,
+            "friction": 0.02 / math.sqrt(3),
+            "gain_moment_z": 0.01,
+        }
+    )
+    assert found.inputs["length"].distribution == "uniform"
+    assert found.noise == pytest.approx({"force_x": 2e-4})
+    assert found.correlation[0, 2] == 0.5
+
+
+def test_plain_numbers_are_in_the_units_of_the_case(tmp_path):
+    found = stated(tmp_path, 'length = { standard = 1e-3 }\nradius = { standard = "4 %" }', PLAIN)
+    assert found.inputs["length"].standard == 1e-3
+    assert found.inputs["radius"].standard == pytest.approx(0.04 * 0.005)
+
+
+def test_without_the_table_nothing_is_uncertain(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(PLAIN, encoding="utf-8")
+    assert load_job(str(path)).uncertainties is None
+
+
+@pytest.mark.parametrize(
+    ("table", "why"),
+    [
+        ('length = "0.1 mm"', "say which of the two it is"),
+        ('length = { standard = "1 mm", within = "1 mm" }', "say which of the two it is"),
+        ("length = { standard = 0.1 }", "with a unit of m"),
+        ('length = { standard = "1 N" }', "with a unit of m"),
+        ('length = { standard = "-1 mm" }', "from 0 up"),
+        ('length = { standard = "x %" }', "per cent"),
+        ('foot_x = { standard = "2 %" }', "with a unit of m"),
+        ('friction = { standard = "0.1 N" }', "a plain number"),
+        ("friction = { standard = true }", "a plain number"),
+        ("friction = { standard = nan }", "a plain number"),
+        ('clamp_stiffness = { standard = "1 N mm" }', "the clamp is rigid"),
+        ('lenght = { standard = "1 mm" }', "line 11: uncertainty.lenght"),
+        ('noise = { force_z = "1 mN" }', "a table of force_x"),
+        ('noise = { force_x = "2 %" }', "with a unit of N"),
+        ('correlations = [["length", "radius"]]', "two names and a number"),
+        ("correlations = 3", "two names and a number"),
+        ('correlations = [["length", "radius", 0.5]]', "those are none"),
+    ],
+)
+def test_what_cannot_be_is_one_line(tmp_path, table, why):
+    with pytest.raises(InputError, match=why) as found:
+        stated(tmp_path, table)
+    assert "\n" not in str(found.value)
+    assert "uncertainty" in str(found.value)

@@ -1,0 +1,66 @@
+"""One number for correlated differences: its quantile, its parts, and what shrinks it."""
+
+import numpy as np
+import pytest
+
+from compare.validate.spread import COVERED, NOISE, Spread
+
+
+def spread(sizes, noise, correlation=None, seed=0, differences=300):
+    rng = np.random.default_rng(seed)
+    modes = np.array(sizes)[:, None] * rng.standard_normal((len(sizes), differences))
+    names = tuple(f"input {i}" for i in range(len(sizes)))
+    together = np.eye(len(sizes)) if correlation is None else np.array(correlation)
+    return Spread(names, modes, together, np.full(differences, noise))
+
+
+@pytest.mark.parametrize(
+    ("sizes", "noise", "correlation"),
+    [
+        ([1.0], 0.0, None),
+        ([1.0, 0.3], 0.1, None),
+        ([1.0, 1.0, 1.0], 0.5, None),
+        ([0.1], 1.0, None),
+        ([1.0, 1.0], 0.2, [[1, 0.8], [0.8, 1]]),
+    ],
+)
+def test_the_limit_holds_for_95_of_100_sets_of_errors(sizes, noise, correlation):
+    given = spread(sizes, noise, correlation)
+    rng = np.random.default_rng(1)
+    root = np.linalg.cholesky(given.correlation)
+    errors = (rng.standard_normal((20_000, len(sizes))) @ root.T) @ given.modes
+    errors += given.noise * rng.standard_normal(errors.shape)
+    rms = np.sqrt(np.mean(errors**2, axis=1))
+    u_val, expand = given.limits()
+    assert np.sqrt(np.mean(rms**2)) == pytest.approx(u_val, rel=0.03)
+    assert np.mean(rms <= expand * u_val) == pytest.approx(COVERED, abs=0.01)
+    assert 1 <= expand <= 2.001  # 95.45 % is rounded
+
+
+def test_one_input_is_expanded_by_two_and_noise_hardly():
+    assert spread([1.0], 0.0).limits()[1] == pytest.approx(2.0, abs=1e-3)
+    assert spread([1e-6], 1.0, differences=3000).limits()[1] == pytest.approx(1.0, abs=0.03)
+
+
+def test_shares_are_those_of_the_variance():
+    given = spread([1.0, 2.0], 0.5)
+    shares, variance = given.shares(), given.variance() + given.noise**2
+    assert sum(shares.values()) == pytest.approx(1)
+    assert shares["input 1"] == pytest.approx(np.sum(given.modes[1] ** 2) / np.sum(variance))
+    assert shares[NOISE] == pytest.approx(300 * 0.25 / np.sum(variance))
+
+
+def test_what_shrinks_so_far_lets_the_error_stand_out():
+    given = spread([1.0, 0.1], 0.05)
+    factor = given.shrink(1.0, "input 0")
+    u_val, expand = given.limits({"input 0": factor})
+    assert 0 < factor < 1
+    assert expand * u_val == pytest.approx(1.0, rel=1e-9)
+    assert given.shrink(0.1, "input 0") is None
+    assert given.shrink(10.0, "input 0") == 1.0
+
+
+def test_without_any_uncertainty_all_is_resolved():
+    nothing = Spread((), np.zeros((0, 5)), np.zeros((0, 0)), np.zeros(5))
+    assert nothing.limits()[0] == 0.0
+    assert nothing.shrink(1e-12, NOISE) == 1.0

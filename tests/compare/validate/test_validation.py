@@ -1,0 +1,171 @@
+"""The verdict of a validation, on errors that are known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import CLAMP_READINGS, Beam, Case, InputError, Sweep, circle, named_case, solve_sweep
+from compare import Input, Uncertainties, compare, validate
+from compare.measure.measurement import measure
+from compare.validate.inputs import INPUTS
+from compare.validate.sensitivities import sensitivities
+from tests.compare.validate.experiments import CASES, off
+
+NO_NOISE = dict.fromkeys(CLAMP_READINGS, 0.0)
+
+
+def validated(case, errors, stated, **options):
+    return validate(measure(solve_sweep(case), off(case, errors), 5e-3), case, stated, **options)
+
+
+def test_a_rigidity_that_is_off_by_one_standard_uncertainty():
+    """All readings scale alike: E is u_val wherever the contact is."""
+    case = CASES["parabola"]
+    stated = Uncertainties({"flexural_rigidity": Input(0.02)}, NO_NOISE)
+    found = validated(case, {"flexural_rigidity": 0.02}, stated, samples=8)
+    assert found.whole.error == pytest.approx(found.whole.u_val, rel=1e-9)
+    assert found.whole.coverage == pytest.approx(2, abs=1e-3)
+    assert found.whole.u_input == pytest.approx(found.whole.u_val)
+    np.testing.assert_allclose(found.table.error, -np.sign(-found.table.error) * found.table.u_val)
+    assert (found.dominant, found.resolved, found.dominates) == ("flexural_rigidity", False, True)
+    # Half the error would be resolved if the input were known so well that 2 u is E.
+    assert found.shrink == pytest.approx(0.5, abs=1e-3)
+    assert found.shrink_all == pytest.approx(0.5, abs=1e-3)
+
+
+def test_an_error_of_the_model_is_resolved():
+    case = CASES["circle"]
+    stated = Uncertainties({"flexural_rigidity": Input(1e-3)}, NO_NOISE)
+    found = validated(case, {"friction": 0.05}, stated, samples=8)
+    assert found.resolved
+    assert found.shrink == 1.0
+    assert found.whole.error > 3 * found.whole.limit
+
+
+def test_what_else_is_uncertain_hides_it_still():
+    case = CASES["circle"]
+    stated = Uncertainties({"flexural_rigidity": Input(0.02), "height": Input(2e-3)}, NO_NOISE)
+    found = validated(case, {"flexural_rigidity": 1e-3}, stated, samples=8)
+    assert found.shrink is None
+    assert 0 < found.shrink_all < 0.5
+
+
+@pytest.mark.parametrize("name", [name for name in INPUTS if name != "clamp_stiffness"])
+def test_sensitivities_are_differences_of_sweeps(name):
+    """Large changes, whose differences have an error of second order that is cancelled."""
+    case = CASES["circle"]
+    found = sensitivities(case, Uncertainties({name: Input(1.0)}), samples=0)
+    step = 2e-4
+    if name == "natural_curvature":
+        same = replace(case, sweep=Sweep(200, *case.foot_x[[0, -1]].tolist()))
+        swept = {
+            way: solve_sweep(replace(same, beam=replace(case.beam, natural_curvature=way * step)))
+            for way in (1, -1)
+        }
+    elif name == "friction":  # one-sided: of second order by three sweeps
+        swept = {1: off(case, {name: step}), 2: off(case, {name: 2 * step}), 0: off(case, {})}
+    else:
+        swept = {way: off(case, {name: way * step}) for way in (1, -1)}
+    here = np.linspace(-0.8, 0.6, 20)
+
+    def at(readings, reading):
+        x = readings.values("foot_x")
+        return np.interp(here, x[::-1], readings.values(reading)[::-1])
+
+    for i, reading in enumerate(CLAMP_READINGS):
+        value = {way: at(sweep, reading) for way, sweep in swept.items()}
+        if name == "friction":
+            expected = (4 * value[1] - value[2] - 3 * value[0]) / (2 * step)
+        else:
+            expected = (value[1] - value[-1]) / (2 * step)
+        slope = found.readings[0, i]
+        got = np.interp(here, case.foot_x[::-1], slope[::-1])
+        # Where a phase begins or ends the stations of both are on either side of it.
+        apart = np.quantile(np.abs(got - expected), 0.85)
+        assert apart < 0.01 * np.abs(expected).max()
+
+
+def test_a_soft_clamp_and_its_stiffness():
+    """The rotation at the clamp is M/c: a stiffer one by d c turns less by M d c/c^2."""
+    case = Case(profile=circle(1.0, (0.0, 0.4)), clamp_stiffness=8.0)
+    found = sensitivities(case, Uncertainties({"clamp_stiffness": Input(0.1)}), samples=8)
+    assert np.nanmax(np.abs(found.readings)) > 1e-3
+    missed = np.nan_to_num(found.samples - found.predicted)
+    assert np.sqrt(np.mean(missed**2)) < 0.02 * np.sqrt(np.nanmean(found.samples**2))
+
+
+def test_units_do_not_matter():
+    plain = CASES["circle"]
+    length, rigidity = 0.05, 2e-6
+    beam = Beam(length, rigidity, 0.005 * length)
+    case = replace(plain, beam=beam, profile=plain.profile.scaled(length))
+    sizes = {"length": 1e-3, "flexural_rigidity": 0.01, "foot_x": 1e-3, "gain_moment_z": 0.01}
+    units = {"length": length, "flexural_rigidity": rigidity, "foot_x": length}
+    one, other = (
+        validated(
+            which,
+            {"length": 1e-3 * unit.get("length", 1.0)},
+            Uncertainties({n: Input(x * unit.get(n, 1.0)) for n, x in sizes.items()}, NO_NOISE),
+            samples=4,
+        )
+        for which, unit in ((plain, {}), (case, units))
+    )
+    assert other.whole.error == pytest.approx(one.whole.error, rel=1e-6)
+    assert other.whole.u_val == pytest.approx(one.whole.u_val, rel=1e-6)
+    assert other.dominant == one.dominant
+
+
+def test_noise_is_what_the_data_show_where_none_is_stated():
+    case = named_case("parabola")
+    exact = solve_sweep(case)
+    rng = np.random.default_rng(0)
+    noisy = {n: exact.values(n) + 0.01 * rng.standard_normal(200) for n in CLAMP_READINGS}
+    data = replace(exact, table=exact.table.assign(**noisy), source="measured")
+    found = validate(measure(exact, data, 5e-3), case, Uncertainties(noise={"force_x": 0.02}))
+    scale = {n: np.abs(exact.values(n)).max() for n in CLAMP_READINGS}
+    assert found.noise["force_x"] == pytest.approx(0.02 / scale["force_x"])
+    assert found.noise["moment_z"] == pytest.approx(0.01 / scale["moment_z"], rel=0.25)
+    assert "force_x stated" in found.noise_source
+    assert found.dominant == "noise"
+
+
+def test_a_fitted_offset_is_as_uncertain_as_its_fit():
+    case = named_case("parabola")
+    exact = solve_sweep(case)
+    shifted = replace(exact, table=exact.table.assign(foot_x=exact.values("foot_x") + 0.01))
+    found = compare(exact, shifted, offset="auto")
+    stated = Uncertainties({"foot_x": Input(0.01)})
+    known = found.validated(case, stated).validation  # of 64 samples
+    assert known.standard["foot_x"] == pytest.approx(found.offset.uncertainty / 1.96)
+
+
+@pytest.mark.parametrize(
+    ("stated", "why"),
+    [
+        (lambda: Uncertainties({"lenght": Input(1)}), "lenght"),
+        (lambda: Input(-1.0), "standard uncertainty"),
+        (lambda: Uncertainties(noise={"force_z": 1.0}), "force_z"),
+        (
+            lambda: Uncertainties({"length": Input.within(1)}, {}, (("length", "radius", 1),)),
+            "corr",
+        ),
+        (
+            lambda: Uncertainties(
+                dict.fromkeys(("length", "radius", "foot_x"), Input(1)),
+                {},
+                (("length", "radius", 1), ("radius", "foot_x", 1), ("length", "foot_x", -1)),
+            ),
+            "correlations",
+        ),
+    ],
+)
+def test_what_cannot_be_stated(stated, why):
+    with pytest.raises(InputError, match=why):
+        stated()
+
+
+def test_uncertainties_beyond_any_case():
+    case = CASES["circle"]
+    with pytest.raises(InputError, match="cannot be solved"):
+        validated(case, {}, Uncertainties({"height": Input(2.0)}, NO_NOISE), samples=16)
