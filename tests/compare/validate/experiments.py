@@ -4,8 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic import CLAMP_READINGS, SENSED, Beam, Case, Readings, Sweep, circle, named_case
-from analytic import solve_sweep
+from analytic import (
+    CLAMP_READINGS,
+    SENSED,
+    Beam,
+    Case,
+    Readings,
+    Sweep,
+    circle,
+    named_case,
+    solve_sweep,
+)
 from compare import Input, Uncertainties
 
 CASES = {
