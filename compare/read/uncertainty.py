@@ -84,7 +84,12 @@ def _input(name: str, said: object, case: Case, here: str) -> Input:
     dimension = "" if name in GAINS else INPUTS[name].dimension
     nominal = 1.0 if name in GAINS else INPUTS[name].nominal(case)
     if not math.isfinite(nominal):
-        raise InputError(here, shown(said), "left out: the clamp is rigid", "state its stiffness")
+        raise InputError(
+            here,
+            shown(said),
+            f"left out: the case has no {name} that is a number",
+            "a rigid clamp has no stiffness, a cylinder no radius of its tip",
+        )
     size = _size(said[kinds[0]], dimension, nominal, case, f"{here}.{kinds[0]}")
     return Input(size) if kinds[0] == "standard" else Input.within(size)
 

@@ -22,7 +22,8 @@ class Kind:
     dimension : str
         SI unit of its dimension; empty for a plain number.
     nominal : callable
-        Its value in a case; 0 for a place, which is not known relative to anything.
+        Its value in a case; 0 for a place, which is not known relative to anything, and not finite
+        if the case has no such number.
     unit : callable
         What it is compared with: a small change is small against that.
     changed : callable
@@ -42,29 +43,45 @@ def _length(case: Case) -> float:
     return case.beam.length
 
 
-def _of_beam(name: str) -> Callable[[Case, float], Case]:
-    def changed(case: Case, by: float) -> Case:
-        return replace(case, beam=replace(case.beam, **{name: getattr(case.beam, name) + by}))
+def _rigidity(case: Case) -> float:
+    return case.beam.base_rigidity
 
-    return changed
+
+def _natural(case: Case) -> float:
+    natural = case.beam.natural_curvature
+    return natural if isinstance(natural, float) else math.nan
+
+
+def _tip_radius(case: Case) -> float:
+    return math.nan if case.beam.tip_radius is None else case.beam.tip_radius
+
+
+def _stiffer(case: Case, by: float) -> Case:
+    return replace(case, beam=case.beam.scaled(rigidity=1 + by / _rigidity(case)))
+
+
+def _longer(case: Case, by: float) -> Case:
+    return replace(case, beam=case.beam.scaled(length=1 + by / case.beam.length))
+
+
+def _thicker(case: Case, by: float) -> Case:
+    return replace(case, beam=replace(case.beam, radius=case.beam.radius + by))
+
+
+def _thicker_at_its_tip(case: Case, by: float) -> Case:
+    return replace(case, beam=replace(case.beam, tip_radius=_tip_radius(case) + by))
+
+
+def _bent(case: Case, by: float) -> Case:
+    return replace(case, beam=replace(case.beam, natural_curvature=_natural(case) + by))
 
 
 INPUTS: dict[str, Kind] = {
-    "flexural_rigidity": Kind(
-        "N m^2",
-        lambda case: case.beam.flexural_rigidity,
-        lambda case: case.beam.flexural_rigidity,
-        _of_beam("flexural_rigidity"),
-        positive=True,
-    ),
-    "length": Kind("m", _length, _length, _of_beam("length"), positive=True),
-    "radius": Kind("m", lambda case: case.beam.radius, _length, _of_beam("radius"), positive=True),
-    "natural_curvature": Kind(
-        "1/m",
-        lambda case: case.beam.natural_curvature,
-        lambda case: 1 / case.beam.length,
-        _of_beam("natural_curvature"),
-    ),
+    "flexural_rigidity": Kind("N m^2", _rigidity, _rigidity, _stiffer, positive=True),
+    "length": Kind("m", _length, _length, _longer, positive=True),
+    "radius": Kind("m", lambda case: case.beam.radius, _length, _thicker, positive=True),
+    "tip_radius": Kind("m", _tip_radius, _length, _thicker_at_its_tip, positive=True),
+    "natural_curvature": Kind("1/m", _natural, lambda case: 1 / case.beam.length, _bent),
     "clamp_stiffness": Kind(
         "N m",
         lambda case: case.clamp_stiffness,
@@ -87,7 +104,8 @@ INPUTS: dict[str, Kind] = {
         lambda case, by: replace(case, profile=case.profile.raised(by)),
     ),
 }
-"""By name; ``height`` is that of the object above the foot's line."""
+"""By name. The rigidity is that at the clamp, and what varies along the vibrissa goes along with it
+and with its length; ``height`` is that of the object above the foot's line."""
 
 
 def possible(case: Case, name: str, error: float) -> float:

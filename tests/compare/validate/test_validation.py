@@ -51,7 +51,9 @@ def test_what_else_is_uncertain_hides_it_still():
     assert 0 < found.shrink_all < 0.5
 
 
-@pytest.mark.parametrize("name", [name for name in INPUTS if name != "clamp_stiffness"])
+@pytest.mark.parametrize(
+    "name", [name for name in INPUTS if name not in ("clamp_stiffness", "tip_radius")]
+)
 def test_sensitivities_are_differences_of_sweeps(name):
     """Large changes, whose differences have an error of second order that is cancelled."""
     case = CASES["circle"]
