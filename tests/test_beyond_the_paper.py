@@ -10,8 +10,6 @@ from analytic import (
     Sweep,
     certify,
     circle,
-    curvatures,
-    deflected_shapes,
     find_events,
     named_case,
     reconstruct,
@@ -22,7 +20,6 @@ from analytic import (
     solve_sweep,
     with_friction,
 )
-from compare import compare
 from compare.show.figures.paper import paper_figures
 from mujoco_models import simulate_motion, simulate_sweep
 
@@ -50,13 +47,11 @@ def budget_of(case):
         simulate_sweep,
         simulate_motion,
         lambda case: with_friction(case, 0.1),
-        lambda case: reconstruct(solve_sweep(case)),
+        lambda case: reconstruct(solve_sweep(case), method="kaneko"),
+        lambda case: reconstruct(solve_sweep(case), method="decision"),
         lambda case: reconstruct_by_decision(solve_sweep(case)),
-        lambda case: deflected_shapes(solve_sweep(case)),
-        lambda case: curvatures(solve_sweep(case), None, None),
         lambda case: sideways_stiffness(solve_sweep(case)),
         lambda case: paper_figures(case, solve_sweep(case)),
-        lambda case: compare(solve_sweep(case), solve_sweep(case)),
         budget_of,
     ],
 )

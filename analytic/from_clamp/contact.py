@@ -4,10 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.from_clamp.general import Clamped
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED
 from analytic.problem.readings import Readings
+from analytic.problem.support import is_plain
 from analytic.solver.elastica import frame, span_of_moment
+from analytic.solver.general.states import Vibrissa
 
 UNLOADED = 1e-9
 """Force that has no direction to speak of, over EI/L^2."""
@@ -74,22 +77,98 @@ def sides(sensed: Floats) -> Floats:
     return np.stack([side, side, np.ones_like(side), side])
 
 
-def contact_of(sensed: Floats) -> Contact:
-    """Contacts of stations, each bent to its own side.
+class Held(NamedTuple):
+    """What the readings of a sweep are of, as the clamp's readings need it."""
 
-    Parameters
-    ----------
-    sensed : array, shape (4, stations)
-        Dimensionless.
+    vibrissa: Vibrissa
+    """Its numbers in a sweep to the left; the mirror image's, if the foot moves to the right."""
+    plain: bool
+    """Whether it is the paper's: straight at rest, rigidly clamped, without friction."""
+    way: float
+    """-1 if the foot moves to the right, else 1; it determines the sense of friction."""
 
-    Returns
-    -------
-    Contact
-        NaN where no elastica has such readings, or none is given.
-    """
-    turned = sides(sensed)
-    found = contact_bent_right(turned * sensed)
-    return Contact(turned[0] * found.alpha, found.arc_length, turned[0] * found.xi, found.eta)
+    @classmethod
+    def of(cls, readings: Readings) -> "Held":
+        """What a sweep is of, by its beam and its provenance.
+
+        Parameters
+        ----------
+        readings : Readings
+            One sweep.
+
+        Returns
+        -------
+        Held
+            Dimensionless.
+
+        Raises
+        ------
+        InputError
+            If the vibrissa varies along its length.
+        """
+        foot_x = readings.values("foot_x")
+        rightward = foot_x[-1] > foot_x[0]
+        beam = readings.beam.mirrored() if rightward else readings.beam
+        plain = is_plain(beam, *readings.support)
+        return cls(Vibrissa.of(beam, *readings.support), plain, -1.0 if rightward else 1.0)
+
+    def clamped(self, sensed: Floats) -> Clamped:
+        """The clamp's end of the vibrissa.
+
+        Parameters
+        ----------
+        sensed : array, shape (4, ...)
+            Dimensionless.
+
+        Returns
+        -------
+        Clamped
+            In a sweep to the left, or the mirror image of one to the right.
+        """
+        return Clamped.of(self.way * sensed[1], sensed[2], self.way * sensed[3], self.vibrissa)
+
+    def contact(self, sensed: Floats) -> Contact:
+        """Contacts of stations; the paper's vibrissa is bent to its own side at each.
+
+        Parameters
+        ----------
+        sensed : array, shape (4, ...)
+            Dimensionless.
+
+        Returns
+        -------
+        Contact
+            NaN where no elastica has such readings, or none is given.
+        """
+        if self.plain:
+            turned = sides(sensed)
+            found = contact_bent_right(turned * sensed)
+            side = turned[0]
+            return Contact(side * found.alpha, found.arc_length, side * found.xi, found.eta)
+        clamped = self.clamped(sensed)
+        place = clamped.place(clamped.contact_arc_length())
+        xi = sensed[0] + self.way * place.x
+        return Contact(self.way * place.alpha, place.arc_length, xi, place.y)
+
+    def criterion(self, sensed: Floats) -> Floats:
+        """What vanishes in Phase B and is positive in Phase A.
+
+        Parameters
+        ----------
+        sensed : array, shape (4, ...)
+            Dimensionless, with a force.
+
+        Returns
+        -------
+        array, shape (...)
+            (2 F_y - M^2)/(2 f) = sin(phi1 - alpha) of eq. 26; with friction sin(phi1 - alpha -
+            arctan(mu)) + sin(arctan(mu)).
+        """
+        if self.plain:
+            _, force_x, force_y, moment = sensed
+            return np.asarray((2 * force_y - moment**2) / (2 * np.hypot(force_x, force_y)))
+        lean = np.arctan(self.vibrissa.friction)
+        return np.asarray(self.clamped(sensed).sine_at_contact() + np.sin(lean))
 
 
 def located(readings: Readings) -> Contact:
@@ -108,11 +187,11 @@ def located(readings: Readings) -> Contact:
     Raises
     ------
     InputError
-        If the vibrissa is curved at rest, its clamp turns, or the object rubs.
+        If the vibrissa varies along its length.
     """
-    readings.require_plain("the contact from the clamp")
     sensed = dimensionless(readings)
-    found = contact_of(np.where(np.hypot(sensed[1], sensed[2]) > UNLOADED, sensed, np.nan))
+    felt = np.hypot(sensed[1], sensed[2]) > UNLOADED
+    found = Held.of(readings).contact(np.where(felt, sensed, np.nan))
     there = (found.arc_length >= 0) & (found.arc_length <= LONGEST)
     return Contact(*(np.where(there, values, np.nan) for values in found))
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.from_clamp.contact import LONGEST, UNLOADED, contact_of, dimensionless
+from analytic.from_clamp.contact import LONGEST, UNLOADED, Held, dimensionless
 from analytic.from_clamp.noise import MEDIAN_OF_NORMAL, checked_noise, largest, reading_noise
 from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.columns import CLAMP_READINGS
@@ -26,7 +26,8 @@ class Judgement(NamedTuple):
     phase : array of str
         ``"free"``, ``"tip"``, ``"tangent"``.
     criterion : array
-        (2 F_y - M^2)/(2 f) = sin(phi_1 - alpha) of eq. 26: zero in Phase B.
+        (2 F_y - M^2)/(2 f) = sin(phi_1 - alpha) of eq. 26, and what it becomes with friction, an
+        elastic clamp and a natural curvature (`Held.criterion`): zero in Phase B.
     criterion_tolerance : array
         Its standard deviation.
     shortfall : array
@@ -91,22 +92,27 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
 
     f = np.hypot(force_x, force_y)
     felt = f > UNLOADED
-    criterion = np.where(felt, (2 * force_y - moment**2) / (2 * f), np.nan)
+    held = Held.of(readings)
+    criterion = np.where(felt, held.criterion(sensed), np.nan)
     by_x = criterion * force_x / f**2
     by_y = 1 / f - criterion * force_y / f**2
     by_m = moment / f
     criterion_tolerance = np.sqrt(
         (by_x * noise_x) ** 2 + (by_y * noise_y) ** 2 + (by_m * noise_m) ** 2
     )
-    shortfall = _shortfall(sensed, felt)
-    variance = np.zeros_like(shortfall)
+    shortfall = _shortfall(held, sensed, felt)
+    variance, spread = np.zeros_like(shortfall), np.zeros_like(shortfall)
     for row, size in enumerate((noise_x, noise_y, noise_m), start=1):
         step = min(1.0, _STEP * magnitudes[row - 1] / size) if size else 1.0
         moved = sensed.copy()
         moved[row] += step * size
-        there = _shortfall(moved, np.hypot(moved[1], moved[2]) > UNLOADED)
+        there = _shortfall(held, moved, np.hypot(moved[1], moved[2]) > UNLOADED)
         variance += (np.nan_to_num(there - shortfall) / step) ** 2
+        if not held.plain:
+            spread += (np.nan_to_num(held.criterion(moved) - criterion) / step) ** 2
     shortfall_tolerance = np.sqrt(variance)
+    if not held.plain:
+        criterion_tolerance = np.sqrt(spread)
 
     of_criterion = np.abs(criterion) / criterion_tolerance
     of_shortfall = np.abs(shortfall) / shortfall_tolerance
@@ -128,8 +134,8 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
     )
 
 
-def _shortfall(sensed: Floats, felt: Booleans) -> Floats:
+def _shortfall(held: Held, sensed: Floats, felt: Booleans) -> Floats:
     """NaN where no elastica has such readings; a contact beyond the tip is short by less than 0."""
-    arc_length = contact_of(np.where(felt, sensed, np.nan)).arc_length
+    arc_length = held.contact(np.where(felt, sensed, np.nan)).arc_length
     short = np.where(arc_length >= 0, 1 - arc_length, np.nan)
     return np.where(arc_length > LONGEST, _BEYOND_TIP, short)

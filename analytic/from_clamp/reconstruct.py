@@ -11,8 +11,8 @@ from analytic.from_clamp.contact import (
     LONGEST,
     UNLOADED,
     Contact,
+    Held,
     contact_bent_right,
-    contact_of,
     dimensionless,
     sides,
 )
@@ -76,14 +76,15 @@ def reconstruct(
     Raises
     ------
     InputError
-        If `noise` is no such mapping, there is no such method, or the vibrissa is curved at rest,
-        its clamp turns, or the object rubs.
+        If `noise` is no such mapping, there is no such method, the vibrissa varies along its
+        length, or a method other than ``"elastica"`` is to find the contact of one that is curved
+        at rest, whose clamp turns, or that rubs.
     """
     require("readings", readings, Readings, "as Readings(table, beam)")
-    readings.require_plain("the reconstruction")
     if method == "decision":
         return reconstruct_by_decision(readings)
     if method != "elastica":
+        readings.require_plain(f"the method {method}")
         return reconstruct_earlier(readings, method, noise)
     judged = judge_phases(readings, noise)
     found = contact_table(readings, judged)
@@ -111,7 +112,7 @@ def contact_table(readings: Readings, judged: Judgement) -> pd.DataFrame:
         As `reconstruct`, without ``uncertainty``.
     """
     loaded = judged.phase != "free"
-    contact = contact_of(np.where(loaded, dimensionless(readings), np.nan))
+    contact = Held.of(readings).contact(np.where(loaded, dimensionless(readings), np.nan))
     return _table(readings, contact, loaded, judged.phase)
 
 
@@ -188,7 +189,7 @@ def reconstruct_by_decision(readings: Readings, tolerance: float = 1e-6) -> pd.D
     pandas.DataFrame
         As `reconstruct`.
     """
-    readings.require_plain("the reconstruction")
+    readings.require_plain("the method decision")
     if readings.bends_left:
         return mirrored_table(reconstruct_by_decision(readings.mirrored(), tolerance))
     sensed = dimensionless(readings)
@@ -242,16 +243,18 @@ def _uncertainty(
     beam = readings.beam
     units = (beam.length, beam.force_unit, beam.force_unit, beam.moment_unit)
     spread = np.array([noise.get(n, 0.0) / u for n, u in zip(SENSED, units, strict=True)])
+    held = Held.of(readings)
     sensed = dimensionless(readings)[:, loaded]
-    sensed = sides(sensed) * sensed
+    # Noise does not turn the paper's vibrissa to its other side.
+    sensed = sides(sensed) * sensed if held.plain else sensed
+    contact = contact_bent_right if held.plain else held.contact
     generator = np.random.default_rng(seed)
 
     def covering(some: Floats) -> Floats:
         random = generator.standard_normal((4, some.shape[1], _SAMPLES))
         noisy = some[:, :, None] + spread[:, None, None] * random
         moved, here = (
-            contact_bent_right(x).surface(beam.radius / beam.length)
-            for x in (noisy, some[:, :, None])
+            contact(x).surface(beam.radius / beam.length) for x in (noisy, some[:, :, None])
         )
         miss = np.hypot(*(m - h for m, h in zip(moved, here, strict=True)))
         return np.asarray(

@@ -58,5 +58,6 @@ def sideways_stiffness(readings: Readings) -> Floats:
         Force across the plane over displacement, at the contact [force/length]: negative where the
         vibrissa leaves the plane unless something holds it. NaN where nothing touches.
     """
+    readings.require_plain("the sideways stiffness")
     contact_x = located(readings).xi * readings.beam.length
     return np.asarray(-readings.values("force_x") / (contact_x - readings.values("foot_x")))

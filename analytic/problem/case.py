@@ -17,7 +17,7 @@ from analytic.problem.errors import InputError, require
 from analytic.problem.numbers import is_finite_number, is_whole_number
 from analytic.problem.reach import FARTHEST, contact_range, out_of_reach
 from analytic.problem.rest import first_touch
-from analytic.problem.support import check_support, is_plain, require_plain
+from analytic.problem.support import check_support, is_plain, require_plain, support_record
 
 Direction: TypeAlias = Literal["left", "right"]
 
@@ -223,16 +223,12 @@ class Case:
             if rigid, and ``friction``.
         """
         xi, eta = self.outline()
-        support: dict[str, Any] = {}
-        if self.clamp_stiffness != math.inf or self.friction != 0:
-            stiffness = self.clamp_stiffness if self.clamp_stiffness < math.inf else None
-            support = {"support": {"clamp_stiffness": stiffness, "friction": self.friction}}
         return {
             "case": self.name,
             "profile": self.profile.label,
             "digest": self.digest,
             "contour": [xi.tolist(), eta.tolist()],
-            **support,
+            **support_record(self.clamp_stiffness, self.friction),
         }
 
     def outline(self, points: int = 181) -> tuple[Floats, Floats]:

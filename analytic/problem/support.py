@@ -147,6 +147,26 @@ def beyond_the_paper(
     return {name: value for name, value, plain in numbers if value != plain}
 
 
+def support_record(clamp_stiffness: float, friction: float) -> dict[str, Any]:
+    """What provenance says of the clamp and the contact.
+
+    Parameters
+    ----------
+    clamp_stiffness, friction : float
+        [force length/rad] and coefficient.
+
+    Returns
+    -------
+    dict
+        ``support`` with ``clamp_stiffness``, None if rigid, and ``friction``; empty if the clamp is
+        rigid and nothing rubs.
+    """
+    if clamp_stiffness == math.inf and friction == 0:
+        return {}
+    stiffness = clamp_stiffness if clamp_stiffness < math.inf else None
+    return {"support": {"clamp_stiffness": stiffness, "friction": friction}}
+
+
 def support_of(provenance: Mapping[str, Any]) -> tuple[float, float]:
     """Clamp stiffness and friction that readings were made with.
 

@@ -42,7 +42,14 @@ def contour_signatures(reference: Readings, foot_x: Floats) -> dict[str, Floats]
     points, step = _extended(np.transpose(contour), _BEYOND * beam.length), _STEP * beam.length
     down = points - [0.0, step]
     try:
-        case = Case(beam, through_points(points), sweep)
+        clamp_stiffness, friction = reference.support
+        case = Case(
+            beam,
+            through_points(points),
+            sweep,
+            clamp_stiffness=clamp_stiffness,
+            friction=friction,
+        )
         cases = {
             "length": replace(case, beam=replace(beam, length=beam.length + step)),
             "radius": replace(case, beam=replace(beam, radius=beam.radius + step)),

@@ -1,7 +1,7 @@
 """Two sweeps set side by side: how far apart, where, and in which phase."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -145,6 +145,7 @@ def measure(
             "in the order of the motion",
             "sort them by foot_x, or compare one sweep at a time",
         )
+    candidate = _held_alike(reference, candidate)
     candidate, records["candidate"], order = in_order(reference, candidate)
     judged = {"reference": classify(reference), "candidate": classify(candidate)}
     comparable = in_units_of(reference, candidate)
@@ -187,6 +188,17 @@ def measure(
         records,
         order,
     )
+
+
+def _held_alike(reference: Readings, candidate: Readings) -> Readings:
+    """The candidate, in the clamp and with the friction of the reference if it does not say.
+
+    A sweep that an engine made of a case says it: its provenance has the case's digest.
+    """
+    support = reference.provenance.get("support")
+    if support is None or {"support", "digest"} & candidate.provenance.keys():
+        return candidate
+    return replace(candidate, provenance={**candidate.provenance, "support": support})
 
 
 def _check_size(which: str, sweep: Readings) -> None:

@@ -113,8 +113,10 @@ def validate(tables: Mapping[str, Any], place: Place) -> CaseFile:
     return _validated(CaseFile, tables, place)
 
 
-def read_beam(path: Path) -> Beam:
-    """The vibrissa of a file's ``[beam]`` table; other tables do not matter.
+def read_beam(path: Path) -> tuple[Beam, dict[str, Any]]:
+    """The vibrissa of a file's ``[beam]``, ``[support]`` and ``[contact]`` tables.
+
+    Other tables do not matter.
 
     Parameters
     ----------
@@ -123,8 +125,10 @@ def read_beam(path: Path) -> Beam:
 
     Returns
     -------
-    Beam
+    beam : Beam
         In the units of the file, or SI.
+    provenance : dict
+        ``support``, if the file has a table of it or of the contact.
 
     Raises
     ------
@@ -134,8 +138,9 @@ def read_beam(path: Path) -> Beam:
     file = TomlFile.read(path, "beam file")
     if "beam" not in file.tables:
         raise InputError(f"{path}: [beam]", "missing", "given", "add the table")
-    found = _validated(BeamFile, {"beam": file.tables["beam"]}, file.place)
-    return found.beam.build()
+    known = {name: file.tables[name] for name in BeamFile.model_fields if name in file.tables}
+    found = _validated(BeamFile, known, file.place)
+    return found.beam.build(), found.provenance()
 
 
 def _validated(schema: type[_Schema], tables: Mapping[str, Any], place: Place) -> _Schema:
@@ -153,6 +158,8 @@ def _check_units(file: Table, tables: Mapping[str, Any], place: Place) -> None:
     united: list[list[str]] = []
     left_out: list[list[str]] = []
     for name in filter(type(file).model_fields.__contains__, _WITH_UNITS):
+        if getattr(file, name) is None:
+            continue
         given, schema = tables.get(name, {}), type(getattr(file, name))
         # A shape whose scale has a unit is itself in units of the scale.
         relative = name == "profile" and isinstance(given.get("scale"), str)

@@ -113,18 +113,21 @@ def read_sweeps(
     """
     if not isinstance(source, pd.DataFrame | Mapping):
         source = as_path(source, "readings file")
-    given = read_beam(beam) if isinstance(beam, Path) else beam
+    given, held = read_beam(beam) if isinstance(beam, Path) else (beam, {})
     assumed = Beam()
     if isinstance(source, Path) and is_ours(source) and not columns:
         readings = Readings.read(source, otherwise or assumed)
-        readings = readings if given is None else replace(readings, beam=given)
+        if given is not None:
+            provenance = {**readings.provenance, **held}
+            readings = replace(readings, beam=given, provenance=provenance)
         sweeps = [(_way(readings), readings)]
     else:
         table, place, units = _table(source)
         table, used, own = _renamed(table, columns, place, _called(source), units)
         if used:
             _check_beam(beam, given or otherwise)
-        provenance = {name: x for name, x in (("units", used), (OWN_UNITS, own)) if x}
+        units_used = {name: x for name, x in (("units", used), (OWN_UNITS, own)) if x}
+        provenance = {**units_used, **held}
         beam_of_all = given or otherwise or assumed
         source_ = f"measured, {_called(source)}"
         sweeps = _sweeps(Readings.of(table, beam_of_all, source_, provenance, place))

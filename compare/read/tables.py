@@ -408,9 +408,31 @@ class CaseFile(Table):
 
 
 class BeamFile(Table):
-    """A file of which only the vibrissa counts."""
+    """A file of which only the vibrissa counts, how it is held and how it rubs."""
 
     beam: BeamTable
+    support: SupportTable | None = None
+    contact: ContactTable | None = None
+
+    def provenance(self) -> dict[str, Any]:
+        """What the provenance of measured readings says of clamp and contact.
+
+        Returns
+        -------
+        dict
+            ``support``; empty if the file says nothing of either.
+
+        Raises
+        ------
+        InputError
+            If a number is out of range.
+        """
+        if self.support is None and self.contact is None:
+            return {}
+        stiffness = None if self.support is None else self.support.rotational_stiffness
+        friction = 0.0 if self.contact is None else self.contact.friction
+        check_support(stiffness or math.inf, friction, self.beam.build(), signed=False)
+        return {"support": {"clamp_stiffness": stiffness, "friction": friction}}
 
 
 def _has_dimension(parts: list[Any]) -> bool:

@@ -63,13 +63,12 @@ def classify(readings: Readings) -> Classification:
     Raises
     ------
     InputError
-        If the vibrissa is curved at rest, its clamp turns, or the object rubs.
+        If the vibrissa varies along its length.
 
     See Also
     --------
     analytic.from_clamp.phases.judge_phases : how.
     """
-    readings.require_plain("the phase from the clamp's readings")
     judged = judge_phases(readings)
     phase = np.where(readings.trusted, judged.phase, "")
     return Classification(phase, *judged[1:], contact_table(readings, judged))

@@ -11,6 +11,7 @@ from analytic import (
     Case,
     Readings,
     Sweep,
+    circle,
     find_events,
     named_case,
     solve_sweep,
@@ -177,3 +178,19 @@ def test_sweeps_in_other_units_compare_alike(case):
     other = compare(solve_sweep(large), b)
     for name in CLAMP_READINGS:
         assert one.disagreement[name].rms == pytest.approx(other.disagreement[name].rms, rel=1e-6)
+
+
+def test_readings_with_friction_that_do_not_say_so_are_read_as_the_reference_is():
+    case = Case(
+        Beam(natural_curvature=-0.4),
+        circle(1.0, lowest=(0, 0.4)),
+        Sweep(60),
+        clamp_stiffness=6.0,
+        friction=0.25,
+    )
+    exact = solve_sweep(case)
+    sensed = exact.table[["foot_x", "force_x", "force_y", "moment_z"]]
+    found = compare(exact, Readings(sensed, case.beam))
+    assert found.agrees
+    assert found.phases_alike() == 1.0
+    assert found.confusion["reference"].to_numpy().trace() == 60

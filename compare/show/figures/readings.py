@@ -1,11 +1,13 @@
 """Clamp readings over the foot position: both models above, their difference below."""
 
+from dataclasses import replace
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from analytic import CLAMP_READINGS, Readings, reconstruct
+from analytic import CLAMP_READINGS, reconstruct
 from analytic.problem.arrays import Floats
 from compare.comparison import Comparison
 from compare.show.figures.fold import with_fold
@@ -150,7 +152,10 @@ def _difference(comparison: Comparison, name: str) -> tuple[Floats, Floats]:
         return foot_x, np.full(len(table), np.nan)
     found, expected = (
         reconstruct(
-            Readings(table.rename(columns={f"{r}_{side}": r for r in CLAMP_READINGS}), beam)
+            replace(
+                comparison.reference,
+                table=table.rename(columns={f"{r}_{side}": r for r in CLAMP_READINGS}),
+            )
         )
         for side in ("candidate", "reference")
     )

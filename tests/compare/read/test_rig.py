@@ -4,7 +4,18 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analytic import SENSED, Beam, InputError, Readings, named_case, solve_sweep
+from analytic import (
+    SENSED,
+    Beam,
+    Case,
+    InputError,
+    Readings,
+    Sweep,
+    circle,
+    named_case,
+    reconstruct,
+    solve_sweep,
+)
 from compare import read_measured, read_sweeps
 
 FOOT = np.linspace(1, -1, 40)
@@ -123,3 +134,33 @@ def test_a_million_rows(tmp_path):
     path = tmp_path / "rig.csv"
     pd.DataFrame({name: foot.round(7) for name in SENSED}).to_csv(path, index=False, sep=";")
     assert len(read_measured(path, BEAM).table) > 900_000
+
+
+def test_clamp_and_friction_come_with_the_beam(tmp_path):
+    """From the file that names the vibrissa; a later file overrides what readings record."""
+    case = Case(
+        Beam(natural_curvature=-0.4),
+        circle(1.0, lowest=(0, 0.4)),
+        Sweep(60),
+        clamp_stiffness=6.0,
+        friction=0.25,
+    )
+    exact = solve_sweep(case)
+    sensed = exact.table[["foot_x", "force_x", "force_y", "moment_z"]]
+    sensed.to_csv(tmp_path / "rig.csv", index=False)
+    beam = tmp_path / "beam.toml"
+    beam.write_text(
+        "[beam]\nnatural_curvature = -0.4\n[support]\nrotational_stiffness = 6\n"
+        "[contact]\nfriction = 0.25\n"
+    )
+    found = reconstruct(read_measured(tmp_path / "rig.csv", beam))
+    there = np.isfinite(found["contact_x"])
+    assert there.sum() == (exact.table["phase"] != "free").sum()
+    assert np.abs(found["contact_x"] - exact.values("contact_x"))[there].max() < 1e-12
+    exact.write(tmp_path / "ours.parquet")
+    assert read_measured(tmp_path / "ours.parquet").support == (6.0, 0.25)
+    beam.write_text("[beam]\nnatural_curvature = -0.4\n[contact]\nfriction = 0.0\n")
+    assert read_measured(tmp_path / "ours.parquet", beam).support == (np.inf, 0.0)
+    beam.write_text("[beam]\n[support]\nrotational_stiffness = 1e-9\n")
+    with pytest.raises(InputError, match="hundredth"):
+        read_measured(tmp_path / "rig.csv", beam)
