@@ -7,7 +7,7 @@ from analytic.from_clamp.contact import Held, located
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED
 from analytic.problem.readings import Readings
-from analytic.problem.rest import arc
+from analytic.problem.unloaded import Unloaded
 
 _STEPS = 64  # of a fourth-order method: far below the width of a line
 _FREE = 16  # points of a free end that is an arc
@@ -51,13 +51,17 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
         return np.stack([np.cos(phi), np.sin(phi), kappa])
 
     clamp = np.stack(
-        [np.zeros_like(foot_x), np.zeros_like(foot_x), np.pi / 2 - held.vibrissa.compliance * moment]
+        [
+            np.zeros_like(foot_x),
+            np.zeros_like(foot_x),
+            np.pi / 2 - held.vibrissa.compliance * moment,
+        ]
     )
     states = march(rate, clamp, loaded, _STEPS)
     x, y, phi = states[-1]
     parts = np.linspace(0, 1, _FREE + 1)[1:] if natural else np.ones(1)
     rest = (1 - loaded) * parts[:, None]
-    sine, cosine, _ = arc(natural, rest)  # to the left of its start and along it
+    sine, cosine, _ = Unloaded(natural).at(rest)  # to the left of its start and along it
     free = np.stack(
         [
             x + cosine * np.cos(phi) + sine * np.sin(phi),

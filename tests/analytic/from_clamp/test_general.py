@@ -53,14 +53,13 @@ def missed(found, readings):
     return np.hypot(x, y)[with_readings(readings)]
 
 
-def assert_exact(case):
+def assert_exact(readings):
     """Point, arc length and angle are right, and the phase is that of the sweep."""
-    readings = solve_sweep(case)
     there = with_readings(readings)
     found = reconstruct(readings)[there]
     table = readings.table[there]
     for name in ("contact_x", "contact_y", "contact_arc_length", "contact_angle"):
-        assert np.abs(found[name] - table[name]).max() < 1e-12 * case.beam.length
+        assert np.abs(found[name] - table[name]).max() < 1e-12 * readings.beam.length
     # At the limit of the phases, and next to first contact, both conditions are met.
     assert (found["phase"] == table["phase"]).mean() > 0.95
     assert set(found["status"]) == {"ok"}
@@ -87,7 +86,9 @@ def test_exact_readings(natural, compliance, friction, radius, height, size, kin
         )
     except InputError:
         assume(False)
-    assert_exact(case)
+    readings = solve_sweep(case)
+    assume(with_readings(readings).any())
+    assert_exact(readings)
 
 
 def test_in_other_units_and_to_the_right():
@@ -99,7 +100,7 @@ def test_in_other_units_and_to_the_right():
         clamp_stiffness=6 * beam.moment_unit,
         friction=0.25,
     )
-    assert_exact(case)
+    assert_exact(solve_sweep(case))
 
 
 def test_the_moment_says_nothing_where_the_vibrissa_is_square_to_the_force():
