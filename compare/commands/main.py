@@ -12,7 +12,7 @@ import typer
 from typer.exceptions import TyperException
 
 from analytic.problem.errors import InputError
-from compare.commands import budget, methods, readings, study, sweeps
+from compare.commands import budget, methods, readings, rig, study, sweeps
 from compare.commands.output import ended_by_signals
 
 BAD_INPUT = 2
@@ -34,6 +34,7 @@ COMMANDS: tuple[Callable[..., int], ...] = (
     readings.compare,
     readings.reconstruct,
     readings.side_by_side,
+    rig.rig,
     methods.methods,
     budget.budget,
     budget.findings,

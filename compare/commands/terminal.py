@@ -3,7 +3,7 @@
 Lengths are printed in units of the vibrissa's length L, whatever the units of the case.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -25,7 +25,9 @@ from rich.text import Text
 from analytic import CLAMP_READINGS, PHASES, Beam, Readings
 from compare.comparison import Comparison
 from compare.explain.budget import Budget
+from compare.measure.repeats import Repeat
 from compare.read.assumed import ASSUMED
+from compare.read.passes import Pass
 from compare.read.rig import OWN_UNITS
 from compare.show.figures.budget_bars import headline
 from compare.show.quantities import quantity
@@ -374,6 +376,48 @@ def print_methods(found: pd.DataFrame, title: str) -> None:
             )
             name = ""
     _output().print(table)
+
+
+def print_passes(passes: Sequence[Pass], repeats: Mapping[tuple[str, str], Repeat]) -> None:
+    """Print what was read of each pass, what was not used, and how far passes repeat each other.
+
+    Parameters
+    ----------
+    passes : sequence of Pass
+        All of them.
+    repeats : mapping of Repeat
+        By the names of the two passes.
+    """
+    reasons = [name for name in passes[0].dropped if any(one.dropped[name] for one in passes)]
+    table = Table(
+        Column("pass", overflow="fold"), "to the", "rows", "kept",
+        *(name.replace("_", " ") for name in reasons), "sorted", "gaps",
+        *(f"drift of {name}" for name in CLAMP_READINGS),
+        title="Passes: rows, why some are not used, and drift of the zero over the largest reading",
+    )  # fmt: skip
+    for one in passes:
+        largest = {n: np.nanmax(np.abs(one.readings.values(n)), initial=0.0) for n in one.drift}
+        drifts = [one.drift[n] / largest[n] if largest[n] > 0 else np.nan for n in one.drift]
+        table.add_row(
+            Text(one.name),
+            one.direction,
+            *(str(n) for n in (one.rows, one.kept)),
+            *(str(one.dropped[name]) for name in reasons),
+            *(str(n) for n in (one.sorted, one.record.gaps)),
+            *("not known" if np.isnan(x) else f"{x:+.1e}" for x in drifts),
+        )
+    _output().print(table)
+    length = passes[0].readings.beam.length
+    for (first, second), found in repeats.items():
+        apart = max(found.rms.values())
+        left = max(found.rms_without_shift.values())
+        shift = (
+            "no shift of the foot to be seen"
+            if found.shift is None
+            else f"foot_x reads {found.shift / length:+.1e} L more "
+            f"(+- {found.shift_uncertainty / length:.0e}), without that {left:.1e} rms"
+        )
+        print_line(f"{second} after {first}: {apart:.1e} rms apart; {shift}")
 
 
 def print_side_by_side(found: SideBySide) -> None:

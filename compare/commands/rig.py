@@ -1,0 +1,53 @@
+"""The command ``rig``: a rig's files become sweeps, and what is wrong with them is said."""
+
+from itertools import combinations
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from compare.commands.options import AGREES, out_folder
+from compare.commands.output import distinct_name, output_folder
+
+
+def rig(
+    files: Annotated[
+        Path, typer.Argument(metavar="FILES", help="A rig's file, or a folder with its files.")
+    ],
+    rig: Annotated[
+        Path,
+        typer.Option(
+            metavar="FILE", help="TOML file with [beam], [columns] and [passes] of the rig."
+        ),
+    ],
+    out: Annotated[Path | None, out_folder("results/FILES-passes")] = None,
+) -> int:
+    """Read a rig's files: calibrate, take off zero and drift, leave out defects, and count them.
+
+    Writes a file of readings for each pass, for `compare` and `reconstruct`.
+    """
+    from analytic.problem.files import write_whole
+    from compare.commands import terminal
+    from compare.measure.repeats import repeat
+    from compare.read.passes import read_passes, without_gaps
+    from compare.read.rig_file import read_rig
+    from compare.show.figures.passes import picture
+    from compare.show.page import document, save_figure
+    from compare.show.passes import passes_document
+
+    passes = read_passes(files, read_rig(rig))
+    repeats = {}
+    for one, other in combinations(passes, 2):
+        if (
+            one.direction == other.direction
+            and one.readings.bends_left == other.readings.bends_left
+        ):
+            repeats[one.name, other.name] = repeat(without_gaps(one), without_gaps(other))
+    with output_folder(out or Path("results") / f"{distinct_name(files)}-passes") as folder:
+        terminal.print_passes(passes, repeats)
+        for one in passes:
+            terminal.print_written(one.readings.write(folder / f"{one.name}.parquet"))
+        written = write_whole(folder / "passes.json", document(passes_document(passes, repeats)))
+        terminal.print_written(written)
+        terminal.print_written(save_figure(picture(passes), folder / "passes.png"))
+    return AGREES

@@ -1,0 +1,237 @@
+"""The passes in the files of a rig: calibrated, without defects, their zero taken off."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from analytic import CLAMP_READINGS, SENSED, Direction, InputError, Readings
+from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.table import as_numbers
+from compare.read.dialect import TextTable, read_text_table
+from compare.read.rig import read_sweeps
+from compare.read.rig_file import Rig
+from compare.read.suffixes import TEXTS
+from compare.sense.record import Record, inspect_record
+
+_FEWEST = 5  # rows of a stretch whose mean is a zero, and of a pass
+
+
+@dataclass(frozen=True, repr=False)
+class Pass:
+    """One pass of the foot along its path.
+
+    Attributes
+    ----------
+    name : str
+        The file's, with the number of the pass if it has several.
+    direction : {"left", "right"}
+        Which way the foot moves.
+    readings : Readings
+        In the order of the motion; gaps (NaN) where a row has a defect.
+    rows : int
+        How many rows of the file belong to it.
+    dropped : dict
+        How many of them are not used, by reason: ``without_foot_x`` and ``averaged`` (with the row
+        before, at the same place) have no row in `readings`, the others are gaps there.
+    sorted : int
+        How many rows were out of order.
+    record : Record
+        What was wrong with the record as such.
+    zero, drift : dict
+        Of each clamp reading where the vibrissa is free: before the contact, and by how much it
+        changes until after it [force, force length]. NaN if no such stretch is known.
+    """
+
+    name: str
+    direction: Direction
+    readings: Readings
+    rows: int
+    dropped: dict[str, int]
+    sorted: int
+    record: Record
+    zero: dict[str, float]
+    drift: dict[str, float]
+
+    @property
+    def kept(self) -> int:
+        """How many stations have all four numbers."""
+        return int(self.readings.trusted.sum())
+
+    def __repr__(self) -> str:
+        """Name, direction and how much was kept."""
+        return f"Pass({self.name} to the {self.direction}: {self.kept} of {self.rows} rows)"
+
+
+def read_passes(source: Path, rig: Rig) -> list[Pass]:
+    """All passes in a file, or in the files of a folder.
+
+    Parameters
+    ----------
+    source : Path
+        A text file with a table, or a folder with such files, which are read by name.
+    rig : Rig
+        What the files hold.
+
+    Returns
+    -------
+    list of Pass
+        In the order of files and rows.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, a column is missing, a cell is no number, or a stretch that should
+        be free has too few rows.
+    """
+    files = [source]
+    if source.is_dir():
+        files = sorted(path for path in source.iterdir() if path.suffix.lower() in TEXTS)
+        if not files:
+            raise InputError(
+                "FILES", source, f"a folder with files named *{', *'.join(TEXTS)}", "name another"
+            )
+    return [one for path in files for one in _of_file(path, rig)]
+
+
+def _of_file(path: Path, rig: Rig) -> Iterator[Pass]:
+    table = read_text_table(path)
+    raw = _calibrated(table, rig, path)
+    groups = _groups(table, rig, path)
+    sweeps = []
+    for group in np.unique(groups):
+        rows = raw[groups == group].reset_index(drop=True)
+        if len(rows) >= _FEWEST:
+            sweeps += read_sweeps(rows, rig.beam.build())
+    if not sweeps:
+        raise InputError(f"rows of {path}", len(raw), f"{_FEWEST} or more", "is it the right file?")
+    for number, (direction, readings) in enumerate(sweeps, 1):
+        name = path.stem if len(sweeps) == 1 else f"{path.stem}-{number}"
+        yield _pass(name, direction, readings, rig)
+
+
+def _calibrated(table: TextTable, rig: Rig, path: Path) -> pd.DataFrame:
+    """The sensed quantities, in SI if there are units, the readings with their constant zero.
+
+    That is taken off later: a cell of 0 amid contact is a dropout, wherever the zero is.
+    """
+    found = {}
+    for name in SENSED:
+        said = getattr(rig.columns, name)
+        if said.column not in table.frame:
+            there = ", ".join(map(str, table.frame.columns[:20]))
+            raise InputError(
+                f"column {said.column!r} of {path}", "missing", f"one of {there}", "fix [columns]"
+            )
+        cells = table.frame[said.column]
+        if not pd.api.types.is_numeric_dtype(cells):
+            words = cells.astype(str).str.strip().isin(rig.missing)
+            cells = cells.mask(words)
+        numbers = as_numbers(cells, said.column, table.place)
+        zero = 0.0 if name in CLAMP_READINGS else said.zero
+        found[name] = said.scale(name) * (numbers - zero)
+    return pd.DataFrame(found)
+
+
+def _groups(table: TextTable, rig: Rig, path: Path) -> Floats:
+    """The number of the group of passes that each row belongs to."""
+    column = rig.passes.column
+    if column is None:
+        return np.zeros(len(table.frame))
+    if column not in table.frame:
+        there = ", ".join(map(str, table.frame.columns[:20]))
+        raise InputError(
+            f"column {column!r} of {path}", "missing", f"one of {there}", "fix [passes]"
+        )
+    values = table.frame[column]
+    return np.asarray((values != values.shift()).cumsum(), dtype=float)
+
+
+def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
+    counts = raw.provenance.get("rows", {})
+    dropped = {
+        "without_foot_x": int(raw.provenance.get("rows_without_foot_x", 0)),
+        "averaged": int(counts.get("averaged", 0)),
+    }
+    rows = len(raw.table) + sum(dropped.values())
+    record = inspect_record(raw)
+    for reason in ("missing", "dropped", "clipped", "repeated"):
+        dropped[reason] = int(getattr(record, reason).sum())
+    values = np.stack([raw.values(reading) for reading in CLAMP_READINGS])
+    values[:, ~record.sound] = np.nan
+    for row, reading in zip(values, CLAMP_READINGS, strict=True):
+        said = getattr(rig.columns, reading)
+        row -= said.scale(reading) * said.zero
+    free = _free(raw.values("foot_x"), rig)
+    zero, drift = np.full((2, len(CLAMP_READINGS)), np.nan)
+    if free is not None:
+        zero, drift, taken = _zero(raw.values("foot_x"), values, free, name)
+        values = values - taken
+    table = raw.table.assign(**dict(zip(CLAMP_READINGS, values, strict=True)))
+    provenance = {"pass": name, "direction": direction, "dropped": dropped}
+    readings = Readings(table, raw.beam, f"measured, {name}", provenance)
+    by_reading = (dict(zip(CLAMP_READINGS, x.tolist(), strict=True)) for x in (zero, drift))
+    return Pass(
+        name,
+        direction,
+        readings,
+        rows,
+        dropped,
+        int(counts.get("out_of_order", 0)),
+        record,
+        *by_reading,
+    )
+
+
+def _free(foot_x: Floats, rig: Rig) -> tuple[Booleans, Booleans] | None:
+    """The stretches before and after the contact; None if none is stated."""
+    before, after = (
+        np.abs(foot_x - foot_x[end]) <= stretch
+        for end, stretch in ((0, rig.passes.free_before), (-1, rig.passes.free_after))
+    )
+    if rig.passes.free_before == 0 and rig.passes.free_after == 0:
+        return None
+    if rig.passes.free_before == 0:
+        before = after
+    return before, after if rig.passes.free_after > 0 else before
+
+
+def _zero(
+    foot_x: Floats, values: Floats, free: tuple[Booleans, Booleans], name: str
+) -> tuple[Floats, Floats, Floats]:
+    """Zero and drift of each reading, and the line between the two stretches at every station."""
+    means, places = [], []
+    for which, here in zip(("free_before", "free_after"), free, strict=True):
+        known = here & np.isfinite(values).all(axis=0)
+        if known.sum() < _FEWEST:
+            raise InputError(
+                f"passes.{which}",
+                f"a stretch with {known.sum()} rows of {name}",
+                f"one with {_FEWEST} or more",
+                "take a longer one, or leave it out",
+            )
+        means.append(values[:, known].mean(axis=1))
+        places.append(foot_x[known].mean())
+    drift = means[1] - means[0]
+    way = places[1] - places[0]
+    share = (foot_x - places[0]) / way if way != 0 else np.zeros_like(foot_x)
+    return means[0], drift, means[0][:, None] + drift[:, None] * share
+
+
+def without_gaps(one: Pass) -> Readings:
+    """A pass with the stations alone that have all four numbers.
+
+    Parameters
+    ----------
+    one : Pass
+        With gaps, perhaps.
+
+    Returns
+    -------
+    Readings
+        Of the rest.
+    """
+    kept = one.readings.table[one.readings.trusted].reset_index(drop=True)
+    return replace(one.readings, table=kept)

@@ -1,0 +1,131 @@
+"""A rig described once, for all its files: columns, units, calibration, vibrissa."""
+
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field, ValidationError
+
+from analytic import SENSED, InputError
+from compare.read.complaints import complaint
+from compare.read.tables import BeamTable, Length, Table
+from compare.read.toml import TomlFile
+from compare.read.units import DIMENSIONS, unit_in_si
+
+
+class Column(Table):
+    """Which column of a file is a sensed quantity: value = gain (cell - zero), in the unit."""
+
+    column: str
+    unit: str = ""
+    gain: float = 1.0
+    zero: float = 0.0
+
+    def scale(self, name: str) -> float:
+        """What a cell's unit is in those of the readings.
+
+        Parameters
+        ----------
+        name : str
+            Of the sensed quantity.
+
+        Returns
+        -------
+        float
+            The gain, in SI if there is a unit.
+        """
+        return self.gain * (unit_in_si(self.unit, DIMENSIONS[name]) if self.unit else 1.0)
+
+
+class Columns(Table):
+    """The four sensed quantities."""
+
+    foot_x: Column
+    force_x: Column
+    force_y: Column
+    moment_z: Column
+
+
+class Passes(Table):
+    """How the rows of a file are passes of the foot, and where these are certainly free.
+
+    Parameters
+    ----------
+    column : str, optional
+        A column whose value changes from pass to pass; without it the stage's turns divide them.
+    free_before, free_after : length
+        The first and the last stretch of a pass, in which the vibrissa touches nothing: what the
+        sensor reads there is its zero, taken off along a straight line from one to the other.
+    """
+
+    column: str | None = None
+    free_before: Length = 0.0
+    free_after: Length = 0.0
+
+
+class Rig(Table):
+    """What a rig's description holds.
+
+    Parameters
+    ----------
+    beam : table
+        The vibrissa, in units if the columns are.
+    columns : table
+        By sensed quantity.
+    passes : table
+        How rows are passes.
+    missing : list of str
+        What the rig writes into a cell for which it has no number, as ``"OVL"``.
+    """
+
+    beam: BeamTable
+    columns: Columns
+    passes: Passes = Passes()
+    missing: Annotated[list[str], Field(max_length=100, default_factory=list)]
+
+    @property
+    def in_units(self) -> bool:
+        """Whether the columns have units."""
+        return any(getattr(self.columns, name).unit for name in SENSED)
+
+
+def read_rig(path: Path) -> Rig:
+    """The description of a rig.
+
+    Parameters
+    ----------
+    path : Path
+        A TOML file with the tables of `Rig`.
+
+    Returns
+    -------
+    Rig
+        Checked; lengths in SI if there are units.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, a key is unknown or missing, a unit is of another dimension, or
+        some of the columns and the vibrissa have units and others have none.
+    """
+    file = TomlFile.read(path, "description of the rig")
+    try:
+        rig = Rig.model_validate(file.tables)
+    except ValidationError as error:
+        raise complaint(error, Rig, file.place) from error
+    for name in SENSED:
+        unit = getattr(rig.columns, name).unit
+        if bool(unit) != rig.in_units or rig.in_units != rig.beam.build().si:
+            raise InputError(
+                file.place(["columns", name]),
+                f"unit {unit!r}" if unit else "without a unit",
+                "with units all four and [beam], or none of them",
+                'as { column = "Fx", unit = "mN" } beside length = "50 mm"',
+            )
+        if unit:
+            unit_in_si(unit, DIMENSIONS[name])
+        if getattr(rig.columns, name).gain == 0:
+            raise InputError(file.place(["columns", name, "gain"]), 0, "not 0", "correct it")
+    for name in ("free_before", "free_after"):
+        if getattr(rig.passes, name) < 0:
+            raise InputError(file.place(["passes", name]), "negative", "0 or more", "correct it")
+    return rig

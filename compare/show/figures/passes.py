@@ -1,0 +1,51 @@
+"""The readings of a rig's passes over the foot position, after calibration."""
+
+from collections.abc import Sequence
+
+from matplotlib.figure import Figure
+
+from analytic import CLAMP_READINGS
+from compare.read.passes import Pass
+from compare.show.figures.over_foot import foot, foot_label, reading_label, unit
+from compare.show.figures.thinning import draw
+from compare.show.style import PAGE_WIDTH, SERIES, SMALL, label
+
+_MOST = 12  # names in the legend
+
+
+def picture(passes: Sequence[Pass]) -> Figure:
+    """Draw the three readings of each pass.
+
+    Parameters
+    ----------
+    passes : sequence of Pass
+        Of one rig.
+
+    Returns
+    -------
+    Figure
+        A panel for each reading; dots to the left, crosses to the right.
+    """
+    figure = Figure(figsize=(PAGE_WIDTH, 7.0), layout="constrained")
+    axes = figure.subplots(len(CLAMP_READINGS), 1, sharex=True)
+    for ax, name in zip(axes, CLAMP_READINGS, strict=True):
+        for i, one in enumerate(passes):
+            style = {
+                "marker": "." if one.direction == "left" else "x",
+                "color": SERIES[i % len(SERIES)],
+                "linestyle": "",
+                "markersize": 3.5,
+            }
+            values = one.readings.values(name) / unit(one.readings, name)
+            said = f"{one.name}, to the {one.direction}" if i < _MOST else "_"
+            draw(
+                ax, foot(one.readings), values, label=label(said) if said != "_" else said, **style
+            )
+        ax.set_ylabel(reading_label(passes[0].readings, name), fontsize=SMALL)
+        ax.tick_params(labelsize=SMALL)
+    axes[-1].set_xlabel(foot_label(passes[0].readings))
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(
+        handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize=SMALL
+    )
+    return figure

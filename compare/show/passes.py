@@ -1,0 +1,53 @@
+"""The passes of a rig as a document: what was kept, what was dropped, how far they repeat."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from compare.measure.repeats import Repeat
+from compare.read.passes import Pass
+
+
+def passes_document(
+    passes: Sequence[Pass], repeats: Mapping[tuple[str, str], Repeat]
+) -> dict[str, Any]:
+    """What ``passes.json`` holds.
+
+    Parameters
+    ----------
+    passes : sequence of Pass
+        All of them.
+    repeats : mapping of Repeat
+        By the names of the two passes.
+
+    Returns
+    -------
+    dict
+        JSON can hold it; None stands for what is not known.
+    """
+    return {
+        "passes": [
+            {
+                "name": one.name,
+                "direction": one.direction,
+                "rows": one.rows,
+                "kept": one.kept,
+                "dropped": one.dropped,
+                "sorted": one.sorted,
+                "gaps": one.record.gaps,
+                "widest_step": one.record.widest,
+                "zero": _known(one.zero),
+                "drift": _known(one.drift),
+            }
+            for one in passes
+        ],
+        "repeats": [
+            {"first": first, "second": second, **asdict(found)}
+            for (first, second), found in repeats.items()
+        ],
+    }
+
+
+def _known(values: Mapping[str, float]) -> dict[str, float | None]:
+    return {name: value if math.isfinite(value) else None for name, value in values.items()}

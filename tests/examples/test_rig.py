@@ -1,0 +1,135 @@
+"""The worked example of a rig's files: every planted flaw is found, and the truth behind them."""
+
+import json
+import re
+import runpy
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import CLAMP_READINGS, InputError
+from compare.read.passes import read_passes
+from compare.read.rig_file import read_rig
+from tests.compare.command import vibrissa
+from tests.documentation.blocks import ROOT, blocks
+
+PAGE = Path("docs/examples/rig/README.md")
+EXAMPLE = ROOT / PAGE.parent
+MADE = runpy.run_path(str(EXAMPLE / "make_data.py"))
+
+
+@pytest.fixture(scope="module")
+def passes():
+    return read_passes(EXAMPLE / "data", read_rig(EXAMPLE / "rig.toml"))
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return shutil.copytree(EXAMPLE, tmp_path / "rig")
+
+
+def test_the_data_are_what_the_program_makes(tmp_path):
+    MADE["write"](tmp_path)
+    for name in MADE["FILES"]:
+        assert (tmp_path / name).read_text() == (EXAMPLE / "data" / name).read_text()
+
+
+def test_every_flaw_is_counted(passes):
+    assert [one.name for one in passes] == ["monday-1", "monday-2", "tuesday-1", "tuesday-2"]
+    for one in passes:
+        assert {name: n for name, n in one.dropped.items() if n} == MADE["PLANTED"]
+        assert one.sorted == MADE["SWAPPED"]
+        assert one.record.gaps >= 1
+        assert one.direction == "left"
+        assert one.kept == one.rows - sum(MADE["PLANTED"].values())
+
+
+def test_zero_and_drift_are_those_planted(passes):
+    for one in passes:
+        for column, name in MADE["READINGS"].items():
+            gain, scale = MADE["GAINS"][column], MADE["SCALES"][column]
+            largest = np.nanmax(np.abs(one.readings.values(name)))
+            zero = gain * scale * MADE["ZEROS"][column]
+            assert one.zero[name] == pytest.approx(zero, abs=5e-3 * largest)
+            # Between the middles of the two stretches, 95 % of the way.
+            assert one.drift[name] / largest == pytest.approx(MADE["DRIFTS"][column], abs=4e-3)
+
+
+def test_what_is_left_is_the_truth_and_noise(passes):
+    exact = MADE["solve_sweep"](MADE["Case"](MADE["VIBRISSA"], MADE["OBJECT"], MADE["Sweep"](4000)))
+    order = slice(None, None, -1)
+    for one in passes[::2]:  # the others have the stage's play
+        table = one.readings.table[one.readings.trusted]
+        inside = (table["foot_x"] < 0.03) & (table["foot_x"] > -0.05)
+        for name in CLAMP_READINGS:
+            known = np.interp(
+                table["foot_x"], exact.values("foot_x")[order], exact.values(name)[order]
+            )
+            off = (table[name] - known)[inside] / np.abs(known).max()
+            assert np.sqrt(np.mean(off**2)) < 2 * MADE["NOISE"]
+
+
+@pytest.mark.slow
+def test_the_commands_of_the_page(folder):
+    commands = [
+        line for block in blocks(PAGE) if block.language == "sh" for line in block.text.splitlines()
+    ]
+    assert len(commands) == 3
+    done = [vibrissa(*command.split()[1:], cwd=folder) for command in commands]
+    assert [one.returncode for one in done] == [0, 0, 0], [one.stderr for one in done]
+    found = json.loads((folder / "passes" / "passes.json").read_text())
+    for pair in found["repeats"]:
+        away = pair["second"].endswith("-2") - pair["first"].endswith("-2")
+        # Half the width of 95 %, and once more for six pairs.
+        margin = 2 * pair["shift_uncertainty"] + 2e-6
+        assert pair["shift"] == pytest.approx(away * MADE["LAG"], abs=margin)
+        assert max(pair["rms_without_shift"].values()) < 4e-3
+    assert re.search(r"monday-2 after monday-1: .*foot_x reads \+2\.0e-03 L more", done[0].stdout)
+    assert "not resolved" in done[1].stdout
+    points = pd.read_csv(folder / "contour" / "points.csv")
+    x, y = points["contact_x"], points["contact_y"]
+    off = np.abs(np.hypot(x, y - 0.06) - 0.04).dropna()
+    assert len(off) > 250
+    assert np.median(off) < 0.05e-3
+
+
+def flawed(folder, old, new, name="rig.toml"):
+    path = folder / name
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        ('column = "stage", unit = "mm"', 'column = "stage"', "without a unit"),
+        ('length = "50 mm"', "length = 50", r"with units all four and \[beam\]|without a unit"),
+        ('unit = "mN mm"', 'unit = "mm"', "a unit of N m"),
+        ('column = "Fx"', 'column = "F_x"', "column 'F_x' of .*missing"),
+        ("gain = 1.02", "gain = 0", "gain"),
+        ("gain = 1.02", "gian = 1.02", "did you mean gain"),
+        ('column = "pass"', 'column = "run"', "column 'run'"),
+        ('free_before = "5 mm"', 'free_before = "-5 mm"', "free_before"),
+        ('free_after = "5 mm"', 'free_after = "0.01 mm"', "5 or more"),
+        ('missing = ["OVL"]', "missing = []", "column Fx, line .*'OVL'"),
+        ("[columns]", "[colums]", "columns"),
+    ],
+)
+def test_a_description_that_cannot_be_is_one_line(folder, old, new, why):
+    flawed(folder, old, new)
+    with pytest.raises(InputError, match=why) as found:
+        read_passes(folder / "data", read_rig(folder / "rig.toml"))
+    assert "\n" not in str(found.value)
+
+
+def test_a_folder_without_files(folder):
+    shutil.rmtree(folder / "data")
+    (folder / "data").mkdir()
+    done = vibrissa("rig", "data", "--rig", "rig.toml", cwd=folder)
+    assert done.returncode == 2
+    assert "a folder with files" in done.stderr
+    assert not (folder / "results").exists()
