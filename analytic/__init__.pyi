@@ -28,6 +28,8 @@ from .problem.contours.through_points import through_points as through_points
 from .problem.errors import InputError as InputError
 from .problem.named import CASE_NAMES as CASE_NAMES
 from .problem.named import NAMED_PROFILES as NAMED_PROFILES
+from .problem.named import NAMED_TABLES as NAMED_TABLES
+from .problem.named import REAL_CASE_NAMES as REAL_CASE_NAMES
 from .problem.named import named_case as named_case
 from .problem.readings import Readings as Readings
 from .solver.contact import solve_contact as solve_contact

@@ -1,8 +1,11 @@
 """Who cannot take friction, an elastic clamp or a natural curvature into account says so."""
 
+from dataclasses import replace
+
 import pytest
 
 from analytic import (
+    REAL_CASE_NAMES,
     Beam,
     Case,
     InputError,
@@ -20,7 +23,7 @@ from analytic import (
     solve_sweep,
     with_friction,
 )
-from compare.show.figures.paper import paper_figures
+from compare.show.figures.paper import contact_length
 from mujoco_models import simulate_motion, simulate_sweep
 
 OBJECT = circle(1.0, lowest=(0, 0.4))
@@ -51,7 +54,7 @@ def budget_of(case):
         lambda case: reconstruct(solve_sweep(case), method="decision"),
         lambda case: reconstruct_by_decision(solve_sweep(case)),
         lambda case: sideways_stiffness(solve_sweep(case)),
-        lambda case: paper_figures(case, solve_sweep(case)),
+        contact_length,
         budget_of,
     ],
 )
@@ -107,3 +110,11 @@ def test_defaults_are_the_papers_vibrissa():
     assert "support" not in solve_sweep(same).provenance
     rough = Case(profile=case.profile, friction=0.1)
     assert rough.digest != case.digest
+
+
+@pytest.mark.parametrize("name", REAL_CASE_NAMES)
+def test_named_cases_are_solved_all_the_way(name):
+    case = replace(named_case(name), sweep=Sweep(60))
+    readings = solve_sweep(case, certified=True)
+    assert not case.is_plain and set(readings.table["status"]) == {"ok"}
+    assert readings.snap_off is not None

@@ -1,9 +1,11 @@
-"""The named cases: the paper's contours and two more, in one table."""
+"""The named cases: the paper's contours and two more, and vibrissae beyond the paper's."""
 
+import math
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
+from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.kinds import CONTOURS
@@ -21,6 +23,28 @@ NAMED_PROFILES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
 """The contours of the named cases, as the ``[profile]`` tables of their case files."""
 
 CASE_NAMES = tuple(NAMED_PROFILES)
+"""The cases of the paper's vibrissa."""
+
+_CATENARY = NAMED_PROFILES["catenary"]
+
+NAMED_TABLES: Mapping[str, Mapping[str, Mapping[str, Any]]] = MappingProxyType(
+    {
+        **{name: {"profile": profile} for name, profile in NAMED_PROFILES.items()},
+        # An arc that turns by 0.5 rad from clamp to tip, its tip trailing: 29 degrees, as much as
+        # shows at a glance. Curved forward as much it would touch the object twice.
+        "pre-curved": {"profile": _CATENARY, "beam": {"natural_curvature": -0.5}},
+        # A load across the tip deflects the vibrissa by 1/3 and turns its clamp by 1/8, in units of
+        # the load times L^3/EI and L^2/EI: the clamp gives 3/8 as much way as the vibrissa bends.
+        "soft-support": {"profile": _CATENARY, "support": {"rotational_stiffness": 8.0}},
+        # Steel on a dry plastic has 0.2 to 0.4; for a rat's whisker on steel 0.48 was found (L. A.
+        # Huet and M. J. Z. Hartmann, IEEE Transactions on Haptics 9, 2016).
+        "rubbing": {"profile": _CATENARY, "contact": {"friction": 0.3}},
+    }
+)
+"""All named cases, as the tables of their case files."""
+
+REAL_CASE_NAMES = tuple(name for name in NAMED_TABLES if name not in CASE_NAMES)
+"""The cases of a vibrissa that is curved at rest, on an elastic clamp, or rubs."""
 
 
 def named_contour(name: str) -> Contour:
@@ -29,24 +53,24 @@ def named_contour(name: str) -> Contour:
     Parameters
     ----------
     name : str
-        One of `CASE_NAMES`.
+        One of `NAMED_TABLES`.
 
     Returns
     -------
     Contour
         In units of the vibrissa's length.
     """
-    numbers = dict(NAMED_PROFILES[name])
+    numbers = dict(NAMED_TABLES[name]["profile"])
     return CONTOURS[numbers.pop("kind")](**numbers)
 
 
 def named_case(name: str) -> Case:
-    """One of the named cases, with the default beam and sweep.
+    """One of the named cases, with the default sweep.
 
     Parameters
     ----------
     name : str
-        One of `CASE_NAMES`.
+        One of `CASE_NAMES` or `REAL_CASE_NAMES`.
 
     Returns
     -------
@@ -58,11 +82,18 @@ def named_case(name: str) -> Case:
     InputError
         If there is no case of that name.
     """
-    if name not in NAMED_PROFILES:
+    if name not in NAMED_TABLES:
         raise InputError(
             "case",
             repr(name),
-            f"one of {', '.join(CASE_NAMES)}, or a TOML file",
+            f"one of {', '.join(NAMED_TABLES)}, or a TOML file",
             "see `vibrissa cases`",
         )
-    return Case(profile=named_contour(name), name=name)
+    tables = NAMED_TABLES[name]
+    return Case(
+        Beam(**tables.get("beam", {})),
+        named_contour(name),
+        name=name,
+        clamp_stiffness=tables.get("support", {}).get("rotational_stiffness", math.inf),
+        friction=tables.get("contact", {}).get("friction", 0.0),
+    )

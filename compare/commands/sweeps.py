@@ -123,7 +123,11 @@ def analytic(
         bool, typer.Option("--certified", help="Check each station by integration from the clamp.")
     ] = False,
     figures: Annotated[
-        bool, typer.Option("--figures", help="Draw the paper's figures 12, 14, 15 and 16.")
+        bool,
+        typer.Option(
+            "--figures",
+            help="Draw the vibrissa along its sweep, and the paper's figures.",
+        ),
     ] = False,
 ) -> int:
     """Sweep in closed form."""
@@ -138,10 +142,14 @@ def analytic(
         terminal.print_sweep(readings)
         terminal.print_written(readings.write(folder / "analytic.parquet"))
         if figures:
+            from analytic import reconstruct
+            from compare.show.figures.geometry import reconstruction
             from compare.show.figures.paper import paper_figures
             from compare.show.page import save_figure
 
-            for name, figure in paper_figures(job.case, readings).items():
+            drawn = paper_figures(job.case, readings)
+            drawn["shapes"] = reconstruction(readings, reconstruct(readings))
+            for name, figure in drawn.items():
                 terminal.print_written(save_figure(figure, folder / f"{name}.png"))
         return AGREES if readings.trusted.all() else DISAGREES
 
@@ -216,11 +224,15 @@ def cases() -> int:
     """List the named cases."""
     import numpy as np
 
-    from analytic.problem.named import CASE_NAMES, named_contour
+    from analytic.problem.named import NAMED_TABLES, named_case, named_contour
+    from analytic.problem.support import beyond_the_paper
 
-    for name in CASE_NAMES:
+    for name in NAMED_TABLES:
         profile = named_contour(name)
         lowest = profile.at(profile.parameter(np.array([0.0])))
         place = f"lowest at x = {lowest.xi[0]:g} L, y = {lowest.eta[0]:.4g} L"
-        typer.echo(f"{name:18}{profile.label:40}{place}")
+        case = named_case(name)
+        beyond = beyond_the_paper(case.beam, case.clamp_stiffness, case.friction)
+        parts = [place, *(f"{what} {value:g}" for what, value in beyond.items())]
+        typer.echo(f"{name:18}{profile.label:40}{'; '.join(parts)}")
     return AGREES

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from analytic import CASE_NAMES, Beam, Case, InputError, named_case
+from analytic import NAMED_TABLES, Beam, Case, InputError, named_case
 from compare.judge.tolerances import Tolerances
 from compare.read.complaints import complaint, name_of
 from compare.read.limits import tolerances_of
@@ -54,7 +54,7 @@ def load_job(name_or_path: str) -> Job:
     Parameters
     ----------
     name_or_path : str
-        One of `CASE_NAMES`, or the path of a ``.toml`` file.
+        A named case, or the path of a ``.toml`` file.
 
     Returns
     -------
@@ -67,14 +67,14 @@ def load_job(name_or_path: str) -> Job:
         If there is neither, or the file has unknown keys, wrong types, unknown units, numbers with
         and without units mixed, or states no solvable problem.
     """
-    if name_or_path in CASE_NAMES:
+    if name_or_path in NAMED_TABLES:
         return Job(named_case(name_or_path), Settings())
     if not name_or_path.endswith(".toml"):
-        near = difflib.get_close_matches(name_or_path, CASE_NAMES, n=1)
+        near = difflib.get_close_matches(name_or_path, NAMED_TABLES, n=1)
         raise InputError(
             "case",
             repr(name_or_path),
-            f"one of {', '.join(CASE_NAMES)}, or the path of a .toml file",
+            f"one of {', '.join(NAMED_TABLES)}, or the path of a .toml file",
             f"did you mean {near[0]}?" if near else "`vibrissa cases` lists them",
         )
     path = Path(name_or_path)

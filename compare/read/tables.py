@@ -72,6 +72,26 @@ _EXAMPLES = {
 
 
 @dataclass(frozen=True)
+class Varying(Dimension):
+    """The same, or a table of it: pairs of an arc length from the clamp and the value there."""
+
+    def __call__(self, value: object) -> Any:  # noqa: ANN401  # a number, or pairs of them
+        """The number, or the pairs."""
+        if not isinstance(value, list | tuple):
+            return super().__call__(value)
+        number, length = Dimension(self.unit), Dimension("m")
+        pairs = [pair for pair in value if isinstance(pair, list | tuple) and len(pair) == 2]
+        if len(pairs) < len(value):
+            what = _EXAMPLES[self.unit][0]
+            raise PydanticCustomError(
+                "table",
+                "a number, or a list of pairs [arc length from the clamp, {what}]",
+                {"what": what},
+            )
+        return tuple((length(s), number(x)) for s, x in pairs)
+
+
+@dataclass(frozen=True)
 class Pair:
     """A validator: two values, called by `names` where there are not two."""
 
@@ -86,7 +106,9 @@ class Pair:
 
 Length = Annotated[float, BeforeValidator(Dimension("m"))]
 PerLength = Annotated[float, BeforeValidator(Dimension("1/m"))]
-Rigidity = Annotated[float, BeforeValidator(Dimension("N m^2"))]
+Pairs = tuple[tuple[float, float], ...]
+RigidityAlong = Annotated[float | Pairs, BeforeValidator(Varying("N m^2"))]
+CurvatureAlong = Annotated[float | Pairs, BeforeValidator(Varying("1/m"))]
 RotationalStiffness = Annotated[float, BeforeValidator(Dimension("N m/rad"))]
 Two = Annotated[tuple[Length, Length], Field(strict=False)]
 Point = Annotated[Two, BeforeValidator(Pair("x, y"))]
@@ -120,9 +142,10 @@ class BeamTable(Table):
     """The vibrissa."""
 
     length: Length = 1.0
-    flexural_rigidity: Rigidity = 1.0
+    flexural_rigidity: RigidityAlong = 1.0
     radius: Length | None = None
-    natural_curvature: PerLength = 0.0
+    tip_radius: Length | None = None
+    natural_curvature: CurvatureAlong = 0.0
     _si: bool = PrivateAttr(default=False)
 
     @model_validator(mode="wrap")
@@ -145,6 +168,7 @@ class BeamTable(Table):
             self.length,
             self.flexural_rigidity,
             radius,
+            tip_radius=self.tip_radius,
             natural_curvature=self.natural_curvature,
             si=self._si,
         )

@@ -34,7 +34,7 @@ _A, _B = PHASE_COLOURS["tip"], PHASE_COLOURS["tangent"]
 
 
 def paper_figures(case: Case, readings: Readings) -> dict[str, Figure]:
-    """Draw the paper's figures for a case.
+    """Draw the paper's figures for a case, as far as they are of its vibrissa.
 
     Parameters
     ----------
@@ -46,10 +46,11 @@ def paper_figures(case: Case, readings: Readings) -> dict[str, Figure]:
     Returns
     -------
     dict of Figure
-        ``figure-12``, ``figure-14``, ``figure-15``, ``figure-16``.
+        ``figure-12``, ``figure-14``, ``figure-15``, ``figure-16``. The first shows eq. 21, which is
+        the paper's vibrissa's alone; so is the reconstruction by (26) in the last two.
     """
     return {
-        "figure-12": contact_length(case),
+        **({"figure-12": contact_length(case)} if case.is_plain else {}),
         "figure-14": profile(readings),
         "figure-15": observables(readings),
         "figure-16": reconstruction_error(readings),
@@ -188,10 +189,11 @@ def reconstruction_error(readings: Readings) -> Figure:
 def _error(ax: Axes, readings: Readings) -> None:
     """Distance of the reconstructed from the true contact, over the foot position."""
     scale = readings.beam.length
-    for method, found, colour in (
-        ("(26) and integration", reconstruct_by_decision(readings), YELLOW),
-        ("closed form", reconstruct(readings), INK),
-    ):
+    found_by = {"closed form": reconstruct(readings)}
+    if not readings.beyond_the_paper:
+        found_by = {"(26) and integration": reconstruct_by_decision(readings), **found_by}
+    for method, found in found_by.items():
+        colour = INK if method == "closed form" else YELLOW
         error = np.hypot(
             found["contact_x"] - readings.values("contact_x"),
             found["contact_y"] - readings.values("contact_y"),

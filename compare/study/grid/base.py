@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from analytic import NAMED_PROFILES, InputError
+from analytic import NAMED_TABLES, InputError
 from compare.read.case import validate
 from compare.read.complaints import complaint, shown
 from compare.read.tables import CaseFile
@@ -151,8 +151,8 @@ class Base:
         case = content.study.case
         if case is None:
             return dict(own)
-        if case in NAMED_PROFILES:
-            base: dict[str, Any] = {"profile": dict(NAMED_PROFILES[case])}
+        if case in NAMED_TABLES:
+            base: dict[str, Any] = {k: dict(v) for k, v in NAMED_TABLES[case].items()}
         elif case.endswith(".toml"):
             file = TomlFile.read(self._folder / case, "case file")
             validate(file.tables, file.place)  # its errors are on its own lines
@@ -161,7 +161,7 @@ class Base:
             raise InputError(
                 self._file.place(["study", "case"]),
                 shown(case),
-                f"one of {', '.join(NAMED_PROFILES)}, or the path of a .toml file",
+                f"one of {', '.join(NAMED_TABLES)}, or the path of a .toml file",
                 "leave it out to describe the case here",
             )
         return {name: {**base.get(name, {}), **own.get(name, {})} for name in {**base, **own}}

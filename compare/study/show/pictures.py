@@ -23,6 +23,7 @@ _AXES = {
     "mujoco.contact_stiffness": "contact stiffness / ($EI/L^3$)",
     "sweep.stations": "stations of the sweep",
     "beam.radius": "radius of the vibrissa [length]",
+    "beam.tip_radius": "radius at the tip [length]",
     "beam.natural_curvature": "natural curvature [1/length]",
     "support.rotational_stiffness": "rotational stiffness of the clamp [moment/rad]",
     "contact.friction": r"friction coefficient $\mu$",

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analytic import Readings
+from analytic import REAL_CASE_NAMES, Readings
 from tests.compare.command import vibrissa
 
 CASE = """
@@ -397,7 +397,35 @@ def test_the_papers_figures(tmp_path):
     )
     assert done.returncode == 0, done.stderr
     drawn = {path.name for path in tmp_path.glob("*.png")}
-    assert drawn == {f"figure-{n}.png" for n in (12, 14, 15, 16)}
+    assert drawn == {"shapes.png"} | {f"figure-{n}.png" for n in (12, 14, 15, 16)}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", REAL_CASE_NAMES)
+def test_cases_beyond_the_paper(tmp_path, name):
+    done = vibrissa("analytic", name, "--figures", "--certified", "--out", ".", cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "200 of 200 stations ok" in done.stdout
+    drawn = {path.name for path in tmp_path.glob("*.png")}
+    assert drawn == {"shapes.png"} | {f"figure-{n}.png" for n in (14, 15, 16)}
+    found = vibrissa("reconstruct", "analytic.parquet", "--out", "found", cwd=tmp_path)
+    assert found.returncode == 0, found.stderr
+    same = vibrissa("compare", name, "analytic.parquet", "--out", "compared", cwd=tmp_path)
+    assert same.returncode == 0, same.stdout + same.stderr
+
+
+def test_a_vibrissa_that_would_touch_twice_is_said(tmp_path):
+    (tmp_path / "forward.toml").write_text(
+        '[beam]\nnatural_curvature = 0.5\n[profile]\nkind = "catenary"\na = 0.5\nc = -0.8\n'
+    )
+    done = vibrissa("analytic", "forward.toml", "--out", ".", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "touches again (foot_x" in done.stdout
+    assert "another part of the vibrissa would lie in the object" in done.stdout
+    table = Readings.read(tmp_path / "analytic.parquet").table
+    again = table[table["status"] == "touches again"]
+    assert len(again) > 10
+    assert again[["force_x", "force_y", "moment_z"]].isna().all(axis=None)
 
 
 @pytest.mark.parametrize(

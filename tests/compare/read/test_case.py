@@ -3,6 +3,7 @@
 import math
 import time
 
+import numpy as np
 import pytest
 
 from analytic import InputError
@@ -219,3 +220,39 @@ def test_friction_clamp_and_natural_curvature_have_keys(tmp_path):
 def test_what_these_keys_may_not_hold(tmp_path, change, said):
     assert change[0] in REAL
     assert said in refused(tmp_path, REAL.replace(*change))
+
+
+TABLED = UNITED.replace('"2e-6 N m^2"', '[["0 mm", "2 N mm^2"], ["50 mm", "1e-6 N m^2"]]').replace(
+    "[profile]", 'natural_curvature = [[0, "-6 1/m"], ["50 mm", 0]]\n[profile]'
+)
+
+
+def test_what_varies_along_the_vibrissa_is_a_table(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(TABLED)
+    beam = load_job(str(path)).case.beam
+    assert beam.varies
+    np.testing.assert_allclose(beam.rigidity_at([0.0, 0.05]), [2e-6, 1e-6])
+    np.testing.assert_allclose(beam.curvature_at([0.0, 0.025, 0.05]), [-6, -3, 0], atol=1e-12)
+    path.write_text(
+        UNITED.replace("[profile]", 'radius = "0.2 mm"\ntip_radius = "20 um"\n[profile]')
+    )
+    assert load_job(str(path)).case.beam.tip_radius == pytest.approx(2e-5)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ((', "1e-6 N m^2"', ""), "line 3: beam.flexural_rigidity"),
+        ((', "1e-6 N m^2"', ""), "a list of pairs [arc length from the clamp, force times length"),
+        (("1e-6 N m^2", "1e-6 N"), "a known unit of force times length squared"),
+        (('"1e-6 N m^2"', "1e-6"), "line 3: beam.flexural_rigidity = without a unit"),
+        (("1e-6 N m^2", "-1e-6 N m^2"), "positive all along"),
+        (('["50 mm", "1e-6', '["40 mm", "1e-6'), "from the clamp, s = 0, to the tip, s = 0.05"),
+        (('natural_curvature = [[0, "-6 1/m"], ["50 mm", 0]]', 'tip_radius = "-1 um"'), "positive"),
+        (('"-6 1/m"', '"-90 1/m"'), "overhangs"),
+    ],
+)
+def test_what_these_tables_may_not_hold(tmp_path, change, said):
+    assert change[0] in TABLED
+    assert said in refused(tmp_path, TABLED.replace(*change))
