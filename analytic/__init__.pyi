@@ -3,6 +3,8 @@ from .from_clamp.noise import relative_noise as relative_noise
 from .from_clamp.reconstruct import reconstruct as reconstruct
 from .from_clamp.reconstruct import reconstruct_by_decision as reconstruct_by_decision
 from .from_clamp.reconstruct import require_beam as require_beam
+from .from_clamp.rubbing import FrictionFound as FrictionFound
+from .from_clamp.rubbing import estimate_friction as estimate_friction
 from .from_clamp.shape import curvatures as curvatures
 from .from_clamp.shape import deflected_shapes as deflected_shapes
 from .from_clamp.sideways import sideways_stiffness as sideways_stiffness

@@ -16,7 +16,12 @@ from analytic.problem.errors import InputError, require
 from analytic.problem.files import as_path
 from analytic.problem.readings_file import read_file, write_file
 from analytic.problem.readings_shown import as_html, as_text, plot
-from analytic.problem.support import beyond_the_paper, require_plain, support_of
+from analytic.problem.support import (
+    beyond_the_paper,
+    require_plain,
+    support_of,
+    support_record,
+)
 from analytic.problem.table import Place, checked_table, mirrored_table, row_number
 
 if TYPE_CHECKING:
@@ -180,6 +185,23 @@ class Readings:
     def support(self) -> tuple[float, float]:
         """Clamp stiffness [force length/rad] and friction, as the provenance has them."""
         return support_of(self.provenance)
+
+    def with_friction(self, coefficient: float) -> "Readings":
+        """The same readings, taken to be of a vibrissa that rubs so much.
+
+        Parameters
+        ----------
+        coefficient : float
+            Of Coulomb's friction, for the sweep's sense of sliding.
+
+        Returns
+        -------
+        Readings
+            The provenance says it.
+        """
+        stiffness, _ = self.support
+        known = {name: value for name, value in self.provenance.items() if name != "support"}
+        return replace(self, provenance={**known, **support_record(stiffness, coefficient)})
 
     @property
     def beyond_the_paper(self) -> dict[str, Varying]:

@@ -1,9 +1,10 @@
 """Commands on files of readings: ``compare``, ``reconstruct``, ``side-by-side``."""
 
 import os
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -22,6 +23,7 @@ from compare.commands.waiting import waiting
 from compare.read.suffixes import TABLES
 
 if TYPE_CHECKING:
+    from analytic import Readings
     from compare.read.case import Job
 
 
@@ -135,6 +137,14 @@ def reconstruct(
             "vibrissa's unit of length, metres beside units.",
         ),
     ] = 0.0,
+    friction: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NUMBER|auto",
+            help="Friction coefficient of the sweep; auto: estimate it from Phase B.",
+            show_default="the file's, or that of --beam",
+        ),
+    ] = None,
     method: Annotated[
         str,
         typer.Option(metavar="A,B,...", help="Which methods; `vibrissa methods` compares them."),
@@ -157,6 +167,8 @@ def reconstruct(
     }
     readings = replace(readings, table=readings.table.assign(**known))
     level = None if noise is None else relative_noise(readings, noise)
+    if friction is not None:
+        readings = _rubbing(readings, number_or_auto("--friction", friction), level)
     methods = [name.strip() for name in method.split(",")]
     contacts = {name: reconstruct_contour(readings, level, method=name) for name in methods}
     if "elastica" in contacts:
@@ -178,6 +190,24 @@ def reconstruct(
                 drawn = save_figure(picture, folder / f"reconstruction{end}.png")
             terminal.print_written(drawn)
     return AGREES
+
+
+def _rubbing(
+    readings: "Readings", friction: float | Literal["auto"], noise: Mapping[str, float] | None
+) -> "Readings":
+    from analytic import estimate_friction
+    from analytic.problem.support import check_support
+    from compare.commands import terminal
+
+    if friction == "auto":
+        found = estimate_friction(readings, noise)
+        terminal.print_line(
+            f"friction coefficient {found.coefficient:.4f} +- {found.uncertainty:.1g}, "
+            f"from {found.stations} stations of Phase B"
+        )
+        friction = found.coefficient
+    check_support(readings.support[0], friction, readings.beam, signed=True)
+    return readings.with_friction(friction)
 
 
 def side_by_side(

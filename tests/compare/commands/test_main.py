@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analytic import REAL_CASE_NAMES, Readings
+from analytic import REAL_CASE_NAMES, Readings, named_case, solve_sweep
 from tests.compare.command import vibrissa
 
 CASE = """
@@ -451,3 +451,14 @@ def test_other_contours(tmp_path, profile, said):
         assert done.returncode == 2
         assert said in done.stderr
         assert done.stderr.count("\n") == 1
+
+
+def test_friction_is_estimated_from_the_clamp(tmp_path):
+    case = named_case("rubbing")
+    solve_sweep(case).with_friction(0.0).write(tmp_path / "rig.csv")
+    done = vibrissa("reconstruct", "rig.csv", "--friction", "auto", "--out", "found", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "friction coefficient 0.3000 +-" in done.stdout
+    for wrong, said in (("2", "from -1 to 1"), ("much", "a number or auto")):
+        done = vibrissa("reconstruct", "rig.csv", "--friction", wrong, cwd=tmp_path)
+        assert done.returncode == 2 and said in done.stderr

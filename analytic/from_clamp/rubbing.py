@@ -1,0 +1,151 @@
+"""The friction coefficient from the clamp: Phase B shows it at every station."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.from_clamp.contact import Held, dimensionless
+from analytic.from_clamp.noise import checked_noise, largest, reading_noise
+from analytic.from_clamp.phases import judge_phases
+from analytic.problem.arrays import Floats
+from analytic.problem.columns import CLAMP_READINGS
+from analytic.problem.errors import InputError, require
+from analytic.problem.readings import Readings
+
+_FEWEST = 5  # stations of Phase B: fewer do not show how much they scatter
+_ROUNDS = 4  # of phases by the coefficient and the coefficient by the phases
+_CLEARLY = 5.0  # standard deviations; a contact so far short of the tip is one of Phase B
+_DOUBLE_SIDED_95 = 1.959964
+_BESIDE = 3  # stations to either side, whose variances are alike
+_LEAST = 1e-9  # of the largest magnitude; readings without noise count as of so much
+_STEP = 0.1  # of a standard deviation, for a derivative
+_MOST = 0.999  # sine of the friction angle: 22
+
+
+@dataclass(frozen=True)
+class FrictionFound:
+    """The friction coefficient that a sweep's readings show.
+
+    Parameters
+    ----------
+    coefficient : float
+        Of Coulomb's friction, for the sweep's sense of sliding.
+    uncertainty : float
+        The true one lies within this of `coefficient` in 95 % of all cases.
+    stations : int
+        How many of Phase B it is from.
+    """
+
+    coefficient: float
+    uncertainty: float
+    stations: int
+
+
+def estimate_friction(
+    readings: Readings, noise: Mapping[str, float] | None = None
+) -> FrictionFound:
+    """The friction coefficient of a sweep, from its stations of Phase B.
+
+    There the vibrissa is parallel to the object, so that force and moment alone give the angle
+    between the force and the contour's normal: (M^2 - 2 F_y)/(2 f) = sin(arctan(mu)) for a thin
+    vibrissa that is straight at rest, on a rigid clamp. With natural curvature kappa_0, radius r
+    and rotation of the clamp it is the root x = sin(arctan(mu)) of
+
+        sin(theta) + M/f (kappa_0 - M/2) + (1 - r kappa_0) x + r^2 f x^2/2 = 0,
+
+    theta the slope angle of the clamp's end from the force's: the energy of the pendulum whose
+    moment at the contact is r f x. Which stations are of Phase B is judged by the contact's arc
+    length first, and with the coefficient that follows by both conditions.
+
+    Parameters
+    ----------
+    readings : Readings
+        The four sensed columns are used, ``status`` to leave stations out, and of the provenance
+        the clamp's stiffness.
+    noise : mapping, optional
+        Standard deviation of each sensed column's noise, in the column's unit. If it is not given,
+        it is what the readings themselves show.
+
+    Returns
+    -------
+    FrictionFound
+        The mean, weighted by what the noise does to each station. If the stations scatter more than
+        the noise explains, the uncertainty grows with that.
+
+    Raises
+    ------
+    InputError
+        If fewer than five stations are of Phase B, the noise is no such mapping, or the vibrissa
+        varies along its length.
+    """
+    require("readings", readings, Readings, "as Readings(table, beam)")
+    spread = _spread(readings, noise)
+    coefficient, found = 0.0, FrictionFound(0.0, np.inf, 0)
+    for number in range(_ROUNDS):
+        assumed = readings.with_friction(coefficient)
+        judged = judge_phases(assumed, noise)
+        tangent = (judged.phase == "tangent") & readings.trusted
+        if number == 0:
+            far = judged.shortfall > _CLEARLY * judged.shortfall_tolerance
+            tangent = far & readings.trusted
+        found = _mean(Held.of(assumed), dimensionless(readings)[:, tangent], spread)
+        coefficient = found.coefficient
+    return found
+
+
+def _spread(readings: Readings, noise: Mapping[str, float] | None) -> Floats:
+    """Standard deviation of force and moment, dimensionless, shape (3,)."""
+    beam = readings.beam
+    units = np.array([beam.force_unit, beam.force_unit, beam.moment_unit])
+    known = reading_noise(readings) if noise is None else checked_noise(noise)
+    spread = np.array([known.get(name, 0.0) for name in CLAMP_READINGS]) / units
+    least = np.array([_LEAST * largest(values) for values in dimensionless(readings)[1:]])
+    return np.asarray(np.maximum(spread, least), dtype=float)
+
+
+def _mean(held: Held, sensed: Floats, spread: Floats) -> FrictionFound:
+    sine = _sine(held, sensed)
+    usable = np.isfinite(sine) & (np.abs(sine) < _MOST)
+    sensed, sine = sensed[:, usable], sine[usable]
+    if len(sine) < _FEWEST:
+        raise InputError(
+            "stations of Phase B",
+            len(sine),
+            f"{_FEWEST} or more, from which the friction coefficient is estimated",
+            "let the vibrissa touch along its side: a lower object, or more stations",
+        )
+    variance = np.zeros_like(sine)
+    for row, size in enumerate(spread, start=1):
+        moved = sensed.copy()
+        moved[row] += _STEP * size
+        variance += (np.nan_to_num(_sine(held, moved) - sine) / _STEP) ** 2
+    weight = 1 / _beside(variance)
+    mean = float(np.sum(weight * sine) / weight.sum())
+    excess = float(np.sum(weight * (sine - mean) ** 2)) / (len(sine) - 1)
+    deviation = np.sqrt(max(1.0, excess) / weight.sum())
+    cosine_squared = 1 - mean**2
+    return FrictionFound(
+        float(mean / np.sqrt(cosine_squared)),
+        float(_DOUBLE_SIDED_95 * deviation / cosine_squared**1.5),
+        len(sine),
+    )
+
+
+def _beside(variance: Floats) -> Floats:
+    """The mean of what the stations beside each have: its own noise must not weigh it."""
+    padded = np.pad(variance, _BESIDE, mode="reflect")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * _BESIDE + 1)
+    return np.asarray((windows.sum(axis=1) - variance) / (2 * _BESIDE))
+
+
+def _sine(held: Held, sensed: Floats) -> Floats:
+    """Sine of the friction angle, if the station is of Phase B."""
+    clamped = held.clamped(sensed)
+    natural, _, _, radius = held.vibrissa
+    force, moment = clamped.force, clamped.moment
+    with np.errstate(divide="ignore", invalid="ignore"):
+        constant = np.sin(clamped.theta) + moment / force * (natural - moment / 2)
+        slope = 1 - radius * natural
+        root = np.sqrt(slope**2 - 2 * radius**2 * force * constant)
+        return np.asarray(-2 * constant / (slope + root))

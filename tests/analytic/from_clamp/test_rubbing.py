@@ -1,0 +1,109 @@
+"""The friction coefficient from the clamp."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import (
+    Beam,
+    Case,
+    InputError,
+    Readings,
+    Sweep,
+    catenary,
+    circle,
+    estimate_friction,
+    named_case,
+    parabola,
+    reconstruct,
+    relative_noise,
+    solve_sweep,
+)
+
+
+def swept(friction, natural=0.0, stiffness=np.inf, radius=0.005, direction="left", stations=200):
+    return solve_sweep(
+        Case(
+            Beam(radius=radius, natural_curvature=natural),
+            circle(1.0, lowest=(0, 0.4)),
+            Sweep(stations, direction=direction),
+            clamp_stiffness=stiffness,
+            friction=friction,
+        )
+    )
+
+
+@pytest.mark.parametrize("direction", ["left", "right"])
+@pytest.mark.parametrize(
+    ("friction", "natural", "stiffness", "radius"),
+    [
+        (0.0, 0.0, np.inf, 0.005),
+        (0.3, 0.0, np.inf, 0.0),
+        (0.3, 0.0, np.inf, 0.02),
+        (0.6, -0.4, 6.0, 0.02),
+        (0.05, 0.3, 3.0, 0.005),
+    ],
+)
+def test_exact_readings_show_it_exactly(friction, natural, stiffness, radius, direction):
+    natural = natural if direction == "left" else -natural
+    readings = swept(friction, natural, stiffness, radius, direction)
+    found = estimate_friction(readings.with_friction(0.0))
+    assert found.coefficient == pytest.approx(friction, abs=1e-12)
+    assert found.stations > 20 and found.uncertainty < 1e-3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("level", [1e-3, 1e-2, 3e-2])
+def test_uncertainty_covers_the_error(level):
+    """95 % of 100 noisy sweeps, so +-2.2 %."""
+    exact = swept(0.3, stations=100).with_friction(0.0)
+    noise, rng = relative_noise(exact, level), np.random.default_rng(1)
+    covered = 0
+    for _ in range(100):
+        columns = {n: exact.values(n) + s * rng.standard_normal(100) for n, s in noise.items()}
+        found = estimate_friction(replace(exact, table=exact.table.assign(**columns)), noise)
+        covered += abs(found.coefficient - 0.3) <= found.uncertainty
+    assert covered >= 89
+
+
+def test_noise_is_stated_as_uncertainty():
+    exact = swept(0.3, stations=100).with_friction(0.0)
+    noise, rng = relative_noise(exact, 1e-2), np.random.default_rng(1)
+    columns = {n: exact.values(n) + s * rng.standard_normal(100) for n, s in noise.items()}
+    found = estimate_friction(replace(exact, table=exact.table.assign(**columns)), noise)
+    assert 0.003 < found.uncertainty < 0.02
+    assert abs(found.coefficient - 0.3) < 2 * found.uncertainty
+
+
+def test_the_object_is_found_without_knowing_the_friction():
+    readings = swept(0.4, -0.3, 6.0)
+    found = estimate_friction(readings.with_friction(0.0))
+    angle = reconstruct(readings.with_friction(found.coefficient))["contact_angle"]
+    wrong = reconstruct(readings.with_friction(0.0))["contact_angle"]
+    true = readings.values("contact_angle")
+    assert np.nanmax(np.abs(angle - true)) < 1e-12
+    assert np.nanmin(np.abs(wrong - true)) == pytest.approx(np.arctan(0.4), rel=1e-9)
+
+
+def test_only_phase_b_shows_it():
+    raised = replace(named_case("tip-only"), friction=0.3)
+    with pytest.raises(InputError, match="stations of Phase B = 0: must be 5 or more"):
+        estimate_friction(solve_sweep(raised))
+    with pytest.raises(InputError, match="readings"):
+        estimate_friction(raised)
+
+
+@pytest.mark.parametrize("profile", [catenary(0.5, -0.8), parabola(0.5, 0.5)])
+def test_no_friction_is_not_taken_for_some(profile):
+    found = estimate_friction(solve_sweep(Case(profile=profile)))
+    assert abs(found.coefficient) < 1e-12
+
+
+def test_readings_say_what_rubs():
+    readings = swept(0.3, stiffness=6.0)
+    assert readings.support == (6.0, 0.3)
+    assert readings.with_friction(0.0).support == (6.0, 0.0)
+    bare = Readings(readings.table, readings.beam)
+    assert bare.with_friction(0.2).support == (np.inf, 0.2)
+    assert "support" not in bare.with_friction(0.0).provenance
