@@ -11,7 +11,7 @@ from mujoco_models.settings import Settings
 # spacing. It is bounded in radii of the vibrissa, in radii of curvature of the contour, and by the
 # square of the cell's length, so that it does not spoil the second order.
 _OF_RADIUS = 0.65
-_OF_CURVATURE = 0.01
+OF_CURVATURE = 0.01
 _OF_CELLS = 3.0
 _LEAST = 1 / 4000  # L
 
@@ -84,7 +84,7 @@ def bead_spacing(segments: int, radius: float, curvature: float) -> float:
     float
         Spacing [L].
     """
-    turning = _OF_CURVATURE / max(curvature, _OF_CURVATURE)
+    turning = OF_CURVATURE / max(curvature, OF_CURVATURE)
     dense = min(_OF_RADIUS * radius, turning, _OF_CELLS / segments**2)
     return max(dense, _LEAST)
 

@@ -1,9 +1,11 @@
 """The compiled beam and obstacle: what MuJoCo says of a configuration at rest."""
 
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.errors import InputError
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.errors import DivergedError
@@ -11,6 +13,7 @@ from mujoco_models.model import clamp
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.model.lookout import Lookout
 from mujoco_models.model.sides import FUSED, Sides
+from mujoco_models.model.sliding import SlidingBeads
 from mujoco_models.model.spec import assemble
 from mujoco_models.model.surface import Surface
 from mujoco_models.obstacles.protocol import Obstacle
@@ -57,7 +60,7 @@ class BeamModel:
         self, beam: Beam, radius: float, obstacle: Obstacle, contact_stiffness: float
     ) -> None:
         self.beam = beam
-        self.layout = beam.layout
+        self.layout = replace(beam.layout, beads=beam.layout.beads.copy())  # beads may slide
         self.radius = radius
         self.obstacle = obstacle
         self.contact_stiffness = contact_stiffness
@@ -71,6 +74,7 @@ class BeamModel:
         # One of those at each of the beam's joints: a universal joint has two of MuJoCo's.
         self._joints = np.unique(model.jnt_bodyid, return_index=True)[1]
         self._set_contact_stiffness()
+        self._sliding = SlidingBeads(model, self.beads, self.layout, obstacle)
         self.lookout = Lookout(model, self.data, self.beads, obstacle, radius)
 
     def _set_contact_stiffness(self) -> None:
@@ -243,6 +247,36 @@ class BeamModel:
         """
         curvature = self.obstacle.curvature(slope)
         return np.asarray(curvature / (1 + self.radius * curvature))
+
+    def slide_beads(self, contacts: Contacts) -> bool:
+        """Let a bead be where the beam is tangential, if beads are too far apart for the contour.
+
+        Parameters
+        ----------
+        contacts : Contacts
+            Of the last evaluated configuration.
+
+        Returns
+        -------
+        bool
+            True if beads have been moved: MuJoCo's answer is then out of date.
+        """
+        curvature = self.contact_curvature(contacts.slope)
+        return self._sliding.slide(contacts, curvature, self.joint_positions())
+
+    def slides(self, contacts: Contacts) -> Booleans:
+        """Which contacts are of a link whose beads slide.
+
+        Parameters
+        ----------
+        contacts : Contacts
+            Of the last evaluated configuration.
+
+        Returns
+        -------
+        array of bool, shape (n,)
+        """
+        return self._sliding.slides(contacts)
 
     def contact_rise(self) -> Floats:
         """How fast the loaded contacts' mean place leaves the plane with each turn.

@@ -88,6 +88,10 @@ class Faceted(Obstacle):
         """
         return np.searchsorted(self.facet_angles, slope)
 
+    def support(self, slope: float) -> Floats:
+        """The vertex at which the slope angle is passed."""
+        return np.asarray(self.vertices[np.searchsorted(self.facet_angles, slope)])
+
     def faces(self, slope: Floats) -> bool:
         """Whether these slope angles are among those at which it can be touched."""
         turn = np.diff(self.facet_angles, append=self.facet_angles[-1]).max()

@@ -123,6 +123,10 @@ class Primitive(Obstacle):
         nearest = np.rint(self.place(slope)).astype(int)
         return np.asarray(1 / self._circles.radius[nearest])
 
+    def support(self, slope: float) -> Floats:
+        """Of the polygon."""
+        return self._outline.support(slope)
+
     def faces(self, slope: Floats) -> bool:
         """Whether contacts with these slope angles are within reach."""
         return self._outline.faces(slope)

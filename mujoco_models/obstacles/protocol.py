@@ -86,6 +86,21 @@ class Obstacle(ABC):
         """
 
     @abstractmethod
+    def support(self, slope: float) -> Floats:
+        """The point of the contour that a line at this slope angle touches.
+
+        Parameters
+        ----------
+        slope : float
+            Slope angle [rad].
+
+        Returns
+        -------
+        array, shape (2,)
+            Position [L].
+        """
+
+    @abstractmethod
     def faces(self, slope: Floats) -> bool:
         """Whether contacts with these slope angles are with the contour, not with its far side.
 

@@ -46,6 +46,9 @@ def descend(model: BeamModel, foot_x: float, start: State, numerics: Numerics, s
     for _ in range(steps):
         model.imbalance(foot_x, state.angles)
         contacts = model.contacts()
+        if model.slide_beads(contacts):
+            model.imbalance(foot_x, state.angles)
+            contacts = model.contacts()
         model.lookout.follow_contact(contacts)
         after = newton.step(state, contacts, inertia)
         turn = turned(after.angles, state.angles)

@@ -75,7 +75,9 @@ class Newton:
         curvature = self._curvature(contacts)
         layout = model.layout
         count = len(layout.joints)
-        normal, distance, on_side = contacts.normal, contacts.distance, contacts.on_side
+        normal, distance = contacts.normal, contacts.distance
+        slides = model.slides(contacts)
+        on_side = contacts.on_side | slides
         lever = contacts.point[:, None] - model.joint_positions()
         carried = np.arange(count) <= contacts.link[:, None]
         along = (lever[:, :, 0] * normal[:, 1:] - lever[:, :, 1] * normal[:, :1]) * carried
@@ -91,9 +93,11 @@ class Newton:
         # ... and the normal turns as the bead slides along the contour.
         stiffness -= (at_bead * curvature * across.T) @ across
         # A corner stays where it is and the normal turns with the link: the inner joint counts.
+        # So it does where beads slide, about the contour's centre of curvature.
+        centre = across - np.where(slides, 1 / model.contact_curvature(contacts.slope), 0)[:, None]
         for i in np.flatnonzero(on_side & loaded):
             n = contacts.link[i] + 1
-            stiffness[:n, :n] -= force[i] * across[i, np.minimum.outer(np.arange(n), np.arange(n))]
+            stiffness[:n, :n] -= force[i] * centre[i, np.minimum.outer(np.arange(n), np.arange(n))]
 
         # Loaded contacts convexify the model; their slack is zero at rest, and so is the effect.
         held, slack = along[loaded], (distance + force / model.contact_stiffness)[loaded]
@@ -120,6 +124,9 @@ class Newton:
         """
         touch = np.where(contacts.fused, -1, contacts.touch)
         force = np.array([state.forces.get(i, 0.0) for i in touch.tolist()])
+        slides = self._model.slides(contacts)
+        if (slides & contacts.loaded).any() and not force[slides].any():
+            force[np.where(slides, contacts.distance, np.inf).argmin()] = state.load
         if len(self._model.obstacle.corners) == 0:
             return force
         beads, links = len(self._model.layout.beads), len(self._model.layout.joints)

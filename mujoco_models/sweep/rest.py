@@ -49,6 +49,9 @@ def relax(
     for _ in range(numerics.iterations):
         residual = float(np.abs(model.imbalance(foot_x, state.angles)).max())
         contacts = model.contacts()
+        if model.slide_beads(contacts):
+            residual = float(np.abs(model.imbalance(foot_x, state.angles)).max())
+            contacts = model.contacts()
         state = replace(state, imbalance=residual)
         best = min(best, state, key=lambda s: s.imbalance)
         if residual < tolerance:

@@ -1,0 +1,123 @@
+"""Beads that slide along their link, where the contour is sharper than beads can be dense.
+
+A bead is a material point: hung up on one, the beam leans on the contour at an angle of up to the
+contour's curvature times half of the beads' spacing, and the force is turned by that. Where this is
+too much, the beads of the link that touches slide until one of them is where the link is tangential
+to the contour, whatever the configuration: the contact is then that of the link's whole side.
+"""
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Booleans, Floats, Integers
+from mujoco_models.beams.layout import OF_CURVATURE, Layout
+from mujoco_models.model.contacts import Contacts, slope_angle
+from mujoco_models.obstacles.protocol import Obstacle
+
+_NEXT_TO_A_JOINT = 1e-3  # of its link; a bead stays on it
+_SAME_PLACE = 1e-9  # L
+_ITS_OWN = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
+
+
+class SlidingBeads:
+    """Where the beads of a model are.
+
+    Parameters
+    ----------
+    model : mujoco.MjModel
+        The places of the beads in their links are changed in it.
+    beads : array of int, shape (n_beads,)
+        The beads' geoms.
+    layout : Layout
+        Of the beam; the arc lengths of its beads are changed in place.
+    obstacle : Obstacle
+        What is touched.
+    """
+
+    def __init__(
+        self, model: mujoco.MjModel, beads: Integers, layout: Layout, obstacle: Obstacle
+    ) -> None:
+        self._model, self._beads, self._layout, self._obstacle = model, beads, layout, obstacle
+        self._home = layout.beads.copy()
+        self._spacing = layout.lengths / np.bincount(layout.links)
+        self._ends = np.append(layout.joints[1:], 1.0)
+        self._begins = layout.joints + _NEXT_TO_A_JOINT * layout.lengths
+        self._link: int | None = None
+        self._guided = False
+
+    def slide(self, contacts: Contacts, curvature: Floats, joints: Floats) -> bool:
+        """Let a bead be where the link that touches is tangential to the contour.
+
+        Parameters
+        ----------
+        contacts : Contacts
+            Of the last evaluated configuration.
+        curvature : array, shape (n,)
+            Of the contour that the centre of each contact's bead feels [1/L].
+        joints : array, shape (n_joints, 2)
+            Where the joints are [L].
+
+        Returns
+        -------
+        bool
+            True if beads have been moved: MuJoCo's answer is then out of date.
+        """
+        self._guided = False
+        if not contacts.loaded.any():
+            return False
+        deepest = int(np.argmin(contacts.distance))
+        link, kappa = int(contacts.link[deepest]), float(curvature[deepest])
+        spacing = self._spacing[link]
+        if contacts.touch[deepest] == len(self._home) - 1 or kappa * spacing < 1.01 * OF_CURVATURE:
+            return False
+        if -contacts.distance[contacts.loaded].sum() > kappa * spacing**2 / 2:
+            return False  # so soft that several beads share the load
+        self._guided = True
+        heading = contacts.point[deepest] - joints[link]
+        heading /= np.hypot(*heading)
+        across = contacts.normal[deepest] - (contacts.normal[deepest] @ heading) * heading
+        touched = self._obstacle.support(float(slope_angle(across[None])[0]))
+        along = float((touched - joints[link]) @ heading)
+        return self._shift(link, self._layout.joints[link] + along)
+
+    def slides(self, contacts: Contacts) -> Booleans:
+        """Which contacts are of a link whose beads slide.
+
+        Parameters
+        ----------
+        contacts : Contacts
+            Of the last evaluated configuration.
+
+        Returns
+        -------
+        array of bool, shape (n,)
+            Not the bead at the tip, which stays there.
+        """
+        if not self._guided:
+            return np.zeros(len(contacts.link), dtype=bool)
+        return np.asarray(contacts.link == self._link) & (contacts.touch < len(self._home) - 1)
+
+    def _shift(self, link: int, there: float) -> bool:
+        """Slide a link's beads until one of them is there; whether that is another place."""
+        own = np.flatnonzero(self._layout.links == link)
+        home = self._home[own]
+        there = float(np.clip(there, self._begins[link], self._ends[link]))
+        shift = there - home[np.argmin(np.abs(home - there))]
+        places = np.clip(home + shift, self._begins[link], self._ends[link])
+        same = np.abs(places - self._layout.beads[own]).max() < _SAME_PLACE
+        if self._link not in (None, link):
+            back = np.flatnonzero(self._layout.links == self._link)
+            self._put(back, self._home[back])
+        self._link = link
+        if not same:
+            self._put(own, places)
+        return not same
+
+    def _put(self, beads: Integers, places: Floats) -> None:
+        layout = self._layout
+        begin = layout.joints[layout.links[beads]]
+        scale = (places - begin) / (layout.beads[beads] - begin)
+        geoms = self._beads[beads]
+        self._model.geom_pos[geoms] *= scale[:, None]
+        self._model.geom_sameframe[geoms] = _ITS_OWN  # or MuJoCo ignores the place of a middle one
+        layout.beads[beads] = places
