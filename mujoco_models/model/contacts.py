@@ -119,6 +119,24 @@ class Contacts(NamedTuple):
             passed=bool(behind.any()),
         )
 
+    def nearest(self, count: int) -> "Contacts":
+        """Those with the smallest distances, in the same order.
+
+        Parameters
+        ----------
+        count : int
+            How many at most.
+
+        Returns
+        -------
+        Contacts
+            All of them, if there are no more.
+        """
+        if len(self.distance) <= count:
+            return self
+        kept = np.sort(np.argpartition(self.distance, count)[:count])
+        return Contacts(*(column[kept] for column in self[:-1]), passed=self.passed)
+
     @property
     def loaded(self) -> Booleans:
         """Which of them carry a load, shape (n,)."""

@@ -63,8 +63,8 @@ class SlidingBeads:
             True if beads have been moved: MuJoCo's answer is then out of date.
         """
         self._guided = False
-        if not contacts.loaded.any():
-            return False
+        if len(self._obstacle.corners) or not contacts.loaded.any():
+            return False  # corners touch the links' own sides
         deepest = int(np.argmin(contacts.distance))
         link, kappa = int(contacts.link[deepest]), float(curvature[deepest])
         spacing = self._spacing[link]

@@ -72,6 +72,7 @@ class Newton:
             If the stiffness is not finite.
         """
         model, numerics = self._model, self._numerics
+        contacts = contacts.nearest(numerics.at_once)
         curvature = self._curvature(contacts)
         layout = model.layout
         count = len(layout.joints)
@@ -94,7 +95,8 @@ class Newton:
         stiffness -= (at_bead * curvature * across.T) @ across
         # A corner stays where it is and the normal turns with the link: the inner joint counts.
         # So it does where beads slide, about the contour's centre of curvature.
-        centre = across - np.where(slides, 1 / model.contact_curvature(contacts.slope), 0)[:, None]
+        centre = across.copy()
+        centre[slides] -= 1 / model.contact_curvature(contacts.slope[slides])[:, None]
         for i in np.flatnonzero(on_side & loaded):
             n = contacts.link[i] + 1
             stiffness[:n, :n] -= force[i] * centre[i, np.minimum.outer(np.arange(n), np.arange(n))]

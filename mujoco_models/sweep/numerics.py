@@ -24,6 +24,10 @@ class Numerics:
     largest_turn : float
         Of any link in one Newton step [rad]. At 1 the solver jumps to another state at rest, 1.8e-3
         away, which is "ok" by itself; from 0.1 to 0.5 nothing changes.
+    at_once : int
+        The most contacts that a Newton step sees, the nearest ones: along the flank of a needle
+        thousands of beads are within MuJoCo's reach, and those that come to be loaded are seen in
+        the next step.
     same_normal : float
         What rounding makes of a facet's normal [rad]. Above a facet's turn, every corner would be
         taken for flat, and Newton's method would not settle on it.
@@ -85,6 +89,7 @@ class Numerics:
     iterations: int = 25
     stiffening: float = 1e3
     largest_turn: float = 0.3
+    at_once: int = 200
     same_normal: float = 1e-9
     ahead: int = 4
     margin: int = 2
