@@ -135,7 +135,10 @@ class Contacts(NamedTuple):
         if len(self.distance) <= count:
             return self
         kept = np.sort(np.argpartition(self.distance, count)[:count])
-        return Contacts(*(column[kept] for column in self[:-1]), passed=self.passed)
+        columns = {
+            name: column[kept] for name, column in self._asdict().items() if name != "passed"
+        }
+        return self._replace(**columns)
 
     @property
     def loaded(self) -> Booleans:
