@@ -12,8 +12,10 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from mujoco_models.beams.coordinates import Balls
-from mujoco_models.beams.layout import Layout, vertices
+from mujoco_models.beams.layout import Layout, turned, vertices
+from mujoco_models.beams.links import about_z
 from mujoco_models.beams.protocol import FOOT
+from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.settings import Settings
 
 _XML = """
@@ -44,6 +46,8 @@ class Cable(Balls):
         Number of segments, and which clamp.
     spacing : float
         Of the beads, at most [L].
+    vibrissa : Vibrissa, optional
+        What it is a model of.
     twist : float
         GJ/EI. At rest nothing twists the vibrissa, so that any would do; but the plugin's moments
         derive from an energy only if it resists twisting as it does bending. At GJ = 0.1 EI or
@@ -51,12 +55,18 @@ class Cable(Balls):
         1/N.
     """
 
-    def __init__(self, settings: Settings, spacing: float, twist: float = 1.0) -> None:
+    def __init__(
+        self,
+        settings: Settings,
+        spacing: float,
+        vibrissa: Vibrissa | None = None,
+        twist: float = 1.0,
+    ) -> None:
         self._twist = twist
         self._vertices = vertices(settings)
         self._cell = float(self._vertices[1] - self._vertices[0])
         joints = self._vertices[1:-1]
-        self.layout = Layout.of(joints, np.full(len(joints), self._cell), spacing)
+        self.layout = Layout.of(joints, np.full(len(joints), self._cell), spacing, vibrissa)
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """The foot and the cable on it; only XML makes a composite."""
@@ -70,18 +80,53 @@ class Cable(Balls):
             radius=radius,
         )
         spec = mujoco.MjSpec.from_string(xml)
-        for i in range(len(self.layout.joints)):
-            spec.body(self._name(i)).pos = [self._cell, 0, 0]  # was in single precision
         spec.body("B_first").pos = [0, self._vertices[0], 0]
+        for i in range(self._turning, len(self.layout.joints)):
+            spec.body(self._name(i)).pos = [self._cell, 0, 0]  # was in single precision
+        if not self.layout.vibrissa.is_plain:
+            self._shape(spec, radius)
         return spec
 
+    def _shape(self, spec: mujoco.MjSpec, radius: float) -> None:
+        """Put every segment where it is on the unloaded vibrissa, as stiff as its cell.
+
+        The plugin takes the places of the model's bodies for the unbent cable, and the stiffness
+        of a joint from the radius and the length of the segments about it.
+        """
+        layout = self.layout
+        behind = np.array([0.0, self._vertices[0]])  # from the clamp, where the first one begins
+        if self._turning:
+            first, heading = spec.body("B_first"), float(layout.headings[0])
+            first.pos = [*turned(behind, heading), 0]
+            first.quat = about_z(np.pi / 2 + heading)
+            ball = first.add_joint(type=mujoco.mjtJoint.mjJNT_BALL, pos=[-behind[1], 0, 0])
+            ball.stiffness[0] = 1 / layout.compliances[0]
+        for i in range(self._turning, len(layout.joints)):
+            offset, turn = layout.step(i)
+            across, along = offset - behind if i == self._turning else offset
+            body = spec.body(self._name(i))
+            body.pos, body.quat = [along, -across, 0], about_z(turn)
+            cell = float(np.hypot(across, along))
+            body.geoms[0].size[0] = radius * (cell / layout.compliances[i]) ** 0.25
+
+    @property
+    def _turning(self) -> int:
+        """How many joints are the clamp's."""
+        return int(self.layout.clamp_turns)
+
     def _name(self, link: int) -> str:
-        return "B_last" if link == len(self.layout.joints) - 1 else f"B_{link + 1}"
+        segment = link + 1 - self._turning
+        if segment == 0:
+            return "B_first"
+        return "B_last" if link == len(self.layout.joints) - 1 else f"B_{segment}"
 
     def mount(self, spec: mujoco.MjSpec, link: int, s: float) -> tuple[mujoco.MjsBody, Floats]:
-        """The segment itself, which lies along its own x axis."""
-        return spec.body(self._name(link)), np.array([s - self.layout.joints[link], 0, 0])
+        """The segment itself, whose chord is along its own x axis."""
+        across, along = self.layout.within(link, s)
+        if link < self._turning:
+            along -= self._vertices[0]
+        return spec.body(self._name(link)), np.array([along, -across, 0])
 
     def stiffness(self, angles: Floats) -> Floats:
-        """EI/h."""
-        return 1 / self.layout.cells
+        """EI/h, and the clamp's."""
+        return 1 / self.layout.compliances

@@ -11,25 +11,28 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.links import HingedLinks
+from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.settings import Settings
 
 
 class Chain(HingedLinks):
     """Hinges with springs; see `mujoco_models.beams.protocol.Beam`."""
 
-    def __init__(self, settings: Settings, spacing: float) -> None:
+    def __init__(
+        self, settings: Settings, spacing: float, vibrissa: Vibrissa | None = None
+    ) -> None:
         n = settings.segments
         cells = np.arange(n)
         joints = (cells + 0.5) / n if settings.clamp == "second-order" else cells[1:] / n
-        super().__init__(Layout.of(joints, np.full(len(joints), 1 / n), spacing))
+        super().__init__(Layout.of(joints, np.full(len(joints), 1 / n), spacing, vibrissa))
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """The links, and a spring in every hinge."""
         spec = super().spec(radius)
-        for joint, cell in zip(spec.joints, self.layout.cells, strict=True):
-            joint.stiffness[0] = 1 / cell
+        for joint, compliance in zip(spec.joints, self.layout.compliances, strict=True):
+            joint.stiffness[0] = 1 / compliance
         return spec
 
     def stiffness(self, angles: Floats) -> Floats:
-        """EI/h."""
-        return 1 / self.layout.cells
+        """EI/h, and the clamp's."""
+        return 1 / self.layout.compliances

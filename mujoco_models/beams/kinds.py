@@ -3,21 +3,23 @@
 from collections.abc import Callable
 from typing import TypeAlias
 
+from analytic.problem.errors import InputError
 from mujoco_models.beams.available import require
 from mujoco_models.beams.cable import Cable
 from mujoco_models.beams.chain import Chain
 from mujoco_models.beams.protocol import Beam
 from mujoco_models.beams.rod import Rod
 from mujoco_models.beams.spatial import SpatialChain, SpatialRod
+from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.settings import Settings
 
-_Kinds: TypeAlias = dict[str, Callable[[Settings, float], Beam]]
+_Kinds: TypeAlias = dict[str, Callable[[Settings, float, Vibrissa], Beam]]
 
 _PLANAR: _Kinds = {"chain": Chain, "rod": Rod, "cable": Cable}
 _SPATIAL: _Kinds = {"chain": SpatialChain, "rod": SpatialRod, "cable": Cable}
 
 
-def build(settings: Settings, spacing: float) -> Beam:
+def build(settings: Settings, spacing: float, vibrissa: Vibrissa | None = None) -> Beam:
     """The beam that the settings ask for, with beads at most `spacing` apart [L].
 
     Parameters
@@ -26,6 +28,8 @@ def build(settings: Settings, spacing: float) -> Beam:
         Which beam, of how many segments.
     spacing : float
         Of the beads [L].
+    vibrissa : Vibrissa, optional
+        What it is a model of; straight and rigidly clamped if it is not given.
 
     Returns
     -------
@@ -35,8 +39,16 @@ def build(settings: Settings, spacing: float) -> Beam:
     Raises
     ------
     InputError
-        If the installed MuJoCo lacks it.
+        If the installed MuJoCo lacks it, or it may leave the plane and is not plain.
     """
     require(settings.beam)
+    vibrissa = vibrissa or Vibrissa()
+    if not (settings.planar or vibrissa.is_plain):
+        raise InputError(
+            "mujoco.planar",
+            False,
+            "true for a vibrissa that is curved at rest or whose clamp turns",
+            "sideways it would twist, and no theory of it is here",
+        )
     kinds = _PLANAR if settings.planar else _SPATIAL
-    return kinds[settings.beam](settings, spacing)
+    return kinds[settings.beam](settings, spacing, vibrissa)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
+from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.settings import Settings
 
 # A bead is a fixed material point, so the readings err by the contour's curvature times the beads'
@@ -20,38 +21,69 @@ _LEAST = 1 / 4000  # L
 class Layout:
     """Joints and contact spheres ("beads") along the vibrissa of length 1.
 
+    Between two joints a link is rigid in the shape of the unloaded vibrissa: an arc, if that is
+    curved. So the joints turn by what bends, and by nothing at rest; and where a curved vibrissa
+    touches tangentially, its slope is the link's at that place. Straight links with turned joints
+    would jump there by curvature times cell, which makes readings of first order in the cell.
+
     Attributes
     ----------
     joints : array, shape (n_joints,)
-        Arc length of each joint, or vertex, where the beam bends; link i begins at joint i.
-    cells : array, shape (n_joints,)
-        Length h of the piece of beam that bends at each joint.
+        Arc length of each joint, or vertex, where the beam bends; link i begins at joint i. The
+        first is at 0 if the clamp turns.
+    compliances : array, shape (n_joints,)
+        Turn of each joint by moment: of the piece of beam, a cell, that bends there, or of the
+        clamp [L/EI].
     beads : array, shape (n_beads,)
         Arc length of each bead, the last one at the tip; none before the first joint.
     links : array of int, shape (n_beads,)
         The link that carries each bead; a bead at a joint is carried by the link that ends there.
+    vibrissa : Vibrissa
+        What the beam stands for.
+    base : array, shape (n_joints, 2)
+        Where each link of the unloaded beam begins, as seen from the foot [L].
+    chords : array, shape (n_joints,)
+        Distance from a link's begin to its end; of a straight one, its length [L].
+    headings : array, shape (n_joints,)
+        Turn of the chord of each link of the unloaded beam from the upright, to the left [rad].
     """
 
     joints: Floats
-    cells: Floats
+    compliances: Floats
     beads: Floats
     links: Integers
+    vibrissa: Vibrissa
+    base: Floats
+    chords: Floats
+    headings: Floats
 
     @classmethod
-    def of(cls, joints: Floats, cells: Floats, spacing: float) -> "Layout":
+    def of(
+        cls, joints: Floats, cells: Floats, spacing: float, vibrissa: Vibrissa | None = None
+    ) -> "Layout":
         """Beads at most `spacing` apart, and at least two to a link, or one at each link's end.
 
         Parameters
         ----------
-        joints, cells : array, shape (n_joints,)
-            As in the attributes [L].
+        joints : array, shape (n,)
+            Arc lengths where cells bend [L].
+        cells : array, shape (n,)
+            Their lengths [L].
         spacing : float
             Of the beads [L]; infinite for one a link.
+        vibrissa : Vibrissa, optional
+            Straight and rigidly clamped if it is not given.
 
         Returns
         -------
         Layout
+            With a joint more if the clamp turns.
         """
+        vibrissa = vibrissa or Vibrissa()
+        compliances = cells
+        if vibrissa.clamp_compliance > 0:
+            joints = np.insert(joints, 0, 0.0)
+            compliances = np.insert(compliances, 0, vibrissa.clamp_compliance)
         lengths = np.diff(joints, append=1.0)
         fewest = 1 if spacing == np.inf else 2
         counts = np.maximum(fewest, np.ceil(lengths / spacing - 1e-9).astype(int))
@@ -59,12 +91,104 @@ class Layout:
             start + length * np.arange(1, count + 1) / count
             for start, length, count in zip(joints, lengths, counts, strict=True)
         ]
-        return cls(joints, cells, np.concatenate(beads), np.repeat(np.arange(len(joints)), counts))
+        links = np.repeat(np.arange(len(joints)), counts)
+        ends = vibrissa.at(np.append(joints, 1.0))
+        x, y = np.diff(ends, axis=0).T
+        return cls(
+            joints,
+            compliances,
+            np.concatenate(beads),
+            links,
+            vibrissa,
+            ends[:-1],
+            np.hypot(x, y),
+            np.arctan2(-x, y),
+        )
 
     @property
     def lengths(self) -> Floats:
         """Length of each link, shape (n_joints,)."""
         return np.diff(self.joints, append=1.0)
+
+    @property
+    def clamp_turns(self) -> bool:
+        """Whether the first joint is the clamp's."""
+        return self.vibrissa.clamp_compliance > 0
+
+    def tip_angle(self, angles: Floats) -> float:
+        """Slope angle of the tip.
+
+        Parameters
+        ----------
+        angles : array, shape (n_joints,)
+            Turns of the joints [rad].
+
+        Returns
+        -------
+        float
+            Angle from the foot line [rad].
+        """
+        return np.pi / 2 + float(angles.sum()) + float(self.vibrissa.turn(np.array(1.0)))
+
+    def step(self, link: int) -> tuple[Floats, float]:
+        """From one link's frame to the next one's, unloaded.
+
+        A link's frame has its origin where the link begins, and its y axis along the chord; the
+        foot's is upright.
+
+        Parameters
+        ----------
+        link : int
+            Number of the link; the one before it is the foot, for 0.
+
+        Returns
+        -------
+        offset : array, shape (2,)
+            Of the link's origin, in the frame before [L].
+        turn : float
+            Of the link's axes from the axes before [rad].
+        """
+        before, heading = np.zeros(2), 0.0
+        if link > 0:
+            before, heading = self.base[link - 1], float(self.headings[link - 1])
+        return turned(self.base[link] - before, -heading), self.headings[link] - heading
+
+    def within(self, link: int, s: float) -> Floats:
+        """Where an arc length is in the frame of its link.
+
+        Parameters
+        ----------
+        link : int
+            Number of the link.
+        s : float
+            Arc length [L].
+
+        Returns
+        -------
+        array, shape (2,)
+            Across and along the chord [L].
+        """
+        there = self.vibrissa.at(np.asarray(s)) - self.base[link]
+        return turned(there, -float(self.headings[link]))
+
+
+def turned(vector: Floats, angle: float) -> Floats:
+    """A vector, turned to the left.
+
+    Parameters
+    ----------
+    vector : array, shape (2,)
+        Any.
+    angle : float
+        Angle [rad].
+
+    Returns
+    -------
+    array, shape (2,)
+        The turned one.
+    """
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.array([cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1]])
 
 
 def bead_spacing(segments: int, radius: float, curvature: float) -> float:

@@ -29,20 +29,21 @@ class HingedLinks:
         layout = self.layout
         spec = mujoco.MjSpec()
         body = spec.worldbody.add_body(name=FOOT)
-        _add_capsule(body, layout.joints[0], radius)
-        for i, offset in enumerate(np.diff(layout.joints, prepend=0.0)):
-            body = body.add_body(name=link_name(i), pos=[0, offset, 0])
+        _add_capsule(body, layout.base[0], radius)
+        for i, compliance in enumerate(layout.compliances):
+            offset, turn = layout.step(i)
+            body = body.add_body(name=link_name(i), pos=[*offset, 0], quat=about_z(turn))
             body.add_joint(
                 type=mujoco.mjtJoint.mjJNT_HINGE,
                 axis=[0, 0, 1],
-                armature=_ARMATURE / layout.cells[i],
+                armature=_ARMATURE / compliance,
             )
-            _add_capsule(body, layout.lengths[i], radius)
+            _add_capsule(body, np.array([0, layout.chords[i]]), radius)
         return spec
 
     def mount(self, spec: mujoco.MjSpec, link: int, s: float) -> tuple[mujoco.MjsBody, Floats]:
-        """The link itself, which lies along its own y axis."""
-        return spec.body(link_name(link)), np.array([0, s - self.layout.joints[link], 0])
+        """The link itself, whose chord is along its own y axis."""
+        return spec.body(link_name(link)), np.array([*self.layout.within(link, s), 0])
 
     def place(self, data: mujoco.MjData, angles: Floats) -> None:
         """The joint angles are MuJoCo's own coordinates."""
@@ -73,11 +74,29 @@ def link_name(link: int) -> str:
     return f"link{link}"
 
 
-def _add_capsule(body: mujoco.MjsBody, length: float, radius: float) -> None:
+def about_z(turn: float) -> Floats:
+    """A turn about z.
+
+    Parameters
+    ----------
+    turn : float
+        Angle [rad].
+
+    Returns
+    -------
+    array, shape (4,)
+        Quaternion.
+    """
+    return np.array([np.cos(turn / 2), 0, 0, np.sin(turn / 2)])
+
+
+def _add_capsule(body: mujoco.MjsBody, end: Floats, radius: float) -> None:
     """What the eye sees of a link, and its mass, because MuJoCo requires one."""
+    if not end.any():  # of a foot on whose clamp the vibrissa turns
+        end = np.array([0, _THINNEST])
     body.add_geom(
         type=mujoco.mjtGeom.mjGEOM_CAPSULE,
-        fromto=[0, 0, 0, 0, length, 0],
+        fromto=[0, 0, 0, *end, 0],
         size=[max(radius, _THINNEST), 0, 0],
         contype=0,
         conaffinity=0,

@@ -14,24 +14,28 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from mujoco_models.beams.layout import Layout, vertices
+from mujoco_models.beams.layout import Layout, turned, vertices
 from mujoco_models.beams.links import HingedLinks, link_name
 from mujoco_models.beams.protocol import FOOT
+from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.settings import Settings
 
 # The law above is too stiff by (curvature h)^2/3, so segments are shorter where a clamped beam
 # bends most: at N = 40 that takes the catenary's force_y from 2.7e-3 rms to 1.3e-3. Anything from
 # 0.3 to 0.6 does as well.
 _GRADING = 0.4
+_UP = np.array([0.0, 1.0])
 
 
 class Rod(HingedLinks):
     """A one-dimensional flex; see `mujoco_models.beams.protocol.Beam`."""
 
-    def __init__(self, settings: Settings, spacing: float) -> None:
+    def __init__(
+        self, settings: Settings, spacing: float, vibrissa: Vibrissa | None = None
+    ) -> None:
         self._vertices = vertices(settings, _GRADING)
         cells = (self._vertices[2:] - self._vertices[:-2]) / 2
-        super().__init__(Layout.of(self._vertices[1:-1], cells, spacing))
+        super().__init__(Layout.of(self._vertices[1:-1], cells, spacing, vibrissa))
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """Links without springs, and the flex that bends them."""
@@ -39,16 +43,48 @@ class Rod(HingedLinks):
         flex = spec.add_flex(name="rod", dim=1, radius=radius, contype=0, conaffinity=0)
         flex.selfcollide = False
         flex.young = 1 / (np.pi * radius**4 / 4)
-        # The first edge is the foot's; every link has the vertex at its end.
+        if self.layout.vibrissa.is_plain:
+            self._join(flex)
+        else:
+            self._join_in_pieces(flex)
+            if self.layout.clamp_turns:
+                spec.joints[0].stiffness[0] = 1 / self.layout.compliances[0]
+        return spec
+
+    def _join(self, flex: mujoco.MjsFlex) -> None:
+        """One line of edges: the first is the foot's, every link has the vertex at its end."""
         count = len(self.layout.joints)
         flex.vertbody = [FOOT, FOOT, *(link_name(i) for i in range(count))]
         at = np.zeros((count + 2, 3))
         at[:, 1] = [*self._vertices[:2], *self.layout.lengths]
         flex.vert = at.ravel()
         flex.elem = [end for i in range(count + 1) for end in (i, i + 1)]
-        return spec
+
+    def _join_in_pieces(self, flex: mujoco.MjsFlex) -> None:
+        """Two edges at every vertex, in line when the beam is unloaded.
+
+        The flex's energy at a vertex is EI/(l0 + l1) times the square of its discrete curvature,
+        2 tan(theta/2), with l0 and l1 the lengths of its edges. Edges of their own give each vertex
+        its own stiffness, and unbent ones its natural curvature; MuJoCo's own reference curvature
+        forgets which way a vertex is bent.
+        """
+        layout = self.layout
+        vertices, bodies = [], []
+        for i in range(1 if layout.clamp_turns else 0, len(layout.joints)):
+            offset, _ = layout.step(i)
+            along = layout.vibrissa.turn(layout.joints[i])
+            half = layout.compliances[i]
+            before = layout.headings[i - 1] if i else 0.0
+            vertices += [offset - half * turned(_UP, along - before), np.zeros(2)]
+            vertices += [half * turned(_UP, along - layout.headings[i])]
+            bodies += [link_name(i - 1) if i else FOOT, link_name(i), link_name(i)]
+        flex.vertbody = bodies
+        flex.vert = np.pad(vertices, ((0, 0), (0, 1))).ravel()
+        flex.elem = [end for i in range(0, len(bodies), 3) for end in (i, i + 1, i + 1, i + 2)]
 
     def stiffness(self, angles: Floats) -> Floats:
-        """Second derivative of (2 EI/h) tan^2(theta/2)."""
+        """Second derivative of (2 EI/h) tan^2(theta/2); the clamp's spring is linear."""
         t = np.tan(angles / 2)
-        return np.asarray((1 + t**2) * (1 + 3 * t**2) / self.layout.cells)
+        if self.layout.clamp_turns:
+            t[0] = 0.0
+        return np.asarray((1 + t**2) * (1 + 3 * t**2) / self.layout.compliances)

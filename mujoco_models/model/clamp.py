@@ -65,15 +65,16 @@ def by_contacts(model: mujoco.MjModel, data: mujoco.MjData, foot: Floats, moves:
     return Clamp(*(-held).tolist())
 
 
-def discrepancy(sensed: Clamp, required: Clamp, first_joint: float, moment: float) -> float:
+def discrepancy(sensed: Clamp, required: Clamp, first_joint: Floats, moment: float) -> float:
     """By how much three accounts of the clamp differ, the worst of all.
 
     Parameters
     ----------
     sensed, required : Clamp
         By the sensors and by the contacts.
-    first_joint : float
-        Arc length of the beam's first joint, to which the sensors' wrench is carried [L].
+    first_joint : array, shape (2,)
+        Where the beam's first joint is, seen from the foot: the sensors' wrench is carried there
+        [L].
     moment : float
         The beam's own elastic moment there [EI/L].
 
@@ -83,5 +84,6 @@ def discrepancy(sensed: Clamp, required: Clamp, first_joint: float, moment: floa
         Largest difference [EI/L^2, EI/L].
     """
     by_contact = np.abs(np.subtract(sensed, required)).max()
-    at_joint = sensed.moment_z + first_joint * sensed.force_x
+    x, y = first_joint
+    at_joint = sensed.moment_z + y * sensed.force_x - x * sensed.force_y
     return float(max(by_contact, abs(at_joint - moment)))

@@ -341,7 +341,8 @@ class BeamModel:
         """
         ends = [*self.data.xanchor, self.data.geom_xpos[self.beads[-1]]]
         bent = np.linalg.norm(np.diff(ends, axis=0), axis=1).sum()
-        return float(bent + self.layout.joints[0] - 1)
+        arched = (self.layout.lengths - self.layout.chords).sum()
+        return float(bent + self.layout.joints[0] - 1 + arched)
 
     def clamp(self) -> clamp.Clamp:
         """The clamp's action on the vibrissa, by MuJoCo's sensors.
@@ -364,7 +365,7 @@ class BeamModel:
         foot = self.data.xpos[self._foot, :2]
         by_contacts = clamp.by_contacts(self.model, self.data, foot, self._surface.moves)
         moment = float(self.elastic_moments()[0])
-        return clamp.discrepancy(self.clamp(), by_contacts, float(self.layout.joints[0]), moment)
+        return clamp.discrepancy(self.clamp(), by_contacts, self.layout.base[0], moment)
 
 
 def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:

@@ -4,8 +4,9 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.beam import Beam as Vibrissa
+from analytic.problem.beam import Beam
 from mujoco_models.beams.kinds import build
+from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.model.spec import add_options
 from mujoco_models.settings import Settings
 
@@ -14,7 +15,9 @@ _LARGEST_TURN = 0.5  # rad, of any link in one step
 _TIP = "tip"
 
 
-def load_tip(load: float, settings: Settings) -> tuple[float, float]:
+def load_tip(
+    load: float, settings: Settings, vibrissa: Vibrissa | None = None
+) -> tuple[float, float]:
     """Tip of a clamped beam that carries a dead load across its undeformed axis.
 
     The load is MuJoCo's own, an actuator on a site; Newton's method on MuJoCo's balance finds the
@@ -26,11 +29,14 @@ def load_tip(load: float, settings: Settings) -> tuple[float, float]:
         P L^2/EI.
     settings : Settings
         Beam, number of segments, clamp and tolerance; nothing else matters without a contact.
+    vibrissa : Vibrissa, optional
+        Straight and rigidly clamped if it is not given.
 
     Returns
     -------
     across, shortening : float
-        Displacement of the tip along the load and along the axis, towards the clamp [L].
+        Displacement of the tip along the load, which is to the right, and along the clamp's
+        tangent, towards the clamp [L].
 
     Raises
     ------
@@ -39,9 +45,9 @@ def load_tip(load: float, settings: Settings) -> tuple[float, float]:
     RuntimeError
         If the beam does not come to rest.
     """
-    beam = build(settings, spacing=1.0)
+    beam = build(settings, 1.0, vibrissa)
     layout = beam.layout
-    spec = beam.spec(Vibrissa().radius)
+    spec = beam.spec(Beam().radius)
     add_options(spec)
     body, place = beam.mount(spec, len(layout.joints) - 1, 1.0)
     body.add_site(name=_TIP, pos=place)
@@ -61,7 +67,8 @@ def load_tip(load: float, settings: Settings) -> tuple[float, float]:
         residual = beam.moments(data.qfrc_smooth + data.qfrc_constraint)
         x, y = data.site(_TIP).xpos[:2]
         if np.abs(residual).max() < settings.tolerance:
-            return float(x), float(1 - y)
+            rest_x, rest_y = layout.vibrissa.at(np.array(1.0))
+            return float(x - rest_x), float(rest_y - y)
         # The load's lever turns with every joint below the outer one of two.
         reach = load * (x - data.xanchor[:, 0])
         outer = np.maximum.outer(np.arange(len(angles)), np.arange(len(angles)))

@@ -19,6 +19,7 @@ from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
 from mujoco_models.beams.kinds import build
 from mujoco_models.beams.layout import bead_spacing
+from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.errors import DivergedError
 from mujoco_models.model.model import BeamModel
 from mujoco_models.obstacles.kinds import place
@@ -100,17 +101,22 @@ def set_out(case: Case, settings: Settings, numerics: Numerics | None = None) ->
     Raises
     ------
     InputError
-        If the case's beam has no radius or is curved at rest, its clamp turns, the object rubs, or
-        MuJoCo has no such beam or obstacle.
+        If the case's beam has no radius, the object rubs, or MuJoCo has no such beam or obstacle.
     """
-    case.require_plain("MuJoCo's beams")
+    if case.friction != 0:
+        raise InputError(
+            "friction",
+            case.friction,
+            "0 for MuJoCo at rest",
+            "with friction many states are at rest, and the motion decides which: simulate_motion",
+        )
     if case.radius == 0:
         raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
     obstacle = place(case, settings)
     spacing = np.inf
     if len(obstacle.corners) == 0:
         spacing = bead_spacing(settings.segments, case.radius, obstacle.largest_curvature)
-    beam = build(settings, spacing)
+    beam = build(settings, spacing, Vibrissa.of(case))
     model = BeamModel(beam, case.radius, obstacle, settings.contact_stiffness)
     kind = Walk if settings.planar else SpatialWalk
     return kind(model, float(case.foot_x[0]) / case.beam.length, settings.tolerance, numerics)

@@ -205,7 +205,7 @@ class Walk:
         row: dict[str, Any] = {
             **clamp._asdict(),
             **model.contacts().as_reading(model.data.contact.pos),
-            "tip_angle": np.pi / 2 + float(state.angles.sum()),
+            "tip_angle": model.layout.tip_angle(state.angles),
             "status": "ok" if self.doubt is None else "unsettled",
             "residual": state.imbalance,
             "discrepancy": model.discrepancy(),
