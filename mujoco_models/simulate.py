@@ -3,8 +3,10 @@
 MuJoCo itself is imported when one of them is called, not before.
 """
 
+import math
 from collections.abc import Callable
 
+from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.errors import require
 from analytic.problem.mirror import facing, solve_either_way
@@ -44,7 +46,9 @@ def simulate_sweep(
         ``penetration``, how deep the loaded beads are in the obstacle on average [length]; and
         ``extension``, by how much the beam is too long, over its length.
         ``provenance["events"]["snap_off"]`` is where the simulation let go, and
-        ``provenance["unsettled"]`` counts the stations that are unsettled, by reason.
+        ``provenance["unsettled"]`` counts the stations that are unsettled, by reason. A vibrissa
+        that is curved at rest may come to touch in two places: ``status`` is ``"touches again"``
+        then, and the clamp's readings are those of both contacts.
 
         If the settings let the beam leave the plane of the sweep, there are also the columns
         ``out_of_plane``, the largest distance of any of its points from the plane, and
@@ -55,8 +59,9 @@ def simulate_sweep(
     Raises
     ------
     InputError
-        If the case's beam has no radius: MuJoCo cannot collide a line. If the beam is curved at
-        rest, its clamp turns or the object rubs. If the installed MuJoCo lacks the beam that the
+        If the case's beam has no radius: MuJoCo cannot collide a line. If the object rubs: with
+        friction many states are at rest, see `simulate_motion`. If the beam may leave the plane and
+        is curved at rest, or its clamp turns. If the installed MuJoCo lacks the beam that the
         settings ask for, or has no such obstacle for the contour.
     DivergedError
         If the simulation is not a number any more; it names the station.
@@ -116,8 +121,8 @@ def simulate_motion(
     Raises
     ------
     InputError
-        If the case's beam has no radius or is curved at rest, its clamp turns, or the case has
-        friction (of a motion it is `Motion`'s); if the installed MuJoCo lacks the beam, or it is no
+        If the case's beam has no radius or the case has friction (of a motion it is `Motion`'s); if
+        the installed MuJoCo lacks the beam, or it is no
         chain or rod in the plane.
     DivergedError
         If the motion does not stay finite; it names the time and what to change.
@@ -134,8 +139,13 @@ def simulate_motion(
     )
 
 
-def load_tip(load: float, settings: Settings | None = None) -> tuple[float, float]:
-    """Tip of a cantilever under a dead load across its undeformed axis.
+def load_tip(
+    load: float,
+    settings: Settings | None = None,
+    beam: Beam | None = None,
+    clamp_stiffness: float = math.inf,
+) -> tuple[float, float]:
+    """Tip of a cantilever under a dead load to the right, across the clamp's tangent.
 
     Parameters
     ----------
@@ -143,11 +153,15 @@ def load_tip(load: float, settings: Settings | None = None) -> tuple[float, floa
         P L^2/EI.
     settings : Settings, optional
         Beam, number of segments, clamp and tolerance; nothing else matters without a contact.
+    beam : Beam, optional
+        The vibrissa; a straight and uniform one if it is not given.
+    clamp_stiffness : float
+        Moment of the clamp by its rotation [force length/rad]; infinite if rigid.
 
     Returns
     -------
     across, shortening : float
-        Displacement of the tip along the load and along the axis, towards the clamp [L].
+        Displacement of the tip along the load and along the clamp's tangent, towards the clamp [L].
 
     Raises
     ------
@@ -158,7 +172,7 @@ def load_tip(load: float, settings: Settings | None = None) -> tuple[float, floa
     """
     from mujoco_models.sweep import cantilever
 
-    return cantilever.load_tip(load, settings or Settings())
+    return cantilever.load_tip(load, settings or Settings(), beam or Beam(), clamp_stiffness)
 
 
 def view_sweep(case: Case, settings: Settings | None = None) -> None:

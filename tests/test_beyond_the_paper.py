@@ -47,8 +47,6 @@ def budget_of(case):
 @pytest.mark.parametrize(
     "ask",
     [
-        simulate_sweep,
-        simulate_motion,
         lambda case: with_friction(case, 0.1),
         lambda case: reconstruct(solve_sweep(case), method="kaneko"),
         lambda case: reconstruct(solve_sweep(case), method="decision"),
@@ -65,6 +63,13 @@ def test_refused_in_one_line(name, ask):
     ) as error:
         ask(case)
     assert "\n" not in str(error.value)
+
+
+def test_simulations_refuse_friction_of_the_case():
+    case = Case(profile=OBJECT, sweep=Sweep(20), friction=0.1)
+    for simulate in (simulate_sweep, simulate_motion):
+        with pytest.raises(InputError, match=r"^friction = 0\.1: must be 0"):
+            simulate(case)
 
 
 def test_a_tilted_clamp_is_the_straight_vibrissas():

@@ -177,15 +177,15 @@ def turned(vector: Floats, angle: float) -> Floats:
 
     Parameters
     ----------
-    vector : array, shape (2,)
-        Any.
+    vector : array, shape (2, ...)
+        One, or several.
     angle : float
         Angle [rad].
 
     Returns
     -------
-    array, shape (2,)
-        The turned one.
+    array, shape of `vector`
+        The turned ones.
     """
     cos, sin = np.cos(angle), np.sin(angle)
     return np.array([cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1]])

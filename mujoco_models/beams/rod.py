@@ -72,7 +72,7 @@ class Rod(HingedLinks):
         vertices, bodies = [], []
         for i in range(1 if layout.clamp_turns else 0, len(layout.joints)):
             offset, _ = layout.step(i)
-            along = layout.vibrissa.turn(layout.joints[i])
+            along = float(layout.vibrissa.turn(layout.joints[i]))
             half = layout.compliances[i]
             before = layout.headings[i - 1] if i else 0.0
             vertices += [offset - half * turned(_UP, along - before), np.zeros(2)]

@@ -1,11 +1,12 @@
-"""The case's vibrissa as MuJoCo's beams are made from it: its shape at rest, its bending, its clamp."""
+"""The vibrissa that MuJoCo's beams stand for: its shape at rest, and how its clamp turns."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.case import Case
+from analytic.problem.beam import Beam
 from analytic.problem.rest import arc
 
 
@@ -25,22 +26,21 @@ class Vibrissa:
     clamp_compliance: float = 0.0
 
     @classmethod
-    def of(cls, case: Case) -> "Vibrissa":
-        """That of a case.
+    def of(cls, beam: Beam, clamp_stiffness: float = math.inf) -> "Vibrissa":
+        """That of a case whose foot moves to the left.
 
         Parameters
         ----------
-        case : Case
-            Of a sweep to the left.
+        beam : Beam
+            The case's.
+        clamp_stiffness : float
+            Moment of the clamp by its rotation [force length/rad].
 
         Returns
         -------
         Vibrissa
         """
-        beam = case.beam
-        return cls(
-            beam.natural_curvature * beam.length, beam.moment_unit / case.clamp_stiffness
-        )
+        return cls(beam.natural_curvature * beam.length, beam.moment_unit / clamp_stiffness)
 
     @property
     def is_plain(self) -> bool:
@@ -52,7 +52,7 @@ class Vibrissa:
 
         Parameters
         ----------
-        s : array
+        s : array, any shape
             Arc length; negative ones are on its continuation behind the clamp [L].
 
         Returns

@@ -11,7 +11,7 @@ from mujoco_models.model.sides import FUSED, Sides
 from mujoco_models.model.surface import CONTACT_GAP, Surface
 
 _AT_TIP = 1e-9  # L
-_NOWHERE = dict.fromkeys(("contact_angle", "contact_arc_length", "contact_x", "contact_y"), np.nan)
+NOWHERE = dict.fromkeys(("contact_angle", "contact_arc_length", "contact_x", "contact_y"), np.nan)
 
 
 class Contacts(NamedTuple):
@@ -161,7 +161,7 @@ class Contacts(NamedTuple):
         """
         loaded = self.loaded
         if not loaded.any():
-            return {"phase": "free", **_NOWHERE, "penetration": 0.0}
+            return {"phase": "free", **NOWHERE, "penetration": 0.0}
         weight = self.distance[loaded] / self.distance[loaded].sum()
         normal, s = weight @ self.normal[loaded], self.arc_length[loaded]
         x, y = weight @ place[loaded, :2]
@@ -173,6 +173,11 @@ class Contacts(NamedTuple):
             "contact_y": float(y),
             "penetration": float(-weight @ self.distance[loaded]),
         }
+
+    @property
+    def apart(self) -> float:
+        """The longest stretch of the beam between neighbouring loaded contacts [L]."""
+        return float(np.diff(np.sort(self.arc_length[self.loaded])).max(initial=0.0))
 
     @property
     def slope(self) -> Floats:

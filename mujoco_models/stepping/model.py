@@ -19,6 +19,7 @@ from mujoco_models.obstacles.protocol import Obstacle
 _MASS = 1.8751040687119611**4 / (2 * np.pi) ** 2
 _FIRST = 2 * np.pi  # rad/T1
 _CARRIAGE = 1e9  # times the vibrissa's mass: nothing the vibrissa does moves the foot
+_STUB = 1e-4  # L, of a foot on which the vibrissa turns; it must have some mass
 _AHEAD = 0.01  # L; beads that are nearer to the obstacle take part in collisions
 _BAD_STATES = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
@@ -114,7 +115,7 @@ class MovingModel:
     @property
     def tip_angle(self) -> float:
         """Slope angle of the last link [rad]."""
-        return float(np.pi / 2 + self.data.qpos[1:].sum())
+        return self._layout.tip_angle(self.data.qpos[1:])
 
     def step(self, speed: float) -> None:
         """One step of MuJoCo's, at whose end the foot has a given speed to the left.
@@ -210,15 +211,16 @@ def _spec(
         axis=[1, 0, 0],
         armature=_CARRIAGE * _MASS,
     )
-    lengths = [float(beam.layout.joints[0]), *beam.layout.lengths.tolist()]
+    stub = float(beam.layout.joints[0]) or _STUB
+    lengths = [stub, *beam.layout.lengths.tolist()]
     capsules = [g for g in spec.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE and g.mass > 0]
     for capsule, length in zip(capsules, lengths, strict=True):
         capsule.mass = _MASS * length
     dampers = 2 * motion.damping_ratio / _FIRST
     hinges = [j for j in spec.joints if j.type == mujoco.mjtJoint.mjJNT_HINGE]
-    for hinge, cell in zip(hinges, beam.layout.cells.tolist(), strict=True):
-        hinge.armature = motion.armature * motion.timestep**2 / cell
-        hinge.damping[0] = dampers / cell
+    for hinge, compliance in zip(hinges, beam.layout.compliances.tolist(), strict=True):
+        hinge.armature = motion.armature * motion.timestep**2 / compliance
+        hinge.damping[0] = dampers / compliance
     option = spec.option
     option.timestep = motion.timestep
     option.integrator = _INTEGRATORS[motion.integrator]

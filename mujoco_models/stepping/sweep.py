@@ -19,6 +19,7 @@ from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
 from mujoco_models.beams.kinds import build
 from mujoco_models.beams.layout import bead_spacing
+from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.errors import DivergedError
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.motion import Motion
@@ -73,7 +74,9 @@ def run_motion(
 
 
 def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> MovingModel:
-    case.require_plain("MuJoCo's beams")
+    if case.friction != 0:
+        allowed = "0: MuJoCo's motion cannot take it into account"
+        raise InputError("friction", case.friction, allowed, "give the motion's instead")
     if case.radius == 0:
         raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
     if settings.beam == "cable" or not settings.planar:
@@ -87,7 +90,7 @@ def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> Mo
     spacing = np.inf
     if len(obstacle.corners) == 0:
         spacing = bead_spacing(settings.segments, case.radius, obstacle.largest_curvature)
-    beam = build(settings, spacing)
+    beam = build(settings, spacing, Vibrissa.of(case.beam, case.clamp_stiffness))
     return MovingModel(beam, case.radius, obstacle, motion, start)
 
 

@@ -1,5 +1,7 @@
 """A cantilever under a dead load at its tip: the textbook test of a beam and of its clamp."""
 
+import math
+
 import mujoco
 import numpy as np
 
@@ -16,7 +18,7 @@ _TIP = "tip"
 
 
 def load_tip(
-    load: float, settings: Settings, vibrissa: Vibrissa | None = None
+    load: float, settings: Settings, vibrissa: Beam | None = None, clamp_stiffness: float = math.inf
 ) -> tuple[float, float]:
     """Tip of a clamped beam that carries a dead load across its undeformed axis.
 
@@ -29,8 +31,10 @@ def load_tip(
         P L^2/EI.
     settings : Settings
         Beam, number of segments, clamp and tolerance; nothing else matters without a contact.
-    vibrissa : Vibrissa, optional
-        Straight and rigidly clamped if it is not given.
+    vibrissa : Beam, optional
+        Straight and uniform if it is not given.
+    clamp_stiffness : float
+        Moment of the clamp by its rotation [force length/rad].
 
     Returns
     -------
@@ -45,7 +49,8 @@ def load_tip(
     RuntimeError
         If the beam does not come to rest.
     """
-    beam = build(settings, 1.0, vibrissa)
+    vibrissa = vibrissa or Beam()
+    beam = build(settings, 1.0, Vibrissa.of(vibrissa, clamp_stiffness))
     layout = beam.layout
     spec = beam.spec(Beam().radius)
     add_options(spec)

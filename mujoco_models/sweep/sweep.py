@@ -116,7 +116,7 @@ def set_out(case: Case, settings: Settings, numerics: Numerics | None = None) ->
     spacing = np.inf
     if len(obstacle.corners) == 0:
         spacing = bead_spacing(settings.segments, case.radius, obstacle.largest_curvature)
-    beam = build(settings, spacing, Vibrissa.of(case))
+    beam = build(settings, spacing, Vibrissa.of(case.beam, case.clamp_stiffness))
     model = BeamModel(beam, case.radius, obstacle, settings.contact_stiffness)
     kind = Walk if settings.planar else SpatialWalk
     return kind(model, float(case.foot_x[0]) / case.beam.length, settings.tolerance, numerics)

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from mujoco_models.errors import ClampError
+from mujoco_models.model.contacts import NOWHERE
 from mujoco_models.model.model import BeamModel
 from mujoco_models.model.stance import Stance
 from mujoco_models.sweep.descent import descend
@@ -13,6 +14,8 @@ from mujoco_models.sweep.rest import refine, relax
 from mujoco_models.sweep.state import State, turned
 
 _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
+# Loaded contacts of one place are closer along a curved vibrissa: one link's, or one facet's.
+_APART, _LINKS = 0.05, 2.5  # L, and in links
 # What may follow one state at rest without a snap-off.
 _NEIGHBOURS = {
     (Stance.AHEAD, Stance.AHEAD),
@@ -21,6 +24,11 @@ _NEIGHBOURS = {
     (Stance.FAR, Stance.FAR),
     (Stance.FAR, Stance.PASSED),
     (Stance.PASSED, Stance.PASSED),
+}
+_OF_A_CURVED_TIP = {
+    (Stance.AHEAD, Stance.FAR),
+    (Stance.NEAR, Stance.FAR),
+    (Stance.FAR, Stance.NEAR),
 }
 
 
@@ -58,6 +66,8 @@ class Walk:
         self._shown = self._state
         self._budget = self._numerics.budget
         self._lost: str | None = None
+        self._curved = model.layout.vibrissa.natural_curvature != 0
+        self._one_place = max(_APART, _LINKS * float(model.layout.lengths.max()))
         self.snap_off: float | None = None
         self.doubt: str | None = None
 
@@ -119,6 +129,7 @@ class Walk:
         if not rest.settled:
             return "no state at rest was found near the last one, and no snap-off"
         let_go = last.stance is Stance.NEAR and rest.stance in (Stance.FAR, Stance.PASSED)
+        let_go |= self._pokes(last) and rest.stance is Stance.PASSED
         # From corner to corner a contact jumps; on a smooth contour it moves.
         jumps = last.stance is rest.stance and len(self.model.obstacle.corners) > 0
         if not (let_go or jumps or self._follows(rest)):
@@ -184,7 +195,21 @@ class Walk:
             cornered = len(self.model.obstacle.corners) > 0
             largest = numerics.facet_shift if cornered else numerics.largest_shift
             near &= abs(state.slope - last.slope) < largest
-        return state.settled and near and (last.stance, state.stance) in _NEIGHBOURS
+        change = last.stance, state.stance
+        passes = change in _NEIGHBOURS
+        if change in _OF_A_CURVED_TIP:
+            rises = state.slope is not None and state.slope > 0
+            passes = self._pokes(state) and (last.stance is not Stance.AHEAD or rises)
+        return state.settled and near and passes
+
+    def _pokes(self, state: State) -> bool:
+        """Whether a vibrissa that is curved at rest touches with its tip alone.
+
+        Bent forward, it turns as it goes from one side of its axis to the other, and does not let
+        go. Coming from the right, it first touches where the contour rises.
+        """
+        tip = len(self.model.layout.beads) - 1
+        return self._curved and state.forces.keys() == {tip}
 
     def row(self) -> dict[str, Any]:
         """The readings of the state that the beam is in.
@@ -201,16 +226,18 @@ class Walk:
             explain.
         """
         model, state = self.model, self._shown
-        clamp = model.clamp()
+        clamp, contacts = model.clamp(), model.contacts()
         row: dict[str, Any] = {
             **clamp._asdict(),
-            **model.contacts().as_reading(model.data.contact.pos),
+            **contacts.as_reading(model.data.contact.pos),
             "tip_angle": model.layout.tip_angle(state.angles),
             "status": "ok" if self.doubt is None else "unsettled",
             "residual": state.imbalance,
             "discrepancy": model.discrepancy(),
             "extension": model.extension(),
         }
+        if self.doubt is None and self._curved and contacts.apart > self._one_place:
+            row.update(NOWHERE, status="touches again")
         out_of_balance = len(state.angles) * state.imbalance  # of which the sensors feel the sum
         if state.settled and row["discrepancy"] > _DISCREPANCY + out_of_balance:
             raise ClampError(self._foot_x, row["discrepancy"], _DISCREPANCY)

@@ -1,0 +1,106 @@
+"""Sweeps of vibrissae that are curved at rest or on a clamp that turns, against the closed form."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import CASE_NAMES, CLAMP_READINGS, InputError, Sweep, named_case, solve_sweep
+from mujoco_models import Settings, available_beams, simulate_sweep
+
+# Ends of a comparison: next to the snap-off the readings grow without bound, and are left out as
+# in every comparison of this project.
+WINDOW = 0.02
+VARIANTS = {
+    "curved to the right": {"natural_curvature": -0.5},
+    "curved to the left": {"natural_curvature": 0.5},
+    "on a spring": {"clamp_stiffness": 8.0},
+}
+
+
+def case_of(name, natural_curvature=0.0, clamp_stiffness=np.inf, stations=200):
+    case = named_case(name)
+    beam = replace(case.beam, natural_curvature=natural_curvature)
+    return replace(case, beam=beam, clamp_stiffness=clamp_stiffness, sweep=Sweep(stations))
+
+
+def largest_rms(exact, simulated):
+    """Of the three readings over their largest magnitude, where both touch in one place or none."""
+    snaps = [s.provenance["events"]["snap_off"] for s in (exact, simulated)]
+    a, b = exact.table, simulated.table
+    keep = (a["status"] == "ok") & (b["status"] == "ok")
+    if None not in snaps:
+        keep &= a["foot_x"] > max(snaps) + WINDOW * np.ptp(a["foot_x"])
+    assert keep.mean() > 0.4  # of the catenary, curved to the left, half is in one place
+    return max(
+        float(np.sqrt(((b[name] - a[name])[keep] ** 2).mean()) / a[name][keep].abs().max())
+        for name in CLAMP_READINGS
+    )
+
+
+@pytest.mark.parametrize("beam", available_beams())
+def test_all_at_once_is_of_second_order(beam):
+    """Facets out of the way: the primitive has none."""
+    case = case_of("catenary", -0.4, 8.0, stations=50)
+    exact, errors = solve_sweep(case), []
+    for n in (10, 40):
+        simulated = simulate_sweep(case, Settings(beam=beam, segments=n, obstacle="primitive"))
+        assert (simulated.table["status"] == "ok").all()
+        assert simulated.table["discrepancy"].max() < 1e-7
+        assert simulated.table["extension"].abs().max() < 1e-14
+        errors.append(largest_rms(exact, simulated))
+    # Observed 1.66 (cable) to 2.1: as the contact passes from joint to joint, errors swing about
+    # the trend, and 50 stations do not average over that.
+    assert np.log2(errors[0] / errors[1]) / 2 > 1.6
+    assert errors[1] < 4e-4  # observed at most 3.0e-4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize("name", CASE_NAMES)
+@pytest.mark.parametrize("beam", available_beams())
+def test_named_cases(request, beam, name, variant):
+    if (name, variant) == ("shallow-catenary", "curved to the left"):
+        reason = "the closed form goes on to another state at rest, of three times the force"
+        request.applymarker(pytest.mark.xfail(reason=reason, strict=True))
+    case = case_of(name, **VARIANTS[variant])
+    exact = solve_sweep(case)
+    for segments, limit in ((40, 2e-3), (80, 5e-4)):
+        if segments == 80 and variant == "curved to the left" and name == "catenary":
+            continue  # most of its time goes into states that touch twice
+        simulated = simulate_sweep(case, Settings(beam=beam, segments=segments))
+        assert largest_rms(exact, simulated) < limit
+        alike = exact.table["phase"] == simulated.table["phase"]
+        assert alike[exact.table["status"] == "ok"].mean() > 0.98
+        snaps = [s.provenance["events"]["snap_off"] for s in (exact, simulated)]
+        if None not in snaps:
+            assert abs(snaps[0] - snaps[1]) < 5e-4
+
+
+def test_a_vibrissa_curved_towards_the_object_touches_it_twice():
+    case = case_of("catenary", 0.5)
+    case = replace(case, sweep=Sweep(40))
+    exact = solve_sweep(case).table
+    table = simulate_sweep(case, Settings(segments=20, contour_points=800)).table
+    again = table["status"] == "touches again"
+    assert again.any()
+    assert (exact["status"][again] == "touches again").all()
+    # The clamp reads both contacts, neither of which the row gives.
+    assert table.loc[again, "contact_x"].isna().all()
+    assert (table.loc[again, "force_y"] > 1).all()
+
+
+def test_to_the_right_is_the_mirror_image():
+    case = case_of("parabola", -0.4, 8.0, stations=20)
+    settings = Settings(segments=10, contour_points=400)
+    left = simulate_sweep(case, settings).table
+    right = simulate_sweep(case.mirrored(), settings).table
+    for name in ("foot_x", "force_x", "moment_z"):
+        np.testing.assert_allclose(right[name], -left[name], rtol=1e-12)
+    np.testing.assert_allclose(right["force_y"], left["force_y"], rtol=1e-12)
+
+
+def test_friction_at_rest_is_refused():
+    case = replace(named_case("catenary"), friction=0.2)
+    with pytest.raises(InputError, match=r"^friction = 0\.2: .*many states are at rest"):
+        simulate_sweep(case)
