@@ -66,7 +66,9 @@ class Cable(Balls):
         self._vertices = vertices(settings)
         self._cell = float(self._vertices[1] - self._vertices[0])
         joints = self._vertices[1:-1]
-        self.layout = Layout.of(joints, np.full(len(joints), self._cell), spacing, vibrissa)
+        edges = (self._vertices[1:] + self._vertices[:-1]) / 2
+        lengths = np.full(len(joints), self._cell)
+        self.layout = Layout.of(joints, lengths, edges, spacing, vibrissa)
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """The foot and the cable on it; only XML makes a composite."""

@@ -24,7 +24,9 @@ class Chain(HingedLinks):
         n = settings.segments
         cells = np.arange(n)
         joints = (cells + 0.5) / n if settings.clamp == "second-order" else cells[1:] / n
-        super().__init__(Layout.of(joints, np.full(len(joints), 1 / n), spacing, vibrissa))
+        edges = np.append(joints - 0.5 / n, joints[-1] + 0.5 / n)
+        lengths = np.full(len(joints), 1 / n)
+        super().__init__(Layout.of(joints, lengths, edges, spacing, vibrissa))
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """The links, and a spring in every hinge."""

@@ -59,7 +59,12 @@ class Layout:
 
     @classmethod
     def of(
-        cls, joints: Floats, cells: Floats, spacing: float, vibrissa: Vibrissa | None = None
+        cls,
+        joints: Floats,
+        cells: Floats,
+        edges: Floats,
+        spacing: float,
+        vibrissa: Vibrissa | None = None,
     ) -> "Layout":
         """Beads at most `spacing` apart, and at least two to a link, or one at each link's end.
 
@@ -69,10 +74,12 @@ class Layout:
             Arc lengths where cells bend [L].
         cells : array, shape (n,)
             Their lengths [L].
+        edges : array, shape (n + 1,)
+            Where one cell ends and the next one begins [L].
         spacing : float
             Of the beads [L]; infinite for one a link.
         vibrissa : Vibrissa, optional
-            Straight and rigidly clamped if it is not given.
+            Straight, uniform and rigidly clamped if it is not given.
 
         Returns
         -------
@@ -80,7 +87,7 @@ class Layout:
             With a joint more if the clamp turns.
         """
         vibrissa = vibrissa or Vibrissa()
-        compliances = cells
+        compliances = cells * vibrissa.softness(edges)
         if vibrissa.clamp_compliance > 0:
             joints = np.insert(joints, 0, 0.0)
             compliances = np.insert(compliances, 0, vibrissa.clamp_compliance)
@@ -109,6 +116,11 @@ class Layout:
     def lengths(self) -> Floats:
         """Length of each link, shape (n_joints,)."""
         return np.diff(self.joints, append=1.0)
+
+    @property
+    def thickness(self) -> Floats:
+        """Radius of each link in its middle over that at the clamp, shape (n_joints,)."""
+        return self.vibrissa.thickness(self.joints + self.lengths / 2)
 
     @property
     def clamp_turns(self) -> bool:

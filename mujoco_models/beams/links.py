@@ -30,6 +30,7 @@ class HingedLinks:
         spec = mujoco.MjSpec()
         body = spec.worldbody.add_body(name=FOOT)
         _add_capsule(body, layout.base[0], radius)
+        thickness = layout.thickness
         for i, compliance in enumerate(layout.compliances):
             offset, turn = layout.step(i)
             body = body.add_body(name=link_name(i), pos=[*offset, 0], quat=about_z(turn))
@@ -38,7 +39,7 @@ class HingedLinks:
                 axis=[0, 0, 1],
                 armature=_ARMATURE / compliance,
             )
-            _add_capsule(body, np.array([0, layout.chords[i]]), radius)
+            _add_capsule(body, np.array([0, layout.chords[i]]), radius * thickness[i])
         return spec
 
     def mount(self, spec: mujoco.MjSpec, link: int, s: float) -> tuple[mujoco.MjsBody, Floats]:
@@ -92,7 +93,7 @@ def about_z(turn: float) -> Floats:
 
 def _add_capsule(body: mujoco.MjsBody, end: Floats, radius: float) -> None:
     """What the eye sees of a link, and its mass, because MuJoCo requires one."""
-    if not end.any():  # of a foot on whose clamp the vibrissa turns
+    if np.hypot(*end) < _THINNEST:  # of a foot on whose clamp the vibrissa turns
         end = np.array([0, _THINNEST])
     body.add_geom(
         type=mujoco.mjtGeom.mjGEOM_CAPSULE,

@@ -35,7 +35,8 @@ class Rod(HingedLinks):
     ) -> None:
         self._vertices = vertices(settings, _GRADING)
         cells = (self._vertices[2:] - self._vertices[:-2]) / 2
-        super().__init__(Layout.of(self._vertices[1:-1], cells, spacing, vibrissa))
+        edges = (self._vertices[1:] + self._vertices[:-1]) / 2
+        super().__init__(Layout.of(self._vertices[1:-1], cells, edges, spacing, vibrissa))
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """Links without springs, and the flex that bends them."""
@@ -66,14 +67,18 @@ class Rod(HingedLinks):
         The flex's energy at a vertex is EI/(l0 + l1) times the square of its discrete curvature,
         2 tan(theta/2), with l0 and l1 the lengths of its edges. Edges of their own give each vertex
         its own stiffness, and unbent ones its natural curvature; MuJoCo's own reference curvature
-        forgets which way a vertex is bent.
+        forgets which way a vertex is bent. No edge is longer than its link, or a thin tip's would
+        be as long as a hundred vibrissae.
         """
         layout = self.layout
+        first = 1 if layout.clamp_turns else 0
+        shorter = float((layout.lengths / layout.compliances)[first:].min())
+        flex.young *= shorter
         vertices, bodies = [], []
-        for i in range(1 if layout.clamp_turns else 0, len(layout.joints)):
+        for i in range(first, len(layout.joints)):
             offset, _ = layout.step(i)
             along = float(layout.vibrissa.turn(layout.joints[i]))
-            half = layout.compliances[i]
+            half = shorter * layout.compliances[i]
             before = layout.headings[i - 1] if i else 0.0
             vertices += [offset - half * turned(_UP, along - before), np.zeros(2)]
             vertices += [half * turned(_UP, along - layout.headings[i])]

@@ -1,28 +1,35 @@
-"""The vibrissa that MuJoCo's beams stand for: its shape at rest, and how its clamp turns."""
+"""The vibrissa that MuJoCo's beams stand for: its shape at rest, how it bends, how its clamp turns."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from analytic.problem.along import Along
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
-from analytic.problem.rest import arc
+from analytic.problem.unloaded import Unloaded
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)  # of a piece of a cell, where it is smooth
 
 
 @dataclass(frozen=True)
 class Vibrissa:
-    """Dimensionless: length and flexural rigidity are 1.
+    """Dimensionless: its length, and its flexural rigidity at the clamp, are 1.
 
     Attributes
     ----------
-    natural_curvature : float
-        Of the unloaded vibrissa, positive to the left [1/L].
+    rest : Unloaded
+        Its shape and radius at rest.
+    rigidity : Along, optional
+        Flexural rigidity along it, in arc lengths of the case and any unit; if it is not given, it
+        follows the fourth power of the radius.
     clamp_compliance : float
         Turn of the clamp by moment, 0 if it is rigid [L/EI].
     """
 
-    natural_curvature: float = 0.0
+    rest: Unloaded = field(default_factory=lambda: Beam().unloaded)
+    rigidity: Along | None = None
     clamp_compliance: float = 0.0
 
     @classmethod
@@ -40,12 +47,25 @@ class Vibrissa:
         -------
         Vibrissa
         """
-        return cls(beam.natural_curvature * beam.length, beam.moment_unit / clamp_stiffness)
+        given = beam.flexural_rigidity
+        rigidity = given if isinstance(given, Along) else None
+        return cls(beam.unloaded, rigidity, beam.moment_unit / clamp_stiffness)
+
+    @property
+    def is_straight(self) -> bool:
+        """Whether it is straight at rest."""
+        return self.rest.natural == 0
+
+    @property
+    def is_cone(self) -> bool:
+        """Whether its radius varies."""
+        return self.rest.base_radius != self.rest.tip_radius
 
     @property
     def is_plain(self) -> bool:
-        """Whether it is straight and its clamp rigid."""
-        return self == Vibrissa()
+        """Whether it is straight and uniform, and its clamp rigid."""
+        uniform = self.rigidity is None and not self.is_cone
+        return self.is_straight and uniform and self.clamp_compliance == 0
 
     def turn(self, s: Floats) -> Floats:
         """By how much the unloaded vibrissa is turned from the upright, to the left.
@@ -53,14 +73,14 @@ class Vibrissa:
         Parameters
         ----------
         s : array, any shape
-            Arc length; negative ones are on its continuation behind the clamp [L].
+            Arc length [L].
 
         Returns
         -------
         array, shape of `s`
             Angle [rad].
         """
-        return np.asarray(self.natural_curvature * s)
+        return np.asarray(self.rest.at(s)[2] - np.pi / 2)
 
     def at(self, s: Floats) -> Floats:
         """Where the unloaded vibrissa is, as seen from the foot.
@@ -75,5 +95,52 @@ class Vibrissa:
         array, shape (..., 2)
             Position [L].
         """
-        x, y, _ = arc(self.natural_curvature, np.asarray(s))
+        x, y, _ = self.rest.at(s)
         return np.stack([x, y], axis=-1)
+
+    def thickness(self, s: Floats) -> Floats:
+        """Radius over that at the clamp.
+
+        Parameters
+        ----------
+        s : array, any shape
+            Arc length [L].
+
+        Returns
+        -------
+        array, shape of `s`
+            1 everywhere but on a cone.
+        """
+        if not self.is_cone:
+            return np.ones_like(s)
+        return (self.rest.tip_radius + self.rest.taper(s)) / self.rest.base_radius
+
+    def softness(self, edges: Floats) -> Floats:
+        """Compliance of pieces of the vibrissa over that of as long a piece at the clamp.
+
+        Parameters
+        ----------
+        edges : array, shape (n + 1,)
+            Arc lengths at which n pieces begin and end, ascending [L].
+
+        Returns
+        -------
+        array, shape (n,)
+            Mean of 1/rigidity over each piece.
+        """
+        if self.rigidity is not None:
+            return self._mean_softness(self.rigidity, edges)
+        thick = self.thickness(edges)
+        a, b = thick[:-1], thick[1:]
+        # The integral of the fourth power of 1/thickness, which is linear.
+        return np.asarray((a**2 + a * b + b**2) / (3 * a**3 * b**3))
+
+    def _mean_softness(self, rigidity: Along, edges: Floats) -> Floats:
+        """By quadrature, piece by piece of the cells and of the rigidity."""
+        ends = np.array(rigidity.ends) / rigidity.ends[-1]
+        marks = np.unique(np.concatenate([edges, ends[(ends > edges[0]) & (ends < edges[-1])]]))
+        half, middle = np.diff(marks) / 2, (marks[1:] + marks[:-1]) / 2
+        places = (middle[:, None] + half[:, None] * _NODES) * rigidity.ends[-1]
+        integrals = half * (rigidity(np.zeros(1)) / rigidity(places) @ _WEIGHTS)
+        reached = np.concatenate([[0.0], np.cumsum(integrals)])
+        return np.asarray(np.diff(reached[np.searchsorted(marks, edges)]) / np.diff(edges))

@@ -23,7 +23,7 @@ class Lookout:
     obstacle : Obstacle
         What the beam is swept past.
     radius : float
-        Of the vibrissa [L].
+        Of the vibrissa; the largest, of a cone [L].
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Lookout:
         self._data = data
         self._beads = beads
         self._obstacle = obstacle
-        self._radius = radius
+        self._radius, self._radii = radius, model.geom_size[beads, 0].copy()
         self._obstacle_geoms = np.array(
             [model.geom(f"{GEOM_PREFIX}{i}").id for i in range(obstacle.geoms)]
         )
@@ -156,10 +156,10 @@ class Lookout:
             sorted(self.watched), contacts.touch[contacts.loaded | contacts.fused]
         )
         positions = self._positions()[unloaded]
-        inside = self._radius - _OVERLOOKED
-        for suspect in self._obstacle.near(positions, inside):
+        inside = self._radii[unloaded] - _OVERLOOKED
+        for suspect in self._obstacle.near(positions, self._radius - _OVERLOOKED):
             clearance, place = self._obstacle.clearance(positions[suspect])
-            if clearance < inside:
+            if clearance < inside[suspect]:
                 return place
         return None
 
@@ -185,9 +185,10 @@ class Lookout:
         beads = contacts.loaded & (contacts.touch < len(self._beads))
         if not beads.any():
             return False
-        points = self._positions()[contacts.touch[beads]]
+        touch = contacts.touch[beads]
+        points = self._positions()[touch]
         found = np.array([self._obstacle.clearance(point) for point in points])
-        off = np.abs(found[:, 0] - self._radius - contacts.distance[beads])
+        off = np.abs(found[:, 0] - self._radii[touch] - contacts.distance[beads])
         if off.max() < _OVERLOOKED:
             return False
         for other in (self.window - 1, self.window + 1):

@@ -21,7 +21,7 @@ def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
     beam : Beam
         Which beam, and where its joints and beads are.
     radius : float
-        Of the vibrissa [L].
+        Of the vibrissa, at the clamp [L].
     obstacle : Obstacle
         What it is swept past.
 
@@ -33,12 +33,14 @@ def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
     spec = beam.spec(radius)
     add_options(spec)
     obstacle.add_to(spec)
-    for s, link in zip(beam.layout.beads, beam.layout.links.tolist(), strict=True):
+    layout = beam.layout
+    radii = radius * layout.vibrissa.thickness(layout.beads)
+    for s, link, size in zip(layout.beads, layout.links.tolist(), radii, strict=True):
         body, place = beam.mount(spec, link, float(s))
         body.add_geom(
             type=mujoco.mjtGeom.mjGEOM_SPHERE,
             pos=place,
-            size=[radius, 0, 0],
+            size=[size, 0, 0],
             contype=0,
             conaffinity=1,
             condim=1,

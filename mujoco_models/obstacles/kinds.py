@@ -2,6 +2,7 @@
 
 from analytic.problem.case import Case
 from analytic.problem.contours.solid import ConvexMesh
+from analytic.problem.errors import InputError
 from mujoco_models.obstacles.file_mesh import FileMesh
 from mujoco_models.obstacles.primitive import Primitive
 from mujoco_models.obstacles.prism import Prism
@@ -27,8 +28,21 @@ def place(case: Case, settings: Settings) -> Obstacle:
     Raises
     ------
     InputError
-        If MuJoCo has no such obstacle for the case's contour.
+        If MuJoCo has no such obstacle for the case's contour, or it has sharp corners and the
+        vibrissa is a cone.
     """
+    obstacle = _made(case, settings)
+    if len(obstacle.corners) and case.beam.tip_radius not in (None, case.beam.radius):
+        raise InputError(
+            "beam.tip_radius",
+            case.beam.tip_radius,
+            f"{case.beam.radius:g}, the radius, where the object has sharp corners",
+            "leave it out, or round the object: corners are touched by the sides of straight links",
+        )
+    return obstacle
+
+
+def _made(case: Case, settings: Settings) -> Obstacle:
     if settings.obstacle == "primitive":
         return Primitive.of(case)
     solid = case.profile.scaled(1 / case.beam.length).solid

@@ -212,10 +212,10 @@ def _spec(
         armature=_CARRIAGE * _MASS,
     )
     stub = float(beam.layout.joints[0]) or _STUB
-    lengths = [stub, *beam.layout.lengths.tolist()]
+    volumes = [stub, *(beam.layout.lengths * beam.layout.thickness**2).tolist()]
     capsules = [g for g in spec.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE and g.mass > 0]
-    for capsule, length in zip(capsules, lengths, strict=True):
-        capsule.mass = _MASS * length
+    for capsule, volume in zip(capsules, volumes, strict=True):
+        capsule.mass = _MASS * volume
     dampers = 2 * motion.damping_ratio / _FIRST
     hinges = [j for j in spec.joints if j.type == mujoco.mjtJoint.mjJNT_HINGE]
     for hinge, compliance in zip(hinges, beam.layout.compliances.tolist(), strict=True):

@@ -89,7 +89,8 @@ def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> Mo
     obstacle = place(case, settings)
     spacing = np.inf
     if len(obstacle.corners) == 0:
-        spacing = bead_spacing(settings.segments, case.radius, obstacle.largest_curvature)
+        thinnest = case.beam.unloaded.tip_radius
+        spacing = bead_spacing(settings.segments, thinnest, obstacle.largest_curvature)
     beam = build(settings, spacing, Vibrissa.of(case.beam, case.clamp_stiffness))
     return MovingModel(beam, case.radius, obstacle, motion, start)
 

@@ -115,7 +115,8 @@ def set_out(case: Case, settings: Settings, numerics: Numerics | None = None) ->
     obstacle = place(case, settings)
     spacing = np.inf
     if len(obstacle.corners) == 0:
-        spacing = bead_spacing(settings.segments, case.radius, obstacle.largest_curvature)
+        thinnest = case.beam.unloaded.tip_radius
+        spacing = bead_spacing(settings.segments, thinnest, obstacle.largest_curvature)
     beam = build(settings, spacing, Vibrissa.of(case.beam, case.clamp_stiffness))
     model = BeamModel(beam, case.radius, obstacle, settings.contact_stiffness)
     kind = Walk if settings.planar else SpatialWalk

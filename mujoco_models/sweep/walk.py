@@ -66,7 +66,7 @@ class Walk:
         self._shown = self._state
         self._budget = self._numerics.budget
         self._lost: str | None = None
-        self._curved = model.layout.vibrissa.natural_curvature != 0
+        self._curved = not model.layout.vibrissa.is_straight
         self._one_place = max(_APART, _LINKS * float(model.layout.lengths.max()))
         self.snap_off: float | None = None
         self.doubt: str | None = None

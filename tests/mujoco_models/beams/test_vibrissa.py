@@ -16,30 +16,44 @@ VIBRISSAE = {
     "to the right": (Beam(natural_curvature=-0.5), math.inf),
     "on a spring": (Beam(), 8.0),
     # 2 m long and twice as stiff: a natural curvature of 0.4/L, a clamp of 5 EI/L.
+    "cone": (Beam(tip_radius=0.002), math.inf),
+    "graded": (Beam(flexural_rigidity=lambda s: 1 - 0.5 * s**2), math.inf),
+    "ever more curved": (Beam(natural_curvature=lambda s: -0.8 * s), math.inf),
+    # 2 m long and twice as stiff: a clamp of 5 EI/L.
+    "everything": (
+        Beam(2.0, 2.0, 0.01, natural_curvature=lambda s: 0.1 * s, tip_radius=0.005),
+        5.0,
+    ),
     "all, in units": (Beam(2.0, 2.0, 0.01, natural_curvature=0.2), 5.0),
 }
 
 
 def tip_under(load, beam, clamp_stiffness):
-    """Across and shortening of the tip, by shooting for the clamp's moment; L = EI = 1."""
-    natural = beam.natural_curvature * beam.length
+    """Across and shortening of the tip, by shooting from its slope angle; L = EI(0) = 1."""
+    length, base = beam.length, float(beam.rigidity_at(0.0))
     compliance = beam.moment_unit / clamp_stiffness
 
-    def shot(load, moment):
-        def rate(_, state):
-            return [
-                np.cos(state[2]),
-                np.sin(state[2]),
-                natural + state[3],
-                load * np.sin(state[2]),
-            ]
+    def shot(load, tip_angle):
+        def rate(s, state):
+            natural = float(beam.curvature_at(s * length)) * length
+            softer = base / float(beam.rigidity_at(s * length))
+            bent = natural + softer * state[3]
+            return [np.cos(state[2]), np.sin(state[2]), bent, load * np.sin(state[2])]
 
-        start = [0, 0, np.pi / 2 + compliance * moment, moment]
-        return solve_ivp(rate, (0, 1), start, method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+        start = [0, 0, tip_angle, 0]
+        return solve_ivp(rate, (1, 0), start, method="DOP853", rtol=1e-10, atol=1e-11).y[:, -1]
 
-    found = root(lambda m: shot(load, m[0])[3], -0.6 * load / (1 + abs(load) / 3), tol=1e-12)
-    loaded, free = shot(load, found.x[0]), shot(0.0, 0.0)
-    return loaded[0] - free[0], free[1] - loaded[1]
+    def miss(angle, part):
+        _, _, at_clamp, moment = shot(part, angle[0])
+        return at_clamp - np.pi / 2 - compliance * moment
+
+    angle, ends = np.pi / 2, []
+    for part in np.linspace(0, load, 5):
+        found = root(miss, angle, args=(part,), tol=1e-9)
+        assert found.success
+        angle = found.x[0]
+        ends.append(-shot(part, angle)[:2])
+    return ends[-1][0] - ends[0][0], ends[0][1] - ends[-1][1]
 
 
 @pytest.mark.parametrize("load", [5.0, -3.0])
@@ -66,7 +80,7 @@ def test_unloaded_it_is_the_arc(beam):
     from mujoco_models.model.spec import add_options
 
     natural = 0.7
-    made = build(Settings(beam=beam, segments=5), 0.05, Vibrissa(natural, 0.2))
+    made = build(Settings(beam=beam, segments=5), 0.05, Vibrissa.of(Beam(natural_curvature=natural), 5.0))
     spec = made.spec(0.005)
     add_options(spec)
     beads = made.layout.beads
