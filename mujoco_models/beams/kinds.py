@@ -47,7 +47,7 @@ def build(settings: Settings, spacing: float, vibrissa: Vibrissa | None = None) 
         raise InputError(
             "mujoco.planar",
             False,
-            "true for a vibrissa that is curved at rest or whose clamp turns",
+            "true for a vibrissa that is curved at rest, varies, or whose clamp turns",
             "sideways it would twist, and no theory of it is here",
         )
     kinds = _PLANAR if settings.planar else _SPATIAL

@@ -71,7 +71,8 @@ class Layout:
         Parameters
         ----------
         joints : array, shape (n,)
-            Arc lengths where cells bend [L].
+            Arc lengths where cells of a uniform beam bend; one that varies bends as far from there
+            as the centroid of a cell's compliance is from its middle [L].
         cells : array, shape (n,)
             Their lengths [L].
         edges : array, shape (n + 1,)
@@ -87,7 +88,8 @@ class Layout:
             With a joint more if the clamp turns.
         """
         vibrissa = vibrissa or Vibrissa()
-        compliances = cells * vibrissa.softness(edges)
+        softness, offset = vibrissa.bending(edges)
+        joints, compliances = joints + offset, cells * softness
         if vibrissa.clamp_compliance > 0:
             joints = np.insert(joints, 0, 0.0)
             compliances = np.insert(compliances, 0, vibrissa.clamp_compliance)

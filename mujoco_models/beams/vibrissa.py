@@ -1,4 +1,4 @@
-"""The vibrissa that MuJoCo's beams stand for: its shape at rest, how it bends, how its clamp turns."""
+"""The vibrissa that MuJoCo's beams stand for: its shape at rest, its bending and its clamp."""
 
 import math
 from dataclasses import dataclass, field
@@ -115,8 +115,8 @@ class Vibrissa:
             return np.ones_like(s)
         return (self.rest.tip_radius + self.rest.taper(s)) / self.rest.base_radius
 
-    def softness(self, edges: Floats) -> Floats:
-        """Compliance of pieces of the vibrissa over that of as long a piece at the clamp.
+    def bending(self, edges: Floats) -> tuple[Floats, Floats]:
+        """How pieces of the vibrissa bend, and where.
 
         Parameters
         ----------
@@ -125,22 +125,30 @@ class Vibrissa:
 
         Returns
         -------
-        array, shape (n,)
-            Mean of 1/rigidity over each piece.
+        softness : array, shape (n,)
+            Mean of 1/rigidity over each piece: its compliance over that of as long a piece at the
+            clamp.
+        offset : array, shape (n,)
+            Of the centroid of its compliance from its middle, towards the tip [L].
         """
         if self.rigidity is not None:
-            return self._mean_softness(self.rigidity, edges)
+            return self._by_quadrature(self.rigidity, edges)
         thick = self.thickness(edges)
         a, b = thick[:-1], thick[1:]
-        # The integral of the fourth power of 1/thickness, which is linear.
-        return np.asarray((a**2 + a * b + b**2) / (3 * a**3 * b**3))
+        # Integrals of the fourth power of 1/thickness, which is linear.
+        sum_ = a**2 + a * b + b**2
+        fraction = a * (b + 2 * a) / (2 * sum_)
+        return sum_ / (3 * a**3 * b**3), (fraction - 0.5) * np.diff(edges)
 
-    def _mean_softness(self, rigidity: Along, edges: Floats) -> Floats:
-        """By quadrature, piece by piece of the cells and of the rigidity."""
+    def _by_quadrature(self, rigidity: Along, edges: Floats) -> tuple[Floats, Floats]:
+        """Piece by piece of the cells and of the rigidity."""
         ends = np.array(rigidity.ends) / rigidity.ends[-1]
         marks = np.unique(np.concatenate([edges, ends[(ends > edges[0]) & (ends < edges[-1])]]))
         half, middle = np.diff(marks) / 2, (marks[1:] + marks[:-1]) / 2
-        places = (middle[:, None] + half[:, None] * _NODES) * rigidity.ends[-1]
-        integrals = half * (rigidity(np.zeros(1)) / rigidity(places) @ _WEIGHTS)
-        reached = np.concatenate([[0.0], np.cumsum(integrals)])
-        return np.asarray(np.diff(reached[np.searchsorted(marks, edges)]) / np.diff(edges))
+        s = middle[:, None] + half[:, None] * _NODES
+        soft = rigidity(np.zeros(1)) / rigidity(s * rigidity.ends[-1]) * _WEIGHTS
+        parts = half[:, None] * np.stack([soft.sum(axis=1), (soft * s).sum(axis=1)], axis=1)
+        reached = np.insert(np.cumsum(parts, axis=0), 0, 0.0, axis=0)
+        compliance, moment = np.diff(reached[np.searchsorted(marks, edges)], axis=0).T
+        centre = (edges[1:] + edges[:-1]) / 2
+        return compliance / np.diff(edges), moment / compliance - centre

@@ -80,7 +80,9 @@ def test_unloaded_it_is_the_arc(beam):
     from mujoco_models.model.spec import add_options
 
     natural = 0.7
-    made = build(Settings(beam=beam, segments=5), 0.05, Vibrissa.of(Beam(natural_curvature=natural), 5.0))
+    made = build(
+        Settings(beam=beam, segments=5), 0.05, Vibrissa.of(Beam(natural_curvature=natural), 5.0)
+    )
     spec = made.spec(0.005)
     add_options(spec)
     beads = made.layout.beads
