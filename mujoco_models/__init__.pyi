@@ -1,9 +1,12 @@
 from .beams.available import available_beams as available_beams
 from .errors import ClampError as ClampError
 from .errors import DivergedError as DivergedError
+from .inspect.measured import MeasuredBeam as MeasuredBeam
 from .motion import Motion as Motion
 from .settings import Settings as Settings
+from .simulate import inspect_model as inspect_model
 from .simulate import load_tip as load_tip
+from .simulate import shipped_models as shipped_models
 from .simulate import simulate_motion as simulate_motion
 from .simulate import simulate_sweep as simulate_sweep
 from .simulate import view_sweep as view_sweep

@@ -5,12 +5,15 @@ MuJoCo itself is imported when one of them is called, not before.
 
 import math
 from collections.abc import Callable
+from importlib.resources import files
+from pathlib import Path
 
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.errors import require
 from analytic.problem.mirror import facing, solve_either_way
 from analytic.problem.readings import Readings
+from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.motion import Motion
 from mujoco_models.settings import Settings
 
@@ -173,6 +176,54 @@ def load_tip(
     from mujoco_models.sweep import cantilever
 
     return cantilever.load_tip(load, settings or Settings(), beam or Beam(), clamp_stiffness)
+
+
+def inspect_model(
+    path: str | Path,
+    *,
+    foot: str | None = None,
+    force: str | None = None,
+    torque: str | None = None,
+    geoms: str | None = None,
+) -> MeasuredBeam:
+    """Measure what beam a user's own model is; its files are only read.
+
+    Parameters
+    ----------
+    path : str or Path
+        MJCF or URDF.
+    foot : str, optional
+        The body that holds the vibrissa. What is not named is looked for.
+    force, torque : str, optional
+        The sensors at its clamp.
+    geoms : str, optional
+        The vibrissa's geoms: names or patterns as ``"whisker*"``, separated by commas.
+
+    Returns
+    -------
+    MeasuredBeam
+        In the model's own units.
+
+    Raises
+    ------
+    InputError
+        If the model, a name of it or the vibrissa cannot be used.
+    """
+    from mujoco_models.inspect import measure, parts
+
+    return measure.inspect_model(Path(path), parts.Names(foot, force, torque, geoms))
+
+
+def shipped_models() -> dict[str, Path]:
+    """Models as people write them, which come with this package.
+
+    Returns
+    -------
+    dict of Path
+        Their files by name; each begins with what it is.
+    """
+    folder = Path(str(files("mujoco_models") / "models"))
+    return {path.stem: path for path in sorted(folder.glob("*.xml"))}
 
 
 def view_sweep(case: Case, settings: Settings | None = None) -> None:

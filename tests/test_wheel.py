@@ -46,6 +46,7 @@ COMMANDS = {
     "report": (1, "report runs/mine"),
     "budget": (1, "budget mine.toml --out b"),  # undecided: ten segments
     "findings": (0, "findings runs --out found"),
+    "inspect": (0, "inspect sound-chain --out inspected"),
     "animate": (0, "animate mine.toml --out anim"),
     "study": (0, "study grid.toml --out grid --workers 1"),
     "study-report": (0, "study-report grid"),

@@ -12,7 +12,7 @@ import typer
 from typer.exceptions import TyperException
 
 from analytic.problem.errors import InputError
-from compare.commands import budget, methods, readings, rig, study, sweeps
+from compare.commands import budget, inspect, methods, readings, rig, study, sweeps
 from compare.commands.output import ended_by_signals
 
 BAD_INPUT = 2
@@ -38,6 +38,7 @@ COMMANDS: tuple[Callable[..., int], ...] = (
     methods.methods,
     budget.budget,
     budget.findings,
+    inspect.inspect,
     study.study,
     study.study_report,
     sweeps.cases,

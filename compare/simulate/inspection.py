@@ -1,0 +1,94 @@
+"""A model that was measured, beside what it should be: figures and remarks."""
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from analytic import Beam
+from compare.simulate.remarks import Remark, remarks
+from compare.simulate.rigidity import as_intended, elastica_error
+from mujoco_models.inspect.measured import MeasuredBeam
+
+_WIDTH = 22
+
+
+@dataclass(frozen=True)
+class Inspection:
+    """What a user's model is.
+
+    Attributes
+    ----------
+    found : MeasuredBeam
+        As `mujoco_models.inspect_model` measured it.
+    stated : Beam or None
+        What it should be, in the model's units.
+    """
+
+    found: MeasuredBeam
+    stated: Beam | None = None
+
+    @cached_property
+    def remarks(self) -> tuple[Remark, ...]:
+        """What there is to say, the faults first."""
+        return remarks(self.found, self.stated)
+
+    @property
+    def sound(self) -> bool:
+        """Whether there are no faults."""
+        return all(remark.kind != "fault" for remark in self.remarks)
+
+    def lines(self) -> Iterator[str]:
+        """Figures and remarks, for reading.
+
+        Yields
+        ------
+        str
+            A line each.
+        """
+        found = self.found
+        faults = sum(remark.kind == "fault" for remark in self.remarks)
+        verdict = "sound" if self.sound else f"{faults} fault{'s' if faults > 1 else ''}"
+        yield f"{found.model or 'model'}, in its own units: {verdict}"
+        for name, text in self._figures():
+            yield f"  {name:{_WIDTH}}{text}"
+        for remark in self.remarks:
+            yield f"{remark}"
+
+    def _figures(self) -> Iterator[tuple[str, str]]:
+        found = self.found
+        length, period = found.length, found.period
+        radii = [geom.radius for geom in found.geoms]
+        yield "vibrissa", f"{len(found.joints)} joints, {len(found.geoms)} geoms on {found.foot!r}"
+        yield "length", f"{length:.6g}"
+        yield "radius", " to ".join(f"{x:.4g}" for x in dict.fromkeys((radii[0], radii[-1])))
+        yield "EI of its joints", f"{as_intended(found):.6g}"
+        yield "EI of its tip", f"{found.tip_rigidity:.6g} under a small force"
+        error = elastica_error(found)
+        if np.isfinite(error):
+            yield "large bending", f"tip within {error:.1e} L of the exact cantilever"
+        yield "natural curvature", f"{found.natural_curvature * length:.3g}/L"
+        yield "mass", f"{found.mass:.4g}"
+        yield "first period T1", f"{period:.4g}; damping ratio {found.damping_ratio:.3g}"
+        share = found.timestep / period
+        yield "time step", f"{found.timestep:g} ({share:.2g} T1), {found.integrator}"
+        yield "foot", found.drive or "nothing moves it"
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``inspection.json`` holds.
+
+        Returns
+        -------
+        dict
+            JSON can hold it.
+        """
+        error = elastica_error(self.found)
+        return {
+            "sound": self.sound,
+            "remarks": [asdict(remark) for remark in self.remarks],
+            "flexural_rigidity": as_intended(self.found),
+            "elastica_error": error if np.isfinite(error) else None,
+            "measured": self.found.to_dict(),
+        }

@@ -1,0 +1,135 @@
+"""The flexural rigidity that a measured model has along its beam, and shows at its tip."""
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from compare.measure.cantilever import tip_of
+from mujoco_models.inspect.measured import MeasuredBeam
+
+_UNEVEN = 0.02  # relative; what tapers by less is uniform
+_CURVATURE = 0.01  # 1/L; the tip of such an arc is 0.005 L aside
+
+
+def smooth_rigidity(found: MeasuredBeam, at: Floats | None = None) -> Floats:
+    """Flexural rigidity along the beam, without what single joints are off by.
+
+    The fourth root of EI, in proportion to the radius of a round section, is fitted by a parabola
+    in s with the least sum of deviations, over all joints but the first and the last: these stand
+    for pieces of beam of other lengths, as the clamp and the tip are modelled.
+
+    Parameters
+    ----------
+    found : MeasuredBeam
+        With its joints.
+    at : array, shape (n,), optional
+        Arc lengths; those of the joints if there are none [length].
+
+    Returns
+    -------
+    array, shape (n,)
+        There [force length^2].
+    """
+    s = np.array([joint.s for joint in found.joints]) / found.length
+    root = np.array([joint.flexural_rigidity for joint in found.joints]) ** 0.25
+    inner = slice(1, -1) if len(s) > 4 else slice(None)
+    order = 3 if len(s) > 6 else 1
+    terms = np.vander(s, order)
+    weights = np.ones(len(s[inner]))
+    for _ in range(50):
+        fit = np.linalg.lstsq(weights[:, None] * terms[inner], weights * root[inner], rcond=None)[0]
+        off = np.abs(root[inner] - terms[inner] @ fit)
+        weights = 1 / np.sqrt(np.maximum(off, 1e-9 * root.max()))
+    wanted = s if at is None else at / found.length
+    return np.asarray((np.vander(wanted, order) @ fit) ** 4)
+
+
+def as_intended(found: MeasuredBeam) -> float:
+    """EI that a beam with that rigidity along it, clamped where this is, shows at its tip.
+
+    Parameters
+    ----------
+    found : MeasuredBeam
+        With its joints.
+
+    Returns
+    -------
+    float
+        L^3 over three times the integral of (L - s)^2/EI [force length^2].
+    """
+    s = np.linspace(0, found.length, 2001)
+    flexibility = np.trapezoid((found.length - s) ** 2 / smooth_rigidity(found, s), s)
+    return float(found.length**3 / (3 * flexibility))
+
+
+def elastica_error(found: MeasuredBeam) -> float:
+    """How far the tip is from the exact cantilever's of the same small deflection, at most [L].
+
+    Parameters
+    ----------
+    found : MeasuredBeam
+        With its tip under loads.
+
+    Returns
+    -------
+    float
+        NaN unless the beam is uniform and straight: only then there is a closed form.
+    """
+    if tapers(found) or is_curved(found):
+        return float("nan")
+    exact = tip_of(found.loads * found.length**2 / found.tip_rigidity)
+    return float(np.linalg.norm(found.bent / found.length - exact, axis=1).max())
+
+
+def by_its_clamp(found: MeasuredBeam) -> float:
+    """EI that the tip shows by the first joint as it is and all others as they are meant.
+
+    Parameters
+    ----------
+    found : MeasuredBeam
+        With its joints.
+
+    Returns
+    -------
+    float
+        By the sum of (L - s)^2 over the joints' compliances [force length^2].
+    """
+    rigidity = smooth_rigidity(found)
+    compliance = np.array([joint.cell for joint in found.joints]) / rigidity
+    compliance[0] = found.joints[0].compliance
+    arm = found.length - np.array([joint.s for joint in found.joints])
+    return float(found.length**3 / (3 * compliance @ arm**2))
+
+
+def tapers(found: MeasuredBeam) -> bool:
+    """Whether EI changes along the beam, by more than two per cent.
+
+    Parameters
+    ----------
+    found : MeasuredBeam
+        With its joints.
+
+    Returns
+    -------
+    bool
+        Single joints do not count.
+    """
+    rigidity = smooth_rigidity(found)
+    return bool(np.ptp(rigidity) > _UNEVEN * rigidity.mean())
+
+
+def is_curved(found: MeasuredBeam, stated: float = 0.0) -> bool:
+    """Whether the beam at rest has another curvature than it should.
+
+    Parameters
+    ----------
+    found : MeasuredBeam
+        With its joints.
+    stated : float
+        The curvature that it should have [1/length].
+
+    Returns
+    -------
+    bool
+        True from 0.01/L on: the tip is then 0.005 L aside.
+    """
+    return abs(found.natural_curvature - stated) * found.length > _CURVATURE

@@ -1,0 +1,285 @@
+"""The vibrissa of a user's model with its foot held: loads on it, and its states at rest."""
+
+from copy import copy
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats, Integers
+from analytic.problem.errors import InputError
+from mujoco_models.inspect.parts import Parts, axis_of
+
+_HELD = 1e12  # times the mass of the vibrissa, as the inertia of whatever is held
+_STEP = 1e-6  # rad; MuJoCo's forces are smooth there, and exact to 1e-14 of their size
+_ITERATIONS = 100
+_LONGEST_TURN = 0.2  # rad, of any coordinate in an iteration
+_AT_REST = 1e-9  # of a joint's stiffness: rad by which it is out of balance
+
+
+class Held:
+    """A model whose foot is held, without contacts and gravity, and loads on the tip.
+
+    Parameters
+    ----------
+    model : mujoco.MjModel
+        The user's; a copy of it is held.
+    parts : Parts
+        What of it is the vibrissa.
+
+    Attributes
+    ----------
+    model, data : mujoco.MjModel, mujoco.MjData
+        The copy, and its state.
+    parts : Parts
+        As given.
+    dofs : array of int, shape (n,)
+        The coordinates in which the vibrissa bends.
+    gravity : array, shape (3,)
+        The model's.
+    """
+
+    def __init__(self, model: mujoco.MjModel, parts: Parts) -> None:
+        self.model, self.parts = copy(model), parts
+        self.gravity = np.array(model.opt.gravity)
+        self.model.opt.gravity[:] = 0
+        self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
+        self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS
+        self.model.opt.tolerance = 0
+        self.model.sensor_cutoff[:] = 0
+        self.model.sensor_noise[:] = 0
+        bends = np.isin(model.dof_bodyid, parts.chain)
+        self.dofs: Integers = np.flatnonzero(bends)
+        mass = float(model.body_mass[list(parts.chain)].sum())
+        self.model.dof_armature[~bends] += _HELD * mass
+        self.data = mujoco.MjData(self.model)
+        self._tip_body = parts.chain[-1]
+        self._force, self._torque = np.zeros((2, 3))
+        self.set_back()
+
+    def set_back(self) -> None:
+        """Take loads away and put the model into its own first state."""
+        mujoco.mj_resetData(self.model, self.data)
+        self._force[:], self._torque[:] = 0, 0
+        mujoco.mj_forward(self.model, self.data)
+        # The end of the last geom that is farther from the last joint.
+        ends = self._world(axis_of(self.model, self.parts.geoms[-1]), self._body(-1))
+        joint = self.data.xanchor[self.model.body_jntadr[self._tip_body]]
+        far = ends[int(np.argmax(np.linalg.norm(ends - joint, axis=1)))]
+        turn = self.data.xmat[self._tip_body].reshape(3, 3)
+        self._tip = turn.T @ (far - self.data.xpos[self._tip_body])
+
+    def _body(self, geom: int) -> int:
+        return int(self.model.geom_bodyid[self.parts.geoms[geom]])
+
+    def _world(self, points: Floats, body: int) -> Floats:
+        turn = self.data.xmat[body].reshape(3, 3)
+        return np.asarray(self.data.xpos[body] + points @ turn.T)
+
+    @property
+    def tip(self) -> Floats:
+        """Where the tip is, shape (3,)."""
+        return np.asarray(self._world(self._tip[None], self._tip_body)[0])
+
+    @property
+    def clamp(self) -> Floats:
+        """Where the vibrissa begins: the end of its first geom that is farther from the tip."""
+        ends = self._world(axis_of(self.model, self.parts.geoms[0]), self._body(0))
+        reach = np.linalg.norm(ends - self.tip, axis=1)
+        return np.asarray(ends[int(np.argmax(reach))])
+
+    @property
+    def joints(self) -> Floats:
+        """Where its bodies are hinged, shape (n_links, 3)."""
+        first = self.model.body_jntadr[list(self.parts.chain)]
+        return np.array(self.data.xanchor[first])
+
+    def load(self, force: Floats, torque: Floats) -> None:
+        """Load the tip.
+
+        Parameters
+        ----------
+        force, torque : array, shape (3,)
+            In the world frame, and they stay so; in the model's units.
+        """
+        self._force[:], self._torque[:] = force, torque
+
+    def evaluate(self) -> Floats:
+        """What is out of balance at rest.
+
+        Returns
+        -------
+        array, shape (n,)
+            Generalised forces in `dofs`.
+        """
+        data = self.data
+        data.qvel[:] = 0
+        mujoco.mj_kinematics(self.model, data)
+        mujoco.mj_comPos(self.model, data)
+        arm = self.tip - data.xipos[self._tip_body]
+        data.xfrc_applied[self._tip_body, :3] = self._force
+        data.xfrc_applied[self._tip_body, 3:] = self._torque + np.cross(arm, self._force)
+        mujoco.mj_forward(self.model, data)
+        return np.asarray((data.qfrc_smooth + data.qfrc_constraint)[self.dofs])
+
+    def stiffness(self) -> Floats:
+        """How what is out of balance falls with each turn, at the present state.
+
+        Returns
+        -------
+        array, shape (n, n)
+            Moments over turns.
+        """
+        start = self.data.qpos.copy()
+        columns = []
+        for dof in self.dofs:
+            both = []
+            for sign in (1, -1):
+                turn = np.zeros(self.model.nv)
+                turn[dof] = sign * _STEP
+                self.data.qpos[:] = start
+                mujoco.mj_integratePos(self.model, self.data.qpos, turn, 1.0)
+                both.append(self.evaluate())
+            columns.append((both[1] - both[0]) / (2 * _STEP))
+        self.data.qpos[:] = start
+        self.evaluate()
+        return np.array(columns).T
+
+    def rest(self) -> None:
+        """Let the vibrissa come to rest under its loads, by Newton's method.
+
+        Raises
+        ------
+        InputError
+            If nothing holds a joint, or no rest is found.
+        """
+        for _ in range(_ITERATIONS):
+            residual = self.evaluate()
+            slope = self.stiffness()
+            scale = np.abs(np.diag(slope))
+            if not scale.min() > 1e-9 * scale.max():
+                body = self.model.dof_bodyid[self.dofs[int(np.argmin(scale))]]
+                name = mujoco.mj_id2name(self.model, mujoco.mjtObj.mjOBJ_BODY, int(body))
+                raise InputError(
+                    f"body {name!r} of the vibrissa", "without a stiffness", "held by a spring",
+                    "give its joint a stiffness, or the bodies an elasticity plugin",
+                )  # fmt: skip
+            if np.abs(residual / scale).max() < _AT_REST:
+                return
+            step = np.zeros(self.model.nv)
+            step[self.dofs] = np.linalg.solve(slope, residual)
+            step *= min(1.0, _LONGEST_TURN / np.abs(step).max())
+            mujoco.mj_integratePos(self.model, self.data.qpos, step, 1.0)
+        raise InputError(
+            "model",
+            f"out of balance by {np.abs(residual / scale).max():.1e} rad",
+            "one that comes to rest with its foot held",
+            "look at its joints' limits and equality constraints",
+        )
+
+    def inertia(self, armature: bool) -> Floats:
+        """The mass matrix of the vibrissa on its held foot.
+
+        Parameters
+        ----------
+        armature : bool
+            Whether the joints' own inertia counts.
+
+        Returns
+        -------
+        array, shape (n, n)
+            Moments over angular accelerations.
+        """
+        unit = np.eye(self.model.nv)[self.dofs]
+        found = np.zeros_like(unit)
+        for row, turn in zip(found, unit, strict=True):
+            mujoco.mj_mulM(self.model, self.data, row, turn)
+        inertia = found[:, self.dofs]
+        if not armature:
+            inertia = inertia - np.diag(self.model.dof_armature[self.dofs])
+        return np.asarray(inertia)
+
+    def damping(self) -> Floats:
+        """How the passive forces fall with each joint's speed.
+
+        Returns
+        -------
+        array, shape (n, n)
+            Moments over angular speeds.
+        """
+        columns = []
+        for dof in self.dofs:
+            both = []
+            for sign in (1, -1):
+                self.data.qvel[:] = 0
+                self.data.qvel[dof] = sign * _STEP
+                mujoco.mj_forward(self.model, self.data)
+                both.append(self.data.qfrc_passive[self.dofs].copy())
+            columns.append((both[1] - both[0]) / (2 * _STEP))
+        self.evaluate()
+        return np.array(columns).T
+
+    def turns(self, axis: Floats) -> Floats:
+        """How each link turns about an axis with the coordinates.
+
+        Parameters
+        ----------
+        axis : array, shape (3,)
+            In the world frame.
+
+        Returns
+        -------
+        array, shape (n_links, n)
+            Turns over turns.
+        """
+        rotation = np.zeros((3, self.model.nv))
+        rows = []
+        for body in self.parts.chain:
+            mujoco.mj_jacBody(self.model, self.data, None, rotation, body)
+            rows.append(axis @ rotation[:, self.dofs])
+        return np.array(rows)
+
+    def moves(self) -> Floats:
+        """How the tip moves with the coordinates.
+
+        Returns
+        -------
+        array, shape (3, n)
+            Lengths over turns.
+        """
+        way = np.zeros((3, self.model.nv))
+        mujoco.mj_jac(self.model, self.data, way, None, self.tip, self._tip_body)
+        return np.asarray(way[:, self.dofs])
+
+    def sensed(self, sensor: int) -> Floats:
+        """What a sensor reads.
+
+        Parameters
+        ----------
+        sensor : int
+            Its number.
+
+        Returns
+        -------
+        array, shape (3,)
+            In its own axes.
+        """
+        first = self.model.sensor_adr[sensor]
+        return np.array(self.data.sensordata[first : first + 3])
+
+    def site(self, sensor: int) -> tuple[Floats, Floats]:
+        """Where the site of a sensor is, and how it is turned.
+
+        Parameters
+        ----------
+        sensor : int
+            Its number.
+
+        Returns
+        -------
+        position : array, shape (3,)
+            In the world frame.
+        axes : array, shape (3, 3)
+            Its axes in the world frame, in columns.
+        """
+        site = self.model.sensor_objid[sensor]
+        return np.array(self.data.site_xpos[site]), self.data.site_xmat[site].reshape(3, 3).copy()

@@ -1,0 +1,48 @@
+"""A model file of a user's, MJCF or URDF, with whatever it includes."""
+
+import re
+from pathlib import Path
+
+import mujoco
+
+from analytic.problem.errors import InputError
+from analytic.problem.files import regular_file
+
+_LARGEST = 50_000_000  # bytes of the file itself; assets are MuJoCo's matter
+_REMEDIES = (
+    (r"plugin|composite", "MuJoCo 3.17 has composite cables and their plugin, 4.0 has neither"),
+    (r"mesh|stl|obj|msh|resource|open", "put its files where it says, or correct meshdir"),
+    (r"mass and inertia", "give every moving body a mass"),
+)
+
+
+def load(path: Path) -> mujoco.MjModel:
+    """Read and compile a model; nothing of its files is changed.
+
+    Parameters
+    ----------
+    path : Path
+        MJCF or URDF; includes, meshes and textures are found as MuJoCo finds them.
+
+    Returns
+    -------
+    mujoco.MjModel
+        As its files say.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or MuJoCo does not take it; its own words are quoted.
+    """
+    regular_file(path, "model", _LARGEST)
+    try:
+        return mujoco.MjModel.from_xml_path(str(path))
+    except (ValueError, mujoco.FatalError) as error:
+        said = " ".join(str(error).split())[:300]
+        remedy = next(
+            (remedy for words, remedy in _REMEDIES if re.search(words, said, re.IGNORECASE)),
+            "correct the file",
+        )
+        raise InputError(
+            "model", path, "a model that MuJoCo takes", f"{remedy} ({said})"
+        ) from error

@@ -1,0 +1,308 @@
+"""Measure the beam that a user's model is: stiffness, mass, clamp, sensors, contacts."""
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from scipy.linalg import eigh
+
+from analytic.problem.arrays import Floats
+from mujoco_models.inspect.drive import drive_of
+from mujoco_models.inspect.held import Held
+from mujoco_models.inspect.load import load
+from mujoco_models.inspect.measured import Geom, Joint, MeasuredBeam, Sensed
+from mujoco_models.inspect.parts import Names, Parts, axis_of, find, radius_of
+
+_LOADS = (0.01, 0.5, 1.0, 2.0, 5.0, 10.0)  # EI/L^2; up to a tip turned by 82 degrees
+_SMALL = 1e-4  # EI/L^2 and EI/L: sensors are probed in the linear range
+
+
+def inspect_model(path: Path, names: Names) -> MeasuredBeam:
+    """Load a model, find its vibrissa, and measure it.
+
+    Parameters
+    ----------
+    path : Path
+        MJCF or URDF.
+    names : Names
+        What is known of it.
+
+    Returns
+    -------
+    MeasuredBeam
+        In the model's own units.
+
+    Raises
+    ------
+    InputError
+        If the model, a name of it or the vibrissa cannot be used.
+    """
+    model = load(path)
+    return measure(model, find(model, names))
+
+
+def measure(model: mujoco.MjModel, parts: Parts) -> MeasuredBeam:
+    """Measure the vibrissa of a model.
+
+    All of it is MuJoCo's: the foot is held, loads are put on the tip, and Newton's method finds the
+    rest. The axes of the sweep are x against the sweep, y along the vibrissa, z the axis of its
+    hinges.
+
+    Parameters
+    ----------
+    model : mujoco.MjModel
+        The user's.
+    parts : Parts
+        What of it is the vibrissa.
+
+    Returns
+    -------
+    MeasuredBeam
+        In the model's own units.
+
+    Raises
+    ------
+    InputError
+        If nothing holds a joint, or it does not come to rest.
+    """
+    held = Held(model, parts)
+    held.rest()
+    axes = sweep_axes(held)
+    nodes = np.vstack([held.clamp, held.joints, held.tip])
+    s = np.cumsum(np.linalg.norm(np.diff(nodes, axis=0), axis=1))
+    length = float(s[-1])
+    stiffness = held.stiffness()
+    flexibility = np.linalg.inv(stiffness)
+    turns = held.turns(axes[2])
+    links = turns @ flexibility @ turns[-1]  # turns of the links under a unit moment on the tip
+    way = axes[0] @ held.moves()
+    tip_rigidity = float(length**3 / (3 * way @ flexibility @ way))
+    inertia, bare = held.inertia(armature=True), held.inertia(armature=False)
+    squares, modes = eigh(stiffness, inertia)
+    damping = np.einsum("im,ij,jm->m", modes, held.damping(), modes)
+    joints = _joints(held, s[:-1], np.diff(links, prepend=0.0), nodes, axes)
+    sensors = [_sensed(held, number, axes, tip_rigidity, length) for number in
+               (parts.force, parts.torque)]  # fmt: skip
+    loads, bent = _bent(held, axes, tip_rigidity / length**2)
+    return MeasuredBeam(
+        model=_model_name(model),
+        foot=_name(model, mujoco.mjtObj.mjOBJ_BODY, parts.foot),
+        drive=drive_of(model, parts.foot),
+        length=length,
+        joints=joints,
+        geoms=_geoms(model, held, nodes[0], axes[1]),
+        tip_rigidity=tip_rigidity,
+        loads=loads,
+        bent=bent,
+        straightness=float(np.linalg.norm(_aside(nodes - nodes[0], axes[1]), axis=1).max()),
+        mass=float(model.body_mass[list(parts.chain)].sum()),
+        period=float(2 * np.pi / np.sqrt(squares[0])),
+        period_without_armature=_period(stiffness, bare),
+        stable_step=_stable_step(model, squares, damping),
+        damping_ratio=float(damping[0] / (2 * np.sqrt(squares[0]))),
+        gravity=tuple((axes @ held.gravity).tolist()),
+        sag=_sag(held),
+        force=sensors[0],
+        torque=sensors[1],
+        self_contacts=_self_contacts(model, parts),
+        timestep=float(model.opt.timestep),
+        integrator=mujoco.mjtIntegrator(model.opt.integrator).name.removeprefix("mjINT_").lower(),
+        friction_loss=float(model.dof_frictionloss[held.dofs].max()),
+        limits=_limits(model, parts),
+    )
+
+
+def sweep_axes(held: Held) -> Floats:
+    """The axes of the sweep in the world frame.
+
+    Parameters
+    ----------
+    held : Held
+        At rest.
+
+    Returns
+    -------
+    array, shape (3, 3)
+        x, y and z in rows.
+    """
+    model, data = held.model, held.data
+    nodes = np.vstack([held.clamp, held.joints, held.tip])
+    ways = np.diff(nodes, axis=0)
+    along = next(w for w in ways if np.linalg.norm(w) > 1e-9 * np.linalg.norm(nodes[-1] - nodes[0]))
+    y = along / np.linalg.norm(along)
+    hinges = [
+        data.xaxis[j]
+        for body in held.parts.chain
+        for j in range(model.body_jntadr[body], model.body_jntadr[body] + model.body_jntnum[body])
+        if model.jnt_type[j] == int(mujoco.mjtJoint.mjJNT_HINGE)
+    ]
+    planar = len(hinges) == len(held.dofs) and all(
+        np.linalg.norm(np.cross(hinges[0], axis)) < 1e-6 for axis in hinges
+    )
+    z = hinges[0] if planar else _across(y)
+    z = _aside(z[None], y)[0]
+    z = z / np.linalg.norm(z)
+    z = z if z[int(np.argmax(np.abs(z)))] > 0 else -z
+    return np.array([np.cross(y, z), y, z])
+
+
+def _across(y: Floats) -> Floats:
+    """An axis of the world that is across the vibrissa: z, or y if it points there."""
+    return np.array([0.0, 0.0, 1.0]) if abs(y[2]) < 0.5 else np.array([0.0, 1.0, 0.0])
+
+
+def _aside(points: Floats, direction: Floats) -> Floats:
+    return np.asarray(points - np.outer(points @ direction, direction))
+
+
+def _joints(
+    held: Held, s: Floats, compliance: Floats, nodes: Floats, axes: Floats
+) -> tuple[Joint, ...]:
+    length = float(np.linalg.norm(np.diff(nodes, axis=0), axis=1).sum())
+    bounds = np.concatenate([[0.0], (s[1:] + s[:-1]) / 2, [length]])
+    ways = np.diff(nodes, axis=0)[1:]
+    slopes = np.arctan2(-ways @ axes[0], ways @ axes[1])
+    angles = np.diff(np.unwrap(slopes), prepend=0.0)
+    names = [_name(held.model, mujoco.mjtObj.mjOBJ_BODY, body) for body in held.parts.chain]
+    return tuple(
+        Joint(name, float(at), float(cell), float(c), float(angle))
+        for name, at, cell, c, angle in zip(
+            names, s, np.diff(bounds), compliance, angles, strict=True
+        )
+    )
+
+
+def _bent(held: Held, axes: Floats, unit: float) -> tuple[Floats, Floats]:
+    """Tip displacements under forces across the beam, ever larger ones."""
+    start = held.tip
+    loads = unit * np.array(_LOADS)
+    bent = []
+    for load_ in loads:
+        held.load(load_ * axes[0], np.zeros(3))
+        held.rest()
+        moved = held.tip - start
+        bent.append([moved @ axes[0], -moved @ axes[1]])
+    held.set_back()
+    held.rest()
+    return loads, np.array(bent)
+
+
+def _sag(held: Held) -> float:
+    """How far gravity moves the tip."""
+    start = held.tip
+    held.model.opt.gravity[:] = held.gravity
+    held.rest()
+    sag = float(np.linalg.norm(held.tip - start))
+    held.model.opt.gravity[:] = 0
+    held.set_back()
+    held.rest()
+    return sag
+
+
+def _sensed(
+    held: Held, sensor: int | None, axes: Floats, rigidity: float, length: float
+) -> Sensed | None:
+    """A sensor's readings of small forces and moments on the tip, one after the other."""
+    if sensor is None:
+        return None
+    zero = held.sensed(sensor)
+    is_force = held.model.sensor_type[sensor] == int(mujoco.mjtSensor.mjSENS_FORCE)
+    by_force, by_moment = np.zeros((2, 3, 3))
+    force, moment = _SMALL * rigidity / length**2, _SMALL * rigidity / length
+    for i, axis in enumerate(axes):
+        for found, size, kind in ((by_force, force, 0), (by_moment, moment, 1)):
+            loads = [np.zeros(3), np.zeros(3)]
+            loads[kind] = size * axis
+            held.load(*loads)
+            held.rest()
+            found[:, i] = -(held.sensed(sensor) - zero) / size
+    arm = axes @ (held.tip - held.clamp)
+    held.set_back()
+    held.rest()
+    turned = by_force if is_force else by_moment
+    # Of the moment of a force on the tip about the sensor: M = r x F gives r, by columns of skew.
+    skew = np.zeros((3, 3)) if is_force else np.linalg.pinv(turned) @ by_force
+    seen = np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
+    place, _ = held.site(sensor)
+    name = _name(held.model, mujoco.mjtObj.mjOBJ_SENSOR, sensor)
+    offset = axes @ (place - held.clamp)
+    return Sensed(name, turned, offset, offset if is_force else arm - seen)
+
+
+def _geoms(model: mujoco.MjModel, held: Held, clamp: Floats, y: Floats) -> tuple[Geom, ...]:
+    found = []
+    for number in held.parts.geoms:
+        body = int(model.geom_bodyid[number])
+        turn = held.data.xmat[body].reshape(3, 3)
+        ends = held.data.xpos[body] + axis_of(model, number) @ turn.T
+        start, end = sorted(((ends - clamp) @ y).tolist())
+        time_constant, ratio = model.geom_solref[number]
+        impedance = min(float(model.geom_solimp[number, 0]), 0.9999)
+        weight = float(model.body_invweight0[body, 0])  # 0 if it cannot move
+        # At rest the force is k/((1 - d) A) times the depth, with MuJoCo's k, impedance d and the
+        # body's inverse mass A; see MuJoCo's documentation, "Solver parameters".
+        if time_constant > 0:
+            stiffness = 1 / (max(time_constant, 2 * model.opt.timestep) * ratio) ** 2
+        else:
+            stiffness, time_constant = -time_constant, np.nan
+        found.append(
+            Geom(
+                _name(model, mujoco.mjtObj.mjOBJ_GEOM, number)
+                or _name(model, mujoco.mjtObj.mjOBJ_BODY, body),
+                start,
+                end,
+                radius_of(model, number),
+                bool((model.geom_contype[number] & 1) | (model.geom_conaffinity[number] & 1)),
+                float(stiffness / ((1 - impedance) * weight)) if weight else np.inf,
+                float(time_constant),
+                float(model.geom_friction[number, 0]) if model.geom_condim[number] > 1 else 0.0,
+            )
+        )
+    return tuple(found)
+
+
+def _self_contacts(model: mujoco.MjModel, parts: Parts) -> tuple[str, ...]:
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    found = []
+    for contact in data.contact:
+        if contact.dist < 0 and not {*parts.geoms}.isdisjoint(contact.geom.tolist()):
+            names = [
+                _name(model, mujoco.mjtObj.mjOBJ_GEOM, g)
+                or _name(model, mujoco.mjtObj.mjOBJ_BODY, int(model.geom_bodyid[g]))
+                for g in contact.geom.tolist()
+            ]
+            found.append(" and ".join(names))
+    return tuple(dict.fromkeys(found))
+
+
+def _limits(model: mujoco.MjModel, parts: Parts) -> tuple[float, ...]:
+    joints = np.flatnonzero(np.isin(model.jnt_bodyid, parts.chain) & (model.jnt_limited == 1))
+    if not joints.size:
+        return ()
+    return (float(np.abs(model.jnt_range[joints]).max(axis=1).min()),)
+
+
+def _period(stiffness: Floats, inertia: Floats) -> float:
+    slowest = eigh(stiffness, inertia, eigvals_only=True)[0]
+    return float(2 * np.pi / np.sqrt(slowest))
+
+
+def _stable_step(model: mujoco.MjModel, squares: Floats, damping: Floats) -> float:
+    """The longest step at which no vibration grows, for integrators explicit in the springs.
+
+    With v1 (1 + c dt) = v0 - dt w^2 q0 and q1 = q0 + dt v1 a vibration of frequency w and damping
+    rate c decays if w^2 dt^2 < 4 + 2 c dt (Jury's criterion); Runge and Kutta's fourth order, with
+    the dampers explicit too, if w dt and c dt are below 2.78.
+    """
+    if model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_RK4):
+        return float(2.78 / max(np.sqrt(squares.max()), damping.max()))
+    return float(((damping + np.sqrt(damping**2 + 4 * squares)) / squares).min())
+
+
+def _model_name(model: mujoco.MjModel) -> str:
+    return bytes(model.names[: model.names.find(b"\0")]).decode(errors="replace")
+
+
+def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:
+    return mujoco.mj_id2name(model, kind, number) or ""

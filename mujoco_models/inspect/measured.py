@@ -1,0 +1,191 @@
+"""What was measured of a user's model; plain numbers, in the model's own units."""
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from analytic.problem.arrays import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Sensed:
+    """A sensor at the clamp.
+
+    Attributes
+    ----------
+    name : str
+        The sensor's.
+    axes : array, shape (3, 3)
+        Its reading of a unit of the clamp's action on the vibrissa along x, y, z of the sweep, in
+        columns: a rotation, if it reads what it should.
+    place : array, shape (3,)
+        Where its site is, from the clamp, in the axes of the sweep [length].
+    lever : array, shape (3,)
+        From where its moments are counted, by its own readings; the same [length].
+    """
+
+    name: str
+    axes: Floats
+    place: Floats
+    lever: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """A joint, as the springs of one body.
+
+    Attributes
+    ----------
+    name : str
+        The body's.
+    s : float
+        Its arc length from the clamp [length].
+    cell : float
+        Length of the piece of beam that it stands for: half way to its neighbours [length].
+    compliance : float
+        Turn over moment.
+    angle : float
+        Its turn at rest [rad].
+    """
+
+    name: str
+    s: float
+    cell: float
+    compliance: float
+    angle: float
+
+    @property
+    def flexural_rigidity(self) -> float:
+        """Of that piece of beam: cell over compliance [force length^2]."""
+        return self.cell / self.compliance
+
+
+@dataclass(frozen=True, eq=False)
+class Geom:
+    """A geom of the vibrissa.
+
+    Attributes
+    ----------
+    name : str
+        Its own, or its body's.
+    start, end : float
+        Arc lengths of its axis [length].
+    radius : float
+        [length]
+    meets : bool
+        Whether it collides with an object that has MuJoCo's default contype and conaffinity.
+    stiffness : float
+        Force over penetration of its contacts at rest, about [force/length].
+    time_constant : float
+        Of its contacts, as its solref says; NaN if solref states a stiffness [time].
+    friction : float
+        Coefficient; 0 if its contacts have no friction.
+    """
+
+    name: str
+    start: float
+    end: float
+    radius: float
+    meets: bool
+    stiffness: float
+    time_constant: float
+    friction: float
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredBeam:
+    """The beam that a user's model is, its foot held.
+
+    Attributes
+    ----------
+    model, foot : str
+        Name of the model and of the body that holds the vibrissa.
+    drive : str or None
+        What can move the foot; None if nothing can.
+    length : float
+        From the clamp to the centre of the round tip [length].
+    joints : tuple of Joint
+        From the clamp to the tip.
+    geoms : tuple of Geom
+        Likewise.
+    tip_rigidity : float
+        EI of the uniform beam with the same small tip deflection under a force on the tip.
+    loads : array, shape (n,)
+        Forces on the tip across the beam [force].
+    bent : array, shape (n, 2)
+        How far the tip moves along them, and along the beam towards the clamp [length].
+    straightness : float
+        Largest distance of joints and tip from the straight line through the clamp [length].
+    mass : float
+    period, period_without_armature : float
+        The first of free vibration [time].
+    stable_step : float
+        The longest stable time step of an integrator that is explicit in springs [time].
+    damping_ratio : float
+        Of the first vibration.
+    gravity : tuple of float
+        In the axes of the sweep.
+    sag : float
+        How far gravity moves the tip [length].
+    force, torque : Sensed or None
+        The sensors at the clamp.
+    self_contacts : tuple of str
+        Pairs of geoms, one of them the vibrissa's, that touch in the first state.
+    timestep : float
+    integrator : str
+    friction_loss : float
+        The largest of a joint.
+    limits : tuple of float
+        The smallest turn at which a joint of the vibrissa is limited [rad]; empty without any.
+    """
+
+    model: str
+    foot: str
+    drive: str | None
+    length: float
+    joints: tuple[Joint, ...]
+    geoms: tuple[Geom, ...]
+    tip_rigidity: float
+    loads: Floats
+    bent: Floats
+    straightness: float
+    mass: float
+    period: float
+    period_without_armature: float
+    stable_step: float
+    damping_ratio: float
+    gravity: tuple[float, float, float]
+    sag: float
+    force: Sensed | None
+    torque: Sensed | None
+    self_contacts: tuple[str, ...]
+    timestep: float
+    integrator: str
+    friction_loss: float
+    limits: tuple[float, ...]
+
+    @property
+    def natural_curvature(self) -> float:
+        """Mean over the length, of its turns at rest [1/length]."""
+        return sum(joint.angle for joint in self.joints) / self.length
+
+    def to_dict(self) -> dict[str, Any]:
+        """All of it.
+
+        Returns
+        -------
+        dict
+            JSON can hold it.
+        """
+        found = asdict(self) | {"natural_curvature": self.natural_curvature}
+        return {name: _plain(value) for name, value in found.items()}
+
+
+def _plain(value: Any) -> Any:  # noqa: ANN401  # whatever the fields hold
+    if isinstance(value, dict):
+        return {key: _plain(inner) for key, inner in value.items()}
+    if isinstance(value, tuple | list):
+        return [_plain(inner) for inner in value]
+    if hasattr(value, "tolist"):
+        return _plain(value.tolist())
+    return None if isinstance(value, float) and not math.isfinite(value) else value

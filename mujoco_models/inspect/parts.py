@@ -1,0 +1,303 @@
+"""What of a user's model is the vibrissa, its foot, and the sensors at its clamp."""
+
+import difflib
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from typing import TypeAlias
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.problem.errors import InputError
+
+Chain: TypeAlias = tuple[int, ...]
+"""Bodies that bend, from the clamp to the tip."""
+
+_FEWEST = 3  # joints of a vibrissa; what has fewer is an arm
+_BENDS = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_BALL))
+_SLENDER = (int(mujoco.mjtGeom.mjGEOM_CAPSULE), int(mujoco.mjtGeom.mjGEOM_CYLINDER))
+_SPHERE = int(mujoco.mjtGeom.mjGEOM_SPHERE)
+_ALIGNED = 1e-3  # rad and lengths of a link; a geom of the foot that goes on as the vibrissa does
+
+
+@dataclass(frozen=True)
+class Names:
+    """The names that a user gives; what is None is looked for.
+
+    Attributes
+    ----------
+    foot : str or None
+        The body that holds the vibrissa.
+    force, torque : str or None
+        The sensors at its clamp.
+    geoms : str or None
+        The vibrissa's geoms: names or patterns as ``whisker*``, separated by commas.
+    """
+
+    foot: str | None = None
+    force: str | None = None
+    torque: str | None = None
+    geoms: str | None = None
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The vibrissa in a compiled model.
+
+    Attributes
+    ----------
+    foot : int
+        The outermost of the bodies that hold it without a joint in between.
+    chain : tuple of int
+        Its bodies with joints, from the clamp to the tip.
+    geoms : tuple of int
+        Its geoms, from the clamp to the tip.
+    force, torque : int or None
+        The sensors at its clamp; None if there is none.
+    """
+
+    foot: int
+    chain: Chain
+    geoms: tuple[int, ...]
+    force: int | None
+    torque: int | None
+
+
+def find(model: mujoco.MjModel, names: Names) -> Parts:
+    """Find the vibrissa, as far as the names leave it open.
+
+    It is the longest row of bodies, each on the one before by hinges or a ball without an
+    actuator; what holds the first of them is the foot.
+
+    Parameters
+    ----------
+    model : mujoco.MjModel
+        The user's.
+    names : Names
+        What is known.
+
+    Returns
+    -------
+    Parts
+        All of it.
+
+    Raises
+    ------
+    InputError
+        If a name is none of the model's, nothing looks like a vibrissa, or several things do.
+    """
+    asked = None if names.geoms is None else _geoms(model, names.geoms)
+    chains = _chains(model)
+    if names.foot is not None:
+        foot = _named(model, "--foot", names.foot, mujoco.mjtObj.mjOBJ_BODY)
+        chains = [chain for chain in chains if foot in _holders(model, chain)]
+    if asked is not None:
+        bodies = set(model.geom_bodyid[asked].tolist())
+        chains = [chain for chain in chains if bodies.intersection(chain)]
+    if not chains:
+        raise InputError(
+            "model",
+            "without a vibrissa" + ("" if names == Names() else " where the names say"),
+            f"with a row of at least {_FEWEST} bodies on hinges or balls without actuators",
+            "name the body that holds it with --foot, or its geoms with --geoms",
+        )
+    longest = max(map(len, chains))
+    likely = [chain for chain in chains if 2 * len(chain) > longest]
+    if len(likely) > 1:
+        shown = ", ".join(
+            f"{len(chain)} links from {_name(model, mujoco.mjtObj.mjOBJ_BODY, chain[0])!r} on "
+            f"{_name(model, mujoco.mjtObj.mjOBJ_BODY, int(model.body_parentid[chain[0]]))!r}"
+            for chain in likely[:4]
+        )
+        raise InputError(
+            "model", f"with {len(likely)} candidates ({shown})", "with one vibrissa",
+            "say which with --foot or --geoms",
+        )  # fmt: skip
+    (chain,) = likely
+    holders = _holders(model, chain)
+    geoms = asked if asked is not None else _along(model, holders[0], chain)
+    if not geoms:
+        raise InputError("model", "without geoms on the vibrissa", "one that can touch", "add some")
+    bodies = {*holders, *chain}
+    sensors = [
+        _sensor(model, option, name, kind, bodies)
+        for option, name, kind in (
+            ("--force", names.force, mujoco.mjtSensor.mjSENS_FORCE),
+            ("--torque", names.torque, mujoco.mjtSensor.mjSENS_TORQUE),
+        )
+    ]
+    return Parts(holders[-1], chain, tuple(geoms), *sensors)
+
+
+def axis_of(model: mujoco.MjModel, geom: int) -> Floats:
+    """The axis of a geom in the frame of its body.
+
+    Parameters
+    ----------
+    model : mujoco.MjModel
+        With the geom.
+    geom : int
+        Which one.
+
+    Returns
+    -------
+    array, shape (2, 3)
+        Both ends, without the round caps of a capsule; they are the same for a sphere.
+    """
+    kind = int(model.geom_type[geom])
+    centre, half = np.zeros(3), np.zeros(3)
+    if kind in _SLENDER:
+        half[2] = model.geom_size[geom, 1]
+    elif kind != _SPHERE:
+        box = model.geom_aabb[geom]
+        centre, longest = box[:3], int(np.argmax(box[3:]))
+        half[longest] = box[3 + longest]
+    ends = np.array([centre - half, centre + half])
+    turn = np.zeros(9)
+    mujoco.mju_quat2Mat(turn, model.geom_quat[geom])
+    return np.asarray(model.geom_pos[geom] + ends @ turn.reshape(3, 3).T)
+
+
+def radius_of(model: mujoco.MjModel, geom: int) -> float:
+    """Half the thickness of a geom.
+
+    Parameters
+    ----------
+    model : mujoco.MjModel
+        With the geom.
+    geom : int
+        Which one.
+
+    Returns
+    -------
+    float
+        In the model's unit of length; of a flat one the mean of both.
+    """
+    if int(model.geom_type[geom]) in (*_SLENDER, _SPHERE):
+        return float(model.geom_size[geom, 0])
+    return float(np.sort(model.geom_aabb[geom, 3:])[:2].mean())
+
+
+def _chains(model: mujoco.MjModel) -> list[Chain]:
+    """Rows of bodies that bend, none part of a longer one."""
+    driven = {
+        int(model.actuator_trnid[i, 0])
+        for i in range(model.nu)
+        if model.actuator_trntype[i] == int(mujoco.mjtTrn.mjTRN_JOINT)
+    }
+    bending = {
+        body
+        for body in range(1, model.nbody)
+        for joint in range(
+            model.body_jntadr[body], model.body_jntadr[body] + model.body_jntnum[body]
+        )
+        if int(model.jnt_type[joint]) in _BENDS and joint not in driven
+    }
+    outer = [b for b in bending if not bending.intersection(_children(model, b))]
+    chains = []
+    for body in sorted(outer):
+        row = [body]
+        while int(model.body_parentid[row[-1]]) in bending:
+            row.append(int(model.body_parentid[row[-1]]))
+        if len(row) >= _FEWEST:
+            chains.append(tuple(reversed(row)))
+    return chains
+
+
+def _holders(model: mujoco.MjModel, chain: Chain) -> list[int]:
+    """What holds the first link, and what that is fixed to, but for the world."""
+    found = [int(model.body_parentid[chain[0]])]
+    while model.body_jntnum[found[-1]] == 0 and model.body_parentid[found[-1]] != 0:
+        found.append(int(model.body_parentid[found[-1]]))
+    return found
+
+
+def _children(model: mujoco.MjModel, body: int) -> list[int]:
+    return [int(b) for b in np.flatnonzero(model.body_parentid == body) if b != body]
+
+
+def _along(model: mujoco.MjModel, foot: int, chain: Chain) -> list[int]:
+    """The geoms of the chain, and of the foot what goes on as the first link does."""
+    found = [int(g) for body in chain for g in np.flatnonzero(model.geom_bodyid == body)]
+    if not found:
+        return []
+    start, end = axis_of(model, found[0])
+    way = end - start
+    length = float(np.linalg.norm(way))
+    if length == 0:
+        return found
+    turn = np.zeros(9)
+    mujoco.mju_quat2Mat(turn, model.body_quat[chain[0]])
+    direction = turn.reshape(3, 3) @ way / length
+    origin = model.body_pos[chain[0]]
+    rigid = []
+    for geom in np.flatnonzero(model.geom_bodyid == foot).tolist():
+        if foot == 0 or int(model.geom_type[geom]) not in _SLENDER:
+            continue
+        off = axis_of(model, geom) - origin
+        aside = off - np.outer(off @ direction, direction)
+        if np.abs(aside).max() < _ALIGNED * length:
+            rigid.append(geom)
+    return rigid + found
+
+
+def _geoms(model: mujoco.MjModel, text: str) -> list[int]:
+    known = {_name(model, mujoco.mjtObj.mjOBJ_GEOM, i): i for i in range(model.ngeom)}
+    found: set[int] = set()
+    for pattern in filter(None, (part.strip() for part in text.split(","))):
+        fitting = {i for name, i in known.items() if fnmatchcase(name, pattern)}
+        if not fitting:
+            raise _unknown("--geoms", pattern, "geom", [*known])
+        found |= fitting
+    return sorted(found)
+
+
+def _sensor(
+    model: mujoco.MjModel,
+    option: str,
+    name: str | None,
+    kind: mujoco.mjtSensor,
+    bodies: set[int],
+) -> int | None:
+    word = option.removeprefix("--")
+    if name is not None:
+        sensor = _named(model, option, name, mujoco.mjtObj.mjOBJ_SENSOR)
+        if model.sensor_type[sensor] != int(kind):
+            raise InputError(option, repr(name), f"a {word} sensor", f"it is no <{word}>")
+        return sensor
+    found = [
+        i
+        for i in range(model.nsensor)
+        if model.sensor_type[i] == int(kind)
+        and int(model.site_bodyid[model.sensor_objid[i]]) in bodies
+    ]
+    if len(found) > 1:
+        shown = ", ".join(repr(_name(model, mujoco.mjtObj.mjOBJ_SENSOR, i)) for i in found[:6])
+        raise InputError("model", f"with {len(found)} {word} sensors ({shown})",
+                         "with one at the clamp", f"say which with {option}")  # fmt: skip
+    return found[0] if found else None
+
+
+def _named(model: mujoco.MjModel, option: str, name: str, kind: mujoco.mjtObj) -> int:
+    found = mujoco.mj_name2id(model, kind, name)
+    if found < 0:
+        count = {
+            mujoco.mjtObj.mjOBJ_BODY: model.nbody,
+            mujoco.mjtObj.mjOBJ_SENSOR: model.nsensor,
+        }[kind]
+        word = "body" if kind == mujoco.mjtObj.mjOBJ_BODY else "sensor"
+        raise _unknown(option, name, word, [_name(model, kind, i) for i in range(count)])
+    return int(found)
+
+
+def _unknown(option: str, name: str, what: str, known: list[str]) -> InputError:
+    names = [one for one in known if one]
+    near = difflib.get_close_matches(name, names, n=1)
+    shown = ", ".join(names[:12]) + (" ..." if len(names) > 12 else "")
+    remedy = f"did you mean {near[0]}?" if near else f"it has {shown or 'none with a name'}"
+    return InputError(option, repr(name), f"the name of a {what} of the model", remedy)
+
+
+def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:
+    return mujoco.mj_id2name(model, kind, number) or ""

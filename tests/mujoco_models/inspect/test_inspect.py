@@ -1,0 +1,158 @@
+"""What is measured of models as people write them, and what is planted in them."""
+
+import numpy as np
+import pytest
+
+from analytic import InputError
+from mujoco_models import available_beams, inspect_model, shipped_models
+from tests.mujoco_models.inspect.chains import Chain
+
+
+def measured(tmp_path, chain=None, **names):
+    return inspect_model((chain or Chain()).write(tmp_path), **names)
+
+
+def test_a_sound_chain_is_the_beam_that_it_stands_for(tmp_path):
+    found = measured(tmp_path)
+    assert found.length == pytest.approx(1.0)
+    assert [j.flexural_rigidity for j in found.joints] == pytest.approx([1.0] * 20, rel=1e-6)
+    # The midpoint rule of the integral of (1 - s)^2: 1/(4 N^2) of it is missing.
+    assert found.tip_rigidity == pytest.approx(1 / (1 - 1 / 1600), rel=1e-6)
+    assert found.mass == pytest.approx(0.313 * (1 - 1 / 40), rel=1e-6)
+    # A uniform cantilever of 0.313 EI T^2/L^4 a length has the first period 1: Rao, chapter 8.
+    assert found.period == pytest.approx(1.0, rel=5e-3)
+    # Dampers of 0.016 times the stiffness: zeta = 0.016 omega/2.
+    assert found.damping_ratio == pytest.approx(0.008 * 2 * np.pi / found.period, rel=1e-6)
+    assert found.natural_curvature == pytest.approx(0, abs=1e-12)
+    assert found.drive == "mocap body 'whisker-foot'"
+    for sensor in (found.force, found.torque):
+        np.testing.assert_allclose(sensor.axes, np.eye(3), atol=1e-6)
+        np.testing.assert_allclose(sensor.lever, 0, atol=1e-3)
+
+
+@pytest.mark.parametrize("first", ["centre", "start", "end"])
+def test_where_it_first_bends_shows_in_its_first_cell(tmp_path, first):
+    found = measured(tmp_path, Chain(first=first))
+    ratio = {"centre": 1.0, "start": 0.5, "end": 1.5}[first]
+    assert found.joints[0].flexural_rigidity == pytest.approx(ratio, rel=1e-6)
+    assert found.length == pytest.approx(1.0)
+
+
+def test_it_is_measured_in_its_own_units(tmp_path):
+    found = measured(tmp_path, Chain(length=100.0, radius=0.5, rigidity=640.0))
+    assert found.length == pytest.approx(100.0)
+    assert found.joints[3].flexural_rigidity == pytest.approx(640.0, rel=1e-6)
+
+
+def test_a_curved_one_is_curved_by_its_springs(tmp_path):
+    found = measured(tmp_path, Chain(curvature=0.4))
+    assert found.natural_curvature == pytest.approx(0.4, rel=1e-6)
+    assert found.joints[5].flexural_rigidity == pytest.approx(1.0, rel=1e-6)
+
+
+def test_a_sensor_is_read_in_whatever_frame_it_has(tmp_path):
+    found = measured(tmp_path, Chain(site='euler="0 0 0.3" pos="0 -0.1 0"'))
+    c, s = np.cos(0.3), np.sin(0.3)
+    np.testing.assert_allclose(found.force.axes, [[c, s, 0], [-s, c, 0], [0, 0, 1]], atol=1e-6)
+    np.testing.assert_allclose(found.torque.lever, [0, -0.1, 0], atol=1e-3)
+
+
+def test_a_foot_on_a_slide_is_held_all_the_same(tmp_path):
+    slide = Chain(foot="", inside_foot='<joint name="rail" type="slide" axis="1 0 0"/>')
+    found = measured(tmp_path, slide)
+    assert found.drive == "slide 'rail' without an actuator"
+    assert found.tip_rigidity == pytest.approx(1.0006, abs=1e-4)
+    np.testing.assert_allclose(found.force.axes, np.eye(3), atol=1e-6)
+
+
+def test_the_files_of_a_model_are_left_alone(tmp_path):
+    path = Chain().write(tmp_path)
+    before = path.read_bytes(), path.stat().st_mtime_ns
+    inspect_model(path)
+    assert (path.read_bytes(), path.stat().st_mtime_ns) == before
+    assert [*tmp_path.iterdir()] == [path]
+
+
+def test_includes_are_found(tmp_path):
+    path = Chain().write(tmp_path)
+    (tmp_path / "world.xml").write_text('<mujoco><include file="whisker.xml"/></mujoco>')
+    assert inspect_model(tmp_path / "world.xml").length == inspect_model(path).length
+
+
+def test_a_urdf_is_a_model_too(tmp_path):
+    links = "".join(
+        f'<link name="l{i}"><inertial><mass value="1e-3"/><inertia ixx="1e-6" iyy="1e-6" '
+        'izz="1e-6" ixy="0" ixz="0" iyz="0"/></inertial><collision><origin xyz="0 0 0.05"/>'
+        '<geometry><cylinder length="0.1" radius="0.005"/></geometry></collision></link>'
+        for i in range(5)
+    )
+    joints = "".join(
+        f'<joint name="j{i}" type="continuous"><parent link="l{i - 1}"/><child link="l{i}"/>'
+        '<origin xyz="0 0 0.1"/><axis xyz="0 1 0"/></joint>'
+        for i in range(1, 5)
+    )
+    (tmp_path / "w.urdf").write_text(f'<robot name="w">{links}{joints}</robot>')
+    # URDF has no springs, so that nothing holds its joints; it says so in a line.
+    with pytest.raises(InputError, match="without a stiffness"):
+        inspect_model(tmp_path / "w.urdf")
+
+
+@pytest.mark.parametrize("name", shipped_models())
+def test_shipped_models_are_measured(name):
+    if name == "cable" and "cable" not in available_beams():
+        with pytest.raises(InputError, match=r"3\.17 has composite cables"):
+            inspect_model(shipped_models()[name])
+        return
+    found = inspect_model(shipped_models()[name])
+    assert found.length == pytest.approx(0.1)
+    first = found.joints[len(found.joints) // 2].flexural_rigidity
+    assert first == pytest.approx(6.44e-4, rel=1e-3) or name == "tapered-whisker"
+
+
+TWO = Chain(foot="", sensors="").text("other")
+
+
+@pytest.mark.parametrize(
+    ("chain", "names", "said"),
+    [
+        (Chain(), {"foot": "whisker-fot"}, "did you mean whisker-foot?"),
+        (Chain(), {"force": "T"}, "it is no <force>"),
+        (Chain(), {"torque": "X"}, "--torque = 'X'"),
+        (Chain(), {"geoms": "hair*"}, "--geoms = 'hair\\*'"),
+        (Chain(), {"foot": "whisker5"}, "without a vibrissa where the names say"),
+        (Chain(links=2), {}, "without a vibrissa: must be with a row of at least 3"),
+        (Chain(stiffer={4: 0.0}), {}, "body 'whisker4' of the vibrissa = without a stiffness"),
+        (Chain(rigidity=0.0), {}, "without a stiffness"),
+        (Chain(beside=TWO.replace('name="clamp"', 'name="c2"')), {}, "2 candidates"),
+        (Chain(sensors='<force name="F" site="clamp"/>' * 2), {}, "repeated name"),
+        (
+            Chain(sensors='<force name="F" site="clamp"/><force name="G" site="clamp"/>'),
+            {},
+            "2 force sensors \\('F', 'G'\\)",
+        ),
+        (
+            Chain(beside='<geom type="mesh" mesh="none"/>'),
+            {},
+            "put its files where it says|correct the file",
+        ),
+    ],
+)
+def test_what_is_wrong_is_one_line(tmp_path, chain, names, said):
+    with pytest.raises(InputError, match=said) as caught:
+        measured(tmp_path, chain, **names)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_name_of_the_foot_chooses_between_two(tmp_path):
+    both = Chain(beside=TWO.replace('name="clamp"', 'name="c2"'))
+    found = measured(tmp_path, both, foot="whisker-foot")
+    assert found.foot == "whisker-foot"
+    assert measured(tmp_path, both, geoms="other-*").foot == "other-foot"
+
+
+def test_what_is_no_model(tmp_path):
+    (tmp_path / "x.xml").write_text("<mujoco><worldbody></mujoco>")
+    for path in (tmp_path / "x.xml", tmp_path / "missing.xml", tmp_path):
+        with pytest.raises(InputError) as caught:
+            inspect_model(path)
+        assert "\n" not in str(caught.value)
