@@ -44,7 +44,7 @@ def inspect(
     from compare.simulate.inspection import Inspection
     from mujoco_models import inspect_model, shipped_models
 
-    stated = None if beam is None else read_beam(beam)
+    stated = None if beam is None else read_beam(beam)[0]
     shipped = shipped_models()
     if model not in shipped and not Path(model).suffix:
         raise InputError(

@@ -9,6 +9,7 @@ import numpy as np
 from analytic import Beam
 from compare.simulate.rigidity import (
     as_intended,
+    as_stated,
     by_its_clamp,
     elastica_error,
     is_curved,
@@ -126,16 +127,19 @@ def _stated(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
     own = as_intended(found)
     for what, measured, wanted, allowed in (
         ("length", found.length, stated.length, _LENGTH),
-        ("EI", own, stated.flexural_rigidity, _RIGIDITY),
+        ("EI", own, as_stated(stated), _RIGIDITY),
     ):
         off = measured / wanted - 1
         if abs(off) > allowed:
             yield Remark("fault", what, f"{measured:.6g}, which is {abs(off):.1%} "
                          f"{'more' if off > 0 else 'less'} than stated ({wanted:.6g})")  # fmt: skip
+    middles = np.array([(geom.start + geom.end) / 2 for geom in found.geoms])
+    wanted_radii = stated.radius_at(np.clip(middles, 0, stated.length))
     radii = np.array([geom.radius for geom in found.geoms])
-    worst = float(radii[int(np.argmax(np.abs(radii - stated.radius)))])
-    if abs(worst - stated.radius) > _RADIUS * found.length:
-        yield Remark("fault", "radius", f"{worst:.4g} instead of {stated.radius:.4g}")
+    worst = int(np.argmax(np.abs(radii - wanted_radii)))
+    if abs(radii[worst] - wanted_radii[worst]) > _RADIUS * found.length:
+        yield Remark("fault", "radius", f"{radii[worst]:.4g} instead of {wanted_radii[worst]:.4g}, "
+                     f"at s = {middles[worst] / found.length:.2f} L")  # fmt: skip
 
 
 def _in_other_units(found: MeasuredBeam, stated: Beam) -> bool:
@@ -155,7 +159,10 @@ def _units(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
 
 
 def _rest(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
-    wanted = 0.0 if stated is None else stated.natural_curvature
+    wanted = 0.0
+    if stated is not None:
+        s = np.linspace(0, stated.length, 1001)
+        wanted = float(np.trapezoid(stated.curvature_at(s), s)) / stated.length
     if is_curved(found, wanted):
         own, should = (x * found.length for x in (found.natural_curvature, wanted))
         yield Remark("fault", "natural curvature", f"{own:.3g}/L instead of {should:.3g}/L: at "

@@ -2,10 +2,12 @@
 
 import numpy as np
 
+from analytic import Beam
 from analytic.problem.arrays import Floats
 from compare.measure.cantilever import tip_of
 from mujoco_models.inspect.measured import MeasuredBeam
 
+_POINTS = 2001  # of an integral along the beam
 _UNEVEN = 0.02  # relative; what tapers by less is uniform
 _CURVATURE = 0.01  # 1/L; the tip of such an arc is 0.005 L aside
 
@@ -56,9 +58,30 @@ def as_intended(found: MeasuredBeam) -> float:
     float
         L^3 over three times the integral of (L - s)^2/EI [force length^2].
     """
-    s = np.linspace(0, found.length, 2001)
-    flexibility = np.trapezoid((found.length - s) ** 2 / smooth_rigidity(found, s), s)
-    return float(found.length**3 / (3 * flexibility))
+    s = np.linspace(0, found.length, _POINTS)
+    return _of_tip(s, smooth_rigidity(found, s))
+
+
+def as_stated(beam: Beam) -> float:
+    """EI that the tip of a vibrissa shows under a small force across it.
+
+    Parameters
+    ----------
+    beam : Beam
+        Uniform or not.
+
+    Returns
+    -------
+    float
+        As of `as_intended` [force length^2].
+    """
+    s = np.linspace(0, beam.length, _POINTS)
+    return _of_tip(s, beam.rigidity_at(s))
+
+
+def _of_tip(s: Floats, rigidity: Floats) -> float:
+    flexibility = np.trapezoid((s[-1] - s) ** 2 / rigidity, s)
+    return float(s[-1] ** 3 / (3 * flexibility))
 
 
 def elastica_error(found: MeasuredBeam) -> float:
