@@ -7,7 +7,7 @@ import pandas as pd
 
 from analytic.checks.integration import integrate_span
 from analytic.problem.readings import Readings
-from analytic.problem.support import is_plain, require_plain, support_of
+from analytic.problem.support import is_plain, support_of
 
 
 def certify(readings: Readings) -> pd.DataFrame:
@@ -25,9 +25,9 @@ def certify(readings: Readings) -> pd.DataFrame:
     -------
     pandas.DataFrame
         A row a station, dimensionless. ``residual_boundary`` is the largest of the misses of the
-        contact's position, of its curvature (the natural one, less what friction's couple on the
-        surface adds), of the slope there (the contour's in Phase B, the tip's in Phase A) and of
-        the force's direction, normal to the contour, or off it by friction's angle; of what the arc
+        contact's position, of its moment (friction's couple on the surface), of the slope there
+        (the contour's in Phase B, and a cone's lean; the tip's in Phase A) and of the force's
+        direction, normal to the contour, or off it by friction's angle; of what the arc
         length exceeds L by; and of the tip's slope, if it comes from inside the object. For the
         paper's vibrissa it is that of what the slope falls below the contour's by on the way, too:
         above it the vibrissa stays below the tangent at the contact, and so outside a convex body.
@@ -36,8 +36,6 @@ def certify(readings: Readings) -> pd.DataFrame:
     """
     clamp_stiffness, friction = support_of(readings.provenance)
     beam, foot_x = readings.beam, readings.values("foot_x")
-    if beam.varies:
-        require_plain("the certificate", beam)
     plain = is_plain(beam, clamp_stiffness, friction)
     if readings.bends_left if plain else foot_x[-1] > foot_x[0]:
         return certify(readings.mirrored())
@@ -46,17 +44,16 @@ def certify(readings: Readings) -> pd.DataFrame:
     force_y = readings.values("force_y") / beam.force_unit
     moment = readings.values("moment_z") / beam.moment_unit
     alpha = readings.values("contact_angle")
-    x = (
-        readings.values("contact_x") + beam.radius * np.sin(alpha) - readings.values("foot_x")
-    ) / length
-    y = (readings.values("contact_y") - beam.radius * np.cos(alpha)) / length
+    radius = beam.radius_at(readings.values("contact_arc_length"))
+    x = (readings.values("contact_x") + radius * np.sin(alpha) - readings.values("foot_x")) / length
+    y = (readings.values("contact_y") - radius * np.cos(alpha)) / length
     arc_length = readings.values("contact_arc_length") / length
     phase = readings.table["phase"].to_numpy()
-    slope = np.where(phase == "tangent", alpha, readings.values("tip_angle"))
+    along = alpha + beam.unloaded.lean
+    slope = np.where(phase == "tangent", along, readings.values("tip_angle"))
     compliance = beam.moment_unit / clamp_stiffness
-    natural = float(beam.curvature_at(0.0)) * length
     # Friction acts on the surface, and turns the force by the friction angle.
-    arm = friction / math.sqrt(1 + friction**2) * beam.radius / length
+    arm = friction / math.sqrt(1 + friction**2) * radius / length
     couple = arm * np.hypot(force_x, force_y)
 
     touching = np.isfinite(arc_length)
@@ -69,17 +66,18 @@ def certify(readings: Readings) -> pd.DataFrame:
             moment[touching],
             arc_length[touching],
             compliance=compliance,
-            natural=natural,
+            natural=lambda s: length * beam.curvature_at(length * s),
+            flexibility=lambda s: beam.base_rigidity / beam.rigidity_at(length * s),
         )
         misses = [
             end.x - x[touching],
             end.y - y[touching],
             end.phi - slope[touching],
-            end.kappa - natural + couple[touching],
+            end.moment + couple[touching],
             (np.arctan2(-force_x, force_y) - math.atan(friction) - alpha)[touching],
             np.maximum(0.0, arc_length[touching] - 1),
             np.maximum(0.0, slope[touching] - alpha[touching] - np.pi),
-            np.maximum(0.0, alpha[touching] - (end.least_phi if plain else slope[touching])),
+            np.maximum(0.0, along[touching] - (end.least_phi if plain else slope[touching])),
         ]
         boundary[touching] = np.abs(misses).max(axis=0)
         balance[touching] = np.abs(moment - (force_y * x - force_x * y) - couple)[touching]

@@ -1,23 +1,31 @@
 """The elastica integrated from the clamp: what the closed forms are checked against."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from analytic.problem.arrays import Floats
 
+Along: TypeAlias = Callable[[Floats], Floats]
+"""A quantity along the vibrissa, dimensionless, element by element."""
+
 _MARKS = np.linspace(0, 1, 17)[1:]  # parts of the span at which its slope is looked at
 
 
+def _none(s: Floats) -> Floats:
+    return np.zeros_like(s)
+
+
 class End(NamedTuple):
-    """The state at the end of each span, shape (n,): position, slope angle, curvature."""
+    """The state at the end of each span, shape (n,): position, slope angle, moment."""
 
     x: Floats
     y: Floats
     phi: Floats
-    kappa: Floats
+    moment: Floats
+    """Positive where it adds to the curvature [EI/L]."""
     least_phi: Floats
     """Smallest slope angle on the way, at 16 places [rad]."""
 
@@ -29,14 +37,15 @@ def integrate_span(
     length: Floats,
     tolerance: float = 1e-13,
     compliance: float = 0.0,
-    natural: float = 0.0,
+    natural: Along = _none,
+    flexibility: Along = np.ones_like,
 ) -> End:
     """March from the clamp along the loaded span (Will et al., eqs. 4 and 15).
 
     No elliptic integral is used.
 
     The initial value problem of section 5 takes kappa from a square root that vanishes at the
-    contact, where its solution is not unique; kappa' = f cos(phi - alpha) is smooth throughout.
+    contact, where its solution is not unique; m' = f cos(phi - alpha) is smooth throughout.
 
     Parameters
     ----------
@@ -48,8 +57,8 @@ def integrate_span(
         Relative and absolute, of the Dormand-Prince method of order 8.
     compliance : float
         Rotation of the clamp by moment [L/EI].
-    natural : float
-        Natural curvature [1/L].
+    natural, flexibility : callable
+        Natural curvature [1/L] and EI(0)/EI at arc lengths [L], element by element.
 
     Returns
     -------
@@ -58,19 +67,21 @@ def integrate_span(
     """
     n = len(moment)
 
-    def rate(_: float, state: Floats) -> Floats:
-        phi, kappa = state.reshape(4, n)[2:]
+    def rate(share: float, state: Floats) -> Floats:
+        phi, m = state.reshape(4, n)[2:]
         cos, sin = np.cos(phi), np.sin(phi)
+        s = share * length
+        kappa = natural(s) + m * flexibility(s)
         return np.concatenate(
             [length * cos, length * sin, length * kappa, length * (force_y * cos - force_x * sin)]
         )
 
-    start = np.concatenate([np.zeros(2 * n), np.pi / 2 - compliance * moment, natural - moment])
+    start = np.concatenate([np.zeros(2 * n), np.pi / 2 - compliance * moment, -moment])
     found = solve_ivp(
         rate, (0.0, 1.0), start, method="DOP853", rtol=tolerance, atol=tolerance, t_eval=_MARKS
     )
-    x, y, phi, kappa = found.y.reshape(4, n, len(_MARKS))
-    return End(x[:, -1], y[:, -1], phi[:, -1], kappa[:, -1], phi.min(axis=1))
+    x, y, phi, m = found.y.reshape(4, n, len(_MARKS))
+    return End(x[:, -1], y[:, -1], phi[:, -1], m[:, -1], phi.min(axis=1))
 
 
 def march(rate: Callable[[Floats], Floats], state: Floats, length: Floats, steps: int) -> Floats:

@@ -96,6 +96,26 @@ class Unloaded:
         chord = s * half
         return -chord * np.sin(turned / 2), chord * np.cos(turned / 2), np.pi / 2 + turned
 
+    def turn_between(self, begin: Floats, end: float) -> Floats:
+        """By how much the slope grows along a part.
+
+        Parameters
+        ----------
+        begin : array, any shape
+            Arc length at which it begins [L].
+        end : float
+            And ends [L].
+
+        Returns
+        -------
+        array, shape of `begin`
+            [rad].
+        """
+        if isinstance(self.natural, Along):
+            turn = self._integrals[2]
+            return turn(np.array(end)) - turn(begin)
+        return self.natural * (end - begin)
+
     @cached_property
     def _integrals(self) -> tuple[Along, Along, Along]:
         assert isinstance(self.natural, Along)

@@ -14,6 +14,7 @@ from analytic.solver.equilibria import equilibria, to_columns
 from analytic.solver.general.clearance import is_clear
 from analytic.solver.general.columns import to_columns as general_columns
 from analytic.solver.general.contacts import contacts
+from analytic.solver.general.residuals import without_inexact
 from analytic.solver.general.states import Vibrissa
 
 
@@ -45,7 +46,9 @@ def solve_contact(
     -------
     pandas.DataFrame
         n rows with the columns of `Readings.table`, in the units of `beam`. ``status`` is
-        ``"unreachable"``, and the readings NaN, where no vibrissa reaches. With a natural
+        ``"unreachable"``, and the readings NaN, where no vibrissa reaches. If rigidity, radius or
+        natural curvature vary along the vibrissa, it is ``"diverged"``, without readings, where
+        collocation misses a condition by more than 1e-11. With a natural
         curvature, friction or an elastic clamp it is so, too, where the state of the paper's
         vibrissa cannot be followed to this one; and ``"touches again"`` where it would touch the
         object in a second place. Such a vibrissa may have two states at one point of the contour;
@@ -76,6 +79,8 @@ def solve_contact(
     t = centreline.parameter(angles)
     if is_plain(beam, clamp_stiffness, friction):
         return pd.DataFrame(to_columns(equilibria(centreline, t), beam))
-    found = contacts(centreline, t, Vibrissa.of(beam, clamp_stiffness, friction))
+    vibrissa = Vibrissa.of(beam, clamp_stiffness, friction)
+    found = contacts(centreline, t, vibrissa)
     again = np.isfinite(found.excess) & ~is_clear(centreline, found)
-    return pd.DataFrame(general_columns(found, again, beam))
+    columns = general_columns(found, again, beam)
+    return pd.DataFrame(without_inexact(columns, beam, vibrissa))

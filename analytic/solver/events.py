@@ -22,6 +22,7 @@ from analytic.solver.contact_length import surplus_and_rate
 from analytic.solver.equilibria import Equilibria, equilibria, tangent_contact, to_columns
 from analytic.solver.general.columns import to_columns as general_columns
 from analytic.solver.general.path import follow
+from analytic.solver.general.residuals import without_inexact
 from analytic.solver.general.states import Vibrissa, states
 from analytic.solver.grid import along
 
@@ -145,6 +146,7 @@ def _general_events(
         z = path.z[i : i + 1]
         found = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
         columns = general_columns(found, np.zeros(1, dtype=bool), beam)
+        columns = without_inexact(columns, beam, vibrissa)
         return Event(**{name: column[0].item() for name, column in columns.items()})
 
     first, snap_off = event("first_contact"), event("snap_off")

@@ -16,12 +16,12 @@ from analytic.problem.readings import Readings
 from analytic.solver.branch import trace
 from analytic.solver.equilibria import Column, to_columns
 from analytic.solver.general import sweep as general
+from analytic.solver.general.residuals import SOLVED
 from analytic.solver.general.residuals import residuals as general_residuals
 from analytic.solver.general.states import Vibrissa
 from analytic.solver.residuals import residuals
 from analytic.solver.stations import solve_stations
 
-_SOLVED = 1e-11  # residuals of the closed form: hundreds of roundings at the sharpest bends
 _CERTIFIED = 1e-9  # L and EI/L; the integration is good to 1e-12
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
 
@@ -86,7 +86,7 @@ def _solve_plain(
         for name in COLUMNS[1:]:
             columns[name][touching] = solved[name]
     checked = residuals(columns, beam)
-    solved_on = np.maximum(*checked.values()) <= _SOLVED
+    solved_on = np.maximum(*checked.values()) <= SOLVED
     columns["status"] = np.where(solved_on, "ok", "diverged")
     return checked, branch.events()
 
@@ -100,7 +100,7 @@ def _solve_general(
         columns[name][solved.where] = solved.columns[name]
     vibrissa = Vibrissa.of(case.beam, case.clamp_stiffness, case.friction)
     checked = general_residuals(columns, case.beam, vibrissa)
-    inexact = np.maximum(*checked.values()) > _SOLVED
+    inexact = np.maximum(*checked.values()) > SOLVED
     columns["status"][inexact] = "diverged"
     return checked, solved.events
 

@@ -11,11 +11,14 @@ import numpy as np
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.contours.contour import Contour
 from analytic.problem.roots import zeros
-from analytic.solver.general.span import back_to_clamp
+from analytic.solver.general.march import Trail, march
 from analytic.solver.general.states import States, Vibrissa
 
 _PLACES = np.linspace(0, 1, 17)[1:]  # parts of the loaded span, and of the free end
+_MARKS = np.linspace(0, 1, 33)  # of the places at which a vibrissa that varies is known
+_STRAIGHT = 1e-12  # 1/L; rounding of a natural curvature that vanishes
 _TANGENTS = 65
+_CHUNK = 500  # contacts at a time, so that their places and tangents find room
 _INSIDE = 1e-9  # L; by how much a point may seem to lie in the object
 
 
@@ -36,9 +39,10 @@ def is_clear(centreline: Contour, contact: States) -> Booleans:
         loaded span and 16 of the free end.
     """
     clear = _bends_one_way(contact)
-    left = np.flatnonzero(~clear)
+    left = np.flatnonzero(~clear & np.isfinite(contact.excess))
     if left.size:
-        clear[left] = _is_outside(centreline, contact.at(left))
+        for some in np.array_split(left, 1 + left.size // _CHUNK):
+            clear[some] = _is_outside(centreline, contact.at(some))
     return clear & _starts_outside(contact)
 
 
@@ -48,7 +52,7 @@ def _starts_outside(contact: States) -> Booleans:
     A tip comes from below the tangent there; a vibrissa that goes along is not curved more than the
     object.
     """
-    point, natural = contact.point, contact.vibrissa.natural_curvature
+    point, natural = contact.felt, contact.vibrissa.unloaded.curvature(contact.arc_length)
     below = contact.excess <= np.pi + _INSIDE
     flatter = natural * point.stretch <= point.turning * (1 + _INSIDE)
     return np.asarray(below & (flatter | ~contact.tangent))
@@ -56,15 +60,22 @@ def _starts_outside(contact: States) -> Booleans:
 
 def _bends_one_way(contact: States) -> Booleans:
     """Whether the slope falls all along: the vibrissa is then below the tangent at its contact."""
-    natural, _, mu, radius = contact.vibrissa
-    at_contact = natural - mu * radius * contact.force
+    vibrissa, natural = contact.vibrissa, contact.vibrissa.natural_curvature
+    if vibrissa.form is not None:
+        # The moment about places on the way to the clamp grows, and then may fall to the clamp's.
+        held = (contact.couple >= 0) & (contact.moment >= 0) & (contact.swing < np.pi)
+        across = contact.tip_angle - contact.point.alpha <= np.pi / 2
+        return np.asarray(held & across & (vibrissa.form.most_curved <= _STRAIGHT))
+    at_contact = natural - vibrissa.friction * vibrissa.radius * contact.force
     bent = (at_contact <= 0) & (natural <= contact.moment) & (contact.swing < np.pi)
     return np.asarray(bent & (natural <= 0))
 
 
 def _is_outside(centreline: Contour, contact: States) -> Booleans:
-    x, y = (np.concatenate(parts) for parts in zip(_loaded(contact), _free(contact), strict=True))
-    return np.asarray(_outside(centreline, x, y).all(axis=0))
+    parts = zip(_loaded(contact), _free(contact), strict=True)
+    s, x, y = (np.concatenate(part) for part in parts)
+    taper = contact.vibrissa.unloaded.taper(s)
+    return np.asarray(_outside(centreline, x, y, taper).all(axis=0))
 
 
 def is_rest_clear(centreline: Contour, vibrissa: Vibrissa, foot_x: Floats) -> Booleans:
@@ -84,42 +95,58 @@ def is_rest_clear(centreline: Contour, vibrissa: Vibrissa, foot_x: Floats) -> Bo
     array of bool, shape (n,)
         False where some of its 16 places would be inside.
     """
-    x, y, _ = vibrissa.unloaded.at(_PLACES[:, None])
-    outside = _outside(centreline, x + foot_x, np.broadcast_to(y, (y.size, foot_x.size)))
+    s = np.broadcast_to(_PLACES[:, None], (_PLACES.size, foot_x.size))
+    x, y, _ = vibrissa.unloaded.at(s)
+    outside = _outside(centreline, x + foot_x, y, vibrissa.unloaded.taper(s))
     return np.asarray(outside.all(axis=0))
 
 
-def _loaded(contact: States) -> tuple[Floats, Floats]:
-    """Places of the loaded span, shape (16, n)."""
-    natural, _, mu, radius = contact.vibrissa
-    lean = np.arctan(mu)
-    length = contact.arc_length * _PLACES[:, None]
-    theta, kappa, force = (
-        np.broadcast_to(values, length.shape)
-        for values in (
-            np.maximum(contact.excess, 0.0) - lean,
-            natural - mu * radius * contact.force,
-            np.sqrt(1 + mu**2) * contact.force,
+def _loaded(contact: States) -> tuple[Floats, Floats, Floats]:
+    """Arc length and place of parts of the loaded span, shape (k, n)."""
+    vibrissa, place = contact.vibrissa, contact.felt
+    lean = np.arctan(vibrissa.friction)
+    slope, push = contact.tip_angle - place.alpha - lean, np.hypot(1, vibrissa.friction)
+    if vibrissa.form is None:
+        s = contact.arc_length * (1 - _PLACES[:, None])
+        part = vibrissa.back_to_clamp(
+            np.broadcast_to(slope, s.shape),
+            np.broadcast_to(contact.couple, s.shape),
+            np.broadcast_to(push * contact.force, s.shape),
+            contact.arc_length - s,
         )
-    )
-    part = back_to_clamp(theta, kappa, force, length)
-    sin, cos = np.sin(contact.point.alpha + lean), np.cos(contact.point.alpha + lean)
-    return (
-        contact.point.xi - part.along * cos + part.across * sin,
-        contact.point.eta - part.along * sin - part.across * cos,
-    )
+        along, across = part.along, part.across
+    else:
+        trail: list[Trail] = []
+        march(
+            vibrissa.form,
+            slope,
+            -contact.couple,
+            push * contact.force,
+            contact.arc_length,
+            trail=trail,
+        )
+        s, along, across = (np.concatenate(parts) for parts in zip(*trail, strict=True))
+        reached = s.max(axis=1)
+        order = np.argsort(reached)
+        some = np.unique(order[np.searchsorted(reached[order], _MARKS * reached.max())])
+        s, along, across = s[some], along[some], across[some]
+    sin, cos = np.sin(place.alpha + lean), np.cos(place.alpha + lean)
+    return s, place.xi - along * cos + across * sin, place.eta - along * sin - across * cos
 
 
-def _free(contact: States) -> tuple[Floats, Floats]:
-    """Places of the free end, an arc that starts along the contour, shape (16, n)."""
-    length = (1 - contact.arc_length) * _PLACES[:, None]
-    x, y, _ = contact.vibrissa.unloaded.at(length)
-    sin, cos = np.sin(contact.tip_angle), np.cos(contact.tip_angle)
-    return contact.point.xi + x * sin + y * cos, contact.point.eta + y * sin - x * cos
+def _free(contact: States) -> tuple[Floats, Floats, Floats]:
+    """Arc length and place of parts of the free end, unloaded, shape (16, n)."""
+    rest, place, begin = contact.vibrissa.unloaded, contact.felt, contact.arc_length
+    s = begin + (1 - begin) * _PLACES[:, None]
+    x, y, _ = rest.at(s)
+    first_x, first_y, slope = rest.at(begin)
+    x, y, turned = x - first_x, y - first_y, contact.tip_angle - slope
+    sin, cos = np.sin(turned), np.cos(turned)
+    return s, place.xi + x * cos - y * sin, place.eta + y * cos + x * sin
 
 
-def _outside(centreline: Contour, x: Floats, y: Floats) -> Booleans:
-    """Whether points are outside the object, of any shape."""
+def _outside(centreline: Contour, x: Floats, y: Floats, taper: Floats) -> Booleans:
+    """Whether the vibrissa, thicker than at its tip by `taper`, is outside; of any shape."""
     low, high = centreline.t_range
     t = np.unique(np.concatenate([np.linspace(low, high, _TANGENTS), centreline.breaks()]))
     alpha, xi, eta = centreline.at(t)[:3]
@@ -130,7 +157,8 @@ def _outside(centreline: Contour, x: Floats, y: Floats) -> Booleans:
     normals = np.stack([np.sin(alpha), -np.cos(alpha)])
     beyond = places @ normals - (xi * normals[0] + eta * normals[1])
     best = np.argmax(beyond, axis=1)
-    outside = ~(beyond[np.arange(len(places)), best] < -_INSIDE)
+    least = taper.ravel() - _INSIDE
+    outside = ~(beyond[np.arange(len(places)), best] < least)
     left = np.flatnonzero(~outside)
     if left.size:  # between two tangents there may be a better one
         begin, end = t[np.maximum(best[left] - 1, 0)], t[np.minimum(best[left] + 1, len(t) - 1)]
@@ -143,5 +171,5 @@ def _outside(centreline: Contour, x: Floats, y: Floats) -> Booleans:
 
         point = centreline.at(zeros(along, begin, end))
         dx, dy = places[left, 0] - point.xi, places[left, 1] - point.eta
-        outside[left] = dx * np.sin(point.alpha) - dy * np.cos(point.alpha) >= -_INSIDE
+        outside[left] = dx * np.sin(point.alpha) - dy * np.cos(point.alpha) >= least[left]
     return np.asarray(outside.reshape(x.shape))

@@ -27,8 +27,8 @@ def to_columns(found: States, again: Booleans, beam: Beam) -> dict[str, Column]:
     """
     alpha, xi, eta = found.point[:3]
     force, mu = found.force * beam.force_unit, found.vibrissa.friction
-    radius, length = beam.radius / beam.length, found.arc_length
-    natural = found.vibrissa.natural_curvature
+    radius, length = found.vibrissa.radius, found.arc_length
+    rest = found.vibrissa.unloaded
     missing = np.isnan(found.excess) | again
 
     def where_there(values: Floats) -> Floats:
@@ -44,6 +44,6 @@ def to_columns(found: States, again: Booleans, beam: Beam) -> dict[str, Column]:
         "contact_arc_length": where_there(length) * beam.length,
         "contact_x": (xi - radius * np.sin(alpha)) * beam.length,
         "contact_y": (eta + radius * np.cos(alpha)) * beam.length,
-        "tip_angle": where_there(found.tip_angle + natural * (1 - length)),
+        "tip_angle": where_there(found.tip_angle + rest.turn_between(length, 1.0)),
         "status": np.where(again, "touches again", np.where(missing, "unreachable", "ok")),
     }

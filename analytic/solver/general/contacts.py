@@ -107,7 +107,7 @@ def _balanced(point: ContourPoint, vibrissa: Vibrissa, start: Floats) -> tuple[F
 
     def misses(z: Floats, which: Integers) -> Floats:
         found = states(at(which), z[:, 0], z[:, 1], vibrissa)
-        return np.stack([found.twist, found.up - found.point.eta], axis=1)
+        return np.stack([found.twist, found.above], axis=1)
 
     def jacobian(z: Floats, which: Integers) -> Floats:
         _, rates = with_rates(at(which), z[:, 0], z[:, 1], vibrissa)

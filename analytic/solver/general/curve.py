@@ -177,7 +177,7 @@ class Curve(NamedTuple):
         slopes = np.concatenate([rates.twist, rates.above])
         direction = _cross(slopes[0], slopes[1])
         direction = direction / (_size(direction, z) or math.nan)
-        misses = np.array([here.twist[0], here.up[0] - here.point.eta[0]])
+        misses = np.array([here.twist[0], here.above[0]])
         point = Point(
             z,
             direction,

@@ -100,7 +100,7 @@ def _between(
     (a, b), (c, d) = np.moveaxis(known.inverse[left[hopeful]], 0, -1)
     for _ in range(_STEPS):
         here = states(point, np.maximum(f, 0.0), w, vibrissa)
-        twist, above = here.twist, here.up - point.eta
+        twist, above = here.twist, here.above
         close = np.maximum(np.abs(twist), np.abs(above)) <= _CLOSE
         if close.all():
             break

@@ -4,16 +4,21 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
+from analytic.problem.columns import CLAMP_READINGS
 from analytic.solver.equilibria import Column
+from analytic.solver.general.march import Place, march
 from analytic.solver.general.span import back_to_clamp
 from analytic.solver.general.states import Vibrissa
 
+SOLVED = 1e-11  # of what a state misses: hundreds of roundings at the sharpest bends
+
 
 def residuals(columns: dict[str, Column], beam: Beam, vibrissa: Vibrissa) -> dict[str, Floats]:
-    """What the stations of a table of readings miss, by the closed form from clamp to contact.
+    """What the stations of a table of readings miss, from clamp to contact.
 
     The solver goes from the contact to the clamp; this is the way back, from the clamp's readings
-    alone. A span run through from its other end has the opposite curvature.
+    alone. Where rigidity or natural curvature vary it is taken on panels of half the length, so
+    that it shows the error of the solver's, too.
 
     Parameters
     ----------
@@ -33,7 +38,7 @@ def residuals(columns: dict[str, Column], beam: Beam, vibrissa: Vibrissa) -> dic
     def column(name: str, unit: float) -> Floats:
         return np.asarray(columns[name], dtype=float) / unit
 
-    natural, compliance, mu, radius = vibrissa
+    compliance, mu = vibrissa.compliance, vibrissa.friction
     force_x, force_y = (column(name, beam.force_unit) for name in ("force_x", "force_y"))
     moment = column("moment_z", beam.moment_unit)
     foot_x, xi, eta, length = (
@@ -41,23 +46,25 @@ def residuals(columns: dict[str, Column], beam: Beam, vibrissa: Vibrissa) -> dic
         for name in ("foot_x", "contact_x", "contact_y", "contact_arc_length")
     )
     alpha, tip_angle = column("contact_angle", 1.0), column("tip_angle", 1.0)
+    radius = vibrissa.radius_at(length)
     x, y = xi + radius * np.sin(alpha) - foot_x, eta - radius * np.cos(alpha)
-    slope = tip_angle - natural * (1 - length)
+    slope = tip_angle - vibrissa.unloaded.turn_between(length, 1.0)
     force, direction = np.hypot(force_x, force_y), np.arctan2(-force_x, force_y)
     couple = mu * radius * force / np.sqrt(1 + mu**2)
 
     begin = np.pi / 2 - compliance * moment - direction
-    end = back_to_clamp(begin, moment - natural, force, length)
+    end = _to_contact(vibrissa, begin, moment, force, length)
     sin, cos = np.sin(direction), np.cos(direction)
+    along = alpha + vibrissa.lean
     missed = [
         end.along * cos - end.across * sin - x,
         end.along * sin + end.across * cos - y,
-        np.pi / 2 - 2 * np.arctan2(end.p, end.g) + direction - slope,
-        -end.kappa - natural + couple,
+        end.theta + direction - slope,
+        end.m + couple,
         direction - np.arctan(mu) - alpha,
         np.maximum(0.0, length - 1),
-        np.maximum(0.0, alpha - slope),
-        np.where(columns["phase"] == "tangent", slope - alpha, 0.0),
+        np.maximum(0.0, along - slope),
+        np.where(columns["phase"] == "tangent", slope - along, 0.0),
     ]
     extent = np.maximum(1.0, np.abs(xi))
     balance = moment - (force_y * x - force_x * y) - couple
@@ -68,3 +75,50 @@ def residuals(columns: dict[str, Column], beam: Beam, vibrissa: Vibrissa) -> dic
             free, 0.0, np.abs(balance) / np.maximum(extent, np.abs(moment))
         ),
     }
+
+
+def without_inexact(
+    columns: dict[str, Column], beam: Beam, vibrissa: Vibrissa
+) -> dict[str, Column]:
+    """The readings of states at rest, but for those that collocation has not solved well enough.
+
+    Parameters
+    ----------
+    columns : dict of array, shape (n,)
+        As `residuals`.
+    beam : Beam
+        The vibrissa.
+    vibrissa : Vibrissa
+        Its dimensionless numbers.
+
+    Returns
+    -------
+    dict of array, shape (n,)
+        The same where nothing varies along the vibrissa: the closed form has no such error. Else
+        ``status`` is ``"diverged"``, and the readings are NaN, where one misses its conditions by
+        more than `SOLVED`.
+    """
+    if vibrissa.form is None:
+        return columns
+    missed = np.maximum(*residuals(columns, beam, vibrissa).values())
+    inexact = (columns["status"] == "ok") & ~(missed <= SOLVED)
+    if not inexact.any():
+        return columns
+    found = dict(columns)
+    for name in (*CLAMP_READINGS, "foot_x", "contact_arc_length", "tip_angle"):
+        found[name] = np.where(inexact, np.nan, columns[name])
+    found["status"] = np.where(inexact, "diverged", columns["status"])
+    return found
+
+
+def _to_contact(
+    vibrissa: Vibrissa, theta: Floats, moment: Floats, force: Floats, length: Floats
+) -> Place:
+    """March from the clamp to the contact."""
+    if vibrissa.form is not None:
+        return march(vibrissa.form, theta, -moment, force, length, from_clamp=True, finer=2)
+    # A span run through from its other end has the opposite curvature.
+    natural = vibrissa.natural_curvature
+    end = back_to_clamp(theta, moment - natural, force, length)
+    slope = np.pi / 2 - 2 * np.arctan2(end.p, end.g)
+    return Place(slope, -end.kappa - natural, end.along, end.across, end.swing)

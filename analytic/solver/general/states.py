@@ -2,7 +2,9 @@
 
 Dimensionless throughout, on the contour that the centreline feels. Both phases are one family: the
 excess w is s1 - 1 in Phase B, where it is negative, and phi1 - alpha in Phase A, where it is
-positive, so that the phases take turns where it vanishes. With the normal force f, Coulomb friction
+positive, so that the phases take turns where it vanishes. A cone that touches a contour leans by
+the angle from its surface to its axis: w is phi1 - alpha less that, and in Phase B phi(s1) is alpha
+and that. With the normal force f, Coulomb friction
 mu and slope angle alpha of the contour the force on the vibrissa is F = f sqrt(1 + mu^2) at the
 slope angle phi_F = alpha + arctan(mu): a dead force again. It acts on the surface, so that the
 couple -mu r f remains at the contact.
@@ -12,12 +14,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.problem.along import Along
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import ContourPoint
-from analytic.problem.support import require_plain
 from analytic.problem.unloaded import Unloaded
-from analytic.solver.general.span import back_to_clamp
+from analytic.solver.general import march
+from analytic.solver.general.form import Form
+from analytic.solver.general.span import Start, back_to_clamp
 
 # Differences of second order, to one side: a force is not negative, and a phase ends where w = 0.
 _DIFFERENCE = 1e-5  # of a force and an excess of size 1: truncation and round-off are alike
@@ -36,7 +40,9 @@ class Vibrissa(NamedTuple):
     friction: float = 0.0
     """Coefficient; positive where the object pushes the vibrissa along the contour to the right."""
     radius: float = 0.0
-    """[L]"""
+    """At the tip [L]."""
+    form: Form | None = None
+    """What varies along the vibrissa, if anything does; the natural curvature is then its."""
 
     @classmethod
     def of(cls, beam: Beam, clamp_stiffness: float, friction: float) -> "Vibrissa":
@@ -54,19 +60,86 @@ class Vibrissa(NamedTuple):
         Vibrissa
             Dimensionless.
         """
-        if beam.varies:
-            require_plain("the closed form", beam)
+        rest = beam.unloaded
         return cls(
-            float(beam.curvature_at(0.0)) * beam.length,
+            0.0 if isinstance(rest.natural, Along) else rest.natural,
             beam.moment_unit / clamp_stiffness,
             friction,
-            beam.radius / beam.length,
+            rest.tip_radius,
+            Form.of(beam) if beam.varies else None,
         )
 
     @property
     def unloaded(self) -> Unloaded:
         """Its shape and radius at rest."""
+        if self.form is not None:
+            return self.form.unloaded
         return Unloaded(self.natural_curvature, self.radius, self.radius)
+
+    def radius_at(self, s: Floats) -> Floats | float:
+        """Radius.
+
+        Parameters
+        ----------
+        s : array, any shape
+            Arc length from the clamp [L].
+
+        Returns
+        -------
+        array, shape of `s`, or float
+            [L].
+        """
+        return self.radius if self.form is None else self.radius + self.form.unloaded.taper(s)
+
+    @property
+    def lean(self) -> float:
+        """Angle from the surface of a cone to its axis [rad]."""
+        return 0.0 if self.form is None else self.form.unloaded.lean
+
+    def felt(self, point: ContourPoint, length: Floats) -> ContourPoint:
+        """The contour that the centreline feels where its radius is not the tip's.
+
+        Parameters
+        ----------
+        point : ContourPoint
+            Of the contour that it feels at the tip; arrays of shape (n,).
+        length : array, shape (n,)
+            Arc length of the contact [L].
+
+        Returns
+        -------
+        ContourPoint
+            Of the parallel curve at the distance of the radius there.
+        """
+        if self.form is None:
+            return point
+        taper = self.form.unloaded.taper(length)
+        return ContourPoint(
+            point.alpha,
+            point.xi + taper * np.sin(point.alpha),
+            point.eta - taper * np.cos(point.alpha),
+            point.turning,
+            point.stretch + taper * point.turning,
+        )
+
+    def back_to_clamp(self, slope: Floats, couple: Floats, force: Floats, length: Floats) -> Start:
+        """March from the contact back to the clamp.
+
+        Parameters
+        ----------
+        slope : array, any shape
+            Slope angle at the contact, from the force's [rad].
+        couple, force, length : array, same shape
+            Friction's couple at the contact, force on it and its arc length, dimensionless.
+
+        Returns
+        -------
+        Start
+            Of the same shape, dimensionless.
+        """
+        if self.form is None:
+            return back_to_clamp(slope, self.natural_curvature - couple, force, length)
+        return march.back_to_clamp(self.form, slope, -couple, force, length)
 
     def scaled(self, share: float) -> "Vibrissa":
         """The vibrissa a part of the way from the paper's to this one, its radius as it is.
@@ -86,6 +159,7 @@ class Vibrissa(NamedTuple):
             share * self.compliance,
             share * self.friction,
             self.radius,
+            None if self.form is None else self.form.scaled(share),
         )
 
 
@@ -93,6 +167,7 @@ class States(NamedTuple):
     """Vibrissae against points of the contour, in balance or not; arrays of shape (n,)."""
 
     point: ContourPoint
+    """Of the contour that the centreline feels at the tip."""
     force: Floats
     """Normal force f."""
     excess: Floats
@@ -146,12 +221,27 @@ class States(NamedTuple):
     @property
     def tip_angle(self) -> Floats:
         """Slope angle of the vibrissa at the contact [rad]."""
-        return self.point.alpha + np.maximum(self.excess, 0.0)
+        return self.point.alpha + self.vibrissa.lean + np.maximum(self.excess, 0.0)
+
+    @property
+    def couple(self) -> Floats:
+        """Couple of the friction on the surface about the axis."""
+        return self.vibrissa.friction * self.vibrissa.radius_at(self.arc_length) * self.force
 
     @property
     def foot_x(self) -> Floats:
         """Foot position."""
-        return self.point.xi - self.reach
+        return self.felt.xi - self.reach
+
+    @property
+    def above(self) -> Floats:
+        """Height of the span's end over the contour; zero in balance."""
+        return self.up - self.felt.eta
+
+    @property
+    def felt(self) -> ContourPoint:
+        """The place of the centreline, on the contour that it feels there."""
+        return self.vibrissa.felt(self.point, self.arc_length)
 
 
 def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibrissa) -> States:
@@ -160,24 +250,25 @@ def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibriss
     Parameters
     ----------
     point : ContourPoint
-        Where the centreline's contour is touched; arrays of shape (n,).
+        Where the contour that the centreline feels at the tip is touched; arrays of shape (n,).
     force, excess : array, shape (n,)
         Normal force, not negative, and excess.
     vibrissa : Vibrissa
-        Its numbers, or arrays of shape (n,).
+        Its numbers.
 
     Returns
     -------
     States
         Whether or not the clamp has its slope and the foot its height.
     """
-    natural, compliance, mu, radius = vibrissa
+    mu = vibrissa.friction
     push = np.sqrt(1 + mu**2) * force
     lean = np.arctan(mu)
     direction = point.alpha + lean
     length = 1 + np.minimum(excess, 0.0)
-    couple = mu * radius * force
-    start = back_to_clamp(np.maximum(excess, 0.0) - lean, natural - couple, push, length)
+    couple = mu * vibrissa.radius_at(length) * force
+    slope = np.maximum(excess, 0.0) + (vibrissa.lean - lean)
+    start = vibrissa.back_to_clamp(slope, couple, push, length)
     moment = couple + push * start.along
     sin, cos = np.sin(direction), np.cos(direction)
     sin_half, cos_half = np.sin(direction / 2), np.cos(direction / 2)
@@ -191,7 +282,7 @@ def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibriss
         moment,
         start.along * sin + start.across * cos,
         start.along * cos - start.across * sin,
-        compliance * moment - 2 * turned,
+        vibrissa.compliance * moment - 2 * turned,
         start.swing,
         vibrissa,
     )
@@ -241,14 +332,19 @@ def with_rates(
     )
     moment, up, reach, twist, swing = (values[0] for values in found[3:8])
     here = States(point, force, excess, moment, up, reach, twist, swing, vibrissa)
+    stretch = here.felt.stretch
     sin, cos = np.sin(point.alpha), np.cos(point.alpha)
     by_t = (
         point.turning,
-        point.turning * here.reach - point.stretch * sin,
-        point.stretch * cos + point.turning * here.up,
+        point.turning * here.reach - stretch * sin,
+        stretch * cos + point.turning * here.up,
     )
+    up, reach = found.up, found.reach
+    if vibrissa.form is not None:  # where a cone is touched tells how thick it is
+        up = up - (found.felt.eta - point.eta)
+        reach = reach - (found.felt.xi - point.xi)
     rates = []
-    for known, values in zip(by_t, (found.twist, found.up, -found.reach), strict=True):
+    for known, values in zip(by_t, (found.twist, up, -reach), strict=True):
         by_f, by_w = _WEIGHTS @ values
         rates.append(np.array([known, by_f / step_f, by_w / step_w]).T)
     return here, Rates(*rates)

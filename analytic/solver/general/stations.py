@@ -47,7 +47,7 @@ def solve_stations(
 
     def misses(z: Floats, which: Integers) -> Floats:
         here = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
-        return np.stack([here.twist, here.up - here.point.eta, here.foot_x - foot_x[which]], axis=1)
+        return np.stack([here.twist, here.above, here.foot_x - foot_x[which]], axis=1)
 
     def jacobian(z: Floats, which: Integers) -> Floats:
         _, rates = with_rates(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)

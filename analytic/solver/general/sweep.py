@@ -87,5 +87,5 @@ def _slides(found: States) -> Booleans:
     _, rates = with_rates(found.point, found.force, found.excess, found.vibrissa)
     way = np.cross(rates.twist, rates.above)
     foot = np.einsum("nk,nk->n", rates.foot_x, way)
-    slip = found.point.stretch * way[:, 0] - np.where(found.tangent, way[:, 2], 0.0)
+    slip = found.felt.stretch * way[:, 0] - np.where(found.tangent, way[:, 2], 0.0)
     return np.asarray(slip / foot >= -_STILL)

@@ -1,0 +1,135 @@
+"""What varies along a vibrissa, dimensionless, and the panels on which polynomials resolve it."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from analytic.problem.along import Along
+from analytic.problem.arrays import Floats
+from analytic.problem.beam import Beam
+from analytic.problem.unloaded import Unloaded
+
+NODES = 12  # of Gauss and Legendre on a panel
+POINTS, WEIGHTS = (v / 2 for v in np.polynomial.legendre.leggauss(NODES))
+POINTS = POINTS + 0.5  # from 0 to 1
+_TO_SERIES = np.linalg.inv(np.polynomial.legendre.legvander(2 * POINTS - 1, NODES - 1))
+_TAIL = 2  # coefficients
+_EXACT = 1e-8  # of a panel's largest value; of the integral over it then the square
+_HALVINGS = 12
+_PLACES = 257
+
+
+@dataclass(frozen=True)
+class Form:
+    """Rigidity, natural curvature and radius of a vibrissa along its length.
+
+    Parameters
+    ----------
+    unloaded : Unloaded
+        Natural curvature and radius.
+    rigidity : Along or float
+        EI(s)/EI(0); or the ratio of a cone's radii, whose fourth power it follows.
+    share : float
+        Exponent of the rigidity: 1, or less on the way from the uniform vibrissa to this one.
+    """
+
+    unloaded: Unloaded
+    rigidity: Along | float
+    share: float = 1.0
+
+    @classmethod
+    def of(cls, beam: Beam) -> "Form":
+        """What varies along a beam.
+
+        Parameters
+        ----------
+        beam : Beam
+            The vibrissa.
+
+        Returns
+        -------
+        Form
+            Dimensionless.
+        """
+        rest, rigidity = beam.unloaded, beam.flexural_rigidity
+        if isinstance(rigidity, Along):
+            return cls(rest, rigidity.times(1 / beam.base_rigidity, 1 / beam.length))
+        return cls(rest, rest.tip_radius / rest.base_radius if rest.base_radius else 1.0)
+
+    def scaled(self, share: float) -> "Form":
+        """The form a part of the way from the uniform, straight vibrissa to this one.
+
+        Parameters
+        ----------
+        share : float
+            From 0 to 1.
+
+        Returns
+        -------
+        Form
+            Its radius at the tip is the same.
+        """
+        rest = self.unloaded
+        natural = rest.natural
+        less = natural.times(share) if isinstance(natural, Along) else natural * share
+        base = rest.tip_radius + share * (rest.base_radius - rest.tip_radius)
+        return replace(self, unloaded=Unloaded(less, base, rest.tip_radius), share=share)
+
+    def flexibility(self, s: Floats) -> Floats:
+        """EI(0)/EI(s).
+
+        Parameters
+        ----------
+        s : array, any shape
+            Arc length from the clamp [L].
+
+        Returns
+        -------
+        array, shape of `s`
+            Positive.
+        """
+        if isinstance(self.rigidity, Along):
+            inverse = 1 / self.rigidity(s)
+            return inverse if self.share == 1 else inverse**self.share
+        inverse = 1 / (1 - (1 - self.rigidity) * s) ** 2
+        return np.asarray(inverse**2 if self.share == 1 else inverse ** (2 * self.share))
+
+    @cached_property
+    def ends(self) -> Floats:
+        """Arc lengths between which the form is smooth and resolved, from 0 to 1 [L]."""
+        given = self.rigidity, self.unloaded.natural
+        marks = {0.0, 1.0}
+        for along in given:
+            if isinstance(along, Along):
+                marks |= set(along.ends[1:-1])
+        ends, ahead = [0.0], sorted(marks)[:0:-1]
+        least = 0.5**_HALVINGS
+        while ahead:
+            begin, end = ends[-1], ahead[-1]
+            if end - begin < least or self._is_resolved(begin, end):
+                ends.append(ahead.pop())
+            else:
+                ahead.append((begin + end) / 2)
+        return np.array(ends)
+
+    @cached_property
+    def most_flexible(self) -> Floats:
+        """The largest flexibility between two ends, nearly, shape (panels,)."""
+        share = np.linspace(0, 1, NODES)[:, None]
+        inside = self.ends[:-1] + share * np.diff(self.ends)
+        return np.asarray(self.flexibility(inside).max(axis=0))
+
+    @cached_property
+    def most_curved(self) -> float:
+        """The natural curvature where it is largest, nearly."""
+        return float(self.unloaded.curvature(np.linspace(0, 1, _PLACES)).max())
+
+    def _is_resolved(self, begin: float, end: float) -> bool:
+        s = begin + (end - begin) * POINTS
+        natural = self.unloaded.curvature(s)
+        for values, least in ((self.flexibility(s), 0.0), (natural, 1.0)):
+            series = np.abs(_TO_SERIES @ values)
+            if series[-_TAIL:].max() > _EXACT * max(least, np.abs(values).max()):
+                return False
+        return True

@@ -1,0 +1,220 @@
+"""A loaded span of any rigidity and natural curvature, by collocation.
+
+With the moment of a dead force F of slope angle phi_F the span obeys, theta = phi - phi_F,
+
+    theta' = kappa0(s) + m EI(0)/EI(s),    m' = F cos(theta),
+
+in the units of EI(0). On panels that resolve rigidity and natural curvature, and are shorter than
+a wave of the pendulum's over 2 pi, the solution is a polynomial through the points of Gauss and
+Legendre, which makes its end exact to order 24 (Hairer, Lubich and Wanner, *Geometric Numerical
+Integration*, II.1.3). It is found by Picard's iteration, for all spans at a time.
+"""
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from analytic.problem.arrays import Floats, Integers
+from analytic.solver.general.form import NODES, POINTS, WEIGHTS, Form
+from analytic.solver.general.span import Start
+
+_ITERATIONS = 30
+_CLOSE = 1e-15  # rad; of the last change of the slope
+_LOST = 1e-9  # rad; the same, of a span whose iteration does not end
+_WAVE = 0.8  # rad; of the pendulum's phase on a panel
+_MOST = 64  # parts of a panel
+
+
+def _integrals() -> Floats:
+    """Integrals of the nodes' polynomials from 0 to each node."""
+    to_series = np.linalg.inv(legendre.legvander(2 * POINTS - 1, NODES - 1))
+    columns = [legendre.legval(2 * POINTS - 1, legendre.legint(c, lbnd=-1)) for c in to_series.T]
+    return np.array(columns).T / 2
+
+
+_TO_NODES = _integrals()
+
+
+class Place(NamedTuple):
+    """Where spans have come to; arrays of shape (n,)."""
+
+    theta: Floats
+    """Slope angle from the force's [rad]."""
+    m: Floats
+    """Moment, as the curvature beyond the natural one where the rigidity is EI(0)."""
+    along: Floats
+    across: Floats
+    """Integrals of cos(theta) and sin(theta) on the way."""
+    swing: Floats
+    """By how much the pendulum's phase has changed [rad]."""
+
+
+class Trail(NamedTuple):
+    """Places on the way of n spans, shape (k, n)."""
+
+    s: Floats
+    along: Floats
+    across: Floats
+
+
+def march(
+    form: Form,
+    theta: Floats,
+    m: Floats,
+    force: Floats,
+    length: Floats,
+    *,
+    from_clamp: bool = False,
+    finer: int = 1,
+    trail: list[Trail] | None = None,
+) -> Place:
+    """March along spans from the contact to the clamp, or back.
+
+    Parameters
+    ----------
+    form : Form
+        What varies along the vibrissa.
+    theta, m : array, shape (n,)
+        Slope angle from the force's, and moment, where the march begins.
+    force : array, shape (n,)
+        Dimensionless, not negative.
+    length : array, shape (n,)
+        Arc length of the contact [L].
+    from_clamp : bool
+        Whether to march from the clamp to the contact.
+    finer : int
+        Into how many parts each panel is divided beyond what is needed.
+    trail : list, optional
+        What the places on the way are added to.
+
+    Returns
+    -------
+    Place
+        At the other end; NaN where a force is negative, or too large for the panels.
+    """
+    nowhere = ~((force >= 0) & (length >= 0))
+    here = Place(np.where(nowhere, np.nan, theta), m, *np.zeros((3, len(theta))))
+    force = np.where(nowhere, 0.0, force)
+    ends = _panels(form, force, length, finer)
+    panels = list(pairwise(ends))
+    for low, high in panels if from_clamp else reversed(panels):
+        on = np.flatnonzero(length > low)
+        everywhere = on.size == len(length) or trail is not None
+        if on.size == 0 and trail is None:
+            continue
+        some = here if everywhere else Place(*(values[on] for values in here))
+        end = np.clip(length if everywhere else length[on], low, high)
+        if (end == high).all():
+            end = np.full(1, high)
+        begin = np.full_like(end, low)
+        way = (begin, end) if from_clamp else (end, begin)
+        new = _step(form, some, force if everywhere else force[on], *way, trail)
+        if everywhere:
+            here = new
+        else:
+            for values, found in zip(here, new, strict=True):
+                values[on] = found
+    return here
+
+
+def back_to_clamp(
+    form: Form, theta: Floats, m: Floats, force: Floats, length: Floats, finer: int = 1
+) -> Start:
+    """As `span.back_to_clamp`, of a vibrissa that varies.
+
+    Parameters
+    ----------
+    form : Form
+        What varies along the vibrissa.
+    theta, m : array, any shape
+        Slope angle at the contact, from the force's [rad]; moment there, dimensionless.
+    force, length : array, same shape
+        As `march`.
+    finer : int
+        As `march`.
+
+    Returns
+    -------
+    Start
+        Of the same shape.
+    """
+    given = np.broadcast_arrays(theta, m, force, length)
+    shape = given[0].shape
+    end = march(form, *(np.array(values, dtype=float).ravel() for values in given), finer=finer)
+    theta, m, along, across, swing = (values.reshape(shape) for values in end)
+    chi = np.pi / 4 - theta / 2
+    return Start(np.sin(chi), np.cos(chi), m, along, across, np.abs(swing))
+
+
+def _panels(form: Form, force: Floats, length: Floats, finer: int) -> Floats:
+    """The form's ends, and parts between as the forces ask for that reach there."""
+    ends = form.ends
+    # A span is loaded up to its contact: what lies beyond does not ask for shorter panels.
+    order = np.argsort(length)
+    largest = np.append(np.maximum.accumulate(force[order][::-1])[::-1], 0.0)
+    reached = largest[np.searchsorted(length[order], ends[:-1], side="right")]
+    phase = np.diff(ends) * np.sqrt(reached * form.most_flexible)
+    counts = finer * np.clip(np.ceil(phase / _WAVE), 1, _MOST).astype(int)
+    begins: Integers = np.repeat(np.cumsum(counts) - counts, counts)
+    share = (np.arange(counts.sum()) - begins) / np.repeat(counts, counts)
+    inner = np.repeat(ends[:-1], counts) + share * np.repeat(np.diff(ends), counts)
+    return np.append(inner, ends[-1])
+
+
+def _step(
+    form: Form,
+    here: Place,
+    force: Floats,
+    begin: Floats,
+    end: Floats,
+    trail: list[Trail] | None,
+) -> Place:
+    """March from `begin` to `end`; both of shape (n,), or (1,) if they are the same for all."""
+    h = end - begin
+    s = begin + POINTS[:, None] * h
+    flexible, natural = form.flexibility(s), form.unloaded.curvature(s)
+    turned = here.theta + h * (_TO_NODES @ natural)  # by the natural curvature
+    pull = h * force
+    first = turned + (POINTS[:, None] * h) * flexible * here.m
+    theta, change = first, np.full(1, np.inf)
+    for _ in range(_ITERATIONS):
+        m = here.m + pull * (_TO_NODES @ np.cos(theta))
+        new = turned + h * (_TO_NODES @ (flexible * m))
+        change = np.abs(new - theta).max(axis=0)
+        theta = new
+        if not change.max() > _CLOSE * max(1.0, float(np.abs(theta).max())):
+            break
+    cos, sin = np.cos(theta), np.sin(theta)
+    along = WEIGHTS @ cos
+    m = here.m + pull * (_TO_NODES @ cos)
+    last = here.theta + h * (WEIGHTS @ (natural + flexible * m))
+    last = np.where(change > _LOST, np.nan, last)
+    moment, size = here.m + pull * along, np.abs(h)
+    if trail is not None:
+        shape = theta.shape
+        trail.append(
+            Trail(
+                np.broadcast_to(s, shape),
+                here.along + size * (_TO_NODES @ cos),
+                here.across + size * (_TO_NODES @ sin),
+            )
+        )
+    before = _phase(form, here.theta, here.m, force, begin)
+    turn = _phase(form, last, moment, force, end) - before
+    return Place(
+        last,
+        moment,
+        here.along + size * along,
+        here.across + size * (WEIGHTS @ sin),
+        here.swing + np.remainder(turn + np.pi, 2 * np.pi) - np.pi,
+    )
+
+
+def _phase(form: Form, theta: Floats, m: Floats, force: Floats, s: Floats) -> Floats:
+    """The pendulum's phase: by half a period it changes by pi [rad]."""
+    flexible = form.flexibility(s)
+    curvature = form.unloaded.curvature(s) + m * flexible
+    p = np.sqrt(force) * np.sin(np.pi / 4 - theta / 2)
+    return np.asarray(np.arctan2(p, -curvature / np.sqrt(flexible) / 2))
