@@ -67,6 +67,7 @@ def certify(readings: Readings) -> pd.DataFrame:
             arc_length[touching],
             compliance=compliance,
             natural=lambda s: length * beam.curvature_at(length * s),
+            breaks=beam.breaks / length,
             flexibility=lambda s: beam.base_rigidity / beam.rigidity_at(length * s),
         )
         misses = [

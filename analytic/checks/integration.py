@@ -1,6 +1,7 @@
 """The elastica integrated from the clamp: what the closed forms are checked against."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -39,6 +40,7 @@ def integrate_span(
     compliance: float = 0.0,
     natural: Along = _none,
     flexibility: Along = np.ones_like,
+    breaks: Sequence[float] | Floats = (),
 ) -> End:
     """March from the clamp along the loaded span (Will et al., eqs. 4 and 15).
 
@@ -59,6 +61,8 @@ def integrate_span(
         Rotation of the clamp by moment [L/EI].
     natural, flexibility : callable
         Natural curvature [1/L] and EI(0)/EI at arc lengths [L], element by element.
+    breaks : sequence of float
+        Arc lengths at which these are not smooth, ascending, and the march stops [L].
 
     Returns
     -------
@@ -67,21 +71,33 @@ def integrate_span(
     """
     n = len(moment)
 
-    def rate(share: float, state: Floats) -> Floats:
+    def rate(share: float, state: Floats, begin: Floats, length: Floats) -> Floats:
         phi, m = state.reshape(4, n)[2:]
         cos, sin = np.cos(phi), np.sin(phi)
-        s = share * length
+        s = begin + share * length
         kappa = natural(s) + m * flexibility(s)
         return np.concatenate(
             [length * cos, length * sin, length * kappa, length * (force_y * cos - force_x * sin)]
         )
 
-    start = np.concatenate([np.zeros(2 * n), np.pi / 2 - compliance * moment, -moment])
-    found = solve_ivp(
-        rate, (0.0, 1.0), start, method="DOP853", rtol=tolerance, atol=tolerance, t_eval=_MARKS
-    )
-    x, y, phi, m = found.y.reshape(4, n, len(_MARKS))
-    return End(x[:, -1], y[:, -1], phi[:, -1], m[:, -1], phi.min(axis=1))
+    state = np.concatenate([np.zeros(2 * n), np.pi / 2 - compliance * moment, -moment])
+    least_phi = np.full(n, np.inf)
+    for low, high in pairwise([0.0, *breaks, 1.0]):
+        begin = np.minimum(low, length)
+        found = solve_ivp(
+            rate,
+            (0.0, 1.0),
+            state,
+            method="DOP853",
+            rtol=tolerance,
+            atol=tolerance,
+            t_eval=_MARKS,
+            args=(begin, np.minimum(high, length) - begin),
+        )
+        state = found.y[:, -1]
+        least_phi = np.minimum(least_phi, found.y.reshape(4, n, len(_MARKS))[2].min(axis=1))
+    x, y, phi, m = state.reshape(4, n)
+    return End(x, y, phi, m, least_phi)
 
 
 def march(rate: Callable[[Floats], Floats], state: Floats, length: Floats, steps: int) -> Floats:

@@ -106,6 +106,12 @@ class Beam:
         given = self.flexural_rigidity, self.natural_curvature
         return any(isinstance(value, Along) for value in given) or self._is_cone
 
+    @property
+    def breaks(self) -> Floats:
+        """Arc lengths between which what varies along the vibrissa is smooth [length]."""
+        given = (self.flexural_rigidity, self.natural_curvature)
+        return np.unique([end for v in given if isinstance(v, Along) for end in v.ends[1:-1]])
+
     @cached_property
     def base_rigidity(self) -> float:
         """Flexural rigidity at the clamp [force length^2]."""

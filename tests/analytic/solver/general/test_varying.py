@@ -1,0 +1,337 @@
+"""Vibrissae whose rigidity, radius or natural curvature vary, by collocation."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
+from analytic import (
+    Beam,
+    Case,
+    Readings,
+    Sweep,
+    catenary,
+    certify,
+    circle,
+    ellipse,
+    find_events,
+    named_case,
+    parabola,
+    polygon,
+    solve_contact,
+    solve_sweep,
+)
+from analytic.problem.rest import first_touch
+from analytic.problem.unloaded import Unloaded
+from analytic.solver.general.clearance import is_rest_clear
+from analytic.solver.general.form import Form
+from analytic.solver.general.march import march
+from analytic.solver.general.path import follow
+from analytic.solver.general.residuals import residuals
+from analytic.solver.general.states import Vibrissa
+from analytic.solver.general.stations import solve_stations
+
+ROWS = pd.read_csv(Path(__file__).parents[3] / "data" / "general_vibrissa.csv")
+PROFILES = {"g1": catenary(0.5, -0.8), "g2": parabola(0.5, 0.5)}
+SQUARE = polygon([(-0.6, 0.45), (0.7, 0.4), (0.9, 1.5), (-0.5, 1.6)])
+OBJECT = circle(1.0, lowest=(0, 0.4))
+COLUMN_OF = {
+    "s1": "contact_arc_length",
+    "x0": "foot_x",
+    "F_Ax": "force_x",
+    "F_Ay": "force_y",
+    "M_Az": "moment_z",
+}
+
+
+def cone(ratio):
+    return lambda s: (1 - (1 - ratio) * s) ** 4
+
+
+def bow(strength):
+    return lambda s: strength * s
+
+
+VARIANTS = {  # the beam, and what holds it
+    "cone-0.7": (Beam(flexural_rigidity=cone(0.7), radius=0), {}),
+    "cone-0.2": (Beam(flexural_rigidity=cone(0.2), radius=0), {}),
+    "graded-0.5": (Beam(flexural_rigidity=lambda s: 1 - s / 2, radius=0), {}),
+    "curved-linear": (Beam(natural_curvature=bow(-0.8), radius=0), {}),
+    "all": (
+        Beam(flexural_rigidity=cone(0.6), natural_curvature=bow(-0.4)),
+        {"clamp_stiffness": 8.0, "friction": 0.15},
+    ),
+}
+READ = ("force_x", "force_y", "moment_z")
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize("profile", PROFILES)
+def test_references(variant, profile):
+    beam, held = VARIANTS[variant]
+    rows = ROWS.query("variant == @variant and profile == @profile")
+    # At eta = 1 to rounding a straight vibrissa just touches: f is that rounding's square root.
+    rows = rows[rows["f"] > 1e-6]
+    assert len(rows) >= 5
+    alpha = np.deg2rad(rows["alpha_deg"].to_numpy(dtype=float))
+    found = solve_contact(PROFILES[profile], alpha, beam, **held)
+    found.index = rows.index
+    assert (found["status"] == "ok").all()
+    assert list(found["phase"].map({"tip": "A", "tangent": "B"})) == list(rows["phase"])
+    for reference, column in COLUMN_OF.items():
+        np.testing.assert_allclose(found[column], rows[reference], 1e-12, 1e-13)
+    rest = beam.unloaded
+    slope = found["tip_angle"] - rest.turn_between(found["contact_arc_length"].to_numpy(), 1.0)
+    np.testing.assert_allclose(slope, rows["phi1"], 1e-12, 1e-13)
+    turned = np.pi / 2 - found["moment_z"] / held.get("clamp_stiffness", math.inf)
+    np.testing.assert_allclose(turned, rows["phi0"], 1e-12, 1e-13)
+
+
+def case_of(beam, profile=OBJECT, stations=40, **held):
+    return Case(beam, profile, Sweep(stations), **held)
+
+
+def assert_sound(case):
+    """Every station that is ok balances, by integration from the clamp; none is lost."""
+    readings = solve_sweep(case)
+    table = readings.table
+    assert set(table["status"]) <= {"ok", "touches again", "sticks"}
+    ok = table["status"] == "ok"
+    assert table.loc[ok, ["residual_boundary", "residual_moment"]].max(axis=None) < 1e-12
+    # 1e-10: the integration errs by 1e-13 times how much an error at the clamp grows.
+    assert certify(readings)[ok].max(axis=None) < 1e-10
+    return readings
+
+
+BEAMS = {
+    "taper 0.4": Beam(tip_radius=0.002),
+    "taper 0.1": Beam(tip_radius=0.0005),
+    "taper 0.05": Beam(tip_radius=0.00025),
+    "graded": Beam(flexural_rigidity=[(0, 1), (0.2, 0.9), (0.5, 0.6), (0.8, 0.4), (1, 0.1)]),
+    "two wires": Beam(flexural_rigidity=lambda s: np.where(s < 0.4, 1.0, 0.3)),
+    "bow": Beam(natural_curvature=bow(-0.8)),
+    "S": Beam(natural_curvature=lambda s: np.cos(4 * s) / 2),
+    "cone and bow": Beam(tip_radius=0.002, natural_curvature=bow(-0.5)),
+}
+
+
+@pytest.mark.parametrize("name", BEAMS)
+@pytest.mark.parametrize("profile", [named_case("parabola").profile, OBJECT, SQUARE])
+def test_stations_balance(name, profile):
+    readings = assert_sound(case_of(BEAMS[name], profile, clamp_stiffness=8.0, friction=0.2))
+    assert (readings.table["status"] == "ok").sum() > 10
+
+
+@pytest.mark.slow
+@settings(max_examples=60, deadline=None)
+@given(
+    ratio=st.floats(0.05, 1),
+    grade=st.floats(-0.8, 0.8),
+    natural=st.tuples(st.floats(-0.6, 0.4), st.floats(-0.6, 0.4)),
+    compliance=st.floats(0, 1),
+    friction=st.floats(0, 0.7),
+    height=st.floats(0.25, 0.6),
+    size=st.floats(0.8, 2),
+    kind=st.sampled_from(["circle", "parabola", "catenary", "ellipse", "square"]),
+)
+def test_random_vibrissae_balance(ratio, grade, natural, compliance, friction, height, size, kind):
+    profile = {
+        "circle": lambda: circle(size, lowest=(0.1, height)),
+        "parabola": lambda: parabola(1 / size, height),
+        "catenary": lambda: catenary(1 / size, height - 1),
+        "ellipse": lambda: ellipse(semi_axes=(size, 1.2), lowest=(0.0, height)),
+        "square": lambda: SQUARE,
+    }[kind]()
+    beam = Beam(
+        flexural_rigidity=lambda s: (1 - (1 - ratio) * s) ** 4 * (1 + grade * s),
+        natural_curvature=lambda s: natural[0] + natural[1] * s**2,
+        tip_radius=0.005 * ratio,
+    )
+    stiffness = 1 / compliance if compliance else math.inf
+    assert_sound(case_of(beam, profile, clamp_stiffness=stiffness, friction=friction))
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    force=st.floats(0, 15),
+    length=st.floats(0.1, 1),
+    theta=st.floats(-0.5, 2),
+    m=st.floats(-1, 1),
+    ratio=st.floats(0.3, 1),
+    wave=st.floats(0, 6),
+)
+def test_march_is_the_integral(force, length, theta, m, ratio, wave):
+    """Of the pendulum's equation, by the Dormand-Prince method of order 8."""
+    beam = Beam(flexural_rigidity=cone(ratio), natural_curvature=lambda s: np.cos(wave * s) / 2)
+    given_ = (np.array([x]) for x in (theta, m, force, length))
+    found = march(Form.of(beam), *given_)
+
+    def rate(s, state):
+        slope, moment = state[:2]
+        kappa = np.cos(wave * s) / 2 + moment / cone(ratio)(s)
+        return [kappa, force * np.cos(slope), -np.cos(slope), -np.sin(slope)]
+
+    end = solve_ivp(rate, (length, 0), [theta, m, 0, 0], method="DOP853", rtol=3e-14, atol=1e-14)
+    # DOP853 errs by 1e-13 times how much an error at the contact grows: by up to e^5 here.
+    np.testing.assert_allclose([x[0] for x in found[:4]], end.y[:, -1], rtol=1e-11, atol=2e-11)
+
+
+@pytest.mark.parametrize("name", ["catenary", "two-circles", "tip-only"])
+def test_collocation_of_a_uniform_vibrissa_is_the_closed_form(name):
+    plain, case = solve_sweep(named_case(name)), named_case(name)
+    form = Form(Unloaded(0.0, case.radius, case.radius), 1.0)
+    vibrissa = Vibrissa(radius=case.radius, form=form)
+    touch = first_touch(case.centreline, case.reach, Unloaded())
+    path = follow(case.centreline, vibrissa, touch, case.reach)
+    for event, i in path.events().items():
+        if event != "contact_length_minimum":
+            found = None if i is None else path.foot_x[i]
+            assert found == pytest.approx(plain.provenance["events"][event], abs=1e-13)
+    held = (plain.table["phase"] != "free").to_numpy()
+    states, found = solve_stations(case.centreline, vibrissa, path, case.foot_x[held])
+    assert found.all()
+    # 2e-13: each is exact to a few roundings of forces of up to 20.
+    np.testing.assert_allclose(states.moment, plain.values("moment_z")[held], atol=2e-13)
+    force = np.hypot(plain.values("force_x"), plain.values("force_y"))[held]
+    np.testing.assert_allclose(states.force, force, atol=2e-13)
+    np.testing.assert_array_equal(states.tangent, (plain.table["phase"] == "tangent")[held])
+
+
+@pytest.mark.parametrize(
+    "varied",
+    [
+        lambda little: Beam(tip_radius=0.005 * (1 - little)),
+        lambda little: Beam(flexural_rigidity=lambda s: 1 + little * s),
+        lambda little: Beam(natural_curvature=lambda s: little * s),
+    ],
+)
+def test_limit_is_smooth(varied):
+    """Readings change in proportion to a little taper, grading or curvature."""
+    sweep, profile = Sweep(100, start=2.5, stop=-2.5), named_case("catenary").profile
+    reference = solve_sweep(Case(profile=profile, sweep=sweep))
+
+    def change(little):
+        found = solve_sweep(Case(varied(little), profile, sweep))
+        both = (found.table["phase"] == reference.table["phase"]) & (reference.values("foot_x") > 0)
+        return np.stack([(found.values(n) - reference.values(n))[both] for n in READ])
+
+    once, twice = change(1e-6), change(2e-6)
+    assert 1e-7 < np.abs(once).max() < 1e-3
+    # The next order is smaller by 1e-6 times how strongly the first one acts, where it does most.
+    np.testing.assert_allclose(twice, 2 * once, atol=1e-4 * np.abs(once).max())
+
+
+@pytest.mark.parametrize("ratio", [0.7, 0.1, 0.05, 1e-3])
+@pytest.mark.parametrize("a", [0.3, 0.9, 1.0])
+def test_small_deflection_of_a_cone(a, ratio):
+    """Of one that ends in a point w(a) = Q a^3/(3 (1 - a)); q a stands for a if it is cut off."""
+    q, force = 1 - ratio, 1e-6 * ratio
+    given_ = (np.array([x]) for x in (0.0, -force * a, force, a))
+    found = march(Form(Unloaded(), ratio), *given_, from_clamp=True)
+    # 1e-8: what is left out goes with the square of the slope, some 1e-6/ratio * ratio.
+    assert -found.across[0] == pytest.approx(force * a**3 / (3 * (1 - q * a)), rel=1e-8)
+    assert found.m[0] == pytest.approx(0, abs=1e-8 * force)
+
+
+def test_natural_bow_that_a_couple_straightens():
+    """Under one couple a vibrissa is straight whose natural curvature goes with its compliance."""
+    beam = Beam(flexural_rigidity=cone(0.5), natural_curvature=lambda s: 0.05 / cone(0.5)(s))
+    lengths = np.linspace(0.1, 1.0, 7)
+    slope, none = np.full(7, 0.4), np.zeros(7)
+    found = march(Form.of(beam), slope, np.full(7, -0.05), none, lengths)
+    np.testing.assert_allclose(found.along, lengths * np.cos(0.4), rtol=1e-14)
+    np.testing.assert_allclose(found.across, lengths * np.sin(0.4), rtol=1e-14)
+
+
+def test_cone_touches_with_its_surface():
+    """The spheres of the cone's radius about its axis touch the object once, and lie below it."""
+    beam = Beam(radius=0.02, tip_radius=0.004)
+    table = assert_sound(case_of(beam, stations=30)).table
+    for row in table[table["phase"] != "free"].to_dict("records"):
+        length, alpha = row["contact_arc_length"], row["contact_angle"]
+        s, x, y = shape_of(beam, row)
+        gap = np.hypot(x, y - 1.4) - 1.0 - beam.radius_at(s)
+        assert gap.min() > -1e-9 and gap[-1] == pytest.approx(0, abs=1e-9)
+        normal = beam.radius_at(length) * np.array([np.sin(alpha), -np.cos(alpha)])
+        to_axis = [x[-1] - row["contact_x"], y[-1] - row["contact_y"]]
+        np.testing.assert_allclose(to_axis, normal, atol=1e-9)
+
+
+def shape_of(beam, row):
+    """The loaded span of a straight beam, integrated from the clamp's readings."""
+
+    def rate(s, z):
+        cos, sin = np.cos(z[2]), np.sin(z[2])
+        return [cos, sin, z[3] / beam.rigidity_at(s), row["force_y"] * cos - row["force_x"] * sin]
+
+    s = np.linspace(0, row["contact_arc_length"], 2001)
+    start = [row["foot_x"], 0, np.pi / 2, -row["moment_z"]]
+    end = solve_ivp(rate, (0, s[-1]), start, t_eval=s, rtol=1e-11, atol=1e-12)
+    return s, *end.y[:2]
+
+
+@pytest.mark.parametrize("name", BEAMS)
+def test_first_contact_is_that_of_two_rigid_bodies(name):
+    beam = BEAMS[name]
+    for profile in (OBJECT, parabola(1.0, 0.4), SQUARE):
+        case = case_of(beam, profile)
+        touch = first_touch(case.centreline, case.reach, beam.unloaded)
+        vibrissa = Vibrissa.of(beam, math.inf, 0.0)
+        beside = touch.foot_x + np.array([-1e-2, 1e-6])
+        # Its 16 places may lie beside the contact, and one that goes along enters by a square.
+        assert list(is_rest_clear(case.centreline, vibrissa, beside)) == [False, True]
+
+
+def test_snap_off_is_a_fold():
+    beam = Beam(tip_radius=0.002)
+    profile = named_case("catenary").profile
+    fold = find_events(profile, beam, friction=0.1).snap_off
+    beside = solve_contact(
+        profile, fold.contact_angle + np.array([-1e-4, 0, 1e-4]), beam, friction=0.1
+    )
+    rise = beside["foot_x"].to_numpy() - fold.foot_x
+    assert rise[1] == pytest.approx(0, abs=1e-13)
+    assert (rise[[0, 2]] > 1e-9).all() and (rise[[0, 2]] < 1e-6).all()
+
+
+def test_mirror_units_and_file(tmp_path):
+    beam = Beam(tip_radius=0.002, natural_curvature=bow(-0.4))
+    case = case_of(beam, circle(1.0, lowest=(0.2, 0.4)), clamp_stiffness=4.0, friction=0.2)
+    left, right = solve_sweep(case), solve_sweep(case.mirrored())
+    for name, sign in (("force_x", -1), ("force_y", 1), ("moment_z", -1), ("foot_x", -1)):
+        np.testing.assert_allclose(right.values(name), sign * left.values(name), atol=1e-13)
+    back = Readings.read(right.write(tmp_path / "sweep.parquet"))
+    assert back.beam == right.beam
+    np.testing.assert_array_equal(certify(back), certify(right))
+
+    metres = Beam(50.0, 2.0, 0.25, tip_radius=0.1, natural_curvature=lambda s: -0.4 / 50 * s / 50)
+    held = {"clamp_stiffness": 4.0 * metres.moment_unit, "friction": 0.2}
+    other = solve_sweep(case_of(metres, circle(50.0, lowest=(10, 20.0)), **held))
+    moment = other.values("moment_z") / metres.moment_unit
+    np.testing.assert_allclose(moment, left.values("moment_z"), atol=1e-11)
+
+
+def test_many_contacts_are_those_solved_one_by_one():
+    angles = np.random.default_rng(3).permutation(np.linspace(-0.5, 0.9, 2500))
+    beam, profile = Beam(tip_radius=0.001), catenary(0.5, -0.8)
+    many = solve_contact(profile, angles, beam, friction=0.2)
+    few = solve_contact(profile, angles[:100], beam, friction=0.2)
+    assert list(many["status"][:100]) == list(few["status"])
+    columns = ["foot_x", *READ, "contact_arc_length", "tip_angle"]
+    # 1e-10: some 1e-15 of misses, at forces of up to 20 and next to the end of reach.
+    pd.testing.assert_frame_equal(many[columns][:100], few[columns], rtol=0, atol=1e-10)
+
+
+def test_residuals_find_a_wrong_rigidity():
+    """The conditions are those of the vibrissa that is asked for."""
+    case = case_of(Beam(tip_radius=0.002))
+    table = solve_sweep(case).table
+    columns = {name: table[name].to_numpy() for name in table}
+    other = Beam(tip_radius=0.00201)
+    missed = residuals(columns, other, Vibrissa.of(other, math.inf, 0.0))["residual_boundary"]
+    assert 1e-5 < np.nanmax(missed) < 1e-1
