@@ -340,7 +340,7 @@ def with_rates(
         stretch * cos + point.turning * here.up,
     )
     up, reach = found.up, found.reach
-    if vibrissa.form is not None:  # where a cone is touched tells how thick it is
+    if vibrissa.form is not None:  # where a cone is touched decides how thick it is
         up = up - (found.felt.eta - point.eta)
         reach = reach - (found.felt.xi - point.xi)
     rates = []
