@@ -13,6 +13,8 @@ from analytic import (
     Sweep,
     certify,
     circle,
+    deflected_shapes,
+    estimate_friction,
     find_events,
     named_case,
     reconstruct,
@@ -23,6 +25,7 @@ from analytic import (
     solve_sweep,
     with_friction,
 )
+from compare import compare
 from compare.show.figures.paper import contact_length
 from mujoco_models import simulate_motion, simulate_sweep
 
@@ -63,6 +66,17 @@ def test_refused_in_one_line(name, ask):
     ) as error:
         ask(case)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in BEYOND if BEYOND[name].get("beam", Beam()).varies]
+)
+def test_contacts_of_a_vibrissa_that_varies_are_not_found_from_the_clamp(name):
+    readings = solve_sweep(Case(profile=OBJECT, sweep=Sweep(20), **BEYOND[name]))
+    assert "ok" in set(readings.table["status"])
+    for ask in (reconstruct, deflected_shapes, lambda r: compare(r, r), estimate_friction):
+        with pytest.raises(InputError, match=f"^{name.strip()} = .*cannot take it into account"):
+            ask(readings)
 
 
 def test_simulations_refuse_friction_of_the_case():

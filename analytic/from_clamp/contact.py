@@ -8,7 +8,7 @@ from analytic.from_clamp.general import Clamped
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED
 from analytic.problem.readings import Readings
-from analytic.problem.support import is_plain
+from analytic.problem.support import is_plain, require_uniform
 from analytic.solver.elastica import frame, span_of_moment
 from analytic.solver.general.states import Vibrissa
 
@@ -110,6 +110,7 @@ class Held(NamedTuple):
         rightward = foot_x[-1] > foot_x[0]
         beam = readings.beam.mirrored() if rightward else readings.beam
         plain = is_plain(beam, *readings.support)
+        require_uniform("the contact from the clamp", beam)
         return cls(Vibrissa.of(beam, *readings.support), plain, -1.0 if rightward else 1.0)
 
     def clamped(self, sensed: Floats) -> Clamped:

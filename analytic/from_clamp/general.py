@@ -64,7 +64,7 @@ class Clamped(NamedTuple):
         Clamped
             Of the same shape.
         """
-        _, compliance, mu, radius = vibrissa
+        compliance, mu, radius = vibrissa.compliance, vibrissa.friction, vibrissa.radius
         force, direction = np.hypot(force_x, force_y), np.arctan2(-force_x, force_y)
         couple = mu * radius * force / np.sqrt(1 + mu**2)
         theta = np.pi / 2 - compliance * moment - direction

@@ -142,7 +142,7 @@ def _beside(variance: Floats) -> Floats:
 def _sine(held: Held, sensed: Floats) -> Floats:
     """Sine of the friction angle, if the station is of Phase B."""
     clamped = held.clamped(sensed)
-    natural, _, _, radius = held.vibrissa
+    natural, radius = held.vibrissa.natural_curvature, held.vibrissa.radius
     force, moment = clamped.force, clamped.moment
     with np.errstate(divide="ignore", invalid="ignore"):
         constant = np.sin(clamped.theta) + moment / force * (natural - moment / 2)

@@ -85,6 +85,31 @@ def is_plain(beam: Beam, clamp_stiffness: float, friction: float) -> bool:
     return straight and clamp_stiffness == math.inf and friction == 0
 
 
+def require_uniform(who: str, beam: Beam) -> None:
+    """Refuse a vibrissa that varies along its length.
+
+    Parameters
+    ----------
+    who : str
+        Who cannot take it into account.
+    beam : Beam
+        The vibrissa.
+
+    Raises
+    ------
+    InputError
+        If its rigidity, its radius or its natural curvature varies.
+    """
+    for name in ("flexural_rigidity", "natural_curvature"):
+        value = getattr(beam, name)
+        if isinstance(value, Along):
+            allowed = f"a number: {who} cannot take it into account"
+            raise InputError(f"beam.{name}", value, allowed, "give a mean")
+    if beam.varies:
+        allowed = f"{beam.radius:g}: {who} cannot take it into account"
+        raise InputError("beam.tip_radius", beam.tip_radius, allowed, "leave it out")
+
+
 def require_plain(
     who: str, beam: Beam, clamp_stiffness: float = math.inf, friction: float = 0.0
 ) -> None:
@@ -104,12 +129,7 @@ def require_plain(
     InputError
         If the vibrissa is curved at rest or not uniform, its clamp turns, or it rubs.
     """
-    if isinstance(beam.flexural_rigidity, Along):
-        allowed = f"a number: {who} cannot take it into account"
-        raise InputError("beam.flexural_rigidity", beam.flexural_rigidity, allowed, "give a mean")
-    if beam.tip_radius not in (None, beam.radius):
-        allowed = f"{beam.radius:g}: {who} cannot take it into account"
-        raise InputError("beam.tip_radius", beam.tip_radius, allowed, "leave it out")
+    require_uniform(who, beam)
     for name, value, plain in (
         ("beam.natural_curvature", beam.natural_curvature, 0.0),
         ("clamp_stiffness", clamp_stiffness, math.inf),
