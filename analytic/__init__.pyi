@@ -40,5 +40,7 @@ from .solver.events import Event as Event
 from .solver.events import Events as Events
 from .solver.events import find_events as find_events
 from .solver.friction import with_friction as with_friction
+from .solver.reversal import stiction_limits as stiction_limits
+from .solver.reversal import turn_back as turn_back
 from .solver.sweep import solve_sweep as solve_sweep
 from .solver.tilt import slip_off as slip_off

@@ -20,8 +20,6 @@ def solve_stations(
 ) -> tuple[States, Booleans]:
     """The state at each foot position on the path.
 
-    Newton's method starts from the cubic through the path's points and directions.
-
     Parameters
     ----------
     centreline : Contour
@@ -37,6 +35,35 @@ def solve_stations(
     -------
     states : States
         Of n contacts.
+    found : array of bool, shape (n,)
+        As of `solve_places`.
+    """
+    z, found = solve_places(centreline, vibrissa, path, foot_x)
+    return states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa), found
+
+
+def solve_places(
+    centreline: Contour, vibrissa: Vibrissa, path: Path, foot_x: Floats
+) -> tuple[Floats, Booleans]:
+    """Contour parameter, force and excess of the state at each foot position on the path.
+
+    Newton's method starts from the cubic through the path's points and directions.
+
+    Parameters
+    ----------
+    centreline : Contour
+        Contour that the centreline feels, in units of the vibrissa's length.
+    vibrissa : Vibrissa
+        Its numbers.
+    path : Path
+        From first contact to where the vibrissa lets go.
+    foot_x : array, shape (n,)
+        Foot positions on it [L].
+
+    Returns
+    -------
+    z : array, shape (n, 3)
+        Contour parameter, normal force and excess.
     found : array of bool, shape (n,)
         Whether the state balances, and is that of the station's cell of the path.
     """
@@ -59,4 +86,4 @@ def solve_stations(
     found = missed <= _BALANCED * np.maximum(1.0, np.abs(foot_x))
     found &= ((z[:, 2] < 0) == path.tangent[cells]) & (strayed <= _NEAR * length + _ASIDE)
     found &= (along >= -_ASIDE) & (along <= length + _ASIDE)  # not beyond a fold
-    return states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa), found
+    return z, found

@@ -1,0 +1,256 @@
+"""Hysteresis of a vibrissa that rubs: the limits of stiction, and a sweep that turns round."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.case import Case
+from analytic.problem.columns import CLAMP_READINGS, COLUMNS
+from analytic.problem.errors import InputError, require
+from analytic.problem.numbers import is_finite_number
+from analytic.problem.rest import first_touch
+from analytic.problem.table import mirrored_table
+from analytic.solver.general.columns import to_columns
+from analytic.solver.general.path import Path, follow
+from analytic.solver.general.states import Vibrissa, states
+from analytic.solver.general.stations import solve_places
+from analytic.solver.general.sticking import between, stick
+
+
+@dataclass(frozen=True)
+class Branch:
+    """States that slide one way, in a sweep to the left."""
+
+    vibrissa: Vibrissa
+    path: Path
+
+    @classmethod
+    def of(cls, case: Case, sense: float) -> "Branch":
+        """Follow the states that slide on (1), or back (-1).
+
+        Parameters
+        ----------
+        case : Case
+            A sweep to the left.
+        sense : float
+            Of sliding.
+
+        Returns
+        -------
+        Branch
+            From first contact to its own fold.
+
+        Raises
+        ------
+        ArithmeticError
+            If the states are lost before.
+        """
+        vibrissa = Vibrissa.of(case.beam, case.clamp_stiffness, sense * case.friction)
+        touch = first_touch(case.centreline, case.reach, vibrissa.unloaded)
+        path = follow(case.centreline, vibrissa, touch, case.reach)
+        if not path.complete:
+            place = path.foot_x[-1] * case.beam.length
+            raise ArithmeticError(f"the equilibria are lost beyond foot_x = {place:.6g}")
+        return cls(vibrissa, path)
+
+    def at(self, case: Case, foot_x: Floats) -> Floats:
+        """States at foot positions.
+
+        Parameters
+        ----------
+        case : Case
+            As of `of`.
+        foot_x : array, shape (n,)
+            On the branch [L].
+
+        Returns
+        -------
+        array, shape (n, 3)
+            Contour parameter, normal force and excess.
+
+        Raises
+        ------
+        ArithmeticError
+            If one is not found.
+        """
+        z, known = solve_places(case.centreline, self.vibrissa, self.path, foot_x)
+        if not known.all():
+            place = foot_x[int(np.argmin(known))] * case.beam.length
+            raise ArithmeticError(f"no state is found at foot_x = {place:.6g}")
+        return z
+
+    def holds(self, foot_x: Floats) -> Booleans:
+        """Whether there is a state of the branch at foot positions.
+
+        Parameters
+        ----------
+        foot_x : array, shape (n,)
+            [L]
+
+        Returns
+        -------
+        array of bool, shape (n,)
+            Between first contact and fold.
+        """
+        last = self.path.foot_x[self.path.snap_off]
+        return np.asarray((foot_x < self.path.foot_x[0]) & (foot_x >= last))
+
+
+def stiction_limits(case: Case) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """The two ends of the interval of equilibria at each foot position of a case.
+
+    At the one end the vibrissa is about to slide on, as its foot moves in the sweep's direction, at
+    the other to slide back. Between them the force's angle off the contour's normal has any value
+    from arctan(mu) to -arctan(mu): which one, depends on what was before.
+
+    Parameters
+    ----------
+    case : Case
+        With friction.
+
+    Returns
+    -------
+    onward, back : pandas.DataFrame
+        A row a station, with the columns of `Readings.table` but for ``status`` and with
+        ``friction_angle`` [rad]; NaN and ``"free"`` where the branch has no state. The states that
+        slide back let go at another foot position.
+
+    Raises
+    ------
+    InputError
+        If the case has no friction, or the vibrissa varies along its length.
+    ArithmeticError
+        If the states of a branch are lost.
+    """
+    _check(case)
+    if case.sweep.direction == "right":
+        onward, back = (_mirrored(table) for table in stiction_limits(case.mirrored()))
+        return onward, back
+    foot_x = case.foot_x / case.beam.length
+    tables = []
+    for sense in (1.0, -1.0):
+        branch = Branch.of(case, sense)
+        table = _free(case, case.foot_x)
+        held = branch.holds(foot_x)
+        if held.any():
+            angle = np.full(int(held.sum()), sense * np.arctan(case.friction))
+            _fill(table, held, case, branch.at(case, foot_x[held]), angle)
+        tables.append(table)
+    return tables[0], tables[1]
+
+
+def turn_back(case: Case, turn_at: float, stations: int = 100) -> pd.DataFrame:
+    """The way back of a sweep that turns round.
+
+    When the foot turns, the vibrissa sticks to the object: contact and object do not slide on each
+    other until the force has turned through friction's cone, from arctan(mu) on one side of the
+    contour's normal to arctan(mu) on the other. From there on it slides back, with the friction of
+    the other sense, until it leaves the object where it first touched it.
+
+    Parameters
+    ----------
+    case : Case
+        With friction; its sweep says the direction of the way on, and where it starts.
+    turn_at : float
+        Foot position at which the foot turns round [length].
+    stations : int
+        Of the way back, equally spaced from there to the start of the sweep.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a station, with the columns of `Readings.table` but for ``status``; and with
+        ``friction_angle``, that of the force off the contour's normal [rad], and ``sliding``:
+        ``"on"`` at the first station, ``"sticks"``, ``"back"``, or ``"free"``. It is
+        ``"unsolved"``, without readings, where the sticking vibrissa has let go: a tip held on the
+        object's far side may slip off there, or swing to the other side of its foot, when the foot
+        turns round shortly before the snap-off.
+
+    Raises
+    ------
+    InputError
+        If the case has no friction, the vibrissa does not touch where it is to turn, or varies
+        along its length.
+    ArithmeticError
+        If the states are lost on the way.
+    """
+    _check(case)
+    if not is_finite_number(turn_at):
+        raise InputError("turn_at", repr(turn_at), "a finite number", "it is a foot position")
+    if case.sweep.direction == "right":
+        return _mirrored(turn_back(case.mirrored(), -turn_at, stations))
+    length = case.beam.length
+    onward, back = Branch.of(case, 1.0), Branch.of(case, -1.0)
+    first, last = onward.path.foot_x[0], onward.path.foot_x[onward.path.snap_off]
+    if not last <= turn_at / length < first:
+        raise InputError(
+            "turn_at",
+            turn_at,
+            f"from {last * length:.6g}, where the vibrissa snaps off, to {first * length:.6g}, "
+            "where it first touches",
+            "the foot turns round while the vibrissa touches",
+        )
+    foot = np.linspace(turn_at, case.foot_x[0], stations)
+    foot_x = foot / length
+    turning = onward.at(case, foot_x[:1])
+    way = stick(case.centreline, onward.vibrissa, turning[0], float(foot_x[-1]))
+    table = _free(case, foot)
+    table["sliding"] = "free"
+    sticks = (foot_x > foot_x[0]) & (foot_x < way.foot_x[-1])
+    slides = (foot_x >= way.foot_x[-1]) & back.holds(foot_x) & (way.then == "slides back")
+    unsolved = (foot_x >= way.foot_x[-1]) & (way.then == "unsolved")
+    limit = np.arctan(case.friction)
+    on = np.arange(stations) == 0
+    _fill(table, on, case, turning, np.array([limit]), "on")
+    if sticks.any():
+        z = between(case.centreline, onward.vibrissa, way, foot_x[sticks])
+        _fill(table, sticks, case, z[:, :3], z[:, 3], "sticks")
+    if slides.any():
+        angle = np.full(int(slides.sum()), -limit)
+        _fill(table, slides, case, back.at(case, foot_x[slides]), angle, "back")
+    table.loc[unsolved, [*COLUMNS[1:4], *COLUMNS[5:-1]]] = np.nan
+    table.loc[unsolved, "sliding"] = "unsolved"
+    return table
+
+
+def _check(case: Case) -> None:
+    require("case", case, Case, "as Case(profile=..., friction=0.3)")
+    if case.friction == 0:
+        raise InputError("friction", 0.0, "positive", "without friction nothing sticks")
+
+
+def _free(case: Case, foot: Floats) -> pd.DataFrame:
+    """The table of a vibrissa that touches nothing."""
+    columns = {name: np.full(len(foot), np.nan) for name in COLUMNS[:-1]}
+    columns["foot_x"] = foot
+    for name in CLAMP_READINGS:
+        columns[name] = np.zeros(len(foot))
+    columns["phase"] = np.full(len(foot), "free", dtype="<U7")
+    columns["tip_angle"] = np.full(len(foot), case.beam.unloaded.at(np.ones(1))[2][0])
+    return pd.DataFrame({**columns, "friction_angle": np.nan})
+
+
+def _fill(
+    table: pd.DataFrame,
+    where: Booleans,
+    case: Case,
+    z: Floats,
+    angle: Floats,
+    sliding: str | None = None,
+) -> None:
+    """Write states at rest into the rows of a table."""
+    plain = Vibrissa.of(case.beam, case.clamp_stiffness, 0.0)
+    held = plain._replace(friction=np.tan(angle))  # type: ignore[arg-type]  # an array
+    found = states(case.centreline.at(z[:, 0]), z[:, 1], z[:, 2], held)
+    columns = to_columns(found, np.zeros(len(z), dtype=bool), case.beam)
+    for name in COLUMNS[1:-1]:
+        table.loc[where, name] = columns[name]
+    table.loc[where, "friction_angle"] = angle
+    if sliding is not None:
+        table.loc[where, "sliding"] = sliding
+
+
+def _mirrored(table: pd.DataFrame) -> pd.DataFrame:
+    return mirrored_table(table).assign(friction_angle=0.0 - table["friction_angle"])
