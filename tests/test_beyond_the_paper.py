@@ -40,12 +40,6 @@ BEYOND = {
 }
 
 
-def budget_of(case):
-    from compare.explain.variations import variations
-
-    return variations(case)
-
-
 @pytest.mark.parametrize("name", BEYOND)
 @pytest.mark.parametrize(
     "ask",
@@ -56,7 +50,6 @@ def budget_of(case):
         lambda case: reconstruct_by_decision(solve_sweep(case)),
         lambda case: sideways_stiffness(solve_sweep(case)),
         contact_length,
-        budget_of,
     ],
 )
 def test_refused_in_one_line(name, ask):

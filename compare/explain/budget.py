@@ -136,6 +136,10 @@ def budget(
     tolerances = Tolerances() if tolerances is None else tolerances
     others = [*runs.values()] if faceted is None else [*runs.values(), faceted]
     kept = _common(exact, others, tolerances.snap_off_window)
+    for (
+        varied
+    ) in variations.values():  # one may touch again, or stick, where the reference does not
+        kept &= np.isfinite([varied.values(name) for name in CLAMP_READINGS]).all(axis=0)
     if not kept.any():
         raise InputError(
             "stations common to all sweeps of the budget", 0, "some", "see their status"

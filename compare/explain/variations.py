@@ -16,7 +16,7 @@ def variations(case: Case) -> dict[str, Readings]:
     """The exact sweep over the case's stations with one thing of the physics changed, by name.
 
     ``flexural_rigidity``, ``length`` and ``radius`` are larger by a thousandth, ``foot_x`` is by a
-    thousandth of the length, and ``friction`` is the coefficient of a thousandth.
+    thousandth of the length, and ``friction`` is a coefficient larger by a thousandth.
 
     Parameters
     ----------
@@ -44,7 +44,10 @@ def variations(case: Case) -> dict[str, Readings]:
         name: solve_sweep(replace(varied, sweep=shifted if name == "foot_x" else same))
         for name, varied in cases.items()
     }
-    return {**found, "friction": with_friction(case, STEP)}
+    # Friction's closed form ends where the vibrissa sticks or lets go; the integration of a plain
+    # one goes on over all stations.
+    rubs = replace(case, friction=case.friction + STEP, sweep=same)
+    return {**found, "friction": with_friction(case, STEP) if case.is_plain else solve_sweep(rubs)}
 
 
 def on_polygon(case: Case, points: int) -> Readings:

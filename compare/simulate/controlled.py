@@ -42,7 +42,10 @@ def measure_budget(
     runs = simulate_all(case, changes, advance)
     faceted = None
     if smooth and settings.obstacle == "mesh":
-        faceted = on_polygon(case, settings.contour_points)
+        past_facets = on_polygon(case, settings.contour_points)
+        # A check, which must not cost the budget the stations where it has no solution.
+        if (past_facets.table["status"] != "diverged").all():
+            faceted = past_facets
     return budget(solve_sweep(case), runs, variations(case), faceted), runs
 
 
