@@ -275,6 +275,7 @@ class BeamModel:
         Returns
         -------
         array of bool, shape (n,)
+            Not the one at the tip.
         """
         return self._sliding.slides(contacts)
 
