@@ -45,6 +45,8 @@ class Numerics:
     facet_shift : float
         The same where the obstacle has sharp corners. At 1.0 a tip goes on to rest on the next
         facet while it is still held on its own, at one station in 1,600 of random polygons.
+    same_facet : float
+        A contact at a slope angle nearer than this to that of a facet is on the facet [rad].
     flicker : float
         Newton's method that stops at less than this out of balance, over 1 + the load, has hardly
         left the branch, but jumps from facet to facet, or from bead to bead: a descent ends that
@@ -96,6 +98,7 @@ class Numerics:
     branch_turn: float = 0.35
     largest_shift: float = 1.0
     facet_shift: float = 0.1
+    same_facet: float = 1e-3
     flicker: float = 1e-4
     refinements: int = 4
     difference: float = 1e-8

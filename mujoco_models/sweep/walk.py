@@ -153,7 +153,22 @@ class Walk:
         """From the last state on; what stops a short step, a descent decides."""
         short = abs(foot_x - self._foot_x) < self._numerics.confirm_step
         go = self._relax if short else self._thoroughly
-        return go(foot_x, self._guess(foot_x))
+        state = go(foot_x, self._guess(foot_x))
+        if not self._leaves_its_facet(state):
+            return state
+        # It may have jumped there in a long step, while it is at rest on its own facet, too.
+        last = self._state
+        stayed = self._relax(foot_x, State(last.angles, last.forces, slope=last.slope))
+        if stayed.settled and not self._leaves_its_facet(stayed):
+            return stayed
+        return self._relax(foot_x, state)
+
+    def _leaves_its_facet(self, state: State) -> bool:
+        """Whether the last state rests on a facet between sharp corners, and `state` does not."""
+        last, obstacle = self._state.slope, self.model.obstacle
+        if len(obstacle.corners) == 0 or last is None or obstacle.curvature(np.array([last]))[0]:
+            return False
+        return state.slope is None or abs(state.slope - last) > self._numerics.same_facet
 
     def _relax(self, foot_x: float, start: State) -> State:
         return relax(self.model, foot_x, start, self._tolerance, self._numerics)
