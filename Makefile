@@ -6,7 +6,7 @@ ARGS ?=
 BIN := .venv/bin
 BIN_MUJOCO3 := .venv-mujoco3/bin
 
-STUDIES := resolution contact-stiffness phase-b sweep-step sensor-noise
+STUDIES := resolution contact-stiffness phase-b sweep-step sensor-noise methods-deflection methods-noise
 CASES := catenary parabola two-circles shallow-catenary tip-only
 
 # One folder a run; a run writes its report last. A beam that disagrees is a finding, not a failure.
@@ -63,6 +63,8 @@ results: $(RUNS) | install ## results/README.md: all named cases, all beams ther
 	$(BIN)/vibrissa analytic catenary --figures --out results/pictures
 	$(BIN)/vibrissa methods catenary --out results/pictures
 	cp results/pictures/methods.png results/methods-catenary.png
+	for case in catenary parabola tip-only; do \
+	  $(BIN)/vibrissa methods $$case --on all --out results/runs/methods-$$case; done
 	$(BIN)/vibrissa study resolution --out results/resolution
 	$(BIN)/vibrissa study-report results/resolution
 	cp results/resolution/report/disagreement-mujoco.segments.png results/study-resolution.png

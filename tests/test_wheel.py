@@ -22,6 +22,14 @@ stations = 20
 segments = 10
 contour_points = 400
 """
+RIG = """
+beam = { length = 1.0 }
+[columns]
+foot_x = { column = "x" }
+force_x = { column = "a" }
+force_y = { column = "b" }
+moment_z = { column = "c" }
+"""
 STUDY = """
 [study]
 case = "tip-only"
@@ -41,6 +49,7 @@ COMMANDS = {
     "compare": (1, "compare a/analytic.parquet a/mujoco-chain.parquet"),
     "side-by-side": (1, "side-by-side a/analytic.parquet a/mujoco-chain.parquet --out side"),
     "reconstruct": (0, "reconstruct a/analytic.parquet --out a"),
+    "rig": (0, "rig rig.csv --rig rig.toml --out passes"),
     "methods": (0, "methods mine.toml --out methods"),
     "run": (1, "run mine.toml --out runs/mine --budget"),
     "report": (1, "report runs/mine"),
@@ -74,6 +83,9 @@ def environment(tmp_path_factory) -> Path:
 def test_every_command_runs_elsewhere(environment, tmp_path):
     (tmp_path / "mine.toml").write_text(SMALL)
     (tmp_path / "grid.toml").write_text(STUDY)
+    (tmp_path / "rig.toml").write_text(RIG)
+    rows = [f"{1 - i / 20},{-i / 40},{i / 20},{i / 30}" for i in range(20)]
+    (tmp_path / "rig.csv").write_text("\n".join(["x,a,b,c", *rows]))
     (tmp_path / "compare.py").write_text("raise RuntimeError('the user has a compare.py')")
     hidden = ("PYTHONPATH", "DISPLAY", "WAYLAND_DISPLAY")
     variables = {name: value for name, value in os.environ.items() if name not in hidden}

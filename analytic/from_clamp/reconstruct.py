@@ -201,9 +201,11 @@ def reconstruct_by_decision(readings: Readings, tolerance: float = 1e-6) -> pd.D
     tangential = span(np.pi / 2 - np.abs(alpha), alpha).q / np.sqrt(np.where(loaded, force, np.nan))
     arc_length = np.where(tangent, tangential, 1.0)
     x, y = np.full_like(alpha, np.nan), np.full_like(alpha, np.nan)
-    if loaded.any():
-        end = integrate_span(force_x[loaded], force_y[loaded], moment[loaded], arc_length[loaded])
-        x[loaded], y[loaded] = end.x, end.y
+    # Of a small force the tangential contact may be a thousand lengths away: that is none.
+    near = loaded & (arc_length <= LONGEST)
+    if near.any():
+        end = integrate_span(force_x[near], force_y[near], moment[near], arc_length[near])
+        x[near], y[near] = end.x, end.y
     contact = Contact(alpha, np.where(loaded, arc_length, np.nan), sensed[0] + x, y)
     return _table(readings, contact, loaded, np.where(tangent, "tangent", "tip"))
 

@@ -1,7 +1,8 @@
 """The command ``methods``: every way to find the contact, on the same readings."""
 
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -9,6 +10,9 @@ from analytic.problem.errors import InputError
 from compare.commands.options import AGREES, out_folder
 from compare.commands.output import output_folder
 from compare.read.suffixes import TABLES
+
+if TYPE_CHECKING:
+    from analytic import Readings
 
 
 def methods(
@@ -23,34 +27,82 @@ def methods(
     noise: Annotated[
         str, typer.Option(metavar="A,B,...", help="Noise over each reading's largest magnitude.")
     ] = "0,0.001,0.01",
+    on: Annotated[
+        str,
+        typer.Option(
+            metavar="A,B,...",
+            help="Readings of what, while the methods take it for a straight vibrissa in a rigid "
+            "clamp without friction: exact, curved, soft-clamp, friction, mujoco; or all.",
+        ),
+    ] = "exact",
 ) -> int:
     """How well every method finds the contact from the clamp."""
-    from analytic import Readings, solve_sweep
     from analytic.from_clamp.earlier.methods import NAMES
     from compare.commands import terminal
-    from compare.measure.methods import method_errors
+    from compare.measure.methods import INFORMED, method_errors
+
+    levels = _levels(noise)
+    names = NAMES if method is None else [word.strip() for word in method.split(",")]
+    for one in names:
+        if one not in NAMES:
+            raise InputError("--method", repr(one), f"of {', '.join(NAMES)}", "correct it")
+    asked = [word.strip() for word in on.split(",")]
+    with output_folder(_folder(out, case)) as folder:
+        import pandas as pd
+
+        from analytic.problem.files import write_whole
+        from compare.show.figures.methods import picture, side_by_side
+        from compare.show.page import save_figure
+
+        tables = []
+        for which, truth, believed, name in _truths(case, asked, folder):
+            found = method_errors(believed, names, levels)
+            if believed.beam != truth.beam or believed.provenance != truth.provenance:
+                knowing = method_errors(truth, ["elastica"], levels).assign(method=INFORMED)
+                found = pd.concat([found, knowing], ignore_index=True)
+            found.insert(0, "readings", which)
+            found.insert(0, "case", name)
+            tables.append(found)
+            terminal.print_methods(found, f"{name} ({which if len(asked) > 1 else truth.source})")
+        every = pd.concat(tables, ignore_index=True)
+        terminal.print_written(write_whole(folder / "methods.csv", every.to_csv(index=False)))
+        title = f"{name} ({truth.source})" if len(tables) == 1 else name
+        drawn = picture(tables[0], title) if len(tables) == 1 else side_by_side(every, title)
+        terminal.print_written(save_figure(drawn, folder / "methods.png"))
+    return AGREES
+
+
+def _folder(out: Path | None, case: str) -> Path:
+    name = Path(case).stem if Path(case).suffix else case
+    return out or Path("results") / f"{name}-methods"
+
+
+def _truths(
+    case: str, asked: list[str], folder: Path
+) -> Iterator["tuple[str, Readings, Readings, str]"]:
+    """Readings with their true contacts, what of, as the methods get them, and whose case."""
+    from analytic import Readings, solve_sweep
+    from compare.measure.conditions import CONDITIONS, SIMULATED, as_believed, chosen_conditions
 
     path = Path(case)
     if path.suffix.lower() in TABLES:
-        truth, name = Readings.read(path), path.stem
-    else:
-        from compare.read.case import load_job
+        if asked != ["exact"]:
+            raise InputError("--on", ", ".join(asked), "left out beside a file", "name a case")
+        truth = Readings.read(path)
+        yield "exact", truth, truth, path.stem
+        return
+    from compare.commands.engines import simulated
+    from compare.read.case import load_job
 
-        job = load_job(case)
-        truth, name = solve_sweep(job.case), job.case.name
-    names = NAMES if method is None else [word.strip() for word in method.split(",")]
-    found = method_errors(truth, names, _levels(noise))
-    with output_folder(out or Path("results") / f"{name}-methods") as folder:
-        from analytic.problem.files import write_whole
-        from compare.show.figures.methods import picture
-        from compare.show.page import save_figure
-
-        table = write_whole(folder / "methods.csv", found.to_csv(index=False))
-        terminal.print_methods(found, f"{name} ({truth.source})")
-        terminal.print_written(table)
-        drawn = picture(found, f"{name} ({truth.source})")
-        terminal.print_written(save_figure(drawn, folder / "methods.png"))
-    return AGREES
+    conditions = chosen_conditions(asked)
+    job = load_job(case)
+    job.case.require_plain("what the methods take for granted")
+    for name in conditions:
+        if name == SIMULATED:
+            truth = simulated(job, folder)
+        else:
+            truth = solve_sweep(CONDITIONS[name].true(job.case))
+        yield name, truth, as_believed(truth, job.case), job.case.name
 
 
 def _levels(text: str) -> list[float]:

@@ -359,6 +359,7 @@ def print_methods(found: pd.DataFrame, title: str) -> None:
     table = Table(
         Column("method", no_wrap=True), "phase", Column("answered", justify="right"),
         *(f"noise {level:g}" if level else "no noise" for level in levels),
+        Column("contacts/s", justify="right"),
         title=Text(f"Median error of the contact, over L: {title}"),
     )  # fmt: skip
     for method, rows in found.groupby("method", sort=False):
@@ -373,6 +374,7 @@ def print_methods(found: pd.DataFrame, title: str) -> None:
                 PHASE_LETTERS[str(phase)],
                 f"{by['answered'][levels[0]]:.0%}",
                 *("-" if np.isnan(x) else f"{x:.1e}" for x in medians),
+                f"{1 / by['seconds'].median():.0f}" if name and by["seconds"].min() > 0 else "",
             )
             name = ""
     _output().print(table)

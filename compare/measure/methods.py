@@ -8,10 +8,12 @@ import numpy as np
 import pandas as pd
 
 from analytic import CLAMP_READINGS, InputError, Readings, reconstruct, reconstruct_by_decision
-from analytic.from_clamp.earlier.methods import NAMES
+from analytic.from_clamp.earlier.methods import METHODS, NAMES
 from analytic.problem.arrays import Floats
 from compare.sense.noise import with_noise
 
+INFORMED = "elastica-informed"
+"""The closed form with the true curvature, clamp and friction."""
 NOISE = (0.0, 1e-3, 1e-2)
 _PHASES = ("tip", "tangent")
 _EXACT = 1e-6  # of criterion (26), for readings without noise
@@ -71,11 +73,29 @@ def method_errors(
     return pd.DataFrame(rows)
 
 
+def needs_of(method: str) -> str:
+    """What a method has to know beside the foot's position.
+
+    Parameters
+    ----------
+    method : str
+        From `NAMES`.
+
+    Returns
+    -------
+    str
+        As ``"moment, rigidity, first contact"``.
+    """
+    if method in METHODS:
+        return ", ".join(METHODS[method].needs)
+    return "moment, force, rigidity, length"
+
+
 def _errors(
     truth: Readings, sensed: Readings, method: str, level: float
 ) -> Iterator[dict[str, Any]]:
     begun = time.process_time()
-    found = _contacts(sensed, method, level)
+    found = contacts_by(sensed, method, level)
     seconds = time.process_time() - begun
     off = [found[name].to_numpy() - truth.values(name) for name in ("contact_x", "contact_y")]
     error = np.hypot(*off) / truth.beam.length
@@ -97,7 +117,24 @@ def _errors(
         }
 
 
-def _contacts(sensed: Readings, method: str, level: float) -> pd.DataFrame:
+def contacts_by(sensed: Readings, method: str, level: float) -> pd.DataFrame:
+    """Contact points by a method, from readings with a known level of noise.
+
+    Parameters
+    ----------
+    sensed : Readings
+        What the sensor gives.
+    method : str
+        From `NAMES`.
+    level : float
+        Standard deviation of the noise over each reading's largest magnitude. The paper's way to
+        decide the phase needs it; all others do without.
+
+    Returns
+    -------
+    pandas.DataFrame
+        As `analytic.reconstruct`.
+    """
     if method != "decision":
         return reconstruct(sensed, method=method)
     # Where noise makes an impossible force, the square root of the closed form is none.

@@ -2,13 +2,16 @@
 
 import numpy as np
 import pandas as pd
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from compare.show.page import short
-from compare.show.style import BLUE, BODY, GREEN, GREY, INK, ORANGE, PHASE_NAMES, SMALL
+from compare.show.style import BLUE, BODY, GREEN, GREY, INK, ORANGE, PAPER, PHASE_NAMES, SMALL
 
 _LEVELS = ((BLUE, "o"), (ORANGE, "s"), (GREEN, "^"))  # by level of noise
+_DARK = -2.2  # decades; more is so dark that words on it are white
+_NEARLY_ALL = 0.985
 _LEAST = 1e-6  # L; what is less is drawn there: no sensor sees the difference
 
 
@@ -48,6 +51,69 @@ def picture(found: pd.DataFrame, title: str) -> Figure:
         fontsize=SMALL,
     )
     figure.suptitle(f"Error of the contact found from the clamp: {title}", fontsize=12)
+    return figure
+
+
+def side_by_side(found: pd.DataFrame, title: str) -> Figure:
+    """Draw how each method fares on readings of different vibrissae, without noise.
+
+    Parameters
+    ----------
+    found : pandas.DataFrame
+        As `method_errors` has it, with a column ``readings``.
+    title : str
+        Which case.
+
+    Returns
+    -------
+    Figure
+        A panel for each phase: methods from top to bottom, readings from left to right, in each
+        cell the median error, and its colour.
+    """
+    found = found[found["noise"] == found["noise"].min()]
+    methods, kinds = (list(dict.fromkeys(found[name])) for name in ("method", "readings"))
+    phases = [name for name in ("tip", "tangent") if _count(found, name)]
+    figure = Figure(
+        figsize=(1.0 * len(kinds) * len(phases) + 3.6, 0.36 * len(methods) + 2.2),
+        layout="constrained",
+    )
+    axes = figure.subplots(1, max(len(phases), 1), squeeze=False, sharey=True)[0]
+    colours = colormaps["viridis_r"].with_extremes(bad=BODY)
+    for ax, phase in zip(axes, phases, strict=False):
+        rows = found[found["phase"] == phase]
+        medians, shares = (
+            rows.pivot_table(index="method", columns="readings", values=name, dropna=False)
+            .reindex(index=methods, columns=kinds)
+            .to_numpy(dtype=float)
+            for name in ("median", "answered")
+        )
+        sizes = np.log10(np.maximum(medians, _LEAST))
+        image = ax.imshow(
+            np.ma.masked_invalid(sizes), colours, aspect="auto", vmin=np.log10(_LEAST), vmax=0
+        )
+        for (i, j), size in np.ndenumerate(sizes):
+            share = shares[i, j]
+            if np.isnan(share):  # not asked
+                continue
+            text = "none" if np.isnan(size) else short(10**size) if size > -6 else "<1e-6"
+            text += "" if share > _NEARLY_ALL or np.isnan(size) else f"\n{share:.0%}"
+            ax.text(
+                j, i, text, ha="center", va="center", fontsize=SMALL - 2.5, linespacing=0.9,
+                color=PAPER if size > _DARK else INK,
+            )  # fmt: skip
+        ax.set_xticks(range(len(kinds)), kinds, rotation=35, ha="right", fontsize=SMALL)
+        ax.set_title(PHASE_NAMES[phase], fontsize=SMALL + 1)
+    axes[0].set_yticks(range(len(methods)), methods, fontsize=SMALL)
+    bar = figure.colorbar(image, ax=axes, label="median error / $L$", shrink=0.8)
+    bar.set_ticks(
+        range(-6, 1), labels=["$10^{-6}$ or less", *(f"$10^{{{n}}}$" for n in range(-5, 1))]
+    )
+    figure.supxlabel(
+        "the readings' vibrissa; all methods take it for straight, in a rigid clamp, frictionless. "
+        "Below a number: share answered, if not all",
+        fontsize=SMALL - 1,
+    )
+    figure.suptitle(f"What each method survives: {title}, no noise", fontsize=12)
     return figure
 
 

@@ -2,6 +2,7 @@
 
 import io
 import re
+from collections.abc import Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -16,12 +17,13 @@ from analytic.problem.files import write_whole
 from compare.explain.budget import UNRESOLVED
 from compare.sense.accuracy import phase_table
 from compare.sense.transitions import TRANSITIONS
+from compare.show.findings.methods import MethodsRecord, method_sentences, read_methods
 from compare.show.findings.records import RunRecord, read_records
 from compare.show.findings.sentences import overview, sentences
 from compare.show.page import render
 
 _MARK = "<!-- Written by `vibrissa findings`"
-_PICTURE = re.compile(r"\]\((budget-[^()/\\\s]+\.png)\)$", re.MULTILINE)
+_PICTURE = re.compile(r"\]\(((?:budget|methods-on)-[^()/\\\s]+\.png)\)$", re.MULTILINE)
 _COLOURS = 48  # that a picture keeps, which makes it a third as large
 
 
@@ -56,12 +58,14 @@ def write_findings(folder: Path, out: Path) -> list[Path]:
         for run in runs
         if run.budget is not None
     }
+    methods = read_methods(folder)
+    pictures |= {f"methods-on-{one.case}.png": one.folder / "methods.png" for one in methods}
     for name in pictures:
         if name not in own and (out / name).exists():
             raise _of_another(out / name)
     judged = phase_table(_recorded(runs)).to_dict("records")
     contents = {
-        "README.md": page(runs, judged).encode(errors="replace"),
+        "README.md": page(runs, judged, methods).encode(errors="replace"),
         **{name: _smaller(file) for name, file in pictures.items()},
     }
     out.mkdir(parents=True, exist_ok=True)
@@ -72,7 +76,11 @@ def write_findings(folder: Path, out: Path) -> list[Path]:
     return [out / name for name in contents]
 
 
-def page(runs: list[RunRecord], judged: list[dict[Any, Any]]) -> str:
+def page(
+    runs: list[RunRecord],
+    judged: list[dict[Any, Any]],
+    methods: Sequence[MethodsRecord] = (),
+) -> str:
     """The findings as a page.
 
     Parameters
@@ -81,6 +89,8 @@ def page(runs: list[RunRecord], judged: list[dict[Any, Any]]) -> str:
         In the order of the page.
     judged : list of dict
         Rows of `compare.sense.accuracy.phase_table`; without any the page has no such section.
+    methods : sequence of MethodsRecord
+        Tables of the methods to find the contact; without any the page has no such section.
 
     Returns
     -------
@@ -100,6 +110,8 @@ def page(runs: list[RunRecord], judged: list[dict[Any, Any]]) -> str:
         unresolved=UNRESOLVED,
         overview=overview(runs),
         sentences=sentences,
+        methods=methods,
+        method_sentences=method_sentences,
     )
 
 

@@ -10,14 +10,13 @@ from pydantic import ValidationError
 from analytic import NAMED_TABLES, InputError
 from compare.read.case import validate
 from compare.read.complaints import complaint, shown
-from compare.read.tables import CaseFile
+from compare.read.tables import CaseFile, Table
 from compare.read.toml import TomlFile
 from compare.study.grid.axes import Value
 from compare.study.grid.schema import CASE_TABLES, StudyFile
-from compare.study.grid.sensor import SensorNoise
 from compare.study.grid.study import BEAM, MESH, flatten
 
-_VARIED = (*CASE_TABLES, "noise")
+_VARIED = (*CASE_TABLES, "noise", "reconstruction")
 _KEYS = {
     "clamp_stiffness": ["support", "rotational_stiffness"],
     "friction": ["contact", "friction"],
@@ -43,7 +42,10 @@ class Base:
     def __init__(self, file: TomlFile, content: StudyFile) -> None:
         self._file = file
         self._folder = file.path.parent
-        self._noise = content.noise
+        self._own: dict[str, Table] = {
+            "noise": content.noise,
+            "reconstruction": content.reconstruction,
+        }
         self._tables = self._overlaid(content)
         checked = validate(self._tables, file.place)
         try:
@@ -52,7 +54,7 @@ class Base:
             named, _, _ = str(error).partition(" = ")
             where = file.place(_KEYS.get(named, named.split(".") if "." in named else ["profile"]))
             raise InputError(where, "unusable", "usable", str(error)) from error
-        tables = _plain(checked) | {"noise": self._noise.model_dump()}
+        tables = _plain(checked) | {n: own.model_dump() for n, own in self._own.items()}
         self.values = {key: value for key, value in flatten(tables).items() if value is not None}
         if MESH in self.values:
             self.values[MESH] = self._path(self.values[MESH])
@@ -119,12 +121,13 @@ class Base:
 
     def _tried(self, table: str, key: str, value: object, place: Sequence[str]) -> object:
         """What the base case holds with `value` for a key."""
-        if table == "noise":
+        if table in self._own:
+            own = self._own[table]
             try:
-                noise = SensorNoise.model_validate(self._noise.model_dump() | {key: value})
+                varied = type(own).model_validate(own.model_dump() | {key: value})
             except ValidationError as error:
-                raise complaint(error, SensorNoise, self._file.place, place[:-1]) from error
-            return noise.model_dump()[key]
+                raise complaint(error, type(own), self._file.place, place[:-1]) from error
+            return varied.model_dump()[key]
         where = self._file.place(place)
         changed = {**self._tables, table: {**self._tables.get(table, {}), key: value}}
         checked = validate(changed, partial(_at, where))

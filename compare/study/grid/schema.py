@@ -6,6 +6,7 @@ from pydantic import Field
 
 from compare.read.tables import FileName, Table
 from compare.study.grid.axes import Sample
+from compare.study.grid.estimator import Estimator
 from compare.study.grid.sensor import SensorNoise
 from compare.study.grid.study import Record
 
@@ -33,6 +34,7 @@ class StudyFile(Table):
     axes: Annotated[dict[str, Any], Field(min_length=1)] | None = None
     sample: Sample | None = None
     noise: SensorNoise = SensorNoise()
+    reconstruction: Estimator = Estimator()
     beam: dict[str, Any] = Field(default_factory=dict)
     support: dict[str, Any] = Field(default_factory=dict)
     contact: dict[str, Any] = Field(default_factory=dict)

@@ -7,6 +7,7 @@ from typing import Any, Literal, TypeAlias
 from compare.read.case import validate
 from compare.read.tables import CaseFile
 from compare.study.grid.axes import Axis
+from compare.study.grid.estimator import Estimator
 from compare.study.grid.sensor import SensorNoise
 
 Record: TypeAlias = Literal["events", "disagreement", "reconstruction"]
@@ -72,8 +73,8 @@ def flatten(tables: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     }
 
 
-def case_file(parameters: Mapping[str, Any]) -> tuple[CaseFile, SensorNoise]:
-    """Read the case and the noise from dotted keys.
+def case_file(parameters: Mapping[str, Any]) -> tuple[CaseFile, SensorNoise, Estimator]:
+    """Read the case, the noise and the method from dotted keys.
 
     Parameters
     ----------
@@ -86,6 +87,8 @@ def case_file(parameters: Mapping[str, Any]) -> tuple[CaseFile, SensorNoise]:
         The case.
     SensorNoise
         The noise.
+    Estimator
+        The method to find the contact.
 
     Raises
     ------
@@ -97,4 +100,5 @@ def case_file(parameters: Mapping[str, Any]) -> tuple[CaseFile, SensorNoise]:
         name, _, key = dotted.partition(".")
         tables.setdefault(name, {})[key] = value
     noise = SensorNoise(**tables.pop("noise", {}))
-    return validate(tables, ".".join), noise
+    estimator = Estimator(**tables.pop("reconstruction", {}))
+    return validate(tables, ".".join), noise, estimator

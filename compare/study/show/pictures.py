@@ -138,19 +138,20 @@ def _over_axis(found: StudyResults, question: Question, axis: str, cut: list[Lin
     for line in cut:
         shade = shades.index(line.held[varying]) if varying else 0
         beam = beams.index(line.beam)
-        # Several beams: a colour each. One: a colour for each value of the other axis.
-        colour, style = (beam, shade) if len(beams) > 1 else (shade, 0)
+        # Several beams: a colour each, and another style where colours run out. One: a colour for
+        # each value of the other axis.
+        colour, style = (beam, shade + beam // len(SERIES)) if len(beams) > 1 else (shade, 0)
         value = f"{line.held[varying]:.4g}" if varying else ""
-        name = ", ".join(filter(None, (line.beam, value)))
-        shown, table = SERIES[colour % len(SERIES)], line.table
+        name = ", ".join(filter(None, (line.beam.replace("method ", ""), value)))
+        shown, table = SERIES[colour % len(SERIES)], _from(line.table, question.least)
         ax.plot(table["value"], table["median"], marker="o" if len(table) <= _MARKED else "",
                 markersize=3.5, linewidth=1.4, label=name, color=shown,
-                linestyle=LINE_STYLES[style])  # fmt: skip
+                linestyle=LINE_STYLES[style % len(LINE_STYLES)])  # fmt: skip
         if (table["high"] > table["low"]).any():
             ax.fill_between(
                 table["value"], table["low"], table["high"], alpha=0.15, linewidth=0, color=shown
             )
-    sizes = pd.concat([line.table["median"] for line in cut])
+    sizes = pd.concat([_from(line.table, question.least)["median"] for line in cut])
     if question.limit is not None:
         ax.axhline(question.limit, color=GREY, linestyle="--", linewidth=1)
     elif _spans_decades(sizes):
@@ -168,6 +169,12 @@ def _over_axis(found: StudyResults, question: Question, axis: str, cut: list[Lin
             title=title, title_fontsize=SMALL - 1,
         )  # fmt: skip
     return figure
+
+
+def _from(table: pd.DataFrame, least: float) -> pd.DataFrame:
+    """The table of a line, with what is less than anybody can see drawn at that."""
+    drawn = ["median", "low", "high"]
+    return table.assign(**{name: table[name].clip(lower=least) for name in drawn})
 
 
 def _map(ax: Axes, done: pd.DataFrame, across: str, up: str, question: Question) -> None:

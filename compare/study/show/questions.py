@@ -23,6 +23,8 @@ class Question:
         What a picture calls it.
     limit : float or None
         A value that means something, which pictures draw.
+    least : float
+        Pictures draw what is less at this: nobody can see the difference.
     """
 
     name: str
@@ -31,6 +33,7 @@ class Question:
     number: str
     label: str
     limit: float | None = None
+    least: float = 0.0
 
 
 QUESTIONS = (
@@ -44,7 +47,7 @@ QUESTIONS = (
     ),
     Question(
         "reconstruction", "How well is the object reconstructed?", "reconstruction_rms",
-        "the rms reconstruction error", "rms reconstruction error / $L$",
+        "the rms reconstruction error", "rms reconstruction error / $L$", least=1e-6,
     ),
     Question(
         "phase-b", "Where is there a Phase B?", "contact_length_minimum",

@@ -11,6 +11,7 @@ from compare.study.grid.study import BEAM
 
 WORST = "disagreement_worst_rms"
 SEED = "noise.seed"
+METHOD = "reconstruction.method"
 REFINED = ("mujoco.segments", "mujoco.contour_points", "sweep.stations")
 """Parameters that should make the disagreement fall."""
 _FEW_POINTS = 12  # parameters that advance together in more points than these are a sample
@@ -77,7 +78,7 @@ class StudyResults:
         return tuple(key for keys in groups for key in keys if key in self.axes)
 
     def by_beam(self, metric: str) -> Iterator[tuple[str, pd.DataFrame]]:
-        """Split the runs by beam: the median of two models is that of neither.
+        """Split the runs by beam and method: the median of two models is that of neither.
 
         Parameters
         ----------
@@ -87,14 +88,18 @@ class StudyResults:
         Yields
         ------
         str, pandas.DataFrame
-            The beam, ``""`` in a study without simulation, and its runs that have the metric.
+            The beam, ``""`` in a study without simulation, and the method to find the contact, if
+            that varies; and their runs that have the metric.
         """
         done = self.done.dropna(subset=[metric])
-        if BEAM not in done:
+        keys = [key for key in (BEAM, METHOD) if key in done]
+        if not keys:
             yield "", done
             return
-        for beam, group in done.groupby(BEAM):
-            yield str(beam), group
+        for values, group in done.groupby(keys):
+            said = dict(zip(keys, values, strict=True))
+            method = f"method {said[METHOD]}" if METHOD in said else ""
+            yield ", ".join(filter(None, (str(said.get(BEAM, "")), method))), group
 
 
 def together(done: pd.DataFrame, one: str, other: str) -> bool:

@@ -4,8 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from analytic import CLAMP_READINGS, Direction, Readings, find_events, reconstruct
+from analytic import CLAMP_READINGS, Direction, Readings, find_events
 from compare.comparison import compare
+from compare.measure.methods import contacts_by
 from compare.read.tables import Physics
 from compare.sense.transitions import TRANSITIONS
 from compare.study.grid.study import Record
@@ -112,23 +113,29 @@ def disagreement(reference: Readings, candidate: Readings) -> dict[str, float | 
     return row
 
 
-def reconstruction(candidate: Readings) -> dict[str, float | None]:
+def reconstruction(
+    candidate: Readings, method: str = "elastica", noise: float = 0.0
+) -> dict[str, float | None]:
     """Measure how far the contact points that the clamp shows are from the true ones.
 
     Parameters
     ----------
     candidate : Readings
         A sweep with its true contact points, shape (stations,).
+    method : str
+        To find the contact.
+    noise : float
+        Of the readings, over their largest magnitude.
 
     Returns
     -------
     dict
         Distances [L] over the trusted stations in contact, rms and largest;
-        ``reconstruction_share`` is the share of them whose readings some elastica explains, the
+        ``reconstruction_share`` is the share of them that the method has an answer to, the
         others have no contact point. None without such stations.
     """
     touching = candidate.trusted & np.isfinite(candidate.values("contact_x"))
-    found = reconstruct(candidate)
+    found = contacts_by(candidate, method, noise)
     miss = np.hypot(
         found["contact_x"].to_numpy() - candidate.values("contact_x"),
         found["contact_y"].to_numpy() - candidate.values("contact_y"),

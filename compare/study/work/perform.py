@@ -183,7 +183,7 @@ def lost(run: PlannedRun, outcome: Outcome, reason: str) -> Result:
 
 
 def _measure(recipe: Recipe, parameters: dict[str, Value], readings: dict[str, Readings]) -> Row:
-    file, noise = case_file({**recipe.base, **parameters})
+    file, noise, estimator = case_file({**recipe.base, **parameters})
     row: Row = {"seed": noise.seed}
     if "events" in recipe.record:
         row |= metrics.events(file.physics(Path()), file.sweep.direction)
@@ -212,7 +212,7 @@ def _measure(recipe: Recipe, parameters: dict[str, Value], readings: dict[str, R
     if "disagreement" in recipe.record:
         row |= metrics.disagreement(reference, candidate)
     if "reconstruction" in recipe.record:
-        row |= metrics.reconstruction(candidate)
+        row |= metrics.reconstruction(candidate, estimator.method, noise.relative)
     return row
 
 

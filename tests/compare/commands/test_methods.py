@@ -16,11 +16,26 @@ def test_a_case_and_a_file_of_its_readings_are_alike(tmp_path):
         assert done.returncode == 0, done.stderr
         assert "kaneko" in done.stdout
     tables = [
-        pd.read_csv(tmp_path / "results" / name / "methods.csv").drop(columns="seconds")
+        pd.read_csv(tmp_path / "results" / name / "methods.csv").drop(columns=["case", "seconds"])
         for name in ("parabola-methods", "mine-methods")
     ]
     pd.testing.assert_frame_equal(*tables)
     assert (tmp_path / "results" / "mine-methods" / "methods.png").exists()
+
+
+def test_readings_of_other_vibrissae(tmp_path):
+    done = vibrissa(
+        "methods", "parabola", "--method", "binary,elastica", "--noise", "0",
+        "--on", "exact,friction", "--out", "out", cwd=tmp_path,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "contacts/s" in done.stdout
+    table = pd.read_csv(tmp_path / "out" / "methods.csv")
+    assert set(table["readings"]) == {"exact", "friction"}
+    informed = table[table["method"] == "elastica-informed"]
+    assert set(informed["readings"]) == {"friction"}
+    assert informed["worst"].max() < 1e-10
+    assert (tmp_path / "out" / "methods.png").exists()
 
 
 @pytest.mark.parametrize(
@@ -32,6 +47,8 @@ def test_a_case_and_a_file_of_its_readings_are_alike(tmp_path):
         ("parabola", "--noise", "0,0.1,0.2,0.3"),
         ("missing.parquet",),
         ("parabole",),
+        ("parabola", "--on", "smooth"),
+        ("mine.parquet", "--on", "friction"),
     ],
 )
 def test_bad_input_is_one_line(arguments, tmp_path):

@@ -7,6 +7,7 @@ import pytest
 
 from analytic import Case, InputError, Readings, Sweep, circle, named_case, solve_sweep
 from analytic.from_clamp.earlier.methods import NAMES, OWN
+from compare.measure.conditions import CONDITIONS, as_believed, chosen_conditions
 from compare.measure.methods import method_errors
 
 EXACT = ("elastica", "decision", "scholz-rahn", "clements-rahn")
@@ -52,6 +53,32 @@ def test_units_do_not_matter():
     scaled = solve_sweep(replace(case, beam=beam, profile=case.profile.scaled(length)))
     one, other = (method_errors(s, noise=[0.0]) for s in (solve_sweep(case), scaled))
     np.testing.assert_allclose(other["median"], one["median"], rtol=1e-6, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", [name for name in CONDITIONS if name != "exact"])
+def test_what_a_method_does_not_know_makes_it_err_and_what_it_knows_does_not(name):
+    truth = solve_sweep(CONDITIONS[name].true(CIRCLE))
+    believed = as_believed(truth, CIRCLE)
+    taken = method_errors(believed, ["elastica"], [0.0])
+    known = method_errors(truth, ["elastica"], [0.0])
+    assert known["worst"].max() < 1e-10
+    assert taken["worst"].max() > 1e-4
+    if name == "friction":  # only the angle is off: by the radius times that
+        assert taken["worst"].max() < 2 * CIRCLE.beam.radius
+
+
+def test_conditions_by_name():
+    assert chosen_conditions(["all"]) == [*CONDITIONS, "mujoco"]
+    assert chosen_conditions(["friction", "exact", "friction"]) == ["friction", "exact"]
+    with pytest.raises(InputError, match="readings = 'frictoin'"):
+        chosen_conditions(["frictoin"])
+
+
+def test_deciding_never_integrates_far_beyond_the_tip():
+    """A small force may be of a tangential contact a thousand lengths away."""
+    truth = solve_sweep(CONDITIONS["curved"].true(named_case("tip-only")))
+    found = method_errors(as_believed(truth, named_case("tip-only")), ["decision"], [1e-2])
+    assert found["seconds"].max() < 0.05
 
 
 def test_a_name_that_there_is_not():

@@ -4,12 +4,15 @@ import json
 import shutil
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 from analytic import CASE_NAMES, InputError
 from analytic.problem.files import write_whole
 from compare import compare
 from compare.show.findings import write_findings
+from compare.show.findings.methods import method_sentences, read_methods
+from compare.show.findings.page import page
 from compare.show.findings.records import BudgetFile, ComparisonFile, RunRecord, read_records
 from compare.show.findings.sentences import overview, sentences
 from compare.show.page import document
@@ -44,6 +47,46 @@ def run(
         ComparisonFile.model_validate(comparison),
         budget and BudgetFile.model_validate(budget.to_dict()),
     )
+
+
+def methods_table(**medians):
+    """A table of two methods on exact readings and with friction, in two phases."""
+    rows = [
+        {
+            "case": "mine", "readings": readings, "method": method, "noise": noise, "phase": phase,
+            "contacts": 10, "answered": 0.5 if method == "rare" else 1.0,
+            "median": medians[method] * (1 if noise == 0 else 30),
+        }
+        for readings in ("exact", "friction")
+        for method in medians
+        for noise in (0.0, 0.01)
+        for phase in ("tangent", "tip")
+    ]  # fmt: skip
+    return pd.DataFrame(rows)
+
+
+def test_methods_that_survive_are_named(tmp_path):
+    folder = tmp_path / "runs" / "one"
+    folder.mkdir(parents=True)
+    methods_table(good=1e-3, poor=0.2, rare=1e-3).to_csv(folder / "methods.csv", index=False)
+    (record,) = read_methods(tmp_path / "runs")
+    assert record.survivors("exact", 0.0) == ["good"]
+    said = method_sentences(record)
+    assert "exact: good; friction: good." in said
+    assert "At 0.01 of noise the best on exact readings: A good (3.0e-2), B good (3.0e-2)." in said
+    assert record.cell("rare", "exact", 0.0) == "B 1.0e-3 (50%), A 1.0e-3 (50%)"
+    assert record.cell("absent", "exact", 0.0) == ""
+    text = page([run()], [], [record])
+    assert "![What each method survives on readings of the case mine](methods-on-mine.png)" in text
+    assert "| good | B 1.0e-3, A 1.0e-3 |" in text
+
+
+@pytest.mark.parametrize("damage", ["", "a,b\n1,2\n", "\x00"])
+def test_a_damaged_table_of_methods_is_one_line(tmp_path, damage):
+    (tmp_path / "one").mkdir()
+    (tmp_path / "one" / "methods.csv").write_text(damage)
+    with pytest.raises(InputError, match=r"methods\.csv"):
+        read_methods(tmp_path)
 
 
 @pytest.mark.parametrize(

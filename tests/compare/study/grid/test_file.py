@@ -85,7 +85,7 @@ def test_named_cases_are_those_of_the_command_line(tmp_path):
     for name in CASE_NAMES:
         path = tmp_path / "named.toml"
         path.write_text(f'study.case = "{name}"\nstudy.beams = []')
-        file, _ = case_file(load_study(str(path)).base)
+        file, *_ = case_file(load_study(str(path)).base)
         assert file.case(tmp_path, name).digest == named_case(name).digest
 
 
@@ -146,6 +146,7 @@ def test_a_plan_survives_its_file(plan_of):
         ("[sweep]\nstations = 1000000000\n", ["line 3", "1000000000"]),
         ("[sample]\ncount = true\n", ["line 3", "True"]),
         ("[noise]\nrelative = true\n", ["line 3", "True"]),
+        ("[axes]\nreconstruction.method = ['kanecko']\n", ["line 3", "kanecko", "kaneko"]),
         ("[noise]\nrelative = nan\n", ["line 3", "nan"]),
     ],
 )  # fmt: skip
@@ -210,7 +211,7 @@ def test_edited_sources_are_other_runs(plan_of):
 
 
 def test_shipped_studies_are_valid():
-    assert len(shipped_studies()) == 6
+    assert len(shipped_studies()) == 8
     for name in shipped_studies():
         assert len(Plan.of(load_study(name))) > 10
 

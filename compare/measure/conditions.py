@@ -1,0 +1,94 @@
+"""What readings may be of that a method does not know: other vibrissae, supports and contacts."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+from analytic import Case, InputError, Readings
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A case as it is in truth, while a method takes it for the paper's vibrissa.
+
+    Attributes
+    ----------
+    what : str
+        In a few words, with its size.
+    true : callable
+        The true case, from the one that the method believes in.
+    """
+
+    what: str
+    true: Callable[[Case], Case]
+
+
+def _curved(case: Case) -> Case:
+    return replace(case, beam=replace(case.beam, natural_curvature=-0.2 / case.beam.length))
+
+
+def _soft(case: Case) -> Case:
+    return replace(case, clamp_stiffness=10 * case.beam.moment_unit)
+
+
+def _rubbing(case: Case) -> Case:
+    return replace(case, friction=0.2)
+
+
+CONDITIONS: dict[str, Condition] = {
+    "exact": Condition("the paper's vibrissa", lambda case: case),
+    "curved": Condition("natural curvature -0.2/L", _curved),
+    "soft-clamp": Condition("clamp of stiffness 10 EI/L", _soft),
+    "friction": Condition("friction 0.2", _rubbing),
+}
+"""By name. Sizes are moderate: each bends or turns a vibrissa by less than a contact does."""
+
+SIMULATED = "mujoco"
+"""Name of readings that a simulator made."""
+
+
+def chosen_conditions(names: Iterable[str]) -> list[str]:
+    """Conditions by name, without repetition.
+
+    Parameters
+    ----------
+    names : iterable of str
+        From `CONDITIONS`, `SIMULATED`, or ``"all"``.
+
+    Returns
+    -------
+    list of str
+        In the order that was asked for.
+
+    Raises
+    ------
+    InputError
+        If there is no such condition.
+    """
+    every = (*CONDITIONS, SIMULATED)
+    found: dict[str, None] = {}
+    for name in names:
+        if name not in (*every, "all"):
+            raise InputError(
+                "readings", repr(name), f"all, or of {', '.join(every)}", "correct the name"
+            )
+        found |= dict.fromkeys(every if name == "all" else [name])
+    return list(found)
+
+
+def as_believed(readings: Readings, case: Case) -> Readings:
+    """The readings as a method gets them: of the paper's vibrissa, as far as anybody knows.
+
+    Parameters
+    ----------
+    readings : Readings
+        Of the true case, or a simulator.
+    case : Case
+        What the method believes in.
+
+    Returns
+    -------
+    Readings
+        With that case's beam, and nothing said of its clamp and of friction.
+    """
+    provenance = {name: x for name, x in readings.provenance.items() if name != "support"}
+    return replace(readings, beam=case.beam, provenance=provenance)
