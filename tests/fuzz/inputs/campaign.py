@@ -7,13 +7,13 @@ from collections.abc import Iterable
 import matplotlib.pyplot as plt
 import numpy as np
 
-from tests.fuzz.inputs import data, meshes, tables, words
+from tests.fuzz.inputs import data, meshes, models, tables, words
 from tests.fuzz.inputs.dice import Dice
 from tests.fuzz.inputs.trial import Trial, perform
 
 KINDS = {
     words.options: 4, tables.case: 5, tables.study: 4, data.data: 5, meshes.mesh: 3,
-    words.written: 2, tables.toml: 1,
+    words.written: 2, tables.toml: 1, models.model: 2, models.rig: 2,
 }  # fmt: skip
 """Makers of trials, and how often each is asked."""
 OWN_PROCESS = 40  # every so manyth trial is done in a process of its own

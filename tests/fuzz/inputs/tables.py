@@ -7,7 +7,11 @@ from tests.fuzz.inputs.sound import PROFILES, body, good_csv
 from tests.fuzz.inputs.trial import Trial
 
 KEYS = {
-    "beam": ("length", "flexural_rigidity", "radius", "radis"),
+    "beam": ("length", "flexural_rigidity", "radius", "radis", "natural_curvature", "tip_radius"),
+    "support": ("rotational_stiffness", "stiffness"),
+    "contact": ("friction", "mu"),
+    "motion": ("speed", "timestep", "integrator", "damping_ratio", "solver", "cone"),
+    "uncertainty": ("flexural_rigidity", "length", "radius", "foot_x", "force_x", "noise"),
     "profile": ("kind", "a", "c", "radius", "lowest", "semi_axes", "points", "scale", "file",
                 "right_radius", "left_radius", "height", "axes", "offset", "hull", "tolerance"),
     "sweep": ("stations", "start", "stop", "direction"),
@@ -87,7 +91,16 @@ def study(dice: Dice) -> Trial:
 def sound_tables(dice: Dice) -> dict[str, dict[str, str]]:
     """A sound case file: its tables, their keys and values as they are written."""
     profile = dict(line.split(" = ", 1) for line in dice.pick(*PROFILES).splitlines())
-    return {"": {}, "profile": profile, "beam": {"length": "1.0"}, "mujoco": {"segments": "8"}}
+    sound = {"": {}, "profile": profile, "beam": {"length": "1.0"}, "mujoco": {"segments": "8"}}
+    if dice.chance(0.3):
+        sound["beam"]["natural_curvature"] = dice.pick("-0.5", "0.3", "[[0, 0], [1, -0.4]]")
+    if dice.chance(0.3):
+        sound["beam"] |= {"radius": "0.01", "tip_radius": dice.pick("0.004", "0.0005")}
+    if dice.chance(0.2):
+        sound["support"] = {"rotational_stiffness": "8.0"}
+    if dice.chance(0.2):
+        sound["contact"] = {"friction": "0.3"}
+    return sound
 
 
 def _spoil(dice: Dice, tables: dict[str, dict[str, str]]) -> None:
