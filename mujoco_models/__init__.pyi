@@ -3,10 +3,12 @@ from .errors import ClampError as ClampError
 from .errors import DivergedError as DivergedError
 from .inspect.measured import MeasuredBeam as MeasuredBeam
 from .motion import Motion as Motion
+from .own.names import OwnModel as OwnModel
 from .settings import Settings as Settings
 from .simulate import inspect_model as inspect_model
 from .simulate import load_tip as load_tip
 from .simulate import shipped_models as shipped_models
+from .simulate import simulate_model as simulate_model
 from .simulate import simulate_motion as simulate_motion
 from .simulate import simulate_sweep as simulate_sweep
 from .simulate import view_sweep as view_sweep

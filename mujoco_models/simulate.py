@@ -15,6 +15,7 @@ from analytic.problem.mirror import facing, solve_either_way
 from analytic.problem.readings import Readings
 from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.motion import Motion
+from mujoco_models.own.names import OwnModel
 from mujoco_models.settings import Settings
 
 
@@ -212,6 +213,60 @@ def inspect_model(
     from mujoco_models.inspect import measure, parts
 
     return measure.inspect_model(Path(path), parts.Names(foot, force, torque, geoms))
+
+
+def simulate_model(
+    case: Case,
+    model: OwnModel,
+    motion: Motion | None = None,
+    settings: Settings | None = None,
+    advance: Callable[[], None] = lambda: None,
+    keep: Callable[[Readings], None] = lambda _: None,
+) -> Readings:
+    """Sweep a user's own model past the object of `case`, with its own time step and solver.
+
+    The object is put into the model's world, in memory, so that the sweep begins where the foot is.
+    The foot is moved by what the model has for that, and the clamp is read by the model's sensors,
+    turned into the frame of the sweep.
+
+    Parameters
+    ----------
+    case : Case
+        The problem, with the vibrissa that the model should be, in the model's units.
+    model : OwnModel
+        The model's file, and names.
+    motion : Motion, optional
+        Speed, soft start, average and filter; the contact's stiffness if it is to be ours. All else
+        is the model's.
+    settings : Settings, optional
+        Points of the object's contour.
+    advance, keep : callable, optional
+        As of `simulate_sweep`.
+
+    Returns
+    -------
+    Readings
+        As of `simulate_motion`, source ``"model <name>"``; ``provenance["measured"]`` says what
+        beam the model is. T1 is the model's own first period.
+
+    Raises
+    ------
+    InputError
+        If the model or a name cannot be used, its length is not the case's, nothing moves its foot
+        along the sweep, it has no sensors, or its geoms touch nothing or each other.
+    DivergedError
+        If the motion does not stay finite.
+    """
+    from mujoco_models.own.sweep import run_own
+
+    moved, chosen = motion or Motion(), settings or Settings()
+
+    def keep_facing(found: Readings) -> None:
+        keep(facing(case, found))
+
+    return solve_either_way(
+        case, lambda leftward: run_own(leftward, model, moved, chosen, advance, keep_facing)
+    )
 
 
 def shipped_models() -> dict[str, Path]:

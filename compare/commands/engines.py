@@ -11,7 +11,7 @@ from compare.explain.budget import Budget
 from compare.explain.changes import controlled_changes
 from compare.read.case import Job
 from compare.simulate.controlled import measure_budget
-from mujoco_models import simulate_motion, simulate_sweep
+from mujoco_models import simulate_model, simulate_motion, simulate_sweep
 from mujoco_models.settings import CONTACT_STIFFNESSES
 
 
@@ -42,8 +42,11 @@ def simulated(job: Job, folder: Path) -> Readings:
         stations = f"{len(partial.table)} of {job.case.sweep.stations} stations"
         typer.echo(f"vibrissa: kept {stations} in {path}", err=True)
 
-    with progress(f"MuJoCo {job.settings.beam}", job.case.sweep.stations) as advance:
-        if job.motion is None:
+    what = job.settings.beam if job.model is None else job.model.file.name
+    with progress(f"MuJoCo {what}", job.case.sweep.stations) as advance:
+        if job.model is not None:
+            readings = simulate_model(job.case, job.model, job.motion, job.settings, advance, keep)
+        elif job.motion is None:
             readings = simulate_sweep(job.case, job.settings, advance, keep)
         else:
             readings = simulate_motion(job.case, job.motion, job.settings, advance, keep)
@@ -62,8 +65,10 @@ def sweep_file(job: Job) -> str:
     Returns
     -------
     str
-        ``mujoco-BEAM.parquet``, or ``mujoco-BEAM-in-motion.parquet``.
+        ``mujoco-BEAM.parquet``, ``mujoco-BEAM-in-motion.parquet`` or ``mujoco-own-model.parquet``.
     """
+    if job.model is not None:
+        return "mujoco-own-model.parquet"
     return f"mujoco-{job.settings.beam}{'-in-motion' if job.motion else ''}.parquet"
 
 

@@ -130,6 +130,8 @@ class Changes:
         from compare.read.case import load_job
 
         job = load_job(name)
+        if job.model is not None:
+            self._check_model()
         case = job.case
         if self.stations is not None:
             case = replace(case, sweep=replace(case.sweep, stations=self.stations))
@@ -170,9 +172,21 @@ class Changes:
                 command,
                 "of a sweep in motion",
                 "of a sweep at rest",
-                "take [motion] out of the case",
+                "take [motion] and [model] out of the case",
             )
         return job
+
+    def _check_model(self) -> None:
+        """Refuse what a model of the user's own says itself."""
+        for option, value in (
+            ("--segments", self.segments),
+            ("--beam", self.beam),
+            ("--obstacle", self.obstacle),
+            ("--spatial", self.spatial or None),
+            ("--timestep", self.timestep),
+        ):
+            if value is not None:
+                raise InputError(option, value, "left out", "the case has a [model] of its own")
 
     def _moved(self, motion: Motion | None) -> Motion | None:
         named: dict[str, Any] = {"speed": self.speed, "timestep": self.timestep}

@@ -59,6 +59,7 @@ def run(
         from compare.comparison import compare
         from compare.show.animation import write_animation
         from compare.show.report import Film, write_report
+        from compare.simulate.inspection import faults_of
 
         exact = solve_sweep(job.case)
         exact.write(folder / "analytic.parquet")
@@ -73,7 +74,7 @@ def run(
         if job.uncertainties is not None:
             with waiting("validating"):
                 comparison = comparison.validated(job.case, job.uncertainties, "candidate", found)
-        rest = at_rest(job) if job.motion else None
+        rest = at_rest(job) if job.motion and job.model is None else None
         if found is not None:
             terminal.print_budget(found, job.case.name)
         with terminal.progress("frames", _FRAMES) as advance:
@@ -85,6 +86,10 @@ def run(
             rest.write(folder / "at-rest.parquet")
             terminal.print_sweep(candidate)
             terminal.print_at_rest(compare(exact, rest), compare(rest, candidate))
+        if job.model is not None:
+            terminal.print_sweep(candidate)
+            for line in faults_of(job.model, job.case.beam):
+                terminal.print_line(line)
         terminal.print_written(written)
         return AGREES if comparison.agrees else DISAGREES
 

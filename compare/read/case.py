@@ -17,6 +17,7 @@ from compare.read.toml import Place, TomlFile
 from compare.read.uncertainty import uncertainties_of
 from compare.validate.stated import Uncertainties
 from mujoco_models.motion import Motion
+from mujoco_models.own.names import OwnModel
 from mujoco_models.settings import Settings
 
 _WITH_UNITS = ("beam", "support", "profile", "sweep")
@@ -39,6 +40,8 @@ class Job:
         How the foot moves; None if MuJoCo's beam is at rest at every station.
     uncertainties : Uncertainties or None
         What is uncertain about the case; None if nothing is stated.
+    model : OwnModel or None
+        The user's own model, if that is to be swept; it is always in motion.
     """
 
     case: Case
@@ -46,6 +49,7 @@ class Job:
     tolerances: Tolerances = field(default_factory=Tolerances)
     motion: Motion | None = None
     uncertainties: Uncertainties | None = None
+    model: OwnModel | None = None
 
 
 def load_job(name_or_path: str) -> Job:
@@ -85,8 +89,12 @@ def load_job(name_or_path: str) -> Job:
     case = case_file.case(path.parent, name)
     moved = case_file.motion
     motion = None if moved is None else moved.build(case.beam)
+    own = case_file.model
+    if own is not None:
+        motion = Motion() if moved is None else moved.of_a_model(case.beam, file.place)
     stated = uncertainties_of(case_file.uncertainty, case, file.place)
-    return Job(case, case_file.mujoco, limits, motion, stated)
+    model = None if own is None else own.build(path.parent)
+    return Job(case, case_file.mujoco, limits, motion, stated, model)
 
 
 def validate(tables: Mapping[str, Any], place: Place) -> CaseFile:

@@ -8,11 +8,15 @@ from pydantic import BaseModel, ConfigDict, Field, PlainValidator
 from pydantic_core import PydanticCustomError
 
 from analytic import Beam, InputError
+from compare.read.toml import Place
 from compare.read.units import in_si
 from mujoco_models.motion import ConeKind, IntegratorKind, Motion, SolverKind
 
 _EXAMPLES = {"m/s": "10 mm/s", "s": "1 ms", "1/s": "500 Hz", "kg/m^3": "7850 kg/m^3"}
 _FIRST_ROOT = 1.8751040687119611  # of cos(x) cosh(x) = -1: the first vibration of a cantilever
+
+
+_OF_A_MODEL = ("speed", "ramp", "average", "cutoff", "contact_stiffness")
 
 
 class InSI(float):
@@ -119,6 +123,36 @@ class MotionTable(BaseModel):
         if self.cutoff is not None:
             natural["cutoff"] = _over(self.cutoff, 1 / unit)
         return Motion(**natural)
+
+    def of_a_model(self, beam: Beam, place: Place) -> Motion:
+        """The motion of a user's own model, which brings most of it with it.
+
+        Parameters
+        ----------
+        beam : Beam
+            Of the case.
+        place : callable
+            What an error calls a key.
+
+        Returns
+        -------
+        Motion
+            In natural units; T1 is the model's own first period.
+
+        Raises
+        ------
+        InputError
+            As `build` does, or if something is stated that the model says itself.
+        """
+        for name in type(self).model_fields:
+            if name in self.model_fields_set and name not in _OF_A_MODEL:
+                raise InputError(
+                    place(["motion", name]),
+                    "stated",
+                    f"left to the model; beside a [model] there are {', '.join(_OF_A_MODEL)}",
+                    "take it out",
+                )
+        return self.build(beam)
 
     def _period(self, beam: Beam) -> float | None:
         """T1 [s], if it can be known."""

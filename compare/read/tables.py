@@ -37,6 +37,7 @@ from analytic.problem.support import check_support
 from compare.read.complaints import plain_name
 from compare.read.motion import MotionTable
 from compare.read.units import in_si
+from mujoco_models.own.names import ContactKind, OwnModel
 from mujoco_models.settings import Settings
 
 
@@ -321,6 +322,33 @@ class Physics(NamedTuple):
     friction: float
 
 
+class ModelTable(Table):
+    """A MuJoCo model of the user's own; see `mujoco_models.OwnModel`."""
+
+    file: str
+    foot: str | None = None
+    force: str | None = None
+    torque: str | None = None
+    geoms: str | None = None
+    contact: ContactKind = "own"
+
+    def build(self, folder: Path) -> OwnModel:
+        """The model.
+
+        Parameters
+        ----------
+        folder : Path
+            What its path is relative to.
+
+        Returns
+        -------
+        OwnModel
+            Not yet looked at.
+        """
+        names = self.model_dump(exclude={"file"})
+        return OwnModel(folder / self.file, **names)
+
+
 class CaseFile(Table):
     """What a case file holds; dimensions in one system of units, SI if units are given.
 
@@ -332,6 +360,8 @@ class CaseFile(Table):
         The physics.
     mujoco : Settings
         The numerics of the simulation.
+    model : table, optional
+        A model of the user's own, if it is to be swept instead of ours.
     motion : table, optional
         How the foot moves, if it is not at rest at every station (`compare.read.motion`).
     tolerances : table
@@ -357,6 +387,7 @@ class CaseFile(Table):
     ]
     sweep: SweepTable = SweepTable()
     mujoco: Annotated[Settings, Field(default_factory=Settings)]
+    model: ModelTable | None = None
     motion: MotionTable | None = None
     tolerances: dict[str, Any] = {}
     uncertainty: dict[str, Any] = {}

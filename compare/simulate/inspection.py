@@ -10,6 +10,7 @@ import numpy as np
 from analytic import Beam
 from compare.simulate.remarks import Remark, remarks
 from compare.simulate.rigidity import as_intended, elastica_error
+from mujoco_models import OwnModel, inspect_model
 from mujoco_models.inspect.measured import MeasuredBeam
 
 _WIDTH = 22
@@ -92,3 +93,24 @@ class Inspection:
             "elastica_error": error if np.isfinite(error) else None,
             "measured": self.found.to_dict(),
         }
+
+
+def faults_of(model: OwnModel, stated: Beam) -> list[str]:
+    """What is wrong with a user's model.
+
+    Parameters
+    ----------
+    model : OwnModel
+        The file, and names.
+    stated : Beam
+        What it should be.
+
+    Returns
+    -------
+    list of str
+        A line each.
+    """
+    found = inspect_model(
+        model.file, foot=model.foot, force=model.force, torque=model.torque, geoms=model.geoms
+    )
+    return [str(one) for one in Inspection(found, stated).remarks if one.kind == "fault"]

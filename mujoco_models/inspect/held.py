@@ -36,6 +36,8 @@ class Held:
         The coordinates in which the vibrissa bends.
     gravity : array, shape (3,)
         The model's.
+    tip_in_body : array, shape (3,)
+        Where the tip is in the frame of the last body.
     """
 
     def __init__(self, model: mujoco.MjModel, parts: Parts) -> None:
@@ -66,7 +68,7 @@ class Held:
         joint = self.data.xanchor[self.model.body_jntadr[self._tip_body]]
         far = ends[int(np.argmax(np.linalg.norm(ends - joint, axis=1)))]
         turn = self.data.xmat[self._tip_body].reshape(3, 3)
-        self._tip = turn.T @ (far - self.data.xpos[self._tip_body])
+        self.tip_in_body = turn.T @ (far - self.data.xpos[self._tip_body])
 
     def _body(self, geom: int) -> int:
         return int(self.model.geom_bodyid[self.parts.geoms[geom]])
@@ -78,7 +80,7 @@ class Held:
     @property
     def tip(self) -> Floats:
         """Where the tip is, shape (3,)."""
-        return np.asarray(self._world(self._tip[None], self._tip_body)[0])
+        return np.asarray(self._world(self.tip_in_body[None], self._tip_body)[0])
 
     @property
     def clamp(self) -> Floats:

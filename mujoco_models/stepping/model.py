@@ -1,5 +1,7 @@
 """The beam with its mass on a foot that slides, stepped by MuJoCo."""
 
+from typing import Any
+
 import mujoco
 import numpy as np
 
@@ -173,6 +175,41 @@ class MovingModel:
             In the world frame, at the foot [EI/L^2, EI/L].
         """
         return by_sensors(self.data)
+
+    @property
+    def now(self) -> float:
+        """Time of the present state [T1]."""
+        return float(self.data.time)
+
+    @property
+    def label(self) -> str:
+        """What the object is."""
+        return self.obstacle.label
+
+    @property
+    def touches(self) -> bool:
+        """Whether a contact is loaded."""
+        return bool(self.contacts().loaded.any())
+
+    def state(self, speed: float) -> dict[str, Any]:
+        """Contact and energy of the last step, dimensionless.
+
+        Parameters
+        ----------
+        speed : float
+            Of the foot [L/T1].
+
+        Returns
+        -------
+        dict
+            By column.
+        """
+        return {
+            **self.contacts().as_reading(self.data.contact.pos),
+            "tip_angle": self.tip_angle,
+            "status": "ok",
+            "kinetic_share": self.kinetic_share(speed),
+        }
 
     def kinetic_share(self, speed: float) -> float:
         """Kinetic energy, seen from the foot, over kinetic and elastic energy.

@@ -21,11 +21,11 @@ from mujoco_models.beams.kinds import build
 from mujoco_models.beams.layout import bead_spacing
 from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.errors import DivergedError
-from mujoco_models.model.contacts import Contacts
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.kinds import place
 from mujoco_models.settings import Settings
 from mujoco_models.stepping.model import MovingModel
+from mujoco_models.stepping.moving import Moving
 from mujoco_models.stepping.record import Record, Sample
 
 
@@ -53,10 +53,67 @@ def run_motion(
     InputError, DivergedError
         As there.
     """
-    begun = time.process_time()
     record = Record(case.foot_x / case.beam.length, motion.average)
-    start = record.first + motion.speed * (motion.ramp / 2 + motion.timestep)
-    model = _set_out(case, motion, settings, start)
+    model = _set_out(case, motion, settings, start_of(record, motion))
+    about = {"settings": asdict(settings), "source": f"mujoco {settings.beam} in motion"}
+    return sweep_moving(model, case, motion, record, about, advance, keep)
+
+
+def start_of(record: Record, motion: Motion) -> float:
+    """Where the foot starts, to have its speed on the way to the first station.
+
+    Parameters
+    ----------
+    record : Record
+        Of the sweep.
+    motion : Motion
+        Its speed and soft start.
+
+    Returns
+    -------
+    float
+        Foot position [L].
+    """
+    return record.first + motion.speed * (motion.ramp / 2 + motion.timestep)
+
+
+def sweep_moving(
+    model: Moving,
+    case: Case,
+    motion: Motion,
+    record: Record,
+    about: dict[str, Any],
+    advance: Callable[[], None],
+    keep: Callable[[Readings], None],
+) -> Readings:
+    """Move a model past all stations.
+
+    Parameters
+    ----------
+    model : Moving
+        At its start.
+    case : Case
+        Of a sweep to the left.
+    motion : Motion
+        With the model's time step.
+    record : Record
+        Empty.
+    about : dict
+        What provenance says of the model, and its ``source``.
+    advance, keep
+        As `mujoco_models.simulate_motion` takes them.
+
+    Returns
+    -------
+    Readings
+        In the units of the case's beam; the time stays in T1.
+
+    Raises
+    ------
+    DivergedError
+        If the motion does not stay finite.
+    """
+    begun = time.process_time()
     try:
         with threadpool_limits(1):
             _drive(model, motion, record, advance)
@@ -64,13 +121,13 @@ def run_motion(
         if isinstance(error, DivergedError):
             record.rows.append({"phase": "free", "status": "diverged"})
         if len(record.rows) > 1:
-            keep(_readings(case, motion, settings, model, record, begun))
+            keep(_readings(case, motion, about, model, record, begun))
         if isinstance(error, DivergedError):
             place_ = f"t = {model.time:.6g} T1"
             remedy = f"shorten the time step ({motion.timestep:g} T1) or add armature"
             raise DivergedError(f"diverged at {place_}: {error}; {remedy}") from error
         raise
-    return _readings(case, motion, settings, model, record, begun)
+    return _readings(case, motion, about, model, record, begun)
 
 
 def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> MovingModel:
@@ -95,7 +152,7 @@ def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> Mo
     return MovingModel(beam, case.radius, obstacle, motion, start)
 
 
-def _drive(model: MovingModel, motion: Motion, record: Record, advance: Callable[[], None]) -> None:
+def _drive(model: Moving, motion: Motion, record: Record, advance: Callable[[], None]) -> None:
     """Step until the foot has passed all stations."""
     filtered = np.array(model.clamp())
     # The share of the difference that a filter of first order follows in a step.
@@ -104,36 +161,25 @@ def _drive(model: MovingModel, motion: Motion, record: Record, advance: Callable
         follows = -math.expm1(-2 * math.pi * motion.cutoff * motion.timestep)
     before = Sample(0.0, model.foot_x, filtered, touches=False)
     while not record.complete:
-        gone = float(model.data.time) + motion.timestep
+        gone = model.now + motion.timestep
         speed = motion.speed * (min(1.0, gone / motion.ramp) if motion.ramp > 0 else 1.0)
         model.step(speed)
         filtered = filtered + follows * (np.array(model.clamp()) - filtered)
-        contacts = model.contacts()
-        after = Sample(model.time, model.foot_x, filtered, bool(contacts.loaded.any()))
+        after = Sample(model.time, model.foot_x, filtered, model.touches)
         while True:
             if record.crosses(before, after):
-                record.note(before, after, _state(model, contacts, speed))
+                record.note(before, after, model.state(speed))
             if not record.take(before, after):
                 break
             advance()
         before = after
 
 
-def _state(model: MovingModel, contacts: Contacts, speed: float) -> dict[str, Any]:
-    """Contact and energy of the last step, dimensionless."""
-    return {
-        **contacts.as_reading(model.data.contact.pos),
-        "tip_angle": model.tip_angle,
-        "status": "ok",
-        "kinetic_share": model.kinetic_share(speed),
-    }
-
-
 def _readings(
     case: Case,
     motion: Motion,
-    settings: Settings,
-    model: MovingModel,
+    about: dict[str, Any],
+    model: Moving,
     record: Record,
     begun: float,
 ) -> Readings:
@@ -152,16 +198,14 @@ def _readings(
         **case.provenance(),
         "engine": f"MuJoCo {mujoco.__version__}, vibrissa-testbed {version('vibrissa-testbed')}",
         "python": platform.python_version(),
-        "settings": asdict(settings),
+        **{name: value for name, value in about.items() if name != "source"},
         "motion": asdict(motion),
-        "obstacle": model.obstacle.label,
+        "obstacle": model.label,
         "seconds": round(time.process_time() - begun, 3),
         "events": {"snap_off": None if snap_off is None else snap_off * beam.length},
     }
     extra = [name for name in table if name not in COLUMNS]
-    return Readings(
-        table[[*COLUMNS, *extra]], beam, f"mujoco {settings.beam} in motion", provenance
-    )
+    return Readings(table[[*COLUMNS, *extra]], beam, about["source"], provenance)
 
 
 def _mark_lost(table: pd.DataFrame) -> None:

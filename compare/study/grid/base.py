@@ -158,7 +158,10 @@ class Base:
             base: dict[str, Any] = {k: dict(v) for k, v in NAMED_TABLES[case].items()}
         elif case.endswith(".toml"):
             file = TomlFile.read(self._folder / case, "case file")
-            validate(file.tables, file.place)  # its errors are on its own lines
+            if validate(file.tables, file.place).model is not None:  # errors are on its own lines
+                raise InputError(
+                    file.place(["model"]), "of a study", "left out", "a study sweeps our models"
+                )
             base = {name: table for name, table in file.tables.items() if name in CASE_TABLES}
         else:
             raise InputError(

@@ -1,0 +1,1 @@
+"""A user's own model, swept past the case's object."""

@@ -1,0 +1,307 @@
+"""A user's model in motion, with the case's object in its world."""
+
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.problem.beam import Beam
+from analytic.problem.errors import InputError
+from mujoco_models.errors import DivergedError
+from mujoco_models.inspect.held import Held
+from mujoco_models.inspect.measure import sweep_axes
+from mujoco_models.inspect.measured import MeasuredBeam
+from mujoco_models.inspect.parts import radius_of
+from mujoco_models.model.clamp import Clamp
+from mujoco_models.model.contacts import NOWHERE
+from mujoco_models.motion import Motion
+from mujoco_models.obstacles.faceted import add_hull
+from mujoco_models.obstacles.prism import Prism
+from mujoco_models.obstacles.protocol import GEOM_PREFIX
+from mujoco_models.own.drive import drive_to
+
+_HALF_DEPTH = 1.5  # L; as of all prisms
+_SPECK = 1e-4  # L
+_LAGS = 0.1, 0.5  # L, and of the way: farther behind the foot does not follow
+_WILD = 100.0  # EI/L^2 and EI/L; thirty times what a sweep takes
+_AT_TIP = 1e-3  # L
+_IMPEDANCE = 0.9
+_BAD_STATES = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+)
+
+
+class OwnModelInMotion:
+    """A user's model and its state; what it reports is dimensionless, in the case's units and T1.
+
+    Parameters
+    ----------
+    path : Path
+        The model's file.
+    held : Held
+        The same model, at rest with its foot held.
+    measured : MeasuredBeam
+        What was measured of it.
+    beam : Beam
+        The case's; its units are the model's.
+    obstacle : Prism
+        The case's object.
+    motion : Motion
+        Speed and contact stiffness.
+    foot_x : float
+        Where the foot starts, in the case's frame [L].
+    ours : bool
+        Whether contacts have our parameters instead of the model's.
+
+    Attributes
+    ----------
+    time : float
+        Of the state that is reported [T1].
+    label : str
+        What the object is.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        held: Held,
+        measured: MeasuredBeam,
+        beam: Beam,
+        obstacle: Prism,
+        motion: Motion,
+        foot_x: float,
+        ours: bool,
+    ) -> None:
+        self._parts, self._beam, self._period = held.parts, beam, measured.period
+        self._axes, self._start, self._origin = sweep_axes(held), foot_x, held.clamp
+        self._tip = held.tip_in_body
+        self._nodes = np.append([joint.s for joint in measured.joints], measured.length)
+        self.label = obstacle.label
+        self.model = self._with_object(path, obstacle)
+        self.data = mujoco.MjData(self.model)
+        self._foot = self._parts.foot
+        place, turn = self._pose(held.data)
+        self._clamp = turn.T @ (held.clamp - place)
+        self._object = self.model.geom(f"{GEOM_PREFIX}0").id
+        # The object is one more geom of the world, and the world's come first.
+        self._geoms = frozenset(g + (g >= self._object) for g in self._parts.geoms)
+        self._drive = drive_to(self.model, self._foot, -self._axes[0])
+        if ours:
+            self._take_our_contacts(motion.stiffness * beam.base_rigidity / beam.length**3)
+        self.model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+        self._dofs = held.dofs
+        self._way = 0.0
+        self.time = 0.0
+        mujoco.mj_forward(self.model, self.data)
+        self._still = float(self.data.energy[0])
+
+    def _with_object(self, path: Path, obstacle: Prism) -> mujoco.MjModel:
+        """The model with the object in its world, in memory."""
+        spec = mujoco.MjSpec.from_file(str(path))
+        length = self._beam.length
+        polygon = np.vstack([obstacle.vertices, obstacle.outline[-1]])
+        inner = np.append((polygon[len(polygon) // 2] + polygon.mean(axis=0)) / 2, 0.0)
+        ends = [np.insert(polygon, 2, z, axis=1) for z in (-_HALF_DEPTH, _HALF_DEPTH)]
+        points = self._in_world(np.concatenate(ends))
+        add_hull(spec, 0, points, self._in_world(inner[None])[0], _SPECK * length)
+        geom = spec.geom(f"{GEOM_PREFIX}0")
+        geom.conaffinity, geom.priority = 1, -1  # the vibrissa's own contact parameters count
+        try:
+            return spec.compile()
+        except (ValueError, mujoco.FatalError) as error:
+            said = " ".join(str(error).split())[:200]
+            raise InputError(
+                "model", path, "one that an object can be added to", f"rename what clashes ({said})"
+            ) from error
+
+    def _in_world(self, points: Floats) -> Floats:
+        """Points of the case's frame [L] in the model's world."""
+        off = self._beam.length * (points - [self._start, 0, 0])
+        return np.asarray(self._origin + off @ self._axes)
+
+    def _pose(self, data: mujoco.MjData) -> tuple[Floats, Floats]:
+        return np.array(data.xpos[self._parts.foot]), data.xmat[self._parts.foot].reshape(3, 3)
+
+    def _take_our_contacts(self, stiffness: float) -> None:
+        """Frictionless, and as stiff at every geom; see `mujoco_models.model.model`."""
+        for geom in self._geoms:
+            weight = float(self.model.body_invweight0[self.model.geom_bodyid[geom], 0])
+            if weight > 0:
+                k = stiffness * (1 - _IMPEDANCE) * weight
+                self.model.geom_solref[geom] = [-k, -2 * np.sqrt(k)]
+                self.model.geom_solimp[geom] = [_IMPEDANCE, _IMPEDANCE, 1e-3, 0.5, 2]
+            self.model.geom_condim[geom] = 1
+
+    @property
+    def now(self) -> float:
+        """Time of the present state [T1]."""
+        return float(self.data.time) / self._period
+
+    @property
+    def clamp_at(self) -> Floats:
+        """Where the vibrissa begins, in the world, shape (3,)."""
+        place, turn = self._pose(self.data)
+        return np.asarray(place + turn @ self._clamp)
+
+    @property
+    def foot_x(self) -> float:
+        """Where the foot is, in the case's frame [L]."""
+        moved = (self.clamp_at - self._origin) @ self._axes[0]
+        return float(self._start + moved / self._beam.length)
+
+    def step(self, speed: float) -> None:
+        """One step of MuJoCo's, at whose end the foot should have gone on at a given speed.
+
+        Parameters
+        ----------
+        speed : float
+            Of the foot to the left [L/T1].
+
+        Raises
+        ------
+        DivergedError
+            If MuJoCo warns of a bad state.
+        InputError
+            If the foot does not follow.
+        """
+        self.time = self.now
+        self._way += speed * self.model.opt.timestep / self._period
+        unit = self._beam.length
+        self._drive.move(self.data, self._way * unit, speed * unit / self._period)
+        mujoco.mj_step(self.model, self.data)
+        if any(self.data.warning[bad].number for bad in _BAD_STATES):
+            raise DivergedError("the model's motion does not stay finite")
+        behind = self._way - (self._start - self.foot_x)
+        if abs(behind) > _LAGS[0] + _LAGS[1] * self._way:
+            if np.abs(self.clamp()).max() > _WILD:
+                raise DivergedError("the vibrissa throws its foot about")
+            raise InputError(
+                "foot", f"{behind:.2g} L behind where it should be", "one that follows its drive",
+                "look at the actuator's gain, its ctrlrange, and the joint's range",
+            )  # fmt: skip
+
+    def clamp(self) -> Clamp:
+        """The clamp's action on the vibrissa, by the model's own sensors.
+
+        Returns
+        -------
+        Clamp
+            In the case's frame, at the foot [EI/L^2, EI/L].
+        """
+        force, _ = self._sensed(self._parts.force)
+        moment, at = self._sensed(self._parts.torque)
+        moment = moment + np.cross(at - self.clamp_at, force)
+        fx, fy, _ = self._axes @ force / self._beam.force_unit
+        return Clamp(float(fx), float(fy), float(self._axes[2] @ moment / self._beam.moment_unit))
+
+    def _sensed(self, sensor: int | None) -> tuple[Floats, Floats]:
+        """What a sensor reads, in the world, and where its site is."""
+        first = self.model.sensor_adr[sensor]
+        site = self.model.sensor_objid[sensor]
+        turn = self.data.site_xmat[site].reshape(3, 3)
+        return turn @ self.data.sensordata[first : first + 3], self.data.site_xpos[site].copy()
+
+    @property
+    def touches(self) -> bool:
+        """Whether a contact of vibrissa and object is loaded."""
+        return bool(self._loaded())
+
+    def _loaded(self) -> list[tuple[int, float]]:
+        """The contacts of vibrissa and object that carry a force, and how much."""
+        wrench, found = np.zeros(6), []
+        for i in range(self.data.ncon):
+            pair = self.data.contact.geom[i].tolist()
+            if self._object in pair and not self._geoms.isdisjoint(pair):
+                mujoco.mj_contactForce(self.model, self.data, i, wrench)
+                if wrench[0] > 0:
+                    found.append((i, float(wrench[0])))
+        return found
+
+    def state(self, speed: float) -> dict[str, Any]:
+        """Contact and energy of the last step, dimensionless.
+
+        Parameters
+        ----------
+        speed : float
+            Of the foot [L/T1].
+
+        Returns
+        -------
+        dict
+            By column.
+        """
+        return {
+            **self._touched(),
+            "tip_angle": self._tip_angle(),
+            "status": "ok",
+            "kinetic_share": self._kinetic_share(),
+        }
+
+    def _touched(self) -> dict[str, Any]:
+        loaded = self._loaded()
+        if not loaded:
+            return {"phase": "free", **NOWHERE, "penetration": 0.0}
+        numbers, forces = np.array([i for i, _ in loaded]), np.array([f for _, f in loaded])
+        weight = forces / forces.sum()
+        contact, unit = self.data.contact, self._beam.length
+        place = weight @ contact.pos[numbers]
+        # MuJoCo's normal goes from the first geom to the second.
+        sense = np.where(contact.geom[numbers, 0] == self._object, 1.0, -1.0)
+        normal = self._axes @ (weight * sense @ contact.frame[numbers, :3])
+        s = weight @ [self._arc_length(i) for i in numbers]
+        x, y, _ = self._axes @ (place - self._origin) / unit
+        return {
+            "phase": "tip" if s > 1 - _AT_TIP else "tangent",
+            "contact_angle": float(np.arctan2(normal[0], -normal[1])),
+            "contact_arc_length": float(s),
+            "contact_x": float(self._start + x),
+            "contact_y": float(y),
+            "penetration": float(-weight @ contact.dist[numbers] / unit),
+        }
+
+    def _arc_length(self, contact: int) -> float:
+        """Of the point of the axis that is nearest to a contact [L]."""
+        pair = self.data.contact.geom[contact].tolist()
+        geom = next(g for g in pair if g in self._geoms)
+        sense = 1.0 if pair[0] == self._object else -1.0
+        inward = sense * radius_of(self.model, geom) * self.data.contact.frame[contact, :3]
+        point = self.data.contact.pos[contact] + inward
+        body, chain = int(self.model.geom_bodyid[geom]), self._parts.chain
+        if body not in chain:
+            along = self._axes[1] @ (point - self.clamp_at)
+            return float(np.clip(along, 0, self._nodes[0]) / self._nodes[-1])
+        link = chain.index(body)
+        joint = self.data.xanchor[self.model.body_jntadr[body]]
+        way = self._direction(link)
+        room = self._nodes[link + 1] - self._nodes[link]
+        along = float(np.clip(way @ (point - joint), 0, room))
+        return float((self._nodes[link] + along) / self._nodes[-1])
+
+    def _direction(self, link: int) -> Floats:
+        """Of a link, from its joint to the next one, or the last one's."""
+        chain = self._parts.chain
+        joint = self.data.xanchor[self.model.body_jntadr[chain[link]]]
+        if link + 1 < len(chain):
+            far = self.data.xanchor[self.model.body_jntadr[chain[link + 1]]]
+        else:
+            turn = self.data.xmat[chain[-1]].reshape(3, 3)
+            far = self.data.xpos[chain[-1]] + turn @ self._tip
+        return np.asarray((far - joint) / np.linalg.norm(far - joint))
+
+    def _tip_angle(self) -> float:
+        """Slope angle of the last link, in the case's frame [rad]."""
+        x, y, _ = self._axes @ self._direction(len(self._parts.chain) - 1)
+        return float(np.arctan2(y, x))
+
+    def _kinetic_share(self) -> float:
+        product = np.zeros(self.model.nv)
+        moving = np.zeros(self.model.nv)
+        moving[self._dofs] = self.data.qvel[self._dofs]
+        mujoco.mj_mulM(self.model, self.data, product, moving)
+        kinetic = float(moving @ product) / 2
+        total = kinetic + max(float(self.data.energy[0]) - self._still, 0.0)
+        return kinetic / total if total > 0 else 0.0

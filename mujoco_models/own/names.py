@@ -1,0 +1,30 @@
+"""Which model of a user's is swept, and what of it is what."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+ContactKind: TypeAlias = Literal["own", "ours"]
+
+
+@dataclass(frozen=True)
+class OwnModel:
+    """A model file, and the names of what is the vibrissa in it.
+
+    Attributes
+    ----------
+    file : Path
+        MJCF or URDF, in the units of the case.
+    foot, force, torque, geoms : str or None
+        As `mujoco_models.inspect_model` takes them; what is None is looked for.
+    contact : str
+        Whether contacts have the model's ``"own"`` parameters, or ``"ours"``: frictionless, and as
+        stiff as `mujoco_models.Motion` says.
+    """
+
+    file: Path
+    foot: str | None = None
+    force: str | None = None
+    torque: str | None = None
+    geoms: str | None = None
+    contact: ContactKind = "own"

@@ -1,0 +1,119 @@
+"""A user's model swept past the case's object."""
+
+import math
+from collections.abc import Callable
+from dataclasses import asdict, replace
+
+from analytic.problem.case import Case
+from analytic.problem.errors import InputError
+from analytic.problem.readings import Readings
+from mujoco_models.inspect.held import Held
+from mujoco_models.inspect.load import load
+from mujoco_models.inspect.measure import measure
+from mujoco_models.inspect.measured import MeasuredBeam
+from mujoco_models.inspect.parts import Names, Parts, find
+from mujoco_models.motion import Motion
+from mujoco_models.obstacles.prism import Prism
+from mujoco_models.own.model import OwnModelInMotion
+from mujoco_models.own.names import OwnModel
+from mujoco_models.settings import Settings
+from mujoco_models.stepping.record import Record
+from mujoco_models.stepping.sweep import start_of, sweep_moving
+
+_ALIKE = 0.1  # relative; a length that differs by more is in other units, or of another vibrissa
+
+
+def run_own(
+    case: Case,
+    own: OwnModel,
+    motion: Motion,
+    settings: Settings,
+    advance: Callable[[], None],
+    keep: Callable[[Readings], None],
+) -> Readings:
+    """Sweep a user's model to the left; see `mujoco_models.simulate_model`.
+
+    Parameters
+    ----------
+    case, own, motion, settings, advance, keep
+        As there; the case is one of a sweep to the left.
+
+    Returns
+    -------
+    Readings
+        As there.
+
+    Raises
+    ------
+    InputError, DivergedError
+        As there.
+    """
+    model = load(own.file)
+    parts = find(model, Names(own.foot, own.force, own.torque, own.geoms))
+    measured = measure(model, parts)
+    _check(case, parts, measured)
+    moved = replace(motion, timestep=measured.timestep / measured.period)
+    if motion.contact_stiffness is None and motion.solref is None:  # as stiff as this step allows
+        moved = replace(moved, contact_stiffness=min(max(moved.stiffness, 1e3), 1e9))
+    held = Held(model, parts)
+    held.rest()
+    record = Record(case.foot_x / case.beam.length, motion.average)
+    in_motion = OwnModelInMotion(
+        own.file,
+        held,
+        measured,
+        case.beam,
+        Prism.of(case, settings.contour_points, settings.corner_radius),
+        moved,
+        start_of(record, moved),
+        own.contact == "ours",
+    )
+    about = {
+        "source": f"model {measured.model or own.file.stem}",
+        "model": {**asdict(own), "file": str(own.file)},
+        "measured": {
+            "length": measured.length,
+            "tip_rigidity": measured.tip_rigidity,
+            "period": measured.period,
+            "damping_ratio": measured.damping_ratio,
+        },
+    }
+    return sweep_moving(in_motion, case, moved, record, about, advance, keep)
+
+
+def _check(case: Case, parts: Parts, measured: MeasuredBeam) -> None:
+    ratio = measured.length / case.beam.length
+    if abs(ratio - 1) > _ALIKE:
+        guess = (
+            "is the model in millimetres?"
+            if math.isclose(ratio, 1e3, rel_tol=_ALIKE)
+            else ("state the model's own length under [beam]: `vibrissa inspect` measures it")
+        )
+        raise InputError(
+            "length of the model",
+            f"{measured.length:.6g}",
+            f"that of the case, {case.beam.length:.6g}, but for a tenth",
+            guess,
+        )
+    for word, sensor in (("force", parts.force), ("torque", parts.torque)):
+        if sensor is None:
+            raise InputError(
+                f"{word} sensor of the model",
+                "missing",
+                "one at the clamp",
+                f"add a site there and <{word} site=.../>, or name it",
+            )
+    if not any(geom.meets for geom in measured.geoms):
+        raise InputError(
+            "geoms of the vibrissa",
+            f"{len(measured.geoms)} that meet nothing",
+            "such that an object with MuJoCo's default contype and conaffinity can touch them",
+            'set contype="1" conaffinity="1"',
+        )
+    if measured.self_contacts:
+        raise InputError(
+            "contact in the first state",
+            measured.self_contacts[0],
+            "none on the vibrissa",
+            "exclude the pair: <contact><exclude body1=... body2=.../></contact>",
+        )

@@ -1,0 +1,81 @@
+"""A user's own model in a case file."""
+
+import pytest
+
+from mujoco_models import shipped_models
+from tests.compare.command import vibrissa
+
+CASE = """
+[beam]
+length = "100 mm"
+flexural_rigidity = "6.44e-4 N m^2"
+radius = "0.25 mm"
+[profile]
+kind = "circle"
+radius = "80 mm"
+lowest = ["0 mm", "40 mm"]
+[sweep]
+stations = 30
+[mujoco]
+contour_points = 400
+[model]
+file = "mine.xml"
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "mine.xml").write_bytes(shipped_models()["sound-chain"].read_bytes())
+    (tmp_path / "case.toml").write_text(CASE + "[motion]\nspeed = 0.2\n")
+    return tmp_path
+
+
+@pytest.mark.slow
+def test_run_compares_it_with_the_closed_form(folder):
+    done = vibrissa("run", "case.toml", "--out", "out", cwd=folder)
+    assert done.returncode in (0, 1), done.stderr
+    assert "model sound chain" in done.stdout
+    assert "fault" not in done.stdout
+    assert (folder / "out" / "mujoco-own-model.parquet").is_file()
+    assert vibrissa("report", "out", cwd=folder).returncode in (0, 1)
+    (folder / "mine.xml").write_bytes(shipped_models()["tutorial-chain"].read_bytes())
+    done = vibrissa("run", "case.toml", "--out", "out", cwd=folder)
+    assert done.returncode == 1
+    assert "fault, clamp: bends like EI 7.1% lower" in done.stdout
+
+
+def test_simulate_sweeps_it(folder):
+    done = vibrissa("simulate", "case.toml", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert "model sound chain" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "said"),
+    [
+        (CASE, ("--segments", "10"), "--segments"),
+        (CASE, ("--timestep", "0.01"), "--timestep"),
+        (CASE + "[motion]\nintegrator = 'rk4'\n", (), "line 17: motion.integrator"),
+        (CASE.replace("mine", "yours"), (), "yours.xml"),
+        (CASE + "fot = 'base'\n", (), "did you mean foot?"),
+        (CASE + "contact = 'hard'\n", (), "model.contact"),
+        (CASE.replace('"100 mm"', '"90 mm"') + "foot = 'hand'\n", (), "--foot"),
+        (CASE.replace('"100 mm"', '"80 mm"').replace("40 mm", "30 mm"), (), "length of the model"),
+    ],
+)
+def test_what_is_wrong_is_one_line(folder, text, words, said):
+    (folder / "case.toml").write_text(text)
+    done = vibrissa("simulate", "case.toml", *words, cwd=folder)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_what_sweeps_our_models_only_says_so(folder):
+    assert "[model]" in vibrissa("budget", "case.toml", cwd=folder).stderr
+    (folder / "grid.toml").write_text(
+        '[study]\ncase = "case.toml"\n[axes]\nmujoco.segments = [10, 20]\n'
+    )
+    done = vibrissa("study", "grid.toml", "--dry-run", cwd=folder)
+    assert done.returncode == 2
+    assert "a study sweeps our models" in done.stderr

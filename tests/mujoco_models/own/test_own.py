@@ -1,0 +1,170 @@
+"""A user's own model swept past the case's object."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import Beam, Case, InputError, Sweep, circle, solve_sweep
+from compare import compare
+from mujoco_models import DivergedError, Motion, OwnModel, Settings, shipped_models, simulate_model
+from tests.mujoco_models.inspect.chains import Chain
+
+STEEL = Case(Beam(0.1, 6.44e-4, 2.5e-4), circle(0.08, (0, 0.04)), Sweep(40), "steel")
+UNIT = Case(Beam(), circle(0.8, (0, 0.4)), Sweep(40), "unit")
+COARSE = Settings(contour_points=400)
+FAST = Motion(speed=0.2)
+
+
+def swept(tmp_path, chain, case=UNIT, motion=FAST, **names):
+    return simulate_model(case, OwnModel(chain.write(tmp_path), **names), motion, COARSE)
+
+
+def worst(case, moved):
+    return max(d.rms for d in compare(solve_sweep(case), moved).disagreement.values())
+
+
+def test_a_sound_model_agrees_with_the_closed_form():
+    """In metres and newtons; what is left is twenty links, the contact and the speed."""
+    own = OwnModel(shipped_models()["sound-chain"])
+    moved = simulate_model(STEEL, own, Motion(speed=0.1), COARSE)
+    assert worst(STEEL, moved) < 6e-3
+    assert moved.source == "model sound chain"
+    assert moved.provenance["measured"]["length"] == pytest.approx(0.1)
+    exact = solve_sweep(STEEL)
+    alike = exact.table["phase"] == moved.table["phase"]
+    assert alike.mean() > 0.85  # of 40 stations four are next to a transition
+    for name in ("contact_arc_length", "contact_x", "contact_y"):
+        off = (moved.values(name) - exact.values(name))[alike.to_numpy() & moved.trusted]
+        assert np.nanmax(np.abs(off)) < 1e-3  # m; a capsule's contact jumps along a facet of 0.3e-3
+    assert np.diff(moved.values("foot_x")) == pytest.approx(np.diff(STEEL.foot_x))
+
+
+def test_the_other_way_is_the_mirror_image():
+    own = OwnModel(shipped_models()["sound-chain"])
+    left = simulate_model(STEEL, own, FAST, COARSE)
+    right = simulate_model(replace(STEEL, sweep=Sweep(40, direction="right")), own, FAST, COARSE)
+    scale = np.abs(left.values("force_x")).max()
+    # The user's world is no mirror image, but its facets are.
+    assert right.values("force_x") == pytest.approx(-left.values("force_x"), abs=0.02 * scale)
+
+
+def test_default_contacts_are_found_wanting_and_inspect_said_so():
+    own = OwnModel(shipped_models()["tutorial-chain"])
+    moved = simulate_model(STEEL, own, Motion(speed=0.1), COARSE)
+    assert worst(STEEL, moved) > 0.1
+    assert moved.values("penetration").max() > 2 * 2.5e-4
+
+
+OURS = {"contact": "ours"}
+
+
+def test_the_clamp_is_read_in_whatever_frame_the_sensor_has(tmp_path):
+    """A turned site, off the clamp: the readings are carried to the clamp and turned back."""
+    plain = swept(tmp_path, Chain(), **OURS)
+    other = swept(tmp_path, Chain(site='euler="0.3 -0.4 0.5" pos="0.01 -0.1 0"'), **OURS)
+    for name in ("force_x", "force_y", "moment_z"):
+        assert other.values(name) == pytest.approx(plain.values(name), abs=1e-8)
+
+
+def test_wherever_the_vibrissa_stands_and_points(tmp_path):
+    plain = swept(tmp_path, Chain(), **OURS)
+    # Along x, its hinges along z: the sweep goes along y.
+    turned = Chain(foot='mocap="true" pos="3 -2 1" euler="0 0 -1.5707963267948966"')
+    other = swept(tmp_path, turned, **OURS)
+    # The mesh is stored in single precision, and a contact on facets amplifies that.
+    assert other.values("force_y")[5:15] == pytest.approx(plain.values("force_y")[5:15], abs=2e-2)
+
+
+@pytest.mark.parametrize(
+    ("joint", "actuator"),
+    [
+        ("", ""),
+        ('damping="0"', '<velocity joint="rail" kv="1e5"/>'),
+        ('damping="1e3"', '<position joint="rail" kp="1e6" kv="1e4"/>'),
+    ],
+)
+@pytest.mark.parametrize("sense", ["1 0 0", "-1 0 0"])
+def test_a_foot_on_a_slide_is_driven_as_the_model_has_it(tmp_path, joint, actuator, sense):
+    plain = swept(tmp_path, Chain(), **OURS)
+    rail = Chain(
+        foot="",
+        inside_foot=f'<joint name="rail" type="slide" axis="{sense}" armature="10" {joint}/>',
+    )
+    path = rail.write(tmp_path)
+    path.write_text(
+        path.read_text().replace("</mujoco>", f"<actuator>{actuator}</actuator></mujoco>")
+    )
+    other = simulate_model(UNIT, OwnModel(path, **OURS), FAST, COARSE)
+    scale = np.abs(plain.values("force_y")).max()
+    both = (plain.table["phase"] == other.table["phase"]) & plain.trusted & other.trusted
+    both = both.to_numpy()
+    assert both.sum() > 20
+    off = (other.values("force_y") - plain.values("force_y"))[both] / scale
+    assert np.sqrt(np.mean(off**2)) < 0.02
+
+
+def test_a_model_that_is_softer_disagrees_by_as_much(tmp_path):
+    """EI 5 % off: so are the readings, as inspect says beforehand."""
+    sound, soft = (swept(tmp_path, Chain(rigidity=ei), **OURS) for ei in (1.0, 0.95))
+    middle = slice(10, 25)
+    ratio = soft.values("force_y")[middle] / sound.values("force_y")[middle]
+    assert np.median(ratio) == pytest.approx(0.95, abs=0.01)
+
+
+def test_files_are_left_alone(tmp_path):
+    path = Chain().write(tmp_path)
+    before = path.read_bytes(), path.stat().st_mtime_ns
+    simulate_model(UNIT, OwnModel(path, contact="ours"), FAST, COARSE)
+    assert (path.read_bytes(), path.stat().st_mtime_ns) == before
+    assert [*tmp_path.iterdir()] == [path]
+
+
+@pytest.mark.parametrize(
+    ("chain", "names", "said"),
+    [
+        (Chain(length=1000.0, radius=5.0), {}, "is the model in millimetres"),
+        (Chain(length=1.3), {}, "state the model's own length"),
+        (Chain(foot="", inside_foot='<joint type="slide" axis="0 0 1"/>'), {}, "can be moved"),
+        (Chain(foot="", inside_foot="<freejoint/>"), {}, "weld it to a mocap body"),
+        (Chain(sensors='<force name="F" site="clamp"/>'), {}, "torque sensor .* missing"),
+        (Chain(foot=""), {}, "touch|can be moved|exclude"),
+        (Chain(), {"foot": "hand"}, "--foot = 'hand'"),
+    ],
+)
+def test_what_is_wrong_is_one_line(tmp_path, chain, names, said):
+    with pytest.raises(InputError, match=said) as caught:
+        swept(tmp_path, chain, **names)
+    assert "\n" not in str(caught.value)
+
+
+def test_geoms_that_meet_nothing(tmp_path):
+    path = Chain().write(tmp_path)
+    path.write_text(
+        path.read_text().replace("<geom type", '<geom contype="2" conaffinity="2" type')
+    )
+    with pytest.raises(InputError, match="meet nothing"):
+        simulate_model(UNIT, OwnModel(path), FAST, COARSE)
+
+
+def test_a_force_is_no_drive_and_a_weak_one_is_noticed(tmp_path):
+    rail = Chain(
+        foot="", inside_foot='<joint name="rail" type="slide" axis="1 0 0" armature="10"/>'
+    )
+    for actuator, said in (
+        ('<motor name="push" joint="rail"/>', "a force keeps no speed"),
+        ('<velocity joint="rail" kv="1e-3"/>', "follows its drive"),
+    ):
+        path = rail.write(tmp_path)
+        text = path.read_text().replace("</mujoco>", f"<actuator>{actuator}</actuator></mujoco>")
+        path.write_text(text)
+        with pytest.raises(InputError, match=said):
+            simulate_model(UNIT, OwnModel(path), FAST, COARSE)
+
+
+def test_springs_that_are_too_stiff_for_the_step_are_reported(tmp_path):
+    path = Chain().write(tmp_path)
+    path.write_text(path.read_text().replace('integrator="discrete"', 'integrator="Euler"'))
+    kept = []
+    with pytest.raises(DivergedError, match="shorten the time step"):
+        simulate_model(UNIT, OwnModel(path, contact="ours"), FAST, COARSE, keep=kept.append)
