@@ -26,6 +26,10 @@ def _curved(case: Case) -> Case:
     return replace(case, beam=replace(case.beam, natural_curvature=-0.2 / case.beam.length))
 
 
+def _tapered(case: Case) -> Case:
+    return replace(case, beam=replace(case.beam, tip_radius=0.8 * case.beam.radius))
+
+
 def _soft(case: Case) -> Case:
     return replace(case, clamp_stiffness=10 * case.beam.moment_unit)
 
@@ -37,6 +41,7 @@ def _rubbing(case: Case) -> Case:
 CONDITIONS: dict[str, Condition] = {
     "exact": Condition("the paper's vibrissa", lambda case: case),
     "curved": Condition("natural curvature -0.2/L", _curved),
+    "tapered": Condition("a cone whose tip has 0.8 of the radius", _tapered),
     "soft-clamp": Condition("clamp of stiffness 10 EI/L", _soft),
     "friction": Condition("friction 0.2", _rubbing),
 }

@@ -14,6 +14,7 @@ from analytic.from_clamp.earlier.sensed import Answer, Sensed
 from analytic.problem.arrays import Booleans, Floats
 
 _HALVINGS = 52  # of a segment: to rounding
+_ROUNDING = 1e-9  # of a segment; nearer to a joint the contact is at the joint
 
 
 class _Bent(NamedTuple):
@@ -53,10 +54,39 @@ def by_segments(sensed: Sensed, segments: int = 40, half_cell: bool = False) -> 
         middle = (low + high) / 2
         short = _bend(force, middle, whole, segments, half).turned < turn
         low, high = np.where(short, middle, low), np.where(short, high, middle)
-    bent = _bend(force, high, whole, segments, half)
+    across, height = _from_base(_bend(force, high, whole, segments, half))
+    return Answer(sensed.foot_x + across, height).where(found)
+
+
+def contact_under(
+    force: Floats, arc_length: Floats, segments: int = 40, half_cell: bool = False
+) -> Answer:
+    """Where the model has the contact, given the force's size and place: its forward problem.
+
+    Parameters
+    ----------
+    force : array, shape (n,)
+        Size of the contact force [EI/L^2].
+    arc_length : array, shape (n,)
+        Of the contact, from the clamp [L].
+    segments, half_cell
+        As of `by_segments`.
+
+    Returns
+    -------
+    Answer
+        Relative to the foot [L].
+    """
+    whole = np.floor(arc_length * segments + _ROUNDING)
+    rest = np.maximum(arc_length - whole / segments, 0.0)
+    half = 0.5 / segments if half_cell else 0.0
+    return Answer(*_from_base(_bend(force, rest, whole, segments, half)))
+
+
+def _from_base(bent: _Bent) -> tuple[Floats, Floats]:
+    """The contact as the base sees it: to the side, and along its tangent."""
     cos, sin = np.cos(bent.turned), np.sin(bent.turned)
-    height, across = -(cos * bent.x + sin * bent.y), cos * bent.y - sin * bent.x
-    return Answer(sensed.foot_x + np.abs(across), height).where(found)
+    return np.abs(cos * bent.y - sin * bent.x), -(cos * bent.x + sin * bent.y)
 
 
 def _bracket(force: Floats, turn: Floats, segments: int, half: float) -> tuple[Floats, Booleans]:

@@ -149,6 +149,40 @@ def test_order_in_the_segments_at_tangential_contacts(half_cell, order):
     assert observed == pytest.approx([order] * 2, abs=0.3)
 
 
+@pytest.mark.parametrize(
+    ("half_cell", "expected"),
+    [(False, (0.056, 0.028, 0.014)), (True, (1.2e-3, 2.8e-4, 7.8e-5))],
+)
+def test_segments_under_the_true_force_at_the_true_place(half_cell, expected):
+    """Median error over the tangential contacts [L], from an independent program."""
+    table, _ = swept(CONTOURS["catenary"])
+    table = table[table["phase"] == "tangent"]
+    table = table.iloc[:: len(table) // 40]
+    force = np.hypot(table["force_x"], table["force_y"]).to_numpy()
+    for number, median in zip((20, 40, 80), expected, strict=True):
+        found = segments.contact_under(
+            force, table["contact_arc_length"].to_numpy(), number, half_cell
+        )
+        off = np.hypot(
+            found.x - (table["contact_x"] - table["foot_x"]), found.y - table["contact_y"]
+        )
+        assert np.median(off) == pytest.approx(median, rel=0.1)
+
+
+def test_at_the_tip_the_model_is_off_by_its_force():
+    """Whatever the number of segments; medians from the same program."""
+    table, _ = swept(CONTOURS["catenary"])
+    table = table[table["phase"] == "tip"]
+    force = np.hypot(table["force_x"], table["force_y"]).to_numpy()
+    for number in (40, 160):
+        found = segments.contact_under(force, np.ones(len(table)), number, half_cell=True)
+        off = np.hypot(
+            found.x - (table["contact_x"] - table["foot_x"]), found.y - table["contact_y"]
+        )
+        assert np.median(off) == pytest.approx(0.05, rel=0.1)
+        assert off.max() == pytest.approx(0.77, rel=0.1)
+
+
 def test_segments_do_not_find_the_tip():
     """Their force is normal to the vibrissa; the tip's is not."""
     table, given = swept(CONTOURS["catenary"])

@@ -97,6 +97,20 @@ def test_a_soft_clamp_and_its_stiffness():
     assert np.sqrt(np.mean(missed**2)) < 0.02 * np.sqrt(np.nanmean(found.samples**2))
 
 
+@pytest.mark.slow
+def test_a_cone_with_a_radius_at_its_tip():
+    case = Case(Beam(radius=0.01, tip_radius=0.002), circle(1.0, (0.0, 0.4)), Sweep(30))
+    stated = Uncertainties({"tip_radius": Input(1e-4), "flexural_rigidity": Input(0.01)})
+    found = sensitivities(case, stated, samples=4)
+    exact = solve_sweep(case)
+    for i, name in enumerate(CLAMP_READINGS):
+        known = np.isfinite(found.readings[1, i])
+        np.testing.assert_allclose(
+            found.readings[1, i][known], 0.01 * exact.values(name)[known], rtol=1e-4, atol=1e-6
+        )
+    assert np.nanmax(np.abs(found.readings[0])) > 1e-4
+
+
 def test_units_do_not_matter():
     plain = CASES["circle"]
     length, rigidity = 0.05, 2e-6
@@ -132,6 +146,7 @@ def test_noise_is_what_the_data_show_where_none_is_stated():
     assert found.dominant == "noise"
 
 
+@pytest.mark.slow
 def test_a_fitted_offset_is_as_uncertain_as_its_fit():
     case = named_case("parabola")
     exact = solve_sweep(case)
