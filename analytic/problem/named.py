@@ -39,6 +39,15 @@ NAMED_TABLES: Mapping[str, Mapping[str, Mapping[str, Any]]] = MappingProxyType(
         # Steel on a dry plastic has 0.2 to 0.4; for a rat's whisker on steel 0.48 was found (L. A.
         # Huet and M. J. Z. Hartmann, IEEE Transactions on Haptics 9, 2016).
         "rubbing": {"profile": _CATENARY, "contact": {"friction": 0.3}},
+        # A rat's: 20 mm long and 0.12 mm thick at its base (M. J. Z. Hartmann, Scholarpedia 10,
+        # 2015, 6636), with a tip of a tenth of that (H. M. Belli and others, Journal of
+        # Neurophysiology 117, 2017, find that this ratio varies much), curved so that its tip
+        # trails, and with that friction.
+        "whisker": {
+            "profile": _CATENARY,
+            "beam": {"radius": 0.003, "tip_radius": 0.0003, "natural_curvature": -0.4},
+            "contact": {"friction": 0.48},
+        },
     }
 )
 """All named cases, as the tables of their case files."""

@@ -11,6 +11,7 @@ from analytic.problem.columns import CLAMP_READINGS, COLUMNS
 from analytic.problem.errors import InputError, require
 from analytic.problem.numbers import is_finite_number
 from analytic.problem.rest import first_touch
+from analytic.problem.support import require_uniform
 from analytic.problem.table import mirrored_table
 from analytic.solver.general.columns import to_columns
 from analytic.solver.general.path import Path, follow
@@ -219,6 +220,7 @@ def _check(case: Case) -> None:
     require("case", case, Case, "as Case(profile=..., friction=0.3)")
     if case.friction == 0:
         raise InputError("friction", 0.0, "positive", "without friction nothing sticks")
+    require_uniform("the way back", case.beam)
 
 
 def _free(case: Case, foot: Floats) -> pd.DataFrame:

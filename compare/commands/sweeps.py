@@ -153,7 +153,8 @@ def analytic(
             from compare.show.page import save_figure
 
             drawn = paper_figures(job.case, readings)
-            drawn["shapes"] = reconstruction(readings, reconstruct(readings))
+            if not job.case.beam.varies:
+                drawn["shapes"] = reconstruction(readings, reconstruct(readings))
             for name, figure in drawn.items():
                 terminal.print_written(save_figure(figure, folder / f"{name}.png"))
         return AGREES if readings.trusted.all() else DISAGREES

@@ -47,8 +47,11 @@ def paper_figures(case: Case, readings: Readings) -> dict[str, Figure]:
     -------
     dict of Figure
         ``figure-12``, ``figure-14``, ``figure-15``, ``figure-16``. The first shows eq. 21, which is
-        the paper's vibrissa's alone; so is the reconstruction by (26) in the last two.
+        the paper's vibrissa's alone; so is the reconstruction by (26) in the last two. Of one
+        that varies along its length there is no reconstruction, and no figure 16.
     """
+    if case.beam.varies:
+        return {"figure-14": profile(readings), "figure-15": observables(readings)}
     return {
         **({"figure-12": contact_length(case)} if case.is_plain else {}),
         "figure-14": profile(readings),
@@ -160,7 +163,10 @@ def observables(readings: Readings) -> Figure:
                 markersize=3,
             )
         ax.set_ylabel(axis_label(name))
-    _error(axes[3], readings)
+    if readings.beam.varies:
+        axes[3].set_visible(False)
+    else:
+        _error(axes[3], readings)
     for ax in axes:
         ax.set_xlabel("$x_0$ / $L$")
     return figure

@@ -147,6 +147,7 @@ def test_shortly_before_the_snap_off_what_is_not_solved_says_so():
         (lambda: turn_back(ROUGH, 3.0), "turn_at = 3.0: must be from"),
         (lambda: turn_back(ROUGH, math.nan), "turn_at = nan"),
         (lambda: stiction_limits(catenary(0.5, -0.8)), "case"),
+        (lambda: turn_back(replace(ROUGH, beam=Beam(tip_radius=0.001)), 0.0), "beam.tip_radius"),
         (lambda: stiction_limits(replace(ROUGH, friction=0.0)), "nothing sticks"),
     ],
 )
