@@ -39,7 +39,7 @@ def methods(
     """How well every method finds the contact from the clamp."""
     from analytic.from_clamp.earlier.methods import NAMES
     from compare.commands import terminal
-    from compare.measure.methods import INFORMED, method_errors
+    from compare.measure.methods import INFORMED, KNOWN, method_errors
 
     levels = _levels(noise)
     names = NAMES if method is None else [word.strip() for word in method.split(",")]
@@ -59,7 +59,8 @@ def methods(
             found = method_errors(believed, names, levels)
             unlike = believed.beam != truth.beam or believed.provenance != truth.provenance
             if unlike and not truth.beam.varies:  # the closed form needs one flexural rigidity
-                knowing = method_errors(truth, ["elastica"], levels).assign(method=INFORMED)
+                knowing = method_errors(truth, ["elastica"], levels)
+                knowing = knowing.assign(method=INFORMED, needs=knowing["needs"] + KNOWN)
                 found = pd.concat([found, knowing], ignore_index=True)
             found.insert(0, "readings", which)
             found.insert(0, "case", name)

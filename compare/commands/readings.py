@@ -62,6 +62,17 @@ def compare(
         Path | None,
         typer.Option(metavar="FILE", help="TOML file whose [tolerances] table has the limits."),
     ] = None,
+    uncertainty: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Case file whose [uncertainty] table holds for a reference that is a file.",
+        ),
+    ] = None,
+    budget: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="budget.json of that reference, for its numerics."),
+    ] = None,
 ) -> int:
     """Compare a file of readings, of an engine or a rig, with another or with a case's closed form.
 
@@ -75,6 +86,7 @@ def compare(
         from compare.comparison import compare as compare_readings
         from compare.read.limits import read_tolerances
         from compare.read.rig import read_measured
+        from compare.read.run_folder import read_budget
 
         limits = None if tolerances is None else read_tolerances(tolerances)
         job = _job(reference)
@@ -99,8 +111,16 @@ def compare(
         comparison = compare_readings(
             expected, measured, limits, offset=given_offset, noise=given_noise
         )
-        if job is not None and job.uncertainties is not None:
-            comparison = comparison.validated(job.case, job.uncertainties)
+        known_job = _uncertain(job, uncertainty)
+        if known_job is not None and known_job.uncertainties is not None:
+            numerics = None if budget is None else read_budget(budget)
+            comparison = comparison.validated(
+                known_job.case, known_job.uncertainties, budget=numerics
+            )
+        elif budget is not None:
+            raise InputError(
+                "--budget", budget, "beside uncertainties", "add --uncertainty CASE.toml"
+            )
         called = distinct_name(Path(reference)) if job is None else job.case.name
         default = Path("results") / f"{called}-{distinct_name(candidate)}"
         with output_folder(out or default) as folder:
@@ -267,6 +287,22 @@ def _job(reference: str) -> "Job | None":
     from compare.read.case import load_job
 
     return load_job(reference)
+
+
+def _uncertain(job: "Job | None", file: Path | None) -> "Job | None":
+    """The case whose inputs are uncertain: the reference itself, or that of a reference file."""
+    if file is None:
+        return job
+    from compare.read.case import load_job
+
+    if job is not None:
+        raise InputError(
+            "--uncertainty", file, "for a reference that is a file", "state it in the case itself"
+        )
+    found = load_job(str(file))
+    if found.uncertainties is None:
+        raise InputError("--uncertainty", file, "a case file with [uncertainty]", "add the table")
+    return found
 
 
 def _short(files: list[Path]) -> dict[str, Path]:

@@ -14,6 +14,8 @@ from compare.sense.noise import with_noise
 
 INFORMED = "elastica-informed"
 """The closed form with the true curvature, clamp and friction."""
+KNOWN = ", curvature, clamp, friction"
+"""What that needs beside what the closed form does."""
 NOISE = (0.0, 1e-3, 1e-2)
 _PHASES = ("tip", "tangent")
 _EXACT = 1e-6  # of criterion (26), for readings without noise
@@ -43,7 +45,8 @@ def method_errors(
     Returns
     -------
     pandas.DataFrame
-        A row a method, level of noise and phase: ``method``, ``noise``, ``phase``, ``contacts``,
+        A row a method, level of noise and phase: ``method``, ``needs`` (what it has to know beside
+        the foot's position), ``noise``, ``phase``, ``contacts``,
         ``answered`` (share of them), ``median``, ``rms`` and ``worst`` error over L of those that
         were answered, NaN if none was, and ``seconds`` a contact.
 
@@ -106,6 +109,7 @@ def _errors(
         answered = here[np.isfinite(here)]
         yield {
             "method": method,
+            "needs": needs_of(method),
             "noise": level,
             "phase": name,
             "contacts": len(here),

@@ -74,7 +74,7 @@ def read_run(folder: Path) -> StoredRun:
         Readings.read(folder / "analytic.parquet"),
         Readings.read(sweeps[0]),
         _tolerances(folder / "comparison.json"),
-        _budget(folder / "budget.json"),
+        read_budget(folder / "budget.json") if (folder / "budget.json").exists() else None,
         _validation(folder),
     )
 
@@ -95,9 +95,24 @@ def _tolerances(file: Path) -> Tolerances:
         raise _damaged(file, error) from error
 
 
-def _budget(file: Path) -> Budget | None:
-    if not file.exists():
-        return None
+def read_budget(file: Path) -> Budget:
+    """A budget, as `vibrissa run --budget` or `vibrissa budget` wrote it.
+
+    Parameters
+    ----------
+    file : Path
+        Its ``budget.json``.
+
+    Returns
+    -------
+    Budget
+        The same.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
     try:
         return TypeAdapter(Budget).validate_python(_json(file))
     except ValueError as error:

@@ -22,6 +22,7 @@ from compare.validate.stated import Uncertainties
 Side: TypeAlias = Literal["reference", "candidate"]
 
 _SAMPLES = 64  # of the inputs: what second-order terms add is known to a sixth of itself
+_MOST = 10_000  # stations that count; of more, every second or third one and so on
 _SNAP = 3.0  # standard uncertainties of the snap-off's place in which nothing is linear
 _DOMINATES = 0.5  # share of the variance
 
@@ -214,8 +215,9 @@ def validate(
         If no compared station has a sensitivity, or the case cannot be solved with its inputs off.
     """
     reach = sensitivities(case, stated, samples)
-    table = found.alignment.table
-    near, unknown, here = _uncounted(found, reach, stated, window)
+    whole_table = found.alignment.table
+    table = whole_table.iloc[:: -(-len(whole_table) // _MOST) or 1].reset_index(drop=True)
+    near, unknown, here = _uncounted(found, table, reach, stated, window)
     kept = ~near & ~unknown
     if not kept.any():
         raise InputError(
@@ -257,16 +259,24 @@ def validate(
         _ratio(second, first),
         len(second),
         rows,
-        {"before_snap_off": int(near.sum()), "without_sensitivity": int(unknown.sum())},
+        {
+            "before_snap_off": int(near.sum()),
+            "without_sensitivity": int(unknown.sum()),
+            "thinned": len(whole_table) - len(near),
+        },
         _table(table, error, spread),
     )
 
 
 def _uncounted(
-    found: Measurement, reach: Sensitivities, stated: Uncertainties, window: float
+    found: Measurement,
+    table: pd.DataFrame,
+    reach: Sensitivities,
+    stated: Uncertainties,
+    window: float,
 ) -> tuple[Booleans, Booleans, Sensitivities]:
     """Stations next to the snap-off, those without a sensitivity, and what is known at all."""
-    foot_x = found.alignment.table["foot_x"].to_numpy()
+    foot_x = table["foot_x"].to_numpy()
     here = reach.at(foot_x)
     unknown = np.isnan(here.readings).any(axis=(0, 1))
     sweep = float(np.ptp(found.reference.values("foot_x")))
@@ -312,20 +322,15 @@ def _numerics(
     if budget is not None:
         phase = table["phase"].to_numpy()
         parts = [name for name in PARTS if name in budget.by_phase and name != "unexplained"]
-        sizes = [
-            [
-                [
-                    np.hypot(
-                        budget.by_phase[part][reading].get(str(p), budget.parts[part][reading].rms),
-                        budget.parts[part][reading].uncertainty,
-                    )
-                    for p in phase
-                ]
-                for reading in CLAMP_READINGS
-            ]
-            for part in parts
-        ]
-        return np.array(sizes).reshape(len(parts), 3, rows), "the budget's parts"
+        sizes = np.zeros((len(parts), len(CLAMP_READINGS), rows))
+        for i, part in enumerate(parts):
+            for j, reading in enumerate(CLAMP_READINGS):
+                one = budget.parts[part][reading]
+                by_phase = budget.by_phase[part][reading]
+                for name in np.unique(phase):
+                    size = np.hypot(by_phase.get(str(name), one.rms), one.uncertainty)
+                    sizes[i, j, phase == name] = size
+        return sizes, "the budget's parts"
     source = found.reference if simulation == "reference" else found.candidate
     columns = [name for name in ("residual_boundary", "residual_moment") if name in source.table]
     if columns:

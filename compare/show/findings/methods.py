@@ -52,6 +52,23 @@ class MethodsRecord:
         """Levels of noise, ascending."""
         return sorted(self.table["noise"].unique().tolist())
 
+    def needs(self, method: str) -> str:
+        """What a method has to know beside the foot's position.
+
+        Parameters
+        ----------
+        method : str
+            Which.
+
+        Returns
+        -------
+        str
+            In a few words; empty if the table does not say.
+        """
+        if "needs" not in self.table:
+            return ""
+        return str(self.table.loc[self.table["method"] == method, "needs"].iloc[0])
+
     def cell(self, method: str, readings: str, noise: float) -> str:
         """Median errors by phase, as the page has them.
 
@@ -147,7 +164,7 @@ def method_sentences(record: MethodsRecord) -> str:
         said.append(f"{readings}: {', '.join(found) if found else 'none'}")
     text = [
         f"These methods have an answer to at least {_MOST:.0%} of the contacts of each phase, half "
-        f"of them within {short(_WELL)} L, at {least:g} of noise. {'; '.join(said)}."
+        f"of them within {short(_WELL)} L, {_level(least)}. {'; '.join(said)}."
     ]
     first = record.readings[0]
     for level in noisy:
@@ -156,8 +173,14 @@ def method_sentences(record: MethodsRecord) -> str:
             for phase, row in _best(record.table, first, level)
         ]
         if best:
-            text.append(f"At {level:g} of noise the best on {first} readings: {', '.join(best)}.")
+            text.append(
+                f"{_level(level).capitalize()} the best on {first} readings: {', '.join(best)}."
+            )
     return " ".join(text)
+
+
+def _level(noise: float) -> str:
+    return "without noise" if noise == 0 else f"at {100 * noise:g} % of noise"
 
 
 def _best(table: pd.DataFrame, readings: str, noise: float) -> list[tuple[str, dict[Any, Any]]]:

@@ -8,11 +8,13 @@ import pandas as pd
 import pytest
 
 from analytic import Beam, Case, Sweep, circle, solve_sweep
-from compare import compare
+from compare import compare, validate
+from compare.measure.measurement import measure
 from compare.read.case import load_job
 from compare.read.run_folder import read_run
 from compare.show.report import write_report
 from tests.compare.command import vibrissa
+from tests.compare.planted import planted
 
 CASE = """
 [beam]
@@ -67,6 +69,44 @@ def test_a_disagreement_within_and_beyond_what_is_uncertain(tmp_path):
         assert table["error"].pow(2).mean() ** 0.5 == found["whole"]["error"]
         assert "ASME V&amp;V 20" in (folder / "report.html").read_text(encoding="utf-8")
         assert (folder / "validation.png").exists()
+
+
+def test_a_reference_that_is_a_file_takes_its_uncertainties_from_a_case(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
+    (tmp_path / "bare.toml").write_text(CASE.partition("[uncertainty]")[0], encoding="utf-8")
+    solve_sweep(load_job(str(tmp_path / "case.toml")).case).write(tmp_path / "mine.parquet")
+    rig(tmp_path / "rig.csv", 2.06e-6)
+    for arguments, why in (
+        (("case.toml", "--uncertainty", "case.toml"), "state it in the case itself"),
+        (("mine.parquet", "--uncertainty", "bare.toml"), "add the table"),
+        (("mine.parquet", "--budget", "budget.json"), "add --uncertainty"),
+        (("mine.parquet", "--uncertainty", "case.toml", "--budget", "no.json"), "no.json"),
+    ):
+        reference, *options = arguments
+        done = vibrissa("compare", reference, "rig.csv", *options, cwd=tmp_path)
+        assert done.returncode == 2
+        assert why in done.stderr
+        assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_a_budget_is_the_uncertainty_of_the_numerics(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
+    job = load_job(str(tmp_path / "case.toml"))
+    exact = solve_sweep(job.case)
+    other = replace(exact, table=exact.table.assign(force_x=1.01 * exact.values("force_x")))
+    made = planted(size=2e-3)
+    found = validate(
+        measure(exact, other, 5e-3), job.case, job.uncertainties, budget=made, samples=4
+    )
+    sizes = [
+        np.hypot(made.parts[part][name].rms, made.parts[part][name].uncertainty)
+        for part in made.parts
+        for name in ("force_x", "force_y", "moment_z")
+        if part != "unexplained"
+    ]
+    assert found.numerics_source == "the budget's parts"
+    assert found.whole.u_num == pytest.approx(np.sqrt(np.sum(np.square(sizes)) / 3), rel=0.05)
+    assert found.whole.shares["numerics"] > 0
 
 
 @pytest.mark.slow

@@ -73,12 +73,12 @@ def test_methods_that_survive_are_named(tmp_path):
     assert record.survivors("exact", 0.0) == ["good"]
     said = method_sentences(record)
     assert "exact: good; friction: good." in said
-    assert "At 0.01 of noise the best on exact readings: A good (3.0e-2), B good (3.0e-2)." in said
+    assert "At 1 % of noise the best on exact readings: A good (3.0e-2), B good (3.0e-2)." in said
     assert record.cell("rare", "exact", 0.0) == "B 1.0e-3 (50%), A 1.0e-3 (50%)"
     assert record.cell("absent", "exact", 0.0) == ""
     text = page([run()], [], [record])
     assert "![What each method survives on readings of the case mine](methods-on-mine.png)" in text
-    assert "| good | B 1.0e-3, A 1.0e-3 |" in text
+    assert "| good |  | B 1.0e-3, A 1.0e-3 |" in text
 
 
 @pytest.mark.parametrize("damage", ["", "a,b\n1,2\n", "\x00"])
