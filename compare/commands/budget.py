@@ -1,7 +1,8 @@
 """Commands on what a disagreement is made of: ``budget``, ``findings``."""
 
+import json
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,12 +12,18 @@ from compare.commands.options import (
     Beam,
     CaseName,
     Changes,
+    InMotion,
     Obstacle,
     Out,
     Segments,
+    Speed,
     Stations,
+    Timestep,
 )
 from compare.commands.output import output_folder
+
+if TYPE_CHECKING:
+    from compare.read.case import Job
 
 
 def budget(
@@ -32,10 +39,23 @@ def budget(
     segments: Segments = None,
     beam: Beam = None,
     obstacle: Obstacle = None,
+    motion: InMotion = False,
+    speed: Speed = None,
+    timestep: Timestep = None,
 ) -> int:
-    """Measure what the disagreement is made of."""
-    changes = Changes(stations, segments, beam, obstacle)
-    job = changes.job_at_rest(case, "budget")
+    """Measure what the disagreement is made of.
+
+    In motion, if the case has a [motion] table or an option asks for it: what the speed and the
+    time step add to what is there at rest.
+    """
+    changes = Changes(
+        stations, segments, beam, obstacle, motion=motion, speed=speed, timestep=timestep
+    )
+    job = changes.job(case)
+    if job.motion is not None:
+        if target is not None or job.model is not None:
+            job = changes.job_at_rest(case, "budget --target or with a [model]")
+        return _in_motion(job, changes.folder(out, job.case.name))
     from compare.explain.advice import check_target
 
     if target is not None:
@@ -59,6 +79,21 @@ def budget(
             write_whole(folder / "budget.json", with_advice)
             terminal.print_advice(advice)
         return AGREES if found.closes and (advice is None or advice.reached) else DISAGREES
+
+
+def _in_motion(job: "Job", place: Path) -> int:
+    with output_folder(place) as folder:
+        from analytic.problem.files import write_whole
+        from compare.commands import terminal
+        from compare.commands.engines import measured_motion_budget
+
+        found, runs = measured_motion_budget(job)
+        terminal.print_motion_budget(found, job.case.name)
+        for name, readings in runs.items():
+            readings.write(folder / f"{name}.parquet")
+        content = json.dumps(found.to_dict(), indent=2)
+        terminal.print_written(write_whole(folder / "motion-budget.json", content))
+        return AGREES if found.closes else DISAGREES
 
 
 def findings(

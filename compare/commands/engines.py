@@ -1,5 +1,6 @@
 """Sweeps in MuJoCo as the commands do them: with a progress bar, and kept as far as they came."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,10 +10,13 @@ from analytic import Readings
 from compare.commands.terminal import progress
 from compare.explain.budget import Budget
 from compare.explain.changes import controlled_changes
+from compare.explain.motion import MotionBudget, slower_and_finer
 from compare.read.case import Job
 from compare.simulate.controlled import measure_budget
+from compare.simulate.moving import measure_motion_budget
 from mujoco_models import simulate_model, simulate_motion, simulate_sweep
-from mujoco_models.settings import CONTACT_STIFFNESSES
+from mujoco_models.motion import Motion
+from mujoco_models.settings import CONTACT_STIFFNESSES, Settings
 
 
 def simulated(job: Job, folder: Path) -> Readings:
@@ -90,13 +94,47 @@ def at_rest(job: Job) -> Readings:
     InputError, DivergedError
         As `mujoco_models.simulate_sweep` does.
     """
-    settings = job.settings
-    if job.motion is not None and job.motion.solref is None:
-        least, largest = CONTACT_STIFFNESSES
-        stiffness = min(max(job.motion.stiffness, least), largest)
-        settings = replace(settings, contact_stiffness=stiffness)
+    settings = settings_at_rest(job)
     with progress("at rest", job.case.sweep.stations) as advance:
         return simulate_sweep(job.case, settings, advance)
+
+
+def settings_at_rest(job: Job) -> Settings:
+    """Those of the sweep at rest that a sweep in motion tends to.
+
+    Parameters
+    ----------
+    job : Job
+        With a motion.
+
+    Returns
+    -------
+    Settings
+        With contacts of the motion's stiffness, unless they are MuJoCo's own.
+    """
+    if job.motion is None or job.motion.solref is not None:
+        return job.settings
+    least, largest = CONTACT_STIFFNESSES
+    stiffness = min(max(job.motion.stiffness, least), largest)
+    return replace(job.settings, contact_stiffness=stiffness)
+
+
+def measured_motion_budget(job: Job) -> tuple[MotionBudget, Mapping[str, Readings]]:
+    """The budget of a job in motion, and its sweeps.
+
+    Parameters
+    ----------
+    job : Job
+        With a motion.
+
+    Returns
+    -------
+    MotionBudget, mapping of Readings
+        As `compare.simulate.moving.measure_motion_budget` returns them.
+    """
+    motion = job.motion or Motion()
+    with progress("slower and finer", len(slower_and_finer(motion)) + 1) as advance:
+        return measure_motion_budget(job.case, motion, job.settings, settings_at_rest(job), advance)
 
 
 def measured_budget(job: Job) -> tuple[Budget, dict[str, Readings]]:

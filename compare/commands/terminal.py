@@ -25,6 +25,7 @@ from rich.text import Text
 from analytic import CLAMP_READINGS, PHASES, Beam, Readings
 from compare.comparison import Comparison
 from compare.explain.budget import Budget
+from compare.explain.motion import MotionBudget
 from compare.measure.repeats import Repeat
 from compare.read.assumed import ASSUMED
 from compare.read.passes import Pass
@@ -148,6 +149,29 @@ def _untrusted(readings: Readings) -> list[str]:
         meaning = _MEANINGS.get(str(name), "")
         said.append(f"{len(group)} {name} (foot_x {where} L{meaning})")
     return said
+
+
+def print_motion_budget(found: MotionBudget, case: str) -> None:
+    """Print the parts of a disagreement in motion, and the verdict.
+
+    Parameters
+    ----------
+    found : MotionBudget
+        What was measured.
+    case : str
+        Name of the case.
+    """
+    title = Text(f"Budget of {case} in motion, rms +- uncertainty")
+    table = Table("part", *CLAMP_READINGS, title=title)
+    for name, readings in found.parts.items():
+        cells = [f"{p.rms:.1e} +- {p.uncertainty:.0e}" for p in readings.values()]
+        table.add_row(name, *cells)
+    table.add_section()
+    table.add_row("disagreement", *(f"{x:.1e}" for x in found.disagreement.values()))
+    _output().print(table)
+    closes = "closes" if found.closes else "does not close"
+    print_line(f"The budget {closes}; {found.blame} dominates, over {found.stations} stations.")
+    print_line(f"Observed order in the speed, halved twice: {found.order:.2f}.")
 
 
 def print_at_rest(rest: Comparison, motion: Comparison) -> None:

@@ -135,7 +135,7 @@ def budget(
     """
     tolerances = Tolerances() if tolerances is None else tolerances
     others = [*runs.values()] if faceted is None else [*runs.values(), faceted]
-    kept = _common(exact, others, tolerances.snap_off_window)
+    kept = common_stations(exact, others, tolerances.snap_off_window)
     for (
         varied
     ) in variations.values():  # one may touch again, or stick, where the reference does not
@@ -241,13 +241,28 @@ def largest_rms(
         Root mean square, relative to the reading's largest magnitude.
     """
     window = (Tolerances() if tolerances is None else tolerances).snap_off_window
-    kept = _common(exact, [candidate], window)
+    kept = common_stations(exact, [candidate], window)
     (errors,) = convergence(exact, [candidate], kept).values()
     return max(errors.values())
 
 
-def _common(exact: Readings, runs: list[Readings], window: float) -> Booleans:
-    """Stations in contact and trusted in every sweep, outside the window before the snap-off."""
+def common_stations(exact: Readings, runs: list[Readings], window: float) -> Booleans:
+    """Stations in contact and trusted in every sweep, outside the window before the snap-off.
+
+    Parameters
+    ----------
+    exact : Readings
+        The reference.
+    runs : list of Readings
+        Over the same stations.
+    window : float
+        Of the sweep's length.
+
+    Returns
+    -------
+    array of bool, shape (stations,)
+        Those that count.
+    """
     foot_x = exact.values("foot_x")
     kept = np.ones(len(foot_x), dtype=bool)
     for readings in (exact, *runs):

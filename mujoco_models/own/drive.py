@@ -54,7 +54,7 @@ class Slide(Drive):
 
 
 class Actuated(Drive):
-    """A position or velocity actuator is told to."""
+    """A position or velocity actuator follows what it is given."""
 
     def __init__(self, actuator: int, joint: int, model: mujoco.MjModel, sense: float) -> None:
         self._actuator = actuator

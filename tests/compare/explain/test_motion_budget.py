@@ -1,0 +1,76 @@
+"""The budget of a sweep in motion: planted parts are found, and what is none of them is left."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import CLAMP_READINGS, Readings, Sweep, named_case, solve_sweep
+from compare.explain.motion import motion_budget, slower_and_finer
+from mujoco_models import Motion
+from tests.compare.command import vibrissa
+
+CASE = replace(named_case("catenary"), sweep=Sweep(80))
+EXACT = solve_sweep(CASE)
+MOTION = Motion(speed=0.08, timestep=0.02)
+
+
+def added(share):
+    """The exact sweep with a share of each reading's largest magnitude on top, by a wave."""
+    table = EXACT.table.copy()
+    wave = np.cos(3 * table["foot_x"].to_numpy())
+    for name in CLAMP_READINGS:
+        table[name] += share * wave * np.nanmax(np.abs(table[name]))
+    return Readings(table, EXACT.beam, "planted", EXACT.provenance)
+
+
+def runs(rate=0.0, order=1.0, step=0.0, rest=0.0, motionless=0.0):
+    """Errors in proportion to speed^order and step, those at rest, and one of all motions alike."""
+    found = {
+        name: added(
+            rest
+            + motionless
+            + rate * (m.speed / MOTION.speed) ** order
+            + step * m.timestep / MOTION.timestep
+        )
+        for name, m in slower_and_finer(MOTION).items()
+    }
+    return {**found, "rest": added(rest)}
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0])
+def test_planted_parts_are_found(order):
+    found = motion_budget(EXACT, runs(rate=0.02, order=order, step=1e-3, rest=3e-3))
+    assert found.order == pytest.approx(order, abs=1e-6)
+    assert found.closes
+    assert found.blame == "rate"
+    wave = np.sqrt(0.5)
+    for name, size in (("rate", 0.02), ("time step", 1e-3), ("at rest", 3e-3)):
+        for part in found.parts[name].values():
+            assert part.rms == pytest.approx(size * wave, rel=0.15)  # of a wave that is cut
+    assert all(part.rms < 1e-12 for part in found.parts["unexplained"].values())
+
+
+def test_what_all_motions_share_stays_unexplained():
+    found = motion_budget(EXACT, runs(rate=1e-3, rest=1e-3, motionless=0.02))
+    assert not found.closes
+    assert found.blame == "unexplained"
+
+
+def test_the_contacts_are_the_same_in_all_of_them():
+    motions = slower_and_finer(MOTION)
+    assert {m.stiffness for m in motions.values()} == {MOTION.stiffness}
+    assert motions["fine"].timestep == MOTION.timestep / 2
+    assert motions["quarter"].speed == MOTION.speed / 4
+    stock = slower_and_finer(Motion(solref=(0.7, 1.0)))
+    assert {m.solref for m in stock.values()} == {(0.7, 1.0)}
+
+
+@pytest.mark.slow
+def test_the_command_closes_the_budget_of_a_real_sweep(tmp_path):
+    """Observed: rate 1.0e-2 of order 2, at rest 4.5e-3, unexplained 5e-4 +- 1e-3."""
+    words = ("--speed", "0.2", "--obstacle", "primitive", "--segments", "20", "--out", "out")
+    done = vibrissa("budget", "catenary", *words, cwd=tmp_path)
+    assert done.returncode == 0, done.stdout
+    assert "The budget closes; rate dominates" in done.stdout
+    assert (tmp_path / "out" / "motion-budget.json").is_file()
