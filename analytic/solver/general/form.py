@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,11 +14,20 @@ from analytic.problem.unloaded import Unloaded
 NODES = 12  # of Gauss and Legendre on a panel
 POINTS, WEIGHTS = (v / 2 for v in np.polynomial.legendre.leggauss(NODES))
 POINTS = POINTS + 0.5  # from 0 to 1
+_SHARES = np.concatenate([[0.0], POINTS, [1.0]])
 _TO_SERIES = np.linalg.inv(np.polynomial.legendre.legvander(2 * POINTS - 1, NODES - 1))
 _TAIL = 2  # coefficients
 _EXACT = 1e-8  # of a panel's largest value; of the integral over it then the square
 _HALVINGS = 12
 _PLACES = 257
+
+
+class Part(NamedTuple):
+    """Arc length, EI(0)/EI and natural curvature at some places; arrays of one shape."""
+
+    s: Floats
+    flexible: Floats
+    natural: Floats
 
 
 @dataclass(frozen=True)
@@ -94,6 +104,35 @@ class Form:
             return inverse if self.share == 1 else inverse**self.share
         inverse = 1 / (1 - (1 - self.rigidity) * s) ** 2
         return np.asarray(inverse**2 if self.share == 1 else inverse ** (2 * self.share))
+
+    def part(self, begin: Floats, end: Floats) -> Part:
+        """The form between two places, at these and the points of Gauss and Legendre.
+
+        Parameters
+        ----------
+        begin, end : array, shape (n,)
+            Arc lengths from the clamp [L].
+
+        Returns
+        -------
+        Part
+            Arrays of shape (NODES + 2, n); the same, if n is 1, is computed once.
+        """
+        if begin.size > 1:
+            return self._between(begin, end)
+        key = float(begin[0]), float(end[0])
+        if key not in self._known:
+            self._known[key] = self._between(begin, end)
+        return self._known[key]
+
+    def _between(self, begin: Floats, end: Floats) -> Part:
+        s = begin + _SHARES[:, None] * (end - begin)
+        return Part(s, self.flexibility(s), self.unloaded.curvature(s))
+
+    @cached_property
+    def _known(self) -> dict[tuple[float, float], Part]:
+        """Parts of the vibrissa that many spans run through."""
+        return {}
 
     @cached_property
     def ends(self) -> Floats:

@@ -17,11 +17,11 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from analytic.problem.arrays import Floats, Integers
-from analytic.solver.general.form import NODES, POINTS, WEIGHTS, Form
+from analytic.solver.general.form import NODES, POINTS, WEIGHTS, Form, Part
 from analytic.solver.general.span import Start
 
 _ITERATIONS = 30
-_CLOSE = 1e-15  # rad; of the last change of the slope
+_CLOSE = 1e-14  # rad; of the last change of the slope, of which the next is a tenth
 _LOST = 1e-9  # rad; the same, of a span whose iteration does not end
 _WAVE = 0.8  # rad; of the pendulum's phase on a panel
 _MOST = 64  # parts of a panel
@@ -173,12 +173,11 @@ def _step(
 ) -> Place:
     """March from `begin` to `end`; both of shape (n,), or (1,) if they are the same for all."""
     h = end - begin
-    s = begin + POINTS[:, None] * h
-    flexible, natural = form.flexibility(s), form.unloaded.curvature(s)
+    part = form.part(begin, end)
+    s, flexible, natural = (values[1:-1] for values in part)
     turned = here.theta + h * (_TO_NODES @ natural)  # by the natural curvature
     pull = h * force
-    first = turned + (POINTS[:, None] * h) * flexible * here.m
-    theta, change = first, np.full(1, np.inf)
+    theta, change = turned + (s - begin) * flexible * here.m, np.full(1, np.inf)
     for _ in range(_ITERATIONS):
         m = here.m + pull * (_TO_NODES @ np.cos(theta))
         new = turned + h * (_TO_NODES @ (flexible * m))
@@ -201,8 +200,8 @@ def _step(
                 here.across + size * (_TO_NODES @ sin),
             )
         )
-    before = _phase(form, here.theta, here.m, force, begin)
-    turn = _phase(form, last, moment, force, end) - before
+    first, final = (Part(*(values[i] for values in part)) for i in (0, -1))
+    turn = _phase(final, last, moment, force) - _phase(first, here.theta, here.m, force)
     return Place(
         last,
         moment,
@@ -212,9 +211,8 @@ def _step(
     )
 
 
-def _phase(form: Form, theta: Floats, m: Floats, force: Floats, s: Floats) -> Floats:
+def _phase(at: Part, theta: Floats, m: Floats, force: Floats) -> Floats:
     """The pendulum's phase: by half a period it changes by pi [rad]."""
-    flexible = form.flexibility(s)
-    curvature = form.unloaded.curvature(s) + m * flexible
+    curvature = at.natural + m * at.flexible
     p = np.sqrt(force) * np.sin(np.pi / 4 - theta / 2)
-    return np.asarray(np.arctan2(p, -curvature / np.sqrt(flexible) / 2))
+    return np.asarray(np.arctan2(p, -curvature / np.sqrt(at.flexible) / 2))
