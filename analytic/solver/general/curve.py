@@ -86,7 +86,7 @@ class Curve(NamedTuple):
         places = self._places(here.z, z)
         if places:
             return self._stopped(here, min(places), z)
-        scale = _scale(here.z)
+        scale = self._scale(here.z)
         new = self._corrected(z, here.direction / scale**2, close=_NEAR)
         if new is None:
             return ()
@@ -103,9 +103,9 @@ class Curve(NamedTuple):
         guess = here.z + share * way
         guess[index] = before
         found = self._fixed(guess, index) if share > _ASIDE else None
-        if found is None or _size(found.z - guess, here.z) > _size(way, here.z):
+        if found is None or self._size(found.z - guess, here.z) > self._size(way, here.z):
             return ()
-        first = _along(found, way / _scale(here.z) ** 2)
+        first = _along(found, way / self._scale(here.z) ** 2)
         if math.isnan(after):
             return (first,)
         z = first.z.copy()
@@ -130,7 +130,7 @@ class Curve(NamedTuple):
             None if Newton's method loses the curve.
         """
         chord = end.z - begin.z
-        normal = chord / _scale(begin.z) ** 2
+        normal = chord / self._scale(begin.z) ** 2
         low, high = 0.0, 1.0
         rate_low, rate_high = rate(begin), rate(end)
         found, last = None, 0.0
@@ -149,6 +149,30 @@ class Curve(NamedTuple):
                 high, rate_high, rate_low = share, here, rate_low / (2 if here * last > 0 else 1)
             last = here
         return found
+
+    def turning(self, here: Point, new: Point) -> float:
+        """By how much the curve turns between two points.
+
+        Parameters
+        ----------
+        here, new : Point
+            The points.
+
+        Returns
+        -------
+        float
+            Angle between the directions, the force measured by its size [rad].
+        """
+        scale = self._scale(here.z)
+        a, b = here.direction / scale, new.direction / scale
+        return float(np.arccos(np.clip(a @ b / np.sqrt((a @ a) * (b @ b)), -1, 1)))
+
+    def _scale(self, z: Floats) -> Floats:
+        """The size of the coordinates: the force's is its own."""
+        return np.array([1.0, max(self.vibrissa.least_force, z[_F]), 1.0])
+
+    def _size(self, way: Floats, at: Floats) -> float:
+        return math.hypot(*(way / self._scale(at)))
 
     def _places(self, old: Floats, new: Floats) -> list[tuple[float, int, float, float]]:
         """Kinks between: share of the way, coordinate, and its value before and after."""
@@ -176,7 +200,7 @@ class Curve(NamedTuple):
         )
         slopes = np.concatenate([rates.twist, rates.above])
         direction = _cross(slopes[0], slopes[1])
-        direction = direction / (_size(direction, z) or math.nan)
+        direction = direction / (self._size(direction, z) or math.nan)
         misses = np.array([here.twist[0], here.above[0]])
         point = Point(
             z,
@@ -217,37 +241,10 @@ class Curve(NamedTuple):
         return self._corrected(z, normal, slice(index, index + 1))
 
 
-def _scale(z: Floats) -> Floats:
-    """The size of the coordinates: the force's is its own."""
-    return np.array([1.0, max(1.0, z[_F]), 1.0])
-
-
-def _size(way: Floats, at: Floats) -> float:
-    return math.hypot(way[_T], way[_F] / max(1.0, at[_F]), way[_W])
-
-
 def _cross(a: Floats, b: Floats) -> Floats:
     """`np.cross` of two short vectors, ten times as fast."""
     (u, v, w), (x, y, z) = a.tolist(), b.tolist()
     return np.array([v * z - w * y, w * x - u * z, u * y - v * x])
-
-
-def turning(here: Point, new: Point) -> float:
-    """By how much the curve turns between two points.
-
-    Parameters
-    ----------
-    here, new : Point
-        The points.
-
-    Returns
-    -------
-    float
-        Angle between the directions, the force measured by its size [rad].
-    """
-    scale = _scale(here.z)
-    a, b = here.direction / scale, new.direction / scale
-    return float(np.arccos(np.clip(a @ b / np.sqrt((a @ a) * (b @ b)), -1, 1)))
 
 
 def _along(point: Point, way: Floats) -> Point:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -158,6 +159,15 @@ class Form:
         share = np.linspace(0, 1, NODES)[:, None]
         inside = self.ends[:-1] + share * np.diff(self.ends)
         return np.asarray(self.flexibility(inside).max(axis=0))
+
+    @cached_property
+    def least_force(self) -> float:
+        """Force across the tip that turns it by half a radian, if that were little; at most 1."""
+        turn = 0.0
+        for begin, end in pairwise(self.ends):
+            s = begin + (end - begin) * POINTS
+            turn += float((end - begin) * (WEIGHTS @ ((1 - s) * self.flexibility(s))))
+        return min(1.0, 0.5 / turn)
 
     @cached_property
     def most_curved(self) -> float:

@@ -13,7 +13,7 @@ import numpy as np
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.problem.rest import Touch
-from analytic.solver.general.curve import INSIDE, Curve, Point, turning
+from analytic.solver.general.curve import INSIDE, Curve, Point
 from analytic.solver.general.states import Vibrissa
 
 # By how much the curve may turn between neighbours [rad], and its first step; finer if it is lost.
@@ -33,7 +33,7 @@ class Path(NamedTuple):
 
     ``z`` has shape (n, 3): contour parameter, normal force, excess; ``direction`` is its derivative
     by the curve's length, ``foot_x`` the foot position [L] and ``rate`` its derivative, shape (n,).
-    ``complete`` is false if the curve was lost before its end.
+    ``complete`` is false if the curve was lost before its end. ``least_force`` is the vibrissa's.
     """
 
     z: Floats
@@ -41,6 +41,7 @@ class Path(NamedTuple):
     foot_x: Floats
     rate: Floats
     complete: bool
+    least_force: float
 
     @property
     def tangent(self) -> Booleans:
@@ -165,7 +166,7 @@ class Path(NamedTuple):
             The force measured by its size.
         """
         way = self.z[cells + 1] - self.z[cells]
-        way[:, 1] /= np.maximum(1.0, self.z[cells, 1])
+        way[:, 1] /= np.maximum(self.least_force, self.z[cells, 1])
         return np.asarray(np.sqrt(np.einsum("nk,nk->n", way, way)))
 
 
@@ -212,6 +213,7 @@ def follow(
         np.array([point.foot_x for point in points]),
         np.array([point.rate for point in points]),
         complete,
+        vibrissa.least_force,
     )
 
 
@@ -223,8 +225,8 @@ def _points(curve: Curve, touch: Touch, largest: float, length: float) -> list[P
         if here.swing > _BUCKLES:
             length = min(length, _NEAR)
         ahead = curve.advance(here, length, bend)
-        turn = turning(here, ahead[0]) if ahead else np.inf
-        if turn > 2 * largest or (length > _SHORT and _hides(here, ahead[0])):
+        turn = curve.turning(here, ahead[0]) if ahead else np.inf
+        if turn > 2 * largest or (length > _SHORT and _hides(curve, here, ahead[0])):
             length /= 2
             continue
         points.extend(ahead)
@@ -235,13 +237,13 @@ def _points(curve: Curve, touch: Touch, largest: float, length: float) -> list[P
     return points
 
 
-def _hides(begin: Point, end: Point) -> bool:
+def _hides(curve: Curve, begin: Point, end: Point) -> bool:
     """Whether the foot position may turn between two points though its rates do not show it.
 
     It does not if the mean rate lies between those at the ends, nearly.
     """
     way = end.z - begin.z
-    way[1] /= max(1.0, begin.z[1])
+    way[1] /= max(curve.vibrissa.least_force, begin.z[1])
     mean = (end.foot_x - begin.foot_x) / np.linalg.norm(way)
     low, high = sorted((begin.rate, end.rate))
     slack = _TRUST * max(-low, high) + _FLAT

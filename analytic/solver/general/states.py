@@ -24,7 +24,7 @@ from analytic.solver.general.form import Form
 from analytic.solver.general.span import Start, back_to_clamp
 
 # Differences of second order, to one side: a force is not negative, and a phase ends where w = 0.
-_DIFFERENCE = 1e-5  # of a force and an excess of size 1: truncation and round-off are alike
+_DIFFERENCE = 1e-5  # of a force and an excess of their size: truncation and round-off are alike
 _BY_FORCE = np.array([0.0, 1.0, 2.0, 0.0, 0.0])
 _BY_EXCESS = np.array([0.0, 0.0, 0.0, 1.0, 2.0])
 _WEIGHTS = np.array([[-1.5, 2.0, -0.5, 0.0, 0.0], [-1.5, 0.0, 0.0, 2.0, -0.5]])
@@ -90,6 +90,11 @@ class Vibrissa(NamedTuple):
             [L].
         """
         return self.radius if self.form is None else self.radius + self.form.unloaded.taper(s)
+
+    @property
+    def least_force(self) -> float:
+        """The force that counts as large: it turns the tip by half a radian, nearly."""
+        return 1.0 if self.form is None else self.form.least_force
 
     @property
     def lean(self) -> float:
@@ -322,7 +327,7 @@ def with_rates(
     States, Rates
         Of n contacts.
     """
-    step_f = _DIFFERENCE * np.maximum(1.0, force)
+    step_f = _DIFFERENCE * np.maximum(vibrissa.least_force, force)
     step_w = np.where(excess < 0, -_DIFFERENCE, _DIFFERENCE)
     found = states(
         point,

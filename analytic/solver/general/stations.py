@@ -70,7 +70,8 @@ def solve_places(
     cells = path.cells(foot_x)
     guess = path.at(cells, path.share(cells, foot_x, None))
     begin, way, length = path.z[cells], path.z[cells + 1] - path.z[cells], path.length(cells)
-    scale = np.maximum(1.0, [[0.0, 1.0, 0.0]] * begin)
+    scale = np.ones_like(begin)
+    scale[:, 1] = np.maximum(vibrissa.least_force, begin[:, 1])
 
     def misses(z: Floats, which: Integers) -> Floats:
         here = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
