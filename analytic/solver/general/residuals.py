@@ -1,12 +1,14 @@
 """How well readings of the general vibrissa satisfy their conditions, from the clamp's end."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.columns import CLAMP_READINGS
 from analytic.solver.equilibria import Column
-from analytic.solver.general.march import Place, march
+from analytic.solver.general.march import march
 from analytic.solver.general.span import back_to_clamp
 from analytic.solver.general.states import Vibrissa
 
@@ -17,8 +19,9 @@ def residuals(columns: dict[str, Column], beam: Beam, vibrissa: Vibrissa) -> dic
     """What the stations of a table of readings miss, from clamp to contact.
 
     The solver goes from the contact to the clamp; this is the way back, from the clamp's readings
-    alone. Where rigidity or natural curvature vary it is taken on panels of half the length, so
-    that it shows the error of the solver's, too.
+    alone. Where rigidity or natural curvature vary it is the solver's way on panels of half the
+    length, so that it shows the error of collocation: clamp readings of double precision do not
+    determine the slope of a tip that is sharp.
 
     Parameters
     ----------
@@ -52,15 +55,16 @@ def residuals(columns: dict[str, Column], beam: Beam, vibrissa: Vibrissa) -> dic
     force, direction = np.hypot(force_x, force_y), np.arctan2(-force_x, force_y)
     couple = mu * radius * force / np.sqrt(1 + mu**2)
 
-    begin = np.pi / 2 - compliance * moment - direction
-    end = _to_contact(vibrissa, begin, moment, force, length)
+    clamp = np.pi / 2 - compliance * moment - direction, -moment
+    contact = slope - direction, -couple
+    span = _span(vibrissa, clamp, contact, force, length)
     sin, cos = np.sin(direction), np.cos(direction)
     along = alpha + vibrissa.lean
     missed = [
-        end.along * cos - end.across * sin - x,
-        end.along * sin + end.across * cos - y,
-        end.theta + direction - slope,
-        end.m + couple,
+        span.along * cos - span.across * sin - x,
+        span.along * sin + span.across * cos - y,
+        span.theta,
+        span.m,
         direction - np.arctan(mu) - alpha,
         np.maximum(0.0, length - 1),
         np.maximum(0.0, along - slope),
@@ -111,14 +115,28 @@ def without_inexact(
     return found
 
 
-def _to_contact(
-    vibrissa: Vibrissa, theta: Floats, moment: Floats, force: Floats, length: Floats
-) -> Place:
-    """March from the clamp to the contact."""
+class _Span(NamedTuple):
+    """A span, and what it misses at its other end of slope and moment."""
+
+    along: Floats
+    across: Floats
+    theta: Floats
+    m: Floats
+
+
+def _span(
+    vibrissa: Vibrissa,
+    clamp: tuple[Floats, Floats],
+    contact: tuple[Floats, Floats],
+    force: Floats,
+    length: Floats,
+) -> _Span:
+    """The span between slope and moment at the clamp and at the contact."""
     if vibrissa.form is not None:
-        return march(vibrissa.form, theta, -moment, force, length, from_clamp=True, finer=2)
+        end = march(vibrissa.form, *contact, force, length, finer=2)
+        return _Span(end.along, end.across, end.theta - clamp[0], end.m - clamp[1])
     # A span run through from its other end has the opposite curvature.
     natural = vibrissa.natural_curvature
-    end = back_to_clamp(theta, moment - natural, force, length)
-    slope = np.pi / 2 - 2 * np.arctan2(end.p, end.g)
-    return Place(slope, -end.kappa - natural, end.along, end.across, end.swing)
+    start = back_to_clamp(clamp[0], -clamp[1] - natural, force, length)
+    slope = np.pi / 2 - 2 * np.arctan2(start.p, start.g)
+    return _Span(start.along, start.across, slope - contact[0], -start.kappa - natural - contact[1])

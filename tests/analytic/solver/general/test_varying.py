@@ -230,12 +230,15 @@ def test_limit_is_smooth(varied):
 @pytest.mark.parametrize("a", [0.3, 0.9, 1.0])
 def test_small_deflection_of_a_cone(a, ratio):
     """Of one that ends in a point w(a) = Q a^3/(3 (1 - a)); q a stands for a if it is cut off."""
-    q, force = 1 - ratio, 1e-6 * ratio
-    given_ = (np.array([x]) for x in (0.0, -force * a, force, a))
-    found = march(Form(Unloaded(), ratio), *given_, from_clamp=True)
-    # 1e-8: what is left out goes with the square of the slope, some 1e-6/ratio * ratio.
-    assert -found.across[0] == pytest.approx(force * a**3 / (3 * (1 - q * a)), rel=1e-8)
-    assert found.m[0] == pytest.approx(0, abs=1e-8 * force)
+    q = 1 - ratio
+    force = 1e-5 * (1 - q * a) ** 2  # turns the contact by 1e-5 rad at most
+    slope = force * a**2 * (3 - 2 * q * a) / (6 * (1 - q * a) ** 2)
+    given_ = (np.array([x]) for x in (-slope, 0.0, force, a))
+    found = march(Form(Unloaded(), ratio), *given_)
+    # 1e-9: what is left out goes with the square of the slope.
+    assert -found.across[0] == pytest.approx(force * a**3 / (3 * (1 - q * a)), rel=1e-9)
+    assert found.theta[0] == pytest.approx(0, abs=1e-9 * slope)
+    assert found.m[0] == pytest.approx(-force * a, rel=1e-9)
 
 
 def test_natural_bow_that_a_couple_straightens():
