@@ -20,6 +20,7 @@ from analytic.problem.support import check_support, is_plain
 from analytic.solver.branch import trace
 from analytic.solver.contact_length import surplus_and_rate
 from analytic.solver.equilibria import Equilibria, equilibria, tangent_contact, to_columns
+from analytic.solver.general.clearance import is_clear
 from analytic.solver.general.columns import to_columns as general_columns
 from analytic.solver.general.path import follow
 from analytic.solver.general.residuals import without_inexact
@@ -52,7 +53,9 @@ class Events:
     Phase B is here from its first start to its last end. ``contact_length_minimum`` is that of
     eq. 21 even where it exceeds the vibrissa's length: then there is no Phase B, and only its
     angle, contact point and arc length have a meaning. With a natural curvature, friction or an
-    elastic clamp there are no numbers then. ``out_of_plane`` is where a vibrissa that
+    elastic clamp there are no numbers then; and where such a vibrissa would touch the object in a
+    second place, the ``status`` is ``"touches again"`` and there are no readings: the event does
+    not happen as that of a vibrissa with one contact. ``out_of_plane`` is where a vibrissa that
     nothing guides leaves the plane of the sweep (`analytic.from_clamp.sideways`); what is after it
     happens to one that is guided.
     """
@@ -147,6 +150,9 @@ def _general_events(
         found = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
         columns = general_columns(found, np.zeros(1, dtype=bool), beam)
         columns = without_inexact(columns, beam, vibrissa)
+        if name != "first_contact" and not is_clear(centreline, found)[0]:
+            columns = general_columns(found, np.ones(1, dtype=bool), beam)
+            columns["foot_x"] = path.foot_x[i : i + 1] * beam.length
         return Event(**{name: column[0].item() for name, column in columns.items()})
 
     first, snap_off = event("first_contact"), event("snap_off")

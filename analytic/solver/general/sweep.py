@@ -7,12 +7,13 @@ import numpy as np
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.case import Case
 from analytic.problem.columns import COLUMNS
+from analytic.problem.contours.contour import Contour
 from analytic.problem.rest import first_touch
 from analytic.solver.equilibria import Column
 from analytic.solver.general.clearance import is_clear, is_rest_clear
 from analytic.solver.general.columns import to_columns
 from analytic.solver.general.path import follow
-from analytic.solver.general.states import States, Vibrissa, with_rates
+from analytic.solver.general.states import States, Vibrissa, states, with_rates
 from analytic.solver.general.stations import solve_stations
 
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
@@ -54,18 +55,27 @@ def solve(case: Case) -> Solved:
 
     columns = _nothing(case.foot_x, "diverged" if not path.complete else "touches again")
     if held.any():
-        states, found = solve_stations(centreline, vibrissa, path, foot_x[held])
-        solved = to_columns(states, ~is_clear(centreline, states), beam)
+        touching, found = solve_stations(centreline, vibrissa, path, foot_x[held])
+        solved = to_columns(touching, ~is_clear(centreline, touching), beam)
         solved["status"] = np.where(found, solved["status"], "diverged")
-        solved["status"][(solved["status"] == "ok") & ~_slides(states)] = "sticks"
+        solved["status"][(solved["status"] == "ok") & ~_slides(touching)] = "sticks"
         for name in COLUMNS[1:]:
             values = solved[name]
             number = name not in ("phase", "status")
             columns[name][held] = np.where(found, values, np.nan) if number else values
     places = {**path.events(), "out_of_plane": None}  # where it leaves the plane is not known
     del places["contact_length_minimum"]
+    for name in ("phase_b_start", "phase_b_end"):
+        i = places[name]
+        if i is not None and not _is_clear_at(centreline, vibrissa, path.z[i : i + 1]):
+            places[name] = None
     events = {n: None if i is None else float(path.foot_x[i]) for n, i in places.items()}
     return Solved(where, {name: values[where] for name, values in columns.items()}, events)
+
+
+def _is_clear_at(centreline: Contour, vibrissa: Vibrissa, z: Floats) -> bool:
+    found = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
+    return bool(is_clear(centreline, found)[0])
 
 
 def _nothing(foot_x: Floats, status: str) -> dict[str, Column]:

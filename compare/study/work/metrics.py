@@ -59,7 +59,8 @@ def events(physics: Physics, direction: Direction = "left") -> dict[str, float |
         ``contact_length_minimum`` [L] is that of eq. 21 of Behn and others: Phase B exists where
         it is less than 1 and the sweep gets there before the snap-off; with friction, a natural
         curvature or an elastic clamp it is NaN where there is no Phase B. ``event_*`` are foot
-        positions [length], None where there is no such event.
+        positions [length], None where there is no such event, or the vibrissa would touch in a
+        second place.
     """
     beam, profile, clamp_stiffness, friction = physics
     if direction == "right":
@@ -67,9 +68,10 @@ def events(physics: Physics, direction: Direction = "left") -> dict[str, float |
     found = find_events(profile, beam, clamp_stiffness=clamp_stiffness, friction=friction)
     way = -1 if direction == "right" else 1
     places = {name: getattr(found, name) for name in _EVENTS}
+    places = {n: x if x is not None and x.status == "ok" else None for n, x in places.items()}
     minimum = found.contact_length_minimum.contact_arc_length
     return {
-        "phase_b_exists": found.phase_b_start is not None,
+        "phase_b_exists": places["phase_b_start"] is not None,
         "contact_length_minimum": float(minimum) / beam.length,
         **{
             f"event_{name}": None if event is None else way * float(event.foot_x)

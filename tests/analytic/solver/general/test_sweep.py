@@ -270,3 +270,18 @@ def test_certificate_and_status_agree_on_a_vibrissa_that_is_curved_a_lot(profile
     assert set(certified.table["status"]) == {"ok", "touches again"}
     excess = closed.values("tip_angle") - closed.values("contact_angle")
     assert np.nanmax(excess[(closed.table["phase"] == "tip")]) <= np.pi
+
+
+def test_events_of_a_vibrissa_that_would_touch_twice_are_none():
+    """They were reported as those of a state, which is none."""
+    case = case_of(named_case("catenary").profile, natural=0.5, stations=60)
+    events = find_events(case.profile, case.beam)
+    for event in (events.phase_b_start, events.phase_b_end, events.contact_length_minimum):
+        assert event.status == "touches again" and math.isnan(event.moment_z)
+        assert math.isfinite(event.foot_x)
+    assert (events.first_contact.status, events.snap_off.status) == ("ok", "ok")
+    found = solve_sweep(case).provenance["events"]
+    assert found["phase_b_start"] is None and found["phase_b_end"] is None
+    assert found["snap_off"] == pytest.approx(events.snap_off.foot_x)
+    bent_away = find_events(case.profile, Beam(natural_curvature=-0.5))
+    assert bent_away.phase_b_start.status == "ok"
