@@ -46,8 +46,9 @@ def solve_sweep(case: Case, certified: bool = False) -> Readings:
         balance of moments. They come from the clamp readings by the closed form; if `certified`,
         they are the larger ones of that and of the integration. ``status`` is ``"diverged"`` where
         one exceeds 1e-11 by the closed form or 1e-9 by the integration, else ``"ok"``. Where a
-        vibrissa that is curved at rest would touch the object in a second place, it is ``"touches
-        again"``, without readings. Where friction would not let it slide on as its foot moves, it
+        vibrissa that is curved at rest would touch the object in a second place, or one that has
+        let go would lie in it, as a cone may that lets go early, it is ``"touches again"``, without
+        readings. Where friction would not let it slide on as its foot moves, it
         is ``"sticks"``, with the readings of one that does: those depend on what was before.
     """
     return solve_either_way(case, partial(_solve_leftward, certified=certified))

@@ -1,1 +1,1 @@
-"""The vibrissa with friction, an elastic clamp and a constant natural curvature."""
+"""The vibrissa with friction, an elastic clamp, a natural curvature, and what varies along it."""
