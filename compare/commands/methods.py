@@ -98,7 +98,7 @@ def _truths(
 
     conditions = chosen_conditions(asked)
     job = load_job(case)
-    job.case.require_plain("what the methods take for granted")
+    job.case.require_plain("the table of methods")
     for name in conditions:
         if name == SIMULATED:
             truth = simulated(job, folder)

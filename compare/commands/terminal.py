@@ -42,7 +42,8 @@ _MEANINGS = {
     "touches again": ": another part of the vibrissa would lie in the object, no readings",
     "chattering": ": the contact was lost more than once between two stations",
     "lost": ": no contact, between stations with one",
-    "sticks": ": it does not slide on, the readings are those of one that does",
+    "sticks": ": the contact would slide back, which friction prevents as the foot moves on; the "
+    "readings are those of one that slides on",
 }
 
 
