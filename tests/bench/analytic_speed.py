@@ -6,7 +6,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from analytic import Beam, catenary, find_events, named_case, solve_contact, solve_sweep
+from analytic import Beam, Case, catenary, find_events, named_case, solve_contact, solve_sweep
 from analytic.checks import boundary_value_problem, tip_angle_by_shooting
 from tests.bench.timing import seconds
 
@@ -50,6 +50,13 @@ def main(quick: bool) -> None:
     case = named_case("catenary")
     sweep = seconds(lambda: solve_sweep(case))
     console.print(f"200-station sweep, its events located on the way: {1e3 * sweep:.1f} ms")
+    real = Case(Beam(natural_curvature=-0.3), profile, clamp_stiffness=8.0, friction=0.2)
+    rate = many / seconds(
+        lambda: solve_contact(profile, tangent, real.beam, clamp_stiffness=8.0, friction=0.2)
+    )
+    console.print(f"Phase B with friction, elastic clamp and natural curvature: {rate:,.0f}/s")
+    ratio = seconds(lambda: solve_sweep(real)) / sweep
+    console.print(f"the sweep of such a vibrissa takes {ratio:.1f} times as long")
     events = seconds(lambda: find_events(case.profile, case.beam))
     console.print(f"its events alone, with the readings there: {1e3 * events:.1f} ms")
     for count in (many // 10, many):
