@@ -35,7 +35,7 @@ def test_run_compares_it_with_the_closed_form(folder):
     done = vibrissa("run", "case.toml", "--out", "out", cwd=folder)
     assert done.returncode in (0, 1), done.stderr
     assert "model sound chain" in done.stdout
-    assert "fault, " not in done.stdout
+    assert "\nfault, " not in done.stdout
     assert (folder / "out" / "mujoco-own-model.parquet").is_file()
     assert vibrissa("report", "out", cwd=folder).returncode in (0, 1)
     (folder / "mine.xml").write_bytes(shipped_models()["tutorial-chain"].read_bytes())

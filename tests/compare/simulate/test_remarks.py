@@ -35,7 +35,7 @@ def test_the_exact_cantilever():
     [
         Chain(),
         Chain(links=10),
-        Chain(links=60),
+        pytest.param(Chain(links=60), marks=pytest.mark.slow),
         Chain(foot="", inside_foot='<joint name="rail" type="slide" axis="1 0 0"/>'),
         Chain(site='euler="0 0 1.5707963267948966"'),
         Chain(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}),  # a straight taper
@@ -46,7 +46,9 @@ def test_sound_models_are_called_sound(tmp_path, sound):
     assert faults(tmp_path, sound, None if tapers else STATED) == []
 
 
-@pytest.mark.parametrize("links", [12, 20, 40])
+@pytest.mark.parametrize(
+    "links", [12, *(pytest.param(n, marks=pytest.mark.slow) for n in (20, 40))]
+)
 @pytest.mark.parametrize(
     ("mistake", "said"),
     [
