@@ -23,6 +23,7 @@ Side: TypeAlias = Literal["reference", "candidate"]
 
 _SAMPLES = 64  # of the inputs: what second-order terms add is known to a sixth of itself
 _MOST = 10_000  # stations that count; of more, every second or third one and so on
+_LARGEST = 1e6  # of a reading's largest magnitude; whoever states more means another unit
 _SNAP = 3.0  # standard uncertainties of the snap-off's place in which nothing is linear
 _DOMINATES = 0.5  # share of the variance
 
@@ -346,6 +347,14 @@ def _spread(
     inputs, differences = len(first), int(np.prod(first.shape[1:]))
     modes = [first, numerics, second / np.sqrt(max(len(second), 1))]
     stacked = np.concatenate([part.reshape(len(part), differences) for part in modes])
+    largest = max(float(np.abs(stacked).max(initial=0.0)), float(level.max()))
+    if not largest < _LARGEST:
+        raise InputError(
+            "[uncertainty]",
+            f"{largest:.3g} of a reading's largest magnitude",
+            f"less than {_LARGEST:g}",
+            "check the units",
+        )
     correlation = np.eye(len(stacked))
     correlation[:inputs, :inputs] = stated.correlation
     names = (*stated.inputs, *[NUMERICS] * len(numerics), *[SECOND_ORDER] * len(second))

@@ -182,6 +182,19 @@ def test_what_cannot_be_stated(stated, why):
         stated()
 
 
+@pytest.mark.parametrize(
+    "stated",
+    [
+        Uncertainties({"gain_force_x": Input(1e200)}, NO_NOISE),
+        Uncertainties({"flexural_rigidity": Input(1e12)}, NO_NOISE),
+        Uncertainties({}, {**NO_NOISE, "force_x": 1e200}),
+    ],
+)
+def test_uncertainties_in_another_unit(stated):
+    with pytest.raises(InputError, match="check the units"):
+        validated(CASES["circle"], {}, stated, samples=2)
+
+
 def test_uncertainties_beyond_any_case():
     case = CASES["circle"]
     with pytest.raises(InputError, match="cannot be solved"):
