@@ -15,7 +15,8 @@ INTEGRATORS, SOLVERS, CONES = map(get_args, (IntegratorKind, SolverKind, ConeKin
 
 # A stiffness [EI/L^3] times the squared time step [T1]. Measured on the catenary at 0.1 L/T1, with
 # N of 20 to 80: 1 and 4 leave 1 to 4 of 60 stations chattering, and the same errors; 16 up to 4e-2.
-_STIFFNESS = 4.0
+# Integrators that are explicit in the contact diverge at 4, whatever the armature.
+_STIFFNESS, _STIFFNESS_EXPLICIT = 4.0, 1.0
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,8 @@ class Motion:
     contact_stiffness : float, optional
         Force over penetration of a contact at rest [EI/L^3], critically damped. If it is not given,
         4/`timestep`^2: with chains of 20 to 80 segments that is about the stiffest contact that
-        does not chatter, at steps from 0.005 to 0.04 T1.
+        does not chatter, at steps from 0.005 to 0.04 T1. Integrators other than ``"discrete"``
+        diverge there; for them it is a quarter of that, and chatters.
     solref : tuple of float, optional
         MuJoCo's time constant [T1] and damping ratio of a contact, in the place of a stiffness.
     solimp : float
@@ -126,7 +128,8 @@ class Motion:
         """Force over penetration of a contact, unless `solref` is given [EI/L^3]."""
         if self.contact_stiffness is not None:
             return self.contact_stiffness
-        return _STIFFNESS / self.timestep**2
+        implicit = self.integrator == "discrete"
+        return (_STIFFNESS if implicit else _STIFFNESS_EXPLICIT) / self.timestep**2
 
 
 def _check(name: str, value: float, low: float, high: float, remedy: str) -> None:

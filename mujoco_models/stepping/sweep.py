@@ -124,7 +124,9 @@ def sweep_moving(
             keep(_readings(case, motion, about, model, record, begun))
         if isinstance(error, DivergedError):
             place_ = f"t = {model.time:.6g} T1"
-            remedy = f"shorten the time step ({motion.timestep:g} T1) or add armature"
+            remedy = (
+                f"shorten the time step ({motion.timestep:g} T1), add armature, or soften contacts"
+            )
             raise DivergedError(f"diverged at {place_}: {error}; {remedy}") from error
         raise
     return _readings(case, motion, about, model, record, begun)

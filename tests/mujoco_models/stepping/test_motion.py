@@ -106,6 +106,7 @@ def test_the_default_contact_is_as_stiff_as_the_step_allows():
     assert Motion(timestep=0.02).stiffness == pytest.approx(1e4)
     assert Motion(timestep=0.002).stiffness == pytest.approx(1e6)
     assert Motion(contact_stiffness=1e5).stiffness == 1e5
+    assert Motion(timestep=0.02, integrator="implicitfast").stiffness == pytest.approx(2500)
     with pytest.raises(InputError, match="leave one of them out"):
         Motion(contact_stiffness=1e5, solref=(0.1, 1.0))
 
@@ -132,3 +133,14 @@ def test_a_mean_over_the_way_is_that_of_the_sweep_at_rest():
         errors.append(np.sqrt(np.mean((moved - mean)[between] ** 2)) / np.abs(force).max())
     assert errors[1] < 5e-4
     assert errors[0] / errors[1] > 1.4
+
+
+@pytest.mark.slow
+def test_explicit_integrators_stay_finite_with_an_armature_and_say_that_they_chatter():
+    """Observed: 67 of 100 stations with twenty segments; `discrete` has two."""
+    mesh = Settings(segments=20, contour_points=800)
+    stiff = Motion(speed=0.2, integrator="implicitfast", armature=1.0)
+    moved = simulate_motion(CASE, stiff, mesh)
+    assert (moved.table["status"] == "chattering").mean() > 0.2
+    with pytest.raises(DivergedError, match="soften contacts"):
+        simulate_motion(CASE, replace(stiff, contact_stiffness=1e4), mesh)
