@@ -55,8 +55,12 @@ class Motion:
         MuJoCo's solver of the constraints.
     cone : str
         Of friction; matters with a friction coefficient only.
-    friction : float
-        Coulomb's coefficient between vibrissa and object.
+    friction : float, optional
+        Coulomb's coefficient between vibrissa and object; if it is not given, the case's.
+    impratio : float
+        MuJoCo's ratio of frictional to normal impedance, of elliptic cones. MuJoCo's friction
+        yields: below a sliding speed in inverse proportion to this, it is a drag in proportion to
+        the speed.
     ramp : float
         Time in which the foot reaches its speed, evenly [T1].
     average : float
@@ -83,7 +87,8 @@ class Motion:
     solimp: StrictFloat = 0.9
     solver: SolverKind = "newton"
     cone: ConeKind = "pyramidal"
-    friction: StrictFloat = 0.0
+    friction: StrictFloat | None = None
+    impratio: StrictFloat = 1.0
     ramp: StrictFloat = 1.0
     average: StrictFloat = 1.0
     cutoff: StrictFloat | None = None
@@ -101,11 +106,13 @@ class Motion:
             ("damping_ratio", 0, 100, "0.05 is usual"),
             ("armature", 0, 1e6, "explicit integrators need about 1"),
             ("solimp", 0.001, 0.9999, "0.9 is usual"),
-            ("friction", 0, 10, "0 is the theory's"),
+            ("impratio", 1e-3, 1e6, "1 is MuJoCo's, 100 holds better"),
             ("ramp", 0, 1e3, "in T1; 1 is usual"),
             ("average", 0, 1, "1 is all the way"),
         ):
             _check(name, getattr(self, name), low, high, remedy)
+        if self.friction is not None:
+            _check("friction", self.friction, 0, 10, "leave it out for the case's")
         if self.cutoff is not None:
             _check("cutoff", self.cutoff, 1e-3, 1e9, "in 1/T1; leave it out for no filter")
         if self.contact_stiffness is not None:

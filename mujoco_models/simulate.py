@@ -125,8 +125,8 @@ def simulate_motion(
     Raises
     ------
     InputError
-        If the case's beam has no radius or the case has friction (of a motion it is `Motion`'s); if
-        the installed MuJoCo lacks the beam, or it is no
+        If the case's beam has no radius; if friction would overshoot in the time step; if the
+        installed MuJoCo lacks the beam, or it is no
         chain or rod in the plane.
     DivergedError
         If the motion does not stay finite; it names the time and what to change.

@@ -27,7 +27,6 @@ from analytic import (
 )
 from compare import compare
 from compare.show.figures.paper import contact_length
-from mujoco_models import simulate_motion, simulate_sweep
 
 OBJECT = circle(1.0, lowest=(0, 0.4))
 BEYOND = {
@@ -70,13 +69,6 @@ def test_contacts_of_a_vibrissa_that_varies_are_not_found_from_the_clamp(name):
     for ask in (reconstruct, deflected_shapes, lambda r: compare(r, r), estimate_friction):
         with pytest.raises(InputError, match=f"^{name.strip()} = .*cannot take it into account"):
             ask(readings)
-
-
-def test_simulations_refuse_friction_of_the_case():
-    case = Case(profile=OBJECT, sweep=Sweep(20), friction=0.1)
-    for simulate in (simulate_sweep, simulate_motion):
-        with pytest.raises(InputError, match=r"^friction = 0\.1: must be 0"):
-            simulate(case)
 
 
 def test_a_tilted_clamp_is_the_straight_vibrissas():

@@ -74,7 +74,8 @@ class MotionTable(BaseModel):
     solimp: float = Motion.solimp
     solver: SolverKind = Motion.solver
     cone: ConeKind = Motion.cone
-    friction: float = Motion.friction
+    friction: float | None = Motion.friction
+    impratio: float = Motion.impratio
     ramp: Time = Motion.ramp
     average: float = Motion.average
     cutoff: Rate | None = Motion.cutoff

@@ -5,7 +5,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
+from analytic.problem.errors import InputError
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.errors import DivergedError
 from mujoco_models.model.clamp import Clamp, by_sensors
@@ -105,9 +106,29 @@ class MovingModel:
             model.geom_solref[geoms] = motion.solref
         model.geom_gap[geoms] = 0  # a contact that carries no force costs time
         model.geom_solimp[geoms] = [motion.solimp, motion.solimp, 1e-3, 0.5, 2]
-        if motion.friction > 0:
+        if motion.friction:
+            self._check_step(motion, geoms)
             model.geom_condim[geoms] = 3
             model.geom_friction[geoms, 0] = motion.friction
+
+    def _check_step(self, motion: Motion, geoms: Integers) -> None:
+        """Raise InputError for a step in which MuJoCo's friction overshoots.
+
+        It accelerates a contact that slides at v by -b v, as far as its cone lets it, also with the
+        integrator that treats springs and normals implicitly. With b times the step of 7, the tip
+        flies off and comes back for ever.
+        """
+        stiffness, damping = self.model.geom_solref[geoms].T
+        direct = stiffness < 0
+        decay = np.where(direct, -damping, 2 / (motion.solimp * np.where(direct, 1.0, stiffness)))
+        longest = 1 / float(decay.max())
+        if motion.timestep > longest:
+            raise InputError(
+                "motion.timestep",
+                motion.timestep,
+                f"at most {longest:.2g} T1 with friction and contacts as stiff as these",
+                "shorten it, or give a lower contact_stiffness: with 0.002 T1, 1e3 is usual",
+            )
 
     @property
     def foot_x(self) -> float:
@@ -262,6 +283,6 @@ def _spec(
     option.timestep = motion.timestep
     option.integrator = _INTEGRATORS[motion.integrator]
     option.solver, option.cone = _SOLVERS[motion.solver], _CONES[motion.cone]
-    option.tolerance = 1e-10
+    option.tolerance, option.impratio = 1e-10, motion.impratio
     option.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
     return spec

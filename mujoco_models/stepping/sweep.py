@@ -4,7 +4,7 @@ import math
 import platform
 import time
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from importlib.metadata import version
 from typing import Any
 
@@ -53,6 +53,8 @@ def run_motion(
     InputError, DivergedError
         As there.
     """
+    if motion.friction is None:
+        motion = replace(motion, friction=case.friction)
     record = Record(case.foot_x / case.beam.length, motion.average)
     model = _set_out(case, motion, settings, start_of(record, motion))
     about = {"settings": asdict(settings), "source": f"mujoco {settings.beam} in motion"}
@@ -133,9 +135,6 @@ def sweep_moving(
 
 
 def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> MovingModel:
-    if case.friction != 0:
-        allowed = "0: MuJoCo's motion cannot take it into account"
-        raise InputError("friction", case.friction, allowed, "give the motion's instead")
     if case.radius == 0:
         raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
     if settings.beam == "cable" or not settings.planar:

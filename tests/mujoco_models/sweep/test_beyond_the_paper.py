@@ -26,12 +26,15 @@ VARIANTS = {
     "curved to the right": {"natural_curvature": -0.5},
     "curved to the left": {"natural_curvature": 0.5},
     "on a spring": {"clamp_stiffness": 8.0},
+    "cone": {"taper": 0.4},
 }
 
 
-def case_of(name, natural_curvature=0.0, clamp_stiffness=np.inf, stations=200):
+def case_of(name, natural_curvature=0.0, clamp_stiffness=np.inf, taper=1.0, stations=200):
     case = named_case(name)
-    beam = replace(case.beam, natural_curvature=natural_curvature)
+    beam = replace(
+        case.beam, natural_curvature=natural_curvature, tip_radius=taper * case.beam.radius
+    )
     return replace(case, beam=beam, clamp_stiffness=clamp_stiffness, sweep=Sweep(stations))
 
 
