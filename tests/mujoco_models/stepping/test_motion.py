@@ -74,10 +74,14 @@ def test_a_sweep_to_the_right_is_the_mirror_image():
     assert right.snap_off == pytest.approx(-left.snap_off)
 
 
-def test_springs_that_are_too_stiff_for_the_step_are_reported():
+def test_springs_that_are_too_stiff_for_the_step_are_reported(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
     kept = []
     with pytest.raises(DivergedError, match=r"diverged at t = .* T1.*shorten the time step"):
         simulate_motion(CASE, Motion(integrator="euler"), SMOOTH, keep=kept.append)
+    # MuJoCo's own warning would go to the terminal and to a file.
+    assert capfd.readouterr().err == ""
+    assert not [*tmp_path.iterdir()]
 
 
 @pytest.mark.parametrize(
