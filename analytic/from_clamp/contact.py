@@ -5,10 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.from_clamp.general import Clamped
+from analytic.from_clamp.varying import Marched
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED
 from analytic.problem.readings import Readings
-from analytic.problem.support import is_plain, require_uniform
+from analytic.problem.support import is_plain
 from analytic.solver.elastica import frame, span_of_moment
 from analytic.solver.general.states import Vibrissa
 
@@ -26,13 +27,13 @@ class Contact(NamedTuple):
     xi: Floats
     eta: Floats
 
-    def surface(self, radius: float) -> tuple[Floats, Floats]:
+    def surface(self, radius: Floats | float) -> tuple[Floats, Floats]:
         """The contact on the body's surface.
 
         Parameters
         ----------
-        radius : float
-            Of the vibrissa [L].
+        radius : float or array of one shape with the contacts
+            Of the vibrissa there [L].
 
         Returns
         -------
@@ -100,20 +101,14 @@ class Held(NamedTuple):
         -------
         Held
             Dimensionless.
-
-        Raises
-        ------
-        InputError
-            If the vibrissa varies along its length.
         """
         foot_x = readings.values("foot_x")
         rightward = foot_x[-1] > foot_x[0]
         beam = readings.beam.mirrored() if rightward else readings.beam
         plain = is_plain(beam, *readings.support)
-        require_uniform("the contact from the clamp", beam)
         return cls(Vibrissa.of(beam, *readings.support), plain, -1.0 if rightward else 1.0)
 
-    def clamped(self, sensed: Floats) -> Clamped:
+    def clamped(self, sensed: Floats) -> Clamped | Marched:
         """The clamp's end of the vibrissa.
 
         Parameters
@@ -123,10 +118,28 @@ class Held(NamedTuple):
 
         Returns
         -------
-        Clamped
-            In a sweep to the left, or the mirror image of one to the right.
+        Clamped or Marched
+            In a sweep to the left, or the mirror image of one to the right; the second if the
+            vibrissa varies along its length.
         """
-        return Clamped.of(self.way * sensed[1], sensed[2], self.way * sensed[3], self.vibrissa)
+        vibrissa, way = self.vibrissa, self.way
+        clamped = Clamped.of(way * sensed[1], sensed[2], way * sensed[3], vibrissa)
+        return clamped if vibrissa.form is None else Marched(clamped, vibrissa.form)
+
+    def surface(self, contact: Contact) -> tuple[Floats, Floats]:
+        """Contacts on the body's surface.
+
+        Parameters
+        ----------
+        contact : Contact
+            On the centreline.
+
+        Returns
+        -------
+        x, y : array, shape of the contacts
+            Coordinates [L].
+        """
+        return contact.surface(self.vibrissa.radius_at(contact.arc_length))
 
     def contact(self, sensed: Floats) -> Contact:
         """Contacts of stations; the paper's vibrissa is bent to its own side at each.
@@ -168,8 +181,8 @@ class Held(NamedTuple):
         if self.plain:
             _, force_x, force_y, moment = sensed
             return np.asarray((2 * force_y - moment**2) / (2 * np.hypot(force_x, force_y)))
-        lean = np.arctan(self.vibrissa.friction)
-        return np.asarray(self.clamped(sensed).sine_at_contact() + np.sin(lean))
+        parallel = self.vibrissa.lean - np.arctan(self.vibrissa.friction)
+        return np.asarray(self.clamped(sensed).sine_at_contact() - np.sin(parallel))
 
 
 def located(readings: Readings) -> Contact:
@@ -184,11 +197,6 @@ def located(readings: Readings) -> Contact:
     -------
     Contact
         Each of shape (stations,); NaN without a force, and where no such vibrissa has the readings.
-
-    Raises
-    ------
-    InputError
-        If the vibrissa varies along its length.
     """
     sensed = dimensionless(readings)
     felt = np.hypot(sensed[1], sensed[2]) > UNLOADED

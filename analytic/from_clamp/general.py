@@ -22,7 +22,8 @@ from analytic.solver.general.states import Vibrissa
 # same all around and does not say where the contact is. In Phase B it is never so (p^2 is 1/2
 # without friction and at least 0.15 with a coefficient of 1 of either sign), and in Phase A the
 # contact is the tip.
-_FLAT = 0.01
+FLAT = 0.01
+"""Of p^2, below which the moment does not say where the contact is."""
 
 
 class Reached(NamedTuple):
@@ -160,7 +161,7 @@ class Clamped(NamedTuple):
         if self.vibrissa.natural_curvature == 0 and self.vibrissa.radius == 0:
             return np.zeros(np.shape(square), dtype=bool)  # the moment is nil at one place alone
         tip = self.march(np.ones_like(self.force)).p
-        return np.asarray((np.abs(square) < _FLAT) & (tip**2 < _FLAT))
+        return np.asarray((np.abs(square) < FLAT) & (tip**2 < FLAT))
 
     def _length_between(
         self, p0: Floats, g0: Floats, v0: Floats, p1: Floats, g1: Floats, v1: Floats

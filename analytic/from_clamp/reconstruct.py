@@ -76,9 +76,9 @@ def reconstruct(
     Raises
     ------
     InputError
-        If `noise` is no such mapping, there is no such method, the vibrissa varies along its
-        length, or a method other than ``"elastica"`` is to find the contact of one that is curved
-        at rest, whose clamp turns, or that rubs.
+        If `noise` is no such mapping, there is no such method, or a method other than
+        ``"elastica"`` is to find the contact of a vibrissa that varies along its length, is curved
+        at rest, rubs, or whose clamp turns.
     """
     require("readings", readings, Readings, "as Readings(table, beam)")
     if method == "decision":
@@ -212,7 +212,7 @@ def reconstruct_by_decision(readings: Readings, tolerance: float = 1e-6) -> pd.D
 
 def _table(readings: Readings, contact: Contact, loaded: Booleans, phase: Words) -> pd.DataFrame:
     beam = readings.beam
-    x, y = contact.surface(beam.radius / beam.length)
+    x, y = Held.of(readings).surface(contact)
     measured = np.isfinite(dimensionless(readings)).all(axis=0)
     too_long = contact.arc_length > LONGEST
     explained = measured & (contact.arc_length >= 0) & ~too_long
@@ -255,9 +255,7 @@ def _uncertainty(
     def covering(some: Floats) -> Floats:
         random = generator.standard_normal((4, some.shape[1], _SAMPLES))
         noisy = some[:, :, None] + spread[:, None, None] * random
-        moved, here = (
-            contact(x).surface(beam.radius / beam.length) for x in (noisy, some[:, :, None])
-        )
+        moved, here = (held.surface(contact(x)) for x in (noisy, some[:, :, None]))
         miss = np.hypot(*(m - h for m, h in zip(moved, here, strict=True)))
         return np.asarray(
             np.quantile(np.nan_to_num(miss, nan=np.inf), _COVERAGE, axis=1, method="higher")

@@ -6,12 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.from_clamp.contact import Held, dimensionless
+from analytic.from_clamp.general import Clamped
 from analytic.from_clamp.noise import checked_noise, largest, reading_noise
 from analytic.from_clamp.phases import judge_phases
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
+from analytic.problem.support import require_uniform
 
 _FEWEST = 5  # stations of Phase B: fewer do not show how much they scatter
 _ROUNDS = 4  # of phases by the coefficient and the coefficient by the phases
@@ -80,6 +82,7 @@ def estimate_friction(
         varies along its length.
     """
     require("readings", readings, Readings, "as Readings(table, beam)")
+    require_uniform("the friction from the clamp", readings.beam)
     spread = _spread(readings, noise)
     coefficient, found = 0.0, FrictionFound(0.0, np.inf, 0)
     for number in range(_ROUNDS):
@@ -141,7 +144,7 @@ def _beside(variance: Floats) -> Floats:
 
 def _sine(held: Held, sensed: Floats) -> Floats:
     """Sine of the friction angle, if the station is of Phase B."""
-    clamped = held.clamped(sensed)
+    clamped = Clamped.of(held.way * sensed[1], sensed[2], held.way * sensed[3], held.vibrissa)
     natural, radius = held.vibrissa.natural_curvature, held.vibrissa.radius
     force, moment = clamped.force, clamped.moment
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -4,6 +4,7 @@ import numpy as np
 
 from analytic.checks.integration import march
 from analytic.from_clamp.contact import Held, located
+from analytic.problem.along import Along
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED
 from analytic.problem.readings import Readings
@@ -16,9 +17,9 @@ _FREE = 16  # points of a free end that is an arc
 def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
     """Centrelines of the vibrissa at every station, from foot position, clamp force and moment.
 
-    Integrates kappa(s) = kappa_0 - M_Az + F_Ay (x - x0) - F_Ax y from the clamp to the contact,
-    beyond which the vibrissa is as it is at rest (paper, eqs. 4 and 14, with the natural curvature
-    kappa_0): straight, or an arc.
+    Integrates kappa(s) = kappa_0 + (-M_Az + F_Ay (x - x0) - F_Ax y)/EI from the clamp to the
+    contact, beyond which the vibrissa is as it is at rest (paper, eqs. 4 and 14, with the natural
+    curvature kappa_0 and the rigidity EI of each place): straight, or curved.
 
     Parameters
     ----------
@@ -30,15 +31,12 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
     x, y : array, shape (stations, 66)
         Coordinates [length]; shape (stations, 81) if the vibrissa is curved at rest.
 
-    Raises
-    ------
-    InputError
-        If the vibrissa varies along its length.
     """
     beam = readings.beam
     held = Held.of(readings)
     natural = held.way * held.vibrissa.natural_curvature
-    foot_x = readings.values("foot_x") / beam.length
+    long = beam.length
+    foot_x = readings.values("foot_x") / long
     force_x = readings.values("force_x") / beam.force_unit
     force_y = readings.values("force_y") / beam.force_unit
     moment = readings.values("moment_z") / beam.moment_unit
@@ -46,19 +44,32 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
     loaded = np.minimum(np.nan_to_num(loaded, nan=1.0), 1.0)
 
     def rate(state: Floats) -> Floats:
-        x, y, phi = state
+        x, y, phi, s = state
         kappa = natural - moment + force_y * x - force_x * y
-        return np.stack([np.cos(phi), np.sin(phi), kappa])
+        if beam.varies:
+            kappa = at_rest(s) + (kappa - natural) * beam.base_rigidity / beam.rigidity_at(s * long)
+        return np.stack([np.cos(phi), np.sin(phi), kappa, np.ones_like(s)])
+
+    def at_rest(s: Floats) -> Floats:
+        return beam.curvature_at(np.clip(s, 0, 1) * long) * long
+
+    def rate_at_rest(state: Floats) -> Floats:
+        _, _, phi, s = state
+        return np.stack([np.cos(phi), np.sin(phi), at_rest(s), np.ones_like(s)])
 
     clamp = np.stack(
         [
             np.zeros_like(foot_x),
             np.zeros_like(foot_x),
             np.pi / 2 - held.vibrissa.compliance * moment,
+            np.zeros_like(foot_x),
         ]
     )
     states = march(rate, clamp, loaded, _STEPS)
-    x, y, phi = states[-1]
+    if isinstance(beam.natural_curvature, Along):
+        rest_of_it = march(rate_at_rest, states[-1], 1 - loaded, _FREE)[1:]
+        return _drawn(np.concatenate([states, rest_of_it]), foot_x, long)
+    x, y, phi, s = states[-1]
     parts = np.linspace(0, 1, _FREE + 1)[1:] if natural else np.ones(1)
     rest = (1 - loaded) * parts[:, None]
     sine, cosine, _ = Unloaded(natural).at(rest)  # to the left of its start and along it
@@ -67,11 +78,16 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
             x + cosine * np.cos(phi) + sine * np.sin(phi),
             y + cosine * np.sin(phi) - sine * np.cos(phi),
             phi + natural * rest,
+            s + rest,
         ],
         axis=1,
     )
-    path = np.moveaxis(np.concatenate([states, free]), 0, -1)
-    return (path[0] + foot_x[:, None]) * beam.length, path[1] * beam.length
+    return _drawn(np.concatenate([states, free]), foot_x, long)
+
+
+def _drawn(states: Floats, foot_x: Floats, long: float) -> tuple[Floats, Floats]:
+    path = np.moveaxis(states, 0, -1)
+    return (path[0] + foot_x[:, None]) * long, path[1] * long
 
 
 def curvatures(readings: Readings, x: Floats, y: Floats) -> Floats:
@@ -89,15 +105,11 @@ def curvatures(readings: Readings, x: Floats, y: Floats) -> Floats:
     array, shape (stations, points)
         kappa [1/length], positive where the vibrissa bends to the left of its way from clamp to
         tip.
-
-    Raises
-    ------
-    InputError
-        If the vibrissa varies along its length.
     """
     beam = readings.beam
-    Held.of(readings)
     foot_x, force_x, force_y, moment = (readings.values(name)[:, None] for name in SENSED)
-    kappa = (force_y * (x - foot_x) - force_x * y - moment) / beam.base_rigidity
+    steps = np.hypot(np.diff(x, prepend=x[:, :1]), np.diff(y, prepend=y[:, :1]))
+    s = np.minimum(np.cumsum(steps, axis=1), beam.length)
+    kappa = (force_y * (x - foot_x) - force_x * y - moment) / beam.rigidity_at(s)
     kappa[:, _STEPS + 1 :] = 0.0
-    return np.asarray(kappa + beam.curvature_at(0.0))
+    return np.asarray(kappa + beam.curvature_at(s))

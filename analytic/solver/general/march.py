@@ -66,10 +66,11 @@ def march(
     force: Floats,
     length: Floats,
     *,
+    from_clamp: bool = False,
     finer: int = 1,
     trail: list[Trail] | None = None,
 ) -> Place:
-    """March along spans from the contact to the clamp.
+    """March along spans from the contact to the clamp, or back.
 
     Parameters
     ----------
@@ -81,6 +82,8 @@ def march(
         Dimensionless, not negative.
     length : array, shape (n,)
         Arc length of the contact [L].
+    from_clamp : bool
+        Whether to march from the clamp to the contact.
     finer : int
         Into how many parts each panel is divided beyond what is needed.
     trail : list, optional
@@ -89,13 +92,14 @@ def march(
     Returns
     -------
     Place
-        At the clamp; NaN where a force is negative, or too large for the panels.
+        At the other end; NaN where a force is negative, or too large for the panels.
     """
     nowhere = ~((force >= 0) & (length >= 0))
     here = Place(np.where(nowhere, np.nan, theta), m, *np.zeros((3, len(theta))))
     force = np.where(nowhere, 0.0, force)
     ends = _panels(form, force, length, finer)
-    for high, low in pairwise(ends[::-1]):
+    panels = list(pairwise(ends))
+    for low, high in panels if from_clamp else reversed(panels):
         on = np.flatnonzero(length > low)
         everywhere = on.size == len(length) or trail is not None
         if on.size == 0 and trail is None:
@@ -105,7 +109,8 @@ def march(
         if (end == high).all():
             end = np.full(1, high)
         begin = np.full_like(end, low)
-        new = _step(form, some, force if everywhere else force[on], end, begin, trail)
+        way = (begin, end) if from_clamp else (end, begin)
+        new = _step(form, some, force if everywhere else force[on], *way, trail)
         if everywhere:
             here = new
         else:
