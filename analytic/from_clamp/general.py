@@ -83,7 +83,7 @@ class Clamped(NamedTuple):
 
         Returns
         -------
-        array
+        array, shape of the readings
             -sin(arctan(mu)) in Phase B.
         """
         natural = self.vibrissa.natural_curvature
@@ -136,7 +136,7 @@ class Clamped(NamedTuple):
 
         Returns
         -------
-        array
+        array, shape of the readings
             [L]; NaN where no such vibrissa has the readings.
         """
         p0, g0 = np.sin(np.pi / 4 - self.theta / 2), np.cos(np.pi / 4 - self.theta / 2)

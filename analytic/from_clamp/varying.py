@@ -33,8 +33,8 @@ class Marched(NamedTuple):
 
         Returns
         -------
-        array
-            Of the shape of the readings; that of lean - arctan(mu) in Phase B, of a cone's lean.
+        array, shape of the readings
+            That of lean - arctan(mu) in Phase B, of a cone's lean.
         """
         return np.asarray(np.sin(self._reached(self.contact_arc_length()).theta))
 
