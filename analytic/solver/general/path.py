@@ -24,7 +24,7 @@ _BUCKLES, _NEAR = 0.75 * np.pi, 0.05  # rad; a curve close to another one: short
 _TRUST = 0.1  # by how much a mean rate may lie outside those at the ends, of the larger one
 _FLAT = 1e-5  # L; the same, of a rate that is next to nothing
 _SHORT = 1e-3  # of the curve's length: nothing hides there
-_MOST = 4000  # points
+_MOST, _A_BREAK = 1000, 4  # steps tried, and for each break of the contour: tens suffice mostly
 _HALVINGS = 20  # of a cell, to begin Newton's method from
 
 
@@ -220,7 +220,9 @@ def follow(
 def _points(curve: Curve, touch: Touch, largest: float, length: float) -> list[Point]:
     """Points of the curve between which it turns by an angle at most, from a first step on."""
     points, bend = [curve.start(touch.t, touch.excess)], np.zeros(3)
-    while len(points) < _MOST and length > _SMALLEST and not _ended(points, curve.t_range):
+    for _ in range(_MOST + _A_BREAK * len(curve.breaks)):
+        if length <= _SMALLEST or _ended(points, curve.t_range):
+            break
         here = points[-1]
         if here.swing > _BUCKLES:
             length = min(length, _NEAR)
@@ -251,11 +253,16 @@ def _hides(curve: Curve, begin: Point, end: Point) -> bool:
 
 
 def _ended(points: list[Point], reach: tuple[float, float]) -> bool:
-    """Whether the vibrissa has let go, is out of reach, or buckled after it lost its hold."""
+    """Whether the vibrissa has let go, is out of reach, or cannot be after it lost its hold.
+
+    It buckles from half a period on, and comes to its tip from inside the body where it is turned
+    by more than pi against the contour: that of a flexible tip would go on in windings.
+    """
     if len(points) == 1:
         return False
     here = points[-1]
-    return here.z[1] == 0 or here.z[0] in reach or (here.swing > np.pi and here.rate > 0)
+    impossible = here.swing > np.pi or here.z[2] > np.pi
+    return here.z[1] == 0 or here.z[0] in reach or (impossible and here.rate > 0)
 
 
 def _with_turns(curve: Curve, points: list[Point]) -> list[Point]:

@@ -302,6 +302,18 @@ def test_snap_off_is_a_fold():
     assert (rise[[0, 2]] > 1e-9).all() and (rise[[0, 2]] < 1e-6).all()
 
 
+def test_curve_ends_where_a_flexible_tip_would_wind_up():
+    """Past the snap-off the tip of a sharp cone turns on, into the body: thousands of states."""
+    beam = Beam(radius=0.003, tip_radius=0.0003, natural_curvature=-0.4)
+    case = case_of(beam, PROFILES["g1"], stations=200, friction=0.3, clamp_stiffness=8.0)
+    centreline, vibrissa = case.centreline, Vibrissa.of(beam, 8.0, 0.3)
+    touch = first_touch(centreline, case.reach, vibrissa.unloaded)
+    path = follow(centreline, vibrissa, touch, case.reach)
+    assert path.complete
+    assert len(path.z) < 100
+    assert (assert_sound(case).table["status"] == "ok").all()
+
+
 def test_mirror_units_and_file(tmp_path):
     beam = Beam(tip_radius=0.002, natural_curvature=bow(-0.4))
     case = case_of(beam, circle(1.0, lowest=(0.2, 0.4)), clamp_stiffness=4.0, friction=0.2)
