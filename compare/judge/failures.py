@@ -1,13 +1,14 @@
 """What exceeds the limits of agreement, in sentences that say where, by how much and why so."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from compare.judge.allowance import NoiseAllowance
 from compare.judge.tolerances import Limit, Tolerances
 from compare.measure.disagreement import Disagreement
 from compare.measure.measurement import Measurement
+from compare.sense.record import direction
 
 
 @dataclass(frozen=True)
@@ -180,7 +181,7 @@ def _phases(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> It
 def _events(found: Measurement, tolerances: Tolerances) -> Iterator[Failure]:
     limits, length = tolerances.limits(), found.reference.beam.length
     events = {name: (event, limits["transition"]) for name, event in found.transitions.items()}
-    events["snap_off"] = found.snap_off, limits["snap_off"]
+    events["snap_off"] = found.snap_off, _of_snap_off(found, limits)
     for name, (event, limit) in events.items():
         if event.agrees(limit * length):
             continue
@@ -203,6 +204,14 @@ def _events(found: Measurement, tolerances: Tolerances) -> Iterator[Failure]:
             allowed,
             _ratio(abs(event.difference), limit * length + event.uncertainty),
         )
+
+
+def _of_snap_off(found: Measurement, limits: Mapping[str, Limit]) -> Limit:
+    """A sweep in motion may let go later than one at rest, but no earlier."""
+    apart, limit, late = found.snap_off.difference, limits["snap_off"], limits["lateness"]
+    if apart is None or not late or direction(found.reference) * apart <= 0:
+        return limit
+    return Limit(limit + late, f"{limit:.1e} early or late ({limit.reason}); late, {late.reason}")
 
 
 def _stations(found: Measurement, limits: Tolerances) -> Iterator[Failure]:

@@ -8,11 +8,14 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from analytic import CLAMP_READINGS, PHASES, InputError, Readings
+from compare.judge.rate import Rate, free_share
 
 Kind: TypeAlias = Literal["rms", "max"]
 
 CONTACT_PHASES = PHASES[1:]
 _KINDS = ("rms", "max")
+_PEAK = 10  # times the rms, at the worst station
+_QUASI_STATIC = 1e-2  # rms; flexural rigidity 5 % off is 2.7e-2 or more in all named cases
 _CORNER = 0.2  # rad; what a smooth contour of 181 points turns by at none of them
 
 
@@ -44,7 +47,8 @@ class Tolerances:
     """Limits of agreement; the defaults are for a chain of 40 segments against the closed form.
 
     Past an object with corners, or for another source as a rig, nothing stands behind the defaults
-    but convention, and `suited_to` has the reasons say so.
+    but convention, and `suited_to` has the reasons say so. For a sweep in motion it widens them by
+    what its speed does.
 
     Plain numbers become `Limit` whose reason is that the caller asked for them.
 
@@ -60,6 +64,8 @@ class Tolerances:
         Share of stations whose phase, judged from the clamp, is the true contact's.
     transition, snap_off : float
         Of each event's foot position [L].
+    lateness : float
+        By how much more than `snap_off` the candidate may let go late, not early [L].
     untrusted : float
         Share of the candidate's stations that may have failed to settle.
     special : mapping
@@ -92,6 +98,7 @@ class Tolerances:
     )
     transition: float = Limit(1e-2, "less than half a station of the default sweep")
     snap_off: float = Limit(3e-3, "the rms limit times the foot's travel in the last phase")
+    lateness: float = Limit(0.0, "at rest nothing lets go late")
     untrusted: float = Limit(5e-3, "one station of 200 may fail to settle")
     special: Mapping[str, float] = field(default_factory=dict)
 
@@ -124,14 +131,66 @@ class Tolerances:
         Tolerances
             Limits that were asked for keep their reasons.
         """
-        if is_smooth_model(candidate):
-            return self
-        plain: dict[str, Any] = {
-            name: Limit(limit, reason)
-            for name, reason in _CONVENTIONS.items()
-            if (limit := getattr(self, name)).reason == getattr(Tolerances, name).reason
+        defaults = {
+            name
+            for name in GENERAL
+            if getattr(self, name).reason == getattr(Tolerances, name).reason
         }
-        return replace(self, **plain)
+        suited = self
+        if not is_smooth_model(candidate):
+            plain: dict[str, Any] = {
+                name: Limit(getattr(self, name), reason)
+                for name, reason in _CONVENTIONS.items()
+                if name in defaults
+            }
+            suited = replace(self, **plain)
+        rate = Rate.of(candidate)
+        if rate is None:
+            return suited
+        if "snap_off" not in defaults:  # whoever limits the snap-off limits a late one, too
+            defaults.discard("lateness")
+        moved = suited._in_motion(rate, candidate)
+        widened: dict[str, Any] = {name: moved[name] for name in moved if name in defaults}
+        return replace(suited, **widened)
+
+    def _in_motion(self, rate: Rate, candidate: Readings) -> dict[str, Limit]:
+        """These limits, and what the speed adds to each."""
+        foot_x = candidate.values("foot_x")
+        stations, travel = len(foot_x), float(np.ptp(foot_x)) / candidate.beam.length
+        adds = rate.lag + rate.inertia
+        what = (
+            f"{rate.lag:.1e} for the dampers' lag, zeta v T1/(pi L), and {rate.inertia:.1e} for "
+            "inertia, m v^2 L^2/EI"
+        )
+        rms = max(self.rms, min(self.rms + adds, _QUASI_STATIC))
+        capped = rms < self.rms + adds
+        most = ", but no more than this: a faster motion is not quasi-static" if capped else ""
+        free, bounces = free_share(candidate), 2 / stations + rate.speed / travel
+        transition = self.transition + adds
+        unclear = 4 * transition / travel
+        return {
+            "rms": Limit(rms, f"{self.rms:.1e} at rest ({_reason(self.rms)}), {what}{most}"),
+            "max": Limit(max(self.max, _PEAK * rms), "ten times the rms, as at rest"),
+            "transition": Limit(
+                transition, f"{self.transition:.1e} at rest ({_reason(self.transition)}), {what}"
+            ),
+            "lateness": Limit(
+                rate.lateness,
+                "past the fold it takes time to run away: (v T1/(2 pi L))^(4/5) for inertia and "
+                "(zeta v T1/(pi L))^(2/3) for dampers",
+            ),
+            "phase_agreement": Limit(
+                max(self.phase_agreement - free - unclear, 0.0),
+                f"{float(self.phase_agreement):.0%} at rest, less the {free:.1%} of the stations "
+                "at which it swings freely, which the clamp takes for contact, and the "
+                f"{unclear:.1%} by which the two limits of Phase B may be off to either side",
+            ),
+            "untrusted": Limit(
+                self.untrusted + bounces,
+                f"{float(self.untrusted):.1%} at rest; it bounces at the first contact and at the "
+                f"release: a station each, and those of the way in half a period each",
+            ),
+        }
 
     @property
     def conventional(self) -> bool:
@@ -224,7 +283,7 @@ _CONVENTIONS = {
 
 
 def is_smooth_model(readings: Readings) -> bool:
-    """Whether a sweep is of a beam in segments at rest past a smooth contour, as far as it says.
+    """Whether a sweep is of a beam in segments past a smooth contour, as far as it says.
 
     Parameters
     ----------
@@ -238,8 +297,6 @@ def is_smooth_model(readings: Readings) -> bool:
     """
     settings = readings.provenance.get("settings")
     if not (isinstance(settings, Mapping) and "segments" in settings):
-        return False
-    if "motion" in readings.provenance:
         return False
     contour = np.asarray(readings.provenance.get("contour", []), dtype=float)
     if contour.ndim != 2 or contour.shape[1] < 3:
@@ -267,3 +324,7 @@ def _limit(name: str, value: float) -> Limit:
     if not (math.isfinite(value) and value >= 0):
         raise InputError(f"tolerances.{name}", value, "finite, 0 or more", "correct it")
     return Limit(value)
+
+
+def _reason(limit: float) -> str:
+    return limit.reason if isinstance(limit, Limit) else ""

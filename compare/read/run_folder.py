@@ -89,6 +89,7 @@ def _tolerances(file: Path) -> Tolerances:
             str(name): Limit(float(value), str(reasons[name]))
             for name, value in found["tolerances"].items()
         }
+        limits.setdefault("lateness", Limit(0.0, "not asked"))  # of older runs
         general = {name: limits.pop(name) for name in GENERAL}
         return Tolerances(**general, special=limits)
     except (KeyError, TypeError, ValueError, AttributeError) as error:

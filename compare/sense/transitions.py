@@ -20,7 +20,8 @@ def locate_transitions(readings: Readings, judged: Classification) -> Mapping[st
     noise put on the wrong side move nothing. At its ends the criterion (26), which is zero inside,
     is extrapolated to zero from outside, and the shortfall of the contact, which is zero outside,
     from inside; the limit is half-way between the two results. First contact is where the clamp
-    moment, extrapolated from the first loaded stations, vanishes.
+    moment, extrapolated from the first loaded stations, vanishes; in motion, where the vibrissa's
+    mass loads the clamp before anything touches, it is where the source recorded it.
 
     Parameters
     ----------
@@ -44,7 +45,9 @@ def locate_transitions(readings: Readings, judged: Classification) -> Mapping[st
     if touching.size < 2:
         return found
     moment = readings.values("moment_z")
-    if touching[0] > 0:
+    if "motion" in readings.provenance:
+        found["first_contact"] = _recorded(readings, foot_x)
+    elif touching[0] > 0:
         found["first_contact"] = _zero(foot_x, moment, touching[:2], touching[0] - 1, touching[0])
     begin, end = _best_stretch(np.where(judged.phase[touching] == "tangent", 1, -1))
     inside = touching[begin:end]
@@ -84,6 +87,13 @@ def snap_off(readings: Readings, judged: Classification) -> tuple[float | None, 
         return None, 0.0
     last, free = foot_x[touching[-1]], foot_x[touching[-1] + 1]
     return float(last + free) / 2, float(abs(last - free)) / 2
+
+
+def _recorded(readings: Readings, foot_x: Floats) -> float | None:
+    """The first contact by the source's own word, if a station comes before it."""
+    place = readings.provenance.get("events", {}).get("first_contact")
+    first, last = foot_x[0], foot_x[-1]
+    return None if place is None or (first - place) * (place - last) < 0 else float(place)
 
 
 def _best_stretch(votes: Integers) -> tuple[int, int]:

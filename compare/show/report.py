@@ -40,6 +40,7 @@ _LIMITED = {
     "phase_agreement": "of the stations",
     "transition": "L",
     "snap_off": "L",
+    "lateness": "L",
     "untrusted": "of the stations",
 }
 """What a limit is a number of; all others are of a reading's largest magnitude."""

@@ -1,5 +1,6 @@
 """What is kept of a sweep in motion: a row a station, whatever the number of steps."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -7,6 +8,8 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS
+
+_HALF_PERIOD = 0.5  # T1
 
 
 @dataclass(frozen=True)
@@ -48,15 +51,19 @@ class Record:
     ----------
     rows : list of dict
         Of the stations that are complete.
-    last_touch : float or None
-        Foot position at which the last contact so far was lost; None if there is one, or was none.
+    first_touch : float or None
+        Foot position of the first contact; None if there was none.
     """
 
     def __init__(self, stations: Floats, average: float) -> None:
         self._stations = stations
         self._half = average * float(np.abs(np.diff(stations)).min()) / 2
         self.rows: list[dict[str, Any]] = []
-        self.last_touch: float | None = None
+        self.first_touch: float | None = None
+        self._lasting: float | None = None
+        self._brief: float | None = None
+        self._last = Sample(0.0, math.inf, np.zeros(3), touches=False)
+        self._begun, self._lost = 0.0, -math.inf
         self._pending: dict[str, Any] | None = None
         self._sum = np.zeros(3)
         self._losses = 0
@@ -122,8 +129,8 @@ class Record:
             Whether that completes the station; the same two steps may then belong to the next one.
         """
         if before.touches != after.touches:
-            self.last_touch = after.foot_x if before.touches else None
             self._losses += before.touches
+        self._follow(after)
         if self.complete:
             return False
         station = self._stations[len(self.rows)]
@@ -136,6 +143,36 @@ class Record:
             return False
         self._close()
         return True
+
+    @property
+    def last_touch(self) -> float | None:
+        """Foot position at which contact was lost for good; None if there is one, or was none.
+
+        What is found again within half a period is one contact with its bounces. Where that lasted
+        half a period, a shorter one after it is but the vibrissa that swings back.
+        """
+        so_far = self._last.time - self._begun
+        if self._last.touches and (self._lasting is None or so_far >= _HALF_PERIOD):
+            return None
+        return self._brief if self._lasting is None else self._lasting
+
+    def _follow(self, sample: Sample) -> None:
+        """Note where contact is found and lost."""
+        changed = sample.touches != self._last.touches
+        self._last = sample
+        if not changed:
+            return
+        if sample.touches:
+            if self.first_touch is None:
+                self.first_touch = sample.foot_x
+            if sample.time - self._lost > _HALF_PERIOD:
+                self._begun = sample.time
+            return
+        self._lost = sample.time
+        if sample.time - self._begun >= _HALF_PERIOD:
+            self._lasting = sample.foot_x
+        else:
+            self._brief = sample.foot_x
 
     def _close(self) -> None:
         row = self._pending or {}

@@ -205,7 +205,7 @@ def _readings(
     for name in ("contact_arc_length", "contact_x", "contact_y", "penetration"):
         table[name] *= beam.length
     table.insert(0, "foot_x", case.foot_x[: len(table)])
-    snap_off = record.last_touch
+    places = {"first_contact": record.first_touch, "snap_off": record.last_touch}
     provenance = {
         **case.provenance(),
         "engine": f"MuJoCo {mujoco.__version__}, vibrissa-testbed {version('vibrissa-testbed')}",
@@ -214,7 +214,7 @@ def _readings(
         "motion": asdict(motion),
         "obstacle": model.label,
         "seconds": round(time.process_time() - begun, 3),
-        "events": {"snap_off": None if snap_off is None else snap_off * beam.length},
+        "events": {n: None if x is None else x * beam.length for n, x in places.items()},
     }
     extra = [name for name in table if name not in COLUMNS]
     return Readings(table[[*COLUMNS, *extra]], beam, about["source"], provenance)

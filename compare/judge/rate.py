@@ -1,0 +1,101 @@
+"""How far from rest a sweep in motion may be, by its speed: what its limits grow by."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, TypeGuard
+
+import numpy as np
+
+from analytic import Readings
+
+# (beta L)^4/(2 pi)^2 of a cantilever's first vibration: its mass per length [EI T1^2/L^4].
+_MASS = 1.8751040687119611**4 / (2 * math.pi) ** 2
+
+
+@dataclass(frozen=True)
+class Rate:
+    """What the speed of the foot does to a sweep; L = T1 = 1, T1 the vibrissa's first period.
+
+    Parameters
+    ----------
+    speed : float
+        Of the foot [L/T1].
+    damping_ratio : float
+        Of the first vibration, by dampers in proportion to the stiffness.
+    """
+
+    speed: float
+    damping_ratio: float
+
+    @classmethod
+    def of(cls, readings: Readings) -> "Rate | None":
+        """The rate of a sweep, by its provenance.
+
+        Parameters
+        ----------
+        readings : Readings
+            A sweep.
+
+        Returns
+        -------
+        Rate or None
+            None if the sweep does not say that it moved.
+        """
+        motion = readings.provenance.get("motion")
+        if not isinstance(motion, Mapping):
+            return None
+        measured = readings.provenance.get("measured")
+        of_the_model: Mapping[str, Any] = measured if isinstance(measured, Mapping) else {}
+        speed = motion.get("speed")
+        damping = of_the_model.get("damping_ratio", motion.get("damping_ratio"))
+        return cls(speed, damping) if _is_size(speed) and _is_size(damping) else None
+
+    @property
+    def lag(self) -> float:
+        """Way of the foot by which dampers delay the moments [L].
+
+        A joint's moment is k (theta + tau theta'), with tau = 2 zeta/omega_1 = zeta T1/pi.
+        """
+        return self.damping_ratio * self.speed / math.pi
+
+    @property
+    def inertia(self) -> float:
+        """What the vibrissa's mass at that speed makes of a moment, m v^2 L^2 [EI/L]."""
+        return _MASS * self.speed**2
+
+    @property
+    def lateness(self) -> float:
+        """How late it lets go [L].
+
+        Near the fold M q'' + C q' = a d + b q^2, with d = v t the way past it: until q runs away,
+        d grows to (M v^2)^(2/5) where inertia rules and to (C v)^(2/3) where dampers do, a and b of
+        the order of the stiffness K, M = K/omega_1^2, C = K tau. Both at most add.
+        """
+        inertial: float = (self.speed / (2 * math.pi)) ** 0.8
+        damped: float = self.lag ** (2 / 3)
+        return inertial + damped
+
+
+def free_share(readings: Readings) -> float:
+    """Share of the trusted stations at which nothing touches, as the source recorded.
+
+    Parameters
+    ----------
+    readings : Readings
+        A sweep.
+
+    Returns
+    -------
+    float
+        0 if it recorded no phases.
+    """
+    if "phase" not in readings.table or not readings.trusted.any():
+        return 0.0
+    return float(np.mean(readings.table["phase"][readings.trusted] == "free"))
+
+
+def _is_size(value: object) -> TypeGuard[float]:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return math.isfinite(value) and value >= 0
