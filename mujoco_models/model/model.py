@@ -264,6 +264,16 @@ class BeamModel:
         curvature = self.contact_curvature(contacts.slope)
         return self._sliding.slide(contacts, curvature, self.joint_positions())
 
+    def hold_beads(self) -> bool:
+        """Let all beads be where they were at first.
+
+        Returns
+        -------
+        bool
+            Whether any was elsewhere.
+        """
+        return self._sliding.hold()
+
     def slides(self, contacts: Contacts) -> Booleans:
         """Which contacts are of a link whose beads slide.
 

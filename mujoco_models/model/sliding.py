@@ -16,6 +16,7 @@ from mujoco_models.obstacles.protocol import Obstacle
 
 _NEXT_TO_A_JOINT = 1e-3  # of its link; a bead stays on it
 _SAME_PLACE = 1e-9  # L
+_SHARP = 2 * OF_CURVATURE  # rad; beads a little farther apart than they should be do no harm
 _ITS_OWN = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
 
 
@@ -68,7 +69,7 @@ class SlidingBeads:
         deepest = int(np.argmin(contacts.distance))
         link, kappa = int(contacts.link[deepest]), float(curvature[deepest])
         spacing = self._spacing[link]
-        if contacts.touch[deepest] == len(self._home) - 1 or kappa * spacing < 1.01 * OF_CURVATURE:
+        if contacts.touch[deepest] == len(self._home) - 1 or kappa * spacing < _SHARP:
             return False
         if -contacts.distance[contacts.loaded].sum() > kappa * spacing**2 / 2:
             return False  # so soft that several beads share the load
@@ -79,6 +80,15 @@ class SlidingBeads:
         touched = self._obstacle.support(float(slope_angle(across[None])[0]))
         along = float((touched - joints[link]) @ heading)
         return self._shift(link, self._layout.joints[link] + along)
+
+    def hold(self) -> bool:
+        """Put all beads where they were at first; whether any was elsewhere."""
+        moved, self._guided = self._link is not None, False
+        if self._link is not None:
+            back = np.flatnonzero(self._layout.links == self._link)
+            self._put(back, self._home[back])
+            self._link = None
+        return moved
 
     def slides(self, contacts: Contacts) -> Booleans:
         """Which contacts are of a link whose beads slide.

@@ -18,7 +18,13 @@ from mujoco_models.sweep.state import State, turned
 
 
 def relax(
-    model: BeamModel, foot_x: float, start: State, tolerance: float, numerics: Numerics
+    model: BeamModel,
+    foot_x: float,
+    start: State,
+    tolerance: float,
+    numerics: Numerics,
+    *,
+    held: bool = False,
 ) -> State:
     """Bring the beam to rest with its foot at `foot_x`, from `start`.
 
@@ -34,6 +40,8 @@ def relax(
         Largest moment out of balance at rest [EI/L].
     numerics : Numerics
         Constants of the way there.
+    held : bool
+        Whether beads stay where they are, also where they should slide.
 
     Returns
     -------
@@ -49,7 +57,7 @@ def relax(
     for _ in range(numerics.iterations):
         residual = float(np.abs(model.imbalance(foot_x, state.angles)).max())
         contacts = model.contacts()
-        if model.slide_beads(contacts):
+        if not held and model.slide_beads(contacts):
             residual = float(np.abs(model.imbalance(foot_x, state.angles)).max())
             contacts = model.contacts()
         state = replace(state, imbalance=residual)

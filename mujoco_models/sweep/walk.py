@@ -171,7 +171,12 @@ class Walk:
         return state.slope is None or abs(state.slope - last) > self._numerics.same_facet
 
     def _relax(self, foot_x: float, start: State) -> State:
-        return relax(self.model, foot_x, start, self._tolerance, self._numerics)
+        model, numerics = self.model, self._numerics
+        state = relax(model, foot_x, start, self._tolerance, numerics)
+        if state.settled or not model.hold_beads():
+            return state
+        # A bead that stays leans a little; one that slides past a joint may not come to rest.
+        return relax(model, foot_x, start, self._tolerance, numerics, held=True)
 
     def _thoroughly(self, foot_x: float, start: State) -> State:
         """At rest, if Newton's method gets there, or a descent, or Newton's with differences."""

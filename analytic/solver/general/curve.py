@@ -37,6 +37,12 @@ class Point(NamedTuple):
     """Foot position [L] and its derivative by the curve's length."""
     swing: float = 0.0
     """Amplitude of the span [rad]; see `States`."""
+    sense: int = 1
+    """Whether `direction` is that of the cross product of the two conditions' derivatives, or -1.
+
+    It stays along a smooth curve. Next to buckling two curves come close to each other, and the
+    other one has the other sense.
+    """
 
 
 class Curve(NamedTuple):
@@ -91,6 +97,8 @@ class Curve(NamedTuple):
         if new is None:
             return ()
         new = _along(new, here.direction / scale**2)
+        if new.sense != here.sense:
+            return ()
         places = self._places(here.z, new.z)
         return self._stopped(here, min(places), new.z) if places else (new,)
 
@@ -106,6 +114,8 @@ class Curve(NamedTuple):
         if found is None or self._size(found.z - guess, here.z) > self._size(way, here.z):
             return ()
         first = _along(found, way / self._scale(here.z) ** 2)
+        if first.sense != here.sense:
+            return ()
         if math.isnan(after):
             return (first,)
         z = first.z.copy()
@@ -253,4 +263,4 @@ def _along(point: Point, way: Floats) -> Point:
 
 
 def _reversed(point: Point) -> Point:
-    return point._replace(direction=-point.direction, rate=-point.rate)
+    return point._replace(direction=-point.direction, rate=-point.rate, sense=-point.sense)
