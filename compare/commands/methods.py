@@ -58,7 +58,7 @@ def methods(
         for which, truth, believed, name in _truths(case, asked, folder):
             found = method_errors(believed, names, levels)
             unlike = believed.beam != truth.beam or believed.provenance != truth.provenance
-            if unlike and not truth.beam.varies:  # the closed form needs one flexural rigidity
+            if unlike:
                 knowing = method_errors(truth, ["elastica"], levels)
                 knowing = knowing.assign(method=INFORMED, needs=knowing["needs"] + KNOWN)
                 found = pd.concat([found, knowing], ignore_index=True)
