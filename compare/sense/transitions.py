@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from analytic import Readings
-from analytic.problem.arrays import Floats, Integers
+from analytic.problem.arrays import Booleans, Floats, Integers
 from compare.sense.phases import Classification
 
 TRANSITIONS = ("first_contact", "phase_b_start", "phase_b_end")
@@ -20,8 +20,9 @@ def locate_transitions(readings: Readings, judged: Classification) -> Mapping[st
     noise put on the wrong side move nothing. At its ends the criterion (26), which is zero inside,
     is extrapolated to zero from outside, and the shortfall of the contact, which is zero outside,
     from inside; the limit is half-way between the two results. First contact is where the clamp
-    moment, extrapolated from the first loaded stations, vanishes; in motion, where the vibrissa's
-    mass loads the clamp before anything touches, it is where the source recorded it.
+    moment, extrapolated from the first loaded stations, vanishes. In motion, where the vibrissa's
+    mass loads the clamp without contact, it is where the source recorded it, and stations before it
+    and behind the snap-off show no phase.
 
     Parameters
     ----------
@@ -40,12 +41,14 @@ def locate_transitions(readings: Readings, judged: Classification) -> Mapping[st
     snap_off : the end of the last contact.
     """
     foot_x = readings.values("foot_x")
-    touching = np.flatnonzero(np.isin(judged.phase, ("tip", "tangent")))
+    moving = "motion" in readings.provenance
+    loaded = np.isin(judged.phase, ("tip", "tangent"))
+    touching = np.flatnonzero(loaded & _in_contact(readings) if moving else loaded)
     found: dict[str, float | None] = dict.fromkeys(TRANSITIONS)
     if touching.size < 2:
         return found
     moment = readings.values("moment_z")
-    if "motion" in readings.provenance:
+    if moving:
         found["first_contact"] = _recorded(readings, foot_x)
     elif touching[0] > 0:
         found["first_contact"] = _zero(foot_x, moment, touching[:2], touching[0] - 1, touching[0])
@@ -87,6 +90,16 @@ def snap_off(readings: Readings, judged: Classification) -> tuple[float | None, 
         return None, 0.0
     last, free = foot_x[touching[-1]], foot_x[touching[-1] + 1]
     return float(last + free) / 2, float(abs(last - free)) / 2
+
+
+def _in_contact(readings: Readings) -> Booleans:
+    """Stations from the first contact to the snap-off, as far as the source recorded them."""
+    foot_x = readings.values("foot_x")
+    way = np.sign(foot_x[-1] - foot_x[0])
+    first = readings.provenance.get("events", {}).get("first_contact")
+    begin = way * foot_x[0] if first is None else way * first
+    end = way * foot_x[-1] if readings.snap_off is None else way * readings.snap_off
+    return np.asarray((begin <= way * foot_x) & (way * foot_x <= end))
 
 
 def _recorded(readings: Readings, foot_x: Floats) -> float | None:

@@ -72,6 +72,18 @@ def test_a_users_model_is_judged_by_its_own_damping():
     assert own.rms == Tolerances().suited_to(moving(damping_ratio=0.5)).rms
 
 
+def test_a_vibrissa_that_swings_free_shows_no_phase():
+    """Its inertia loads the clamp like a contact: here as the last one did, in Phase B."""
+    sweep = moving(damping_ratio=0.1)
+    table = sweep.table.copy()
+    free = table["foot_x"] < EXACT.snap_off
+    one = table[table["phase"] == "tangent"].iloc[40]
+    table.loc[free, list(CLAMP_READINGS)] = one[list(CLAMP_READINGS)].to_numpy(dtype=float)
+    found = compare(EXACT, replace(sweep, table=table))
+    assert found.transitions["phase_b_end"].difference == pytest.approx(0.0, abs=1e-9)
+    assert found.agrees, found.failures
+
+
 @pytest.mark.parametrize("motion", ["fast", {}, {"speed": "fast", "damping_ratio": None}])
 def test_a_motion_that_says_nothing_widens_nothing(motion):
     assert Tolerances().suited_to(moving(motion=motion)).lateness == 0
