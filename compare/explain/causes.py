@@ -1,6 +1,7 @@
 """Faults of the vibrissa, the stage and the sensor that leave a signature in the readings."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,9 +10,17 @@ import pandas as pd
 from analytic import CLAMP_READINGS
 from analytic.problem.arrays import Floats
 from compare.align.stations import interpolant
-from compare.explain.signatures import contour_signatures
+from compare.explain.signatures import (
+    Fault,
+    Resolved,
+    compliance,
+    natural_curvature,
+    stiffness,
+    tip_radius,
+)
 from compare.measure.measurement import Measurement
 
+_STEP = 1e-3  # of a length, and so on: the size that a signature is taken from
 _FEWEST = 4  # stations of a stretch whose slope is worth something
 
 
@@ -21,18 +30,22 @@ class Cause:
 
     Attributes
     ----------
-    text : str
-        The fault, with ``{size}`` for how large it is.
+    text : callable
+        The fault in words, by its size.
     signature : array, shape (3, stations)
-        What a fault of size 1 adds to the readings, over their largest magnitudes.
+        What a small fault adds to the readings for its size, over their largest magnitudes.
     lowest, highest : float
         Sizes that such a fault can have.
+    change : callable, optional
+        What a fault of a size adds, of the signature's shape, where that is more than linear and
+        can be solved; None if that size cannot.
     """
 
-    text: str
+    text: Callable[[float], str]
     signature: Floats
     lowest: float
     highest: float
+    change: Callable[[float], Floats | None] | None = None
 
 
 def causes(found: Measurement, table: pd.DataFrame, true: Floats, scale: Floats) -> Iterator[Cause]:
@@ -56,11 +69,11 @@ def causes(found: Measurement, table: pd.DataFrame, true: Floats, scale: Floats)
     """
     length = found.reference.beam.length
     # A radius that is a third off makes the rigidity 0.2 to 3.2 times what it should be.
-    yield Cause("flexural rigidity {size:+.2%} off: all readings scale alike", true, -0.8, 2.2)
+    yield Cause("flexural rigidity {:+.2%} off: all readings scale alike".format, true, -0.8, 2.2)
     # Farther off the readings are no longer linear in it; `offset` is there for that.
     yield Cause(
-        "foot_x {size:+.2e} off, the same at all stations: an offset (or a lag), see "
-        "`--offset auto`",
+        "foot_x {:+.2e} off, the same at all stations: an offset (or a lag), see "
+        "`--offset auto`".format,
         -slopes(table, true),
         -0.1 * length,
         0.1 * length,
@@ -68,50 +81,104 @@ def causes(found: Measurement, table: pd.DataFrame, true: Floats, scale: Floats)
     progress = np.linspace(0, 1, true.shape[1])
     for i, name in enumerate(CLAMP_READINGS):
         yield Cause(
-            f"gain of {name} {{size:+.2%}} off, the other readings are right",
+            f"gain of {name} {{:+.2%}} off, the other readings are right".format,
             _only(i, true[i], true),
             -0.8,
             2.0,
         )
         yield Cause(
-            f"zero of {name} off by {{size:+.2e}} of its largest magnitude at all stations",
+            f"zero of {name} off by {{:+.2e}} of its largest magnitude at all stations".format,
             _only(i, np.ones_like(progress), true),
             -2.0,
             2.0,
         )
         yield Cause(
-            f"drift of {name} by {{size:+.2e}} of its largest magnitude over the sweep",
+            f"drift of {name} by {{:+.2e}} of its largest magnitude over the sweep".format,
             _only(i, progress, true),
             -2.0,
             2.0,
         )
-    changes = contour_signatures(found.reference, table["foot_x"].to_numpy())
-    if changes is None:
-        return
-    scaled = {name: change / scale[:, None] for name, change in changes.items()}
-    # The signatures are linear; so far they still fit.
-    yield Cause("length of the vibrissa {size:+.2%} off", scaled["length"], -0.2, 0.2)
-    yield Cause(
-        f"radius of the vibrissa {{size:+.2e}} off (it is {found.reference.beam.radius:.2e}),"
-        " or the object's surface as much too low",
-        scaled["radius"] / length,
-        -0.1 * length,
-        0.1 * length,
-    )
-    yield Cause(
-        "discretisation of first order: the vibrissa is rigid over its first {size:.2%}, as with a "
-        "whole rigid segment at the clamp",
-        scaled["clamp"],
-        0.0,
-        0.2,
-    )
-    force = np.hypot(*(table[f"{name}_reference"].to_numpy() for name in CLAMP_READINGS[:2]))
-    yield Cause(
-        "softness: the contact gives way by up to {size:.1e} L",
-        -scaled["radius"] * force / force.max(),
-        0.0,
-        0.1,
-    )
+    exact = Resolved.of(found.reference, table["foot_x"].to_numpy())
+    if exact is not None:
+        yield from _solved(exact, table, scale)
+
+
+def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cause]:
+    """The faults whose signatures the closed form gives, where it can be solved with them."""
+    case, beam, length = exact.case, exact.case.beam, exact.case.beam.length
+    bent, cone = natural_curvature(beam), tip_radius(beam) / (beam.radius or math.nan)
+    said: dict[Fault, tuple[Callable[[float], str], float, float]] = {
+        # What is off by more would hardly be the same experiment.
+        "length": ("length of the vibrissa {:+.2%} off".format, -0.2, 0.2),
+        "radius": (
+            lambda size: (
+                f"radius of the vibrissa {size * length:+.2e} off (it is {beam.radius:.2e}),"
+                " or the object's surface as much too low"
+            ),
+            -0.1,
+            0.1,
+        ),
+        "clamp": (
+            "discretisation of first order: the vibrissa is rigid over its first {:.2%}, as with a "
+            "whole rigid segment at the clamp".format,
+            0.0,
+            0.2,
+        ),
+        "compliance": (
+            lambda size: (
+                f"clamp stiffness about {stiffness(case, size):.3g}, not"
+                f" {case.clamp_stiffness:.3g}: the clamp gives way otherwise than stated"
+            ),
+            -compliance(case),
+            2.0,
+        ),
+        "friction": (
+            lambda size: (
+                f"friction about {case.friction + size:.3g}, not {case.friction:.3g}: the object"
+                " rubs otherwise than stated"
+            ),
+            -case.friction,
+            1.0 - case.friction,
+        ),
+        "natural_curvature": (
+            lambda size: (
+                f"natural curvature about {bent + size / length:+.3g}, not {bent:.3g}: the vibrissa"
+                " at rest is bent otherwise than stated"
+            ),
+            -1.5 - bent * length,
+            1.5 - bent * length,
+        ),
+        "taper": (
+            lambda size: (
+                f"tip radius about {(cone - size) * beam.radius:.2e}, not"
+                f" {cone * beam.radius:.2e}: the vibrissa is a cone, or another one"
+            ),
+            cone - 1.0,
+            cone - 0.05,
+        ),
+    }
+    for fault, (text, lowest, highest) in said.items():
+        if not lowest < highest:
+            continue  # what varies along the vibrissa has no such number
+
+        def change(size: float, fault: Fault = fault) -> Floats | None:
+            added = exact.change(fault, size)
+            return None if added is None else added / scale[:, None]
+
+        small = change(_STEP)
+        if small is None:
+            continue
+        yield Cause(text, small / _STEP, lowest, highest, change)
+        if fault == "radius":
+            force = np.hypot(
+                *(table[f"{name}_reference"].to_numpy() for name in CLAMP_READINGS[:2])
+            )
+            yield Cause(
+                "softness: the contact gives way by up to {:.1e} L".format,
+                -small / _STEP * force / force.max(),
+                0.0,
+                0.1,
+            )
 
 
 def slopes(table: pd.DataFrame, true: Floats) -> Floats:

@@ -5,8 +5,8 @@ import pandas as pd
 
 from analytic import CLAMP_READINGS
 from analytic.from_clamp.noise import scatter
-from analytic.problem.arrays import Floats
-from compare.explain.causes import causes
+from analytic.problem.arrays import Booleans, Floats
+from compare.explain.causes import Cause, causes
 from compare.explain.fit import Explanation, fitted
 from compare.explain.wiring import misread
 from compare.judge.allowance import NoiseAllowance
@@ -17,6 +17,8 @@ from compare.measure.measurement import Measurement
 _CONVINCING = 0.9  # share of the disagreement, its scatter apart, that one cause must explain
 _DISTINCT = 2.0  # the next cause must leave so many times the square that the best one leaves
 _REST = 0.1  # share of the disagreement, rms, that a named cause may leave without saying so
+_ALIKE = 0.3  # share that a signature must explain for the fault to be solved at its size
+_SECANTS, _SETTLED = 5, 1e-3  # sweeps at most for that, and the last change of its size
 _BETTER = 6.0  # the same, for three constants to be preferred to one cause of one size
 _SCATTERED = 0.5  # share of the disagreement's square that jumps from station to station
 _UNSURE = 1.3  # times the scatter's square, to be on the safe side of its estimate
@@ -143,12 +145,51 @@ def _fitting(
     true, seen = true[:, known], seen[:, known]
     error = seen - true
     tried = list(misread(true, seen, scale, found.reference.beam.length))
-    for fault in faults:
-        size, left, _ = fitted(error, fault.signature[:, known])
-        if fault.lowest <= size <= fault.highest:
-            tried.append(Explanation(fault.text.format(size=size), left))
     tried.append(_constant(error))
-    return _best(tried, float(np.sum(error**2)), float(np.sum(jumps**2) * known.sum()))
+    all_, noise = float(np.sum(error**2)), float(np.sum(jumps**2) * known.sum())
+    fits = [_linear(fault, error, known) for fault in faults]
+    best = _best([*tried, *filter(None, fits)], all_, noise)
+    if best is None or _rest(best, all_, noise) > _REST:
+        fits = [_exact(*one, error, known) for one in zip(faults, fits, strict=True)]
+        best = _best([*tried, *filter(None, fits)], all_, noise)
+    if best is None:
+        return None
+    rest = _rest(best, all_, noise)
+    return best.text + (f"; {rest:.0%} of the disagreement is left" if rest > _REST else "")
+
+
+def _linear(fault: Cause, error: Floats, known: Booleans) -> Explanation | None:
+    """A fault by its signature, over the stations that are known."""
+    size, left, _ = fitted(error, fault.signature[:, known])
+    return Explanation(fault.text(size), left) if fault.lowest <= size <= fault.highest else None
+
+
+def _exact(
+    fault: Cause, best: Explanation | None, error: Floats, known: Booleans
+) -> Explanation | None:
+    """A fault solved at its size, which secants find, if that explains more than its signature.
+
+    Where a sweep with the fault is free, it explains nothing.
+    """
+    size, _, share = fitted(error, fault.signature[:, known])
+    if fault.change is None or share < _ALIKE:
+        return best
+    last, before = 0.0, np.zeros_like(error)
+    for _ in range(_SECANTS):
+        size = float(np.clip(size, fault.lowest, fault.highest))
+        added = fault.change(size) if size != last else None
+        if added is None:
+            break
+        added = np.where(np.isfinite(added[:, known]).all(axis=0), added[:, known], 0.0)
+        left = float(np.sum((error - added) ** 2))
+        if best is None or left < best.left:
+            best = Explanation(fault.text(size), left)
+        step = fitted(error - added, (added - before) / (size - last)).size
+        last, before = size, added
+        size += step
+        if abs(step) < _SETTLED * abs(size):
+            break
+    return best
 
 
 def _constant(error: Floats) -> Explanation:
@@ -162,7 +203,7 @@ def _constant(error: Floats) -> Explanation:
     )
 
 
-def _best(tried: list[Explanation], all_: float, noise: float) -> str | None:
+def _best(tried: list[Explanation], all_: float, noise: float) -> Explanation | None:
     """The explanation that leaves least, if it is convincing and the next one leaves clearly more.
 
     One of several sizes has to leave less by far than those of one, and then is compared with its
@@ -178,8 +219,12 @@ def _best(tried: list[Explanation], all_: float, noise: float) -> str | None:
         return None
     if next_ - _UNSURE * noise <= _DISTINCT * _beyond(best, noise):
         return None
-    rest = float(np.sqrt(_beyond(best, noise) / all_))
-    return best.text + (f"; {rest:.0%} of the disagreement is left" if rest > _REST else "")
+    return best
+
+
+def _rest(best: Explanation, all_: float, noise: float) -> float:
+    """Share of the disagreement that the best explanation leaves, rms."""
+    return float(np.sqrt(_beyond(best, noise) / all_))
 
 
 def _beyond(one: Explanation, noise: float) -> float:

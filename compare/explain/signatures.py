@@ -1,80 +1,234 @@
 """What faults that need the contour do to the readings, from the closed form."""
 
-from dataclasses import replace
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from analytic import CLAMP_READINGS, Case, InputError, Readings, Sweep, solve_sweep, through_points
+from analytic import (
+    CLAMP_READINGS,
+    Beam,
+    Case,
+    InputError,
+    Readings,
+    Sweep,
+    solve_sweep,
+    through_points,
+)
 from analytic.problem.arrays import Floats
 
-_STEP = 1e-3  # L; the change that a signature is taken from
 _STATIONS = 1000  # of the sweeps between which it is interpolated
 _BEYOND = 0.02  # L; what a slightly longer vibrissa would reach, beyond the contour that is known
+_SIXTH, _FEWEST = 6, 20  # how contours are thinned, and how many points must remain
 _SAME = 1e-3  # of the largest magnitude; the contour must reproduce the reference so well (rms)
 
+Fault: TypeAlias = Literal[
+    "length", "radius", "clamp", "compliance", "friction", "natural_curvature", "taper"
+]
 
-def contour_signatures(reference: Readings, foot_x: Floats) -> dict[str, Floats] | None:
-    """Change of the clamp readings at `foot_x` with some quantities, by name.
 
-    ``length`` by the vibrissa's, ``radius`` by its radius over its length, ``clamp`` by the share
-    of the length that is rigid at the clamp. Shape (3, stations) each, NaN where one of the sweeps
-    is free or in another phase.
+@dataclass(frozen=True)
+class Resolved:
+    """The reference's sweep in closed form, to be solved again with one thing changed.
+
+    Attributes
+    ----------
+    case : Case
+        The reference's, with a smooth contour through the points that it records.
+    points : array, shape (points, 2)
+        Those, and what lies a little beyond [length].
+    foot_x : array, shape (stations,)
+        Where the readings are wanted [length].
+    seen : array, shape (3, stations)
+        The clamp readings there; NaN where the vibrissa is free and next to it.
+    """
+
+    case: Case
+    points: Floats
+    foot_x: Floats
+    seen: Floats
+
+    @classmethod
+    def of(cls, reference: Readings, foot_x: Floats) -> Resolved | None:
+        """The sweep of a reference whose contour is in its provenance.
+
+        Parameters
+        ----------
+        reference : Readings
+            The reference.
+        foot_x : array, shape (stations,)
+            [length]
+
+        Returns
+        -------
+        Resolved or None
+            None if the reference does not record its contour, or a smooth contour through the
+            points that it records cannot be solved or does not reproduce its readings.
+        """
+        contour = reference.provenance.get("contour")
+        if contour is None:
+            return None
+        known = np.stack(
+            [
+                np.interp(foot_x, *_sorted(reference.values("foot_x"), reference.values(name)))
+                for name in CLAMP_READINGS
+            ]
+        )
+        for points in _thinned(np.transpose(contour)):
+            found = cls._through(points, reference, foot_x)
+            if found is not None:
+                miss = (found.seen - known) / np.abs(known).max(axis=1, keepdims=True)
+                if np.sqrt(np.nanmean(miss**2)) < _SAME:
+                    return found
+        return None
+
+    @classmethod
+    def _through(cls, points: Floats, reference: Readings, foot_x: Floats) -> Resolved | None:
+        beam, swept = reference.beam, reference.values("foot_x")
+        sweep = Sweep(_STATIONS, direction="left" if swept[-1] < swept[0] else "right")
+        points = _extended(points, _BEYOND * beam.length)
+        stiff, friction = reference.support
+        try:
+            contour = through_points(points)
+            case = Case(beam, contour, sweep, clamp_stiffness=stiff, friction=friction)
+            return cls(case, points, foot_x, _at(solve_sweep(case), foot_x))
+        except (InputError, ArithmeticError):
+            return None
+
+    def change(self, fault: Fault, size: float) -> Floats | None:
+        """What a fault adds to the clamp readings.
+
+        Parameters
+        ----------
+        fault : str
+            ``length`` and ``radius``: that of the vibrissa is larger by so much [L]. ``clamp``: so
+            much of the vibrissa is rigid at the clamp [L]. ``compliance``: the clamp turns by so
+            much more with its moment [L/EI]. ``friction``: the coefficient is larger by so much.
+            ``natural_curvature``: so is that of the vibrissa at rest [1/L]. ``taper``: the radius
+            of the tip is smaller by so much of that at the clamp.
+        size : float
+            How large the fault is.
+
+        Returns
+        -------
+        array, shape (3, stations), or None
+            NaN where one of the two sweeps is free; None if no such vibrissa can be solved.
+        """
+        try:
+            swept = solve_sweep(self._changed(fault, size))
+        except (InputError, ArithmeticError):
+            return None
+        if fault == "clamp":
+            # Past the rigid part the clamp's force acts at its end, the moment is about its foot.
+            lever = size * self.case.beam.length
+            moment = swept.values("moment_z") - lever * swept.values("force_x")
+            swept = replace(swept, table=swept.table.assign(moment_z=moment))
+        return _at(swept, self.foot_x) - self.seen
+
+    def _changed(self, fault: Fault, size: float) -> Case:
+        case, beam, length = self.case, self.case.beam, self.case.beam.length
+        match fault:
+            case "length":
+                beam = replace(beam, length=length + size * length)
+            case "radius":
+                beam = replace(beam, radius=beam.radius + size * length)
+            case "clamp":
+                lowered = through_points(self.points - [0.0, size * length])
+                return replace(
+                    case, beam=replace(beam, length=length - size * length), profile=lowered
+                )
+            case "compliance":
+                return replace(case, clamp_stiffness=stiffness(case, size))
+            case "friction":
+                return replace(case, friction=case.friction + size)
+            case "natural_curvature":
+                beam = replace(beam, natural_curvature=natural_curvature(beam) + size / length)
+            case "taper":
+                beam = replace(beam, tip_radius=tip_radius(beam) - size * beam.radius)
+        return replace(case, beam=beam)
+
+
+def compliance(case: Case) -> float:
+    """Rotation of the clamp by its moment.
 
     Parameters
     ----------
-    reference : Readings
-        Whose contour is in its provenance.
-    foot_x : array, shape (stations,)
-        [length]
+    case : Case
+        The problem.
 
     Returns
     -------
-    dict or None
-        None if the reference does not record its contour, or a smooth contour through the points
-        that it records cannot be solved or does not reproduce its readings.
+    float
+        [L/EI]; zero if the clamp is rigid.
     """
-    contour = reference.provenance.get("contour")
-    if contour is None:
-        return None
-    beam, swept = reference.beam, reference.values("foot_x")
-    sweep = Sweep(_STATIONS, direction="left" if swept[-1] < swept[0] else "right")
-    points, step = _extended(np.transpose(contour), _BEYOND * beam.length), _STEP * beam.length
-    down = points - [0.0, step]
-    try:
-        clamp_stiffness, friction = reference.support
-        case = Case(
-            beam,
-            through_points(points),
-            sweep,
-            clamp_stiffness=clamp_stiffness,
-            friction=friction,
-        )
-        cases = {
-            "length": replace(case, beam=replace(beam, length=beam.length + step)),
-            "radius": replace(case, beam=replace(beam, radius=beam.radius + step)),
-            "clamp": replace(
-                case,
-                beam=replace(beam, length=beam.length - step),
-                profile=through_points(down),
-            ),
-        }
-        base = solve_sweep(case)
-        changed = {name: solve_sweep(varied) for name, varied in cases.items()}
-    except (InputError, ArithmeticError):
-        return None
-    seen = _at(base, foot_x)
-    known = np.stack(
-        [np.interp(foot_x, *_sorted(swept, reference.values(n))) for n in CLAMP_READINGS]
-    )
-    miss = (seen - known) / np.abs(known).max(axis=1, keepdims=True)
-    if not np.sqrt(np.nanmean(miss**2)) < _SAME:
-        return None
-    # Past the rigid part the clamp's force acts at its end, while the moment is taken at its foot.
-    lifted = changed["clamp"]
-    moment = lifted.values("moment_z") - step * lifted.values("force_x")
-    changed["clamp"] = replace(lifted, table=lifted.table.assign(moment_z=moment))
-    return {name: (_at(sweep_, foot_x) - seen) / _STEP for name, sweep_ in changed.items()}
+    return case.beam.moment_unit / case.clamp_stiffness
+
+
+def stiffness(case: Case, softer: float) -> float:
+    """The stiffness of a clamp that turns by more.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+    softer : float
+        By how much more it turns with its moment [L/EI].
+
+    Returns
+    -------
+    float
+        [force length/rad]; infinite if it is rigid.
+    """
+    turns = compliance(case) + softer
+    return case.beam.moment_unit / turns if turns > 0 else math.inf
+
+
+def natural_curvature(beam: Beam) -> float:
+    """The curvature of a vibrissa at rest that is an arc.
+
+    Parameters
+    ----------
+    beam : Beam
+        The vibrissa.
+
+    Returns
+    -------
+    float
+        [1/length]; NaN if it varies.
+    """
+    given = beam.natural_curvature
+    return given if isinstance(given, float) else math.nan
+
+
+def tip_radius(beam: Beam) -> float:
+    """The radius at the tip.
+
+    Parameters
+    ----------
+    beam : Beam
+        The vibrissa.
+
+    Returns
+    -------
+    float
+        [length]; NaN if the rigidity does not follow it.
+    """
+    if not isinstance(beam.flexural_rigidity, float):
+        return math.nan
+    return beam.radius if beam.tip_radius is None else beam.tip_radius
+
+
+def _thinned(points: Floats) -> tuple[Floats, ...]:
+    """Every sixth point, shape (points, 2), with both ends, and all of them.
+
+    The contour is less than smooth at its points, where the closed form halts: few are fast.
+    """
+    few = np.round(np.linspace(0, len(points) - 1, len(points) // _SIXTH + 1)).astype(int)
+    return (points[few], points) if len(few) >= _FEWEST else (points,)
 
 
 def _extended(points: Floats, beyond: float) -> Floats:

@@ -8,7 +8,7 @@ smooth error that a chain has and white noise of up to 0.5 %.
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
@@ -32,6 +32,7 @@ from compare.sense.noise import with_noise
 _OWN_ERROR = (3e-4, 1.2e-3)  # of a reading's largest magnitude: a chain of 40 segments and more
 _NOISE = 5e-3
 _SEGMENTS = 40
+SOFT = 8.0  # EI/L; a clamp that is known to give way
 
 
 def random_case(rng: np.random.Generator) -> Case:
@@ -87,6 +88,36 @@ def _between(rng: np.random.Generator, low: float, high: float) -> float:
 def _beam(name: str, low: float, high: float) -> Callable[[Case, np.random.Generator], Readings]:
     def swept(case: Case, rng: np.random.Generator) -> Readings:
         return _other(**{name: _between(rng, low, high)})(case, rng)
+
+    return swept
+
+
+def _held(**support: tuple[float, float]) -> Callable[[Case, np.random.Generator], Readings]:
+    """The sweep of a vibrissa held otherwise, of which nothing is said."""
+
+    def swept(case: Case, rng: np.random.Generator) -> Readings:
+        numbers = {name: float(rng.uniform(*limits)) for name, limits in support.items()}
+        return solve_sweep(replace(case, **numbers))
+
+    return swept
+
+
+def _softer(case: Case, rng: np.random.Generator) -> Readings:
+    return solve_sweep(replace(case, clamp_stiffness=SOFT * (1 + _between(rng, 0.1, 0.3))))
+
+
+def _shaped(**shape: tuple[float, float]) -> Callable[[Case, np.random.Generator], Readings]:
+    """The sweep of a vibrissa of another shape, of which nothing is said."""
+
+    def swept(case: Case, rng: np.random.Generator) -> Readings:
+        numbers = {name: float(rng.uniform(*limits)) for name, limits in shape.items()}
+        if "natural_curvature" in numbers:
+            numbers["natural_curvature"] *= rng.choice([-1, 1])
+        else:
+            numbers["tip_radius"] *= case.beam.radius
+        start, stop = (float(x) for x in case.foot_x[[0, -1]])
+        sweep = replace(case.sweep, start=start + 0.3, stop=stop)  # clear of the object
+        return solve_sweep(replace(case, beam=replace(case.beam, **numbers), sweep=sweep))
 
     return swept
 
@@ -223,7 +254,7 @@ class Mistake:
 
     Of two at once the larger may be named, and need not be: then `must` is False.
     `swept` is a sweep that is wrong itself, `sensed` what the sensor makes of it before its noise,
-    and `recorded` what the file makes of that.
+    and `recorded` what the file makes of that. `stated` is what the case says of the support.
     """
 
     named: str | None
@@ -231,12 +262,19 @@ class Mistake:
     sensed: Sensor | None = None
     recorded: Sensor | None = None
     must: bool = True
+    stated: dict[str, float] = field(default_factory=dict)
 
 
 MISTAKES: dict[str, Mistake] = {
     "flexural rigidity": Mistake("flexural rigidity", _beam("flexural_rigidity", 0.03, 0.3)),
     "length": Mistake("length of the vibrissa", _beam("length", 0.01, 0.03)),
     "radius": Mistake("radius of the vibrissa", _nearer),
+    "soft clamp": Mistake("clamp stiffness", _held(clamp_stiffness=(5.0, 50.0))),
+    "clamp stiffness": Mistake("clamp stiffness", _softer, stated={"clamp_stiffness": SOFT}),
+    "friction": Mistake("friction", _held(friction=(0.05, 0.2))),
+    "friction stated": Mistake("friction", _held(friction=(0.3, 0.5)), stated={"friction": 0.2}),
+    "natural curvature": Mistake("natural curvature", _shaped(natural_curvature=(0.05, 0.4))),
+    "taper": Mistake("tip radius", _shaped(tip_radius=(0.5, 0.95))),
     "offset of the stage": Mistake("foot_x", sensed=_offset),
     "gain": Mistake("gain of", sensed=_one(lambda v, rng: v * (1 + _between(rng, 0.05, 0.3)))),
     "zero": Mistake(
@@ -277,7 +315,7 @@ MISTAKES: dict[str, Mistake] = {
 def named(mistake: Mistake, seed: int) -> str | None:
     """What the comparison calls a mistake planted at random; None if it names nothing."""
     rng = np.random.default_rng(seed)
-    case = random_case(rng)
+    case = replace(random_case(rng), **mistake.stated)
     reference = solve_sweep(case)
     sweep = reference if mistake.swept is None else mistake.swept(case, rng)
     sweep = with_own_error(sweep, rng, rng.uniform(*_OWN_ERROR))
