@@ -165,17 +165,19 @@ def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cau
             added = exact.change(fault, size)
             return None if added is None else added / scale[:, None]
 
-        small = change(_STEP)
-        if small is None:
+        # Bent to one side, a vibrissa may lean over the object and not be solved.
+        steps = ((step, change(step)) for step in (_STEP, -_STEP))
+        slope = next((added / step for step, added in steps if added is not None), None)
+        if slope is None:
             continue
-        yield Cause(text, small / _STEP, lowest, highest, change)
+        yield Cause(text, slope, lowest, highest, change)
         if fault == "radius":
             force = np.hypot(
                 *(table[f"{name}_reference"].to_numpy() for name in CLAMP_READINGS[:2])
             )
             yield Cause(
                 "softness: the contact gives way by up to {:.1e} L".format,
-                -small / _STEP * force / force.max(),
+                -slope * force / force.max(),
                 0.0,
                 0.1,
             )

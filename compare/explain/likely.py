@@ -139,7 +139,7 @@ def _fitting(
 ) -> str | None:
     """The one mistake or fault that fits clearly best, over the stations where all are known."""
     faults = list(causes(found, table, true, scale))
-    known = np.isfinite([fault.signature for fault in faults]).all(axis=(0, 1))
+    known = np.asarray(np.isfinite([fault.signature for fault in faults]).all(axis=(0, 1)))
     if known.sum() < _FEWEST:
         return None
     true, seen = true[:, known], seen[:, known]
