@@ -106,6 +106,7 @@ def causes(found: Measurement, table: pd.DataFrame, true: Floats, scale: Floats)
 def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cause]:
     """The faults whose signatures the closed form gives, where it can be solved with them."""
     case, beam, length = exact.case, exact.case.beam, exact.case.beam.length
+    held = f"{case.clamp_stiffness:.3g}" if math.isfinite(case.clamp_stiffness) else "rigid"
     bent, cone = natural_curvature(beam), tip_radius(beam) / (beam.radius or math.nan)
     said: dict[Fault, tuple[Callable[[float], str], float, float]] = {
         # What is off by more would hardly be the same experiment.
@@ -126,8 +127,8 @@ def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cau
         ),
         "compliance": (
             lambda size: (
-                f"clamp stiffness about {stiffness(case, size):.3g}, not"
-                f" {case.clamp_stiffness:.3g}: the clamp gives way otherwise than stated"
+                f"clamp stiffness about {stiffness(case, size):.3g}, not {held}:"
+                " the clamp gives way otherwise than stated"
             ),
             -compliance(case),
             2.0,

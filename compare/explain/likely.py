@@ -149,13 +149,19 @@ def _fitting(
     all_, noise = float(np.sum(error**2)), float(np.sum(jumps**2) * known.sum())
     fits = [_linear(fault, error, known) for fault in faults]
     best = _best([*tried, *filter(None, fits)], all_, noise)
-    if best is None or _rest(best, all_, noise) > _REST:
-        fits = [_exact(*one, error, known) for one in zip(faults, fits, strict=True)]
-        best = _best([*tried, *filter(None, fits)], all_, noise)
+    unclear = best is None or _rest(best, all_, noise) > _REST
+    fits = [
+        _exact(fault, fit, error, known) if unclear or fit is best else fit
+        for fault, fit in zip(faults, fits, strict=True)
+    ]
+    best = _best([*tried, *filter(None, fits)], all_, noise)
     if best is None:
         return None
     rest = _rest(best, all_, noise)
-    return best.text + (f"; {rest:.0%} of the disagreement is left" if rest > _REST else "")
+    if rest <= _REST:
+        return best.text
+    solved = any(fault.change is not None for fault in faults)
+    return f"{best.text}; {rest:.0%} of the disagreement is left" if solved else None
 
 
 def _linear(fault: Cause, error: Floats, known: Booleans) -> Explanation | None:
@@ -169,7 +175,7 @@ def _exact(
 ) -> Explanation | None:
     """A fault solved at its size, which secants find, if that explains more than its signature.
 
-    Where a sweep with the fault is free, it explains nothing.
+    Next to where a sweep with the fault is free, its signature stands in.
     """
     size, _, share = fitted(error, fault.signature[:, known])
     if fault.change is None or share < _ALIKE:
@@ -180,7 +186,7 @@ def _exact(
         added = fault.change(size) if size != last else None
         if added is None:
             break
-        added = np.where(np.isfinite(added[:, known]).all(axis=0), added[:, known], 0.0)
+        added = np.where(np.isfinite(added), added, size * fault.signature)[:, known]
         left = float(np.sum((error - added) ** 2))
         if best is None or left < best.left:
             best = Explanation(fault.text(size), left)

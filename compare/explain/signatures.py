@@ -78,15 +78,15 @@ class Resolved:
         stiff, friction = reference.support
         try:
             case = Case(beam, _smooth(points), sweep, clamp_stiffness=stiff, friction=friction)
-            seen = _at(solve_sweep(case), foot_x)
+            solved = solve_sweep(case)
         except (InputError, ArithmeticError):
             return None
-        known = np.stack(
-            [np.interp(foot_x, *_sorted(swept, reference.values(n))) for n in CLAMP_READINGS]
-        )
-        miss = (seen - known) / np.abs(known).max(axis=1, keepdims=True)
+        # At its own stations: between them it is not known to a thousandth.
+        within = (swept >= foot_x.min()) & (swept <= foot_x.max())
+        known = np.stack([reference.values(name)[within] for name in CLAMP_READINGS])
+        miss = (_at(solved, swept[within]) - known) / np.nanmax(np.abs(known), axis=1)[:, None]
         same = np.sqrt(np.nanmean(miss**2)) < _SAME
-        return cls(case, points, foot_x, seen) if same else None
+        return cls(case, points, foot_x, _at(solved, foot_x)) if same else None
 
     def change(self, fault: Fault, size: float) -> Floats | None:
         """What a fault adds to the clamp readings.

@@ -79,6 +79,53 @@ def test_planted_faults_are_named(name, made, said, size):
         assert float(stated[1]) == pytest.approx(size, rel=0.15)
 
 
+def taken(beam: Beam | None = None, **support: float) -> Callable[[Case], Readings]:
+    """What a rig's file has of another vibrissa, or of one that is held otherwise."""
+
+    def made(case: Case) -> Readings:
+        swept_beam = case.beam if beam is None else beam
+        grid = Sweep(200, float(case.foot_x[0]) + 0.2, float(case.foot_x[-1]))
+        sweep = solve_sweep(replace(case, beam=swept_beam, sweep=grid, **support))
+        return Readings(sweep.table[["foot_x", *CLAMP_READINGS]], case.beam, "rig")
+
+    return made
+
+
+@pytest.mark.parametrize(
+    ("made", "said", "size"),
+    [
+        (taken(clamp_stiffness=10.0), "clamp stiffness", 10.0),
+        (taken(friction=0.05), "friction", 0.05),
+        (taken(friction=0.2), "friction", 0.2),
+        (taken(Beam(natural_curvature=-0.3)), "natural curvature", -0.3),
+        (taken(Beam(tip_radius=0.002)), "tip radius", 0.002),
+    ],
+)
+def test_what_the_case_does_not_say_is_named(made, said, size):
+    """It is fitted by exact sweeps: the size is off by their interpolation, and by its digits."""
+    found = compare(exact_sweep("two-circles"), made(named_case("two-circles"))).likely
+    assert str(found).startswith(f"{said} about ")
+    assert float(re.split(r"[ ,]", str(found).split("about ")[1])[0]) == pytest.approx(size, 5e-3)
+
+
+def test_support_that_is_stated_wrong_is_named():
+    case = replace(named_case("catenary"), clamp_stiffness=8.0, friction=0.3)
+    exact = solve_sweep(case)
+    assert str(compare(exact, taken(clamp_stiffness=6.64)(case)).likely).startswith(
+        "clamp stiffness about 6.64, not 8:"
+    )
+    assert str(compare(exact, taken(friction=0.1)(case)).likely).startswith(
+        "friction about 0.1, not 0.3:"
+    )
+
+
+def test_without_the_contour_what_explains_badly_is_not_named():
+    """A soft clamp leaves a third of the disagreement to a rigidity that is off."""
+    case = named_case("catenary")
+    soft = taken(clamp_stiffness=10.0)(case)
+    assert compare(replace(solve_sweep(case), provenance={}), soft).likely is None
+
+
 @pytest.mark.parametrize(
     ("name", "settings", "said"),
     [
