@@ -9,7 +9,7 @@ from analytic import CLAMP_READINGS, Readings, Sweep, named_case
 from mujoco_models import Motion, Settings, simulate_motion, simulate_sweep
 
 CASE = replace(named_case("catenary"), sweep=Sweep(60))
-SMOOTH = Settings(segments=10, contact_stiffness=1e4, obstacle="primitive")
+SMOOTH = Settings(segments=10, contact_stiffness=1e3, obstacle="primitive")
 FINE = 20  # states at rest for the mean over one station's way
 BETWEEN = slice(1, 56)  # but for the first contact and the release
 
@@ -24,10 +24,10 @@ def at_rest_as_means(name: str, rest: Readings):
 
 
 def rms_to(rest, moved):
-    """Worst reading's rms over the stations in contact that do not chatter."""
-    kept = moved.trusted & np.isin(np.arange(60), np.arange(60)[BETWEEN])
+    """Worst reading's rms over the stations in contact, none of which chatters."""
+    assert moved.trusted[BETWEEN].all()
     return max(
-        np.sqrt(np.mean((moved.values(n) - at_rest_as_means(n, rest))[kept] ** 2))
+        np.sqrt(np.mean((moved.values(n) - at_rest_as_means(n, rest))[BETWEEN] ** 2))
         / np.abs(rest.values(n)).max()
         for n in CLAMP_READINGS
     )
@@ -35,13 +35,15 @@ def rms_to(rest, moved):
 
 @pytest.mark.slow
 def test_a_sweep_in_motion_tends_to_rest_in_proportion_to_its_speed():
-    """Contacts of 1e4 EI/L^3 in both. Observed 4.3e-4, 2.1e-4: order 1.0, of the dampers' lag."""
+    """Contacts of 1e3 EI/L^3 in both. Observed 3.8e-3, 1.9e-3: order 1.0, of the dampers' lag."""
     x = CASE.foot_x
     many = Sweep(59 * FINE + 1, float(x[0]), float(x[-1]))
     rest = simulate_sweep(replace(CASE, sweep=many), SMOOTH)
-    slow = Motion(timestep=0.002, integrator="implicitfast", contact_stiffness=1e4)
-    fast, half = (
-        rms_to(rest, simulate_motion(CASE, replace(slow, speed=v), SMOOTH)) for v in (0.04, 0.02)
+    slow = Motion(
+        timestep=0.002, integrator="implicitfast", contact_stiffness=1e3, damping_ratio=0.3
     )
-    assert np.log2(fast / half) == pytest.approx(1.0, abs=0.2)
-    assert half < 3e-4
+    fast, half = (
+        rms_to(rest, simulate_motion(CASE, replace(slow, speed=v), SMOOTH)) for v in (0.08, 0.04)
+    )
+    assert np.log2(fast / half) == pytest.approx(1.0, abs=0.1)
+    assert half < 2.5e-3
