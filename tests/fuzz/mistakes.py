@@ -60,7 +60,7 @@ def with_own_error(sweep: Readings, rng: np.random.Generator, size: float) -> Re
         )
         steps = np.sin(2 * np.pi * _SEGMENTS * progress + rng.uniform(0, 2 * np.pi))
         shape = np.where(values != 0, waves + 0.5 * steps, 0.0)
-        scale = size * np.abs(values).max() / np.sqrt(np.mean(shape**2))
+        scale = size * np.nanmax(np.abs(values)) / np.sqrt(np.mean(shape**2))
         columns[name] = values + scale * shape
     return replace(sweep, table=sweep.table.assign(**columns))
 
