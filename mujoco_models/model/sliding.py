@@ -82,7 +82,13 @@ class SlidingBeads:
         return self._shift(link, self._layout.joints[link] + along)
 
     def hold(self) -> bool:
-        """Put all beads where they were at first; whether any was elsewhere."""
+        """Put all beads where they were at first.
+
+        Returns
+        -------
+        bool
+            Whether any was elsewhere.
+        """
         moved, self._guided = self._link is not None, False
         if self._link is not None:
             back = np.flatnonzero(self._layout.links == self._link)
