@@ -65,7 +65,7 @@ def restless(case: Case) -> Readings:
         (restless, "unrest: the stations are out of balance by 5.0e-02", None),
     ],
 )
-@pytest.mark.parametrize("name", ["catenary", "two-circles"])
+@pytest.mark.parametrize("name", ["catenary", pytest.param("two-circles", marks=pytest.mark.slow)])
 def test_planted_faults_are_named(name, made, said, size):
     """Sizes are those of a linear fit: observed within 10 %."""
     case = named_case(name)
@@ -94,11 +94,11 @@ def taken(beam: Beam | None = None, **support: float) -> Callable[[Case], Readin
 @pytest.mark.parametrize(
     ("made", "said", "size"),
     [
-        (taken(clamp_stiffness=10.0), "clamp stiffness", 10.0),
-        (taken(friction=0.05), "friction", 0.05),
+        pytest.param(taken(clamp_stiffness=10.0), "clamp stiffness", 10.0, marks=pytest.mark.slow),
+        pytest.param(taken(friction=0.05), "friction", 0.05, marks=pytest.mark.slow),
         (taken(friction=0.2), "friction", 0.2),
         (taken(Beam(natural_curvature=-0.3)), "natural curvature", -0.3),
-        (taken(Beam(tip_radius=0.002)), "tip radius", 0.002),
+        pytest.param(taken(Beam(tip_radius=0.002)), "tip radius", 0.002, marks=pytest.mark.slow),
     ],
 )
 def test_what_the_case_does_not_say_is_named(made, said, size):
@@ -108,6 +108,7 @@ def test_what_the_case_does_not_say_is_named(made, said, size):
     assert float(re.split(r"[ ,]", str(found).split("about ")[1])[0]) == pytest.approx(size, 5e-3)
 
 
+@pytest.mark.slow
 def test_support_that_is_stated_wrong_is_named():
     case = replace(named_case("catenary"), clamp_stiffness=8.0, friction=0.3)
     exact = solve_sweep(case)
