@@ -45,7 +45,7 @@ def hysteresis(name: str = "rubbing", turns: tuple[float, ...] = (1.2, 0.2)) -> 
         _there_and_back(ax, case, turns, reading)
         ax.set_ylabel(symbol)
         ax.set_xlabel("$x_0$ / $L$   (on is to the left)")
-    force.legend(fontsize=SMALL, frameon=False, loc="lower right")
+    moment.legend(fontsize=SMALL, frameon=False, loc="lower center")
     for one, colour in _OBJECTS.items():
         smooth = named_case(one)
         ends = [
