@@ -27,6 +27,8 @@ _BAD_STATES = (
     mujoco.mjtWarning.mjWARN_BADQACC,
 )
 _FULL = (mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL)
+# Loaded contacts of one place are closer along a curved vibrissa: one link's, or one facet's.
+_APART, _LINKS = 0.05, 2.5  # L, and in links
 _IMPEDANCE = 0.9  # MuJoCo's d; with the stiffness set below it cancels out of the law at rest
 
 
@@ -231,6 +233,22 @@ class BeamModel:
             Loaded, or within the gap.
         """
         return Contacts.of(self.data, self._surface, self.layout, self.joint_positions())
+
+    def touches_twice(self, contacts: Contacts) -> bool:
+        """Whether a vibrissa that is curved at rest touches in two places.
+
+        Parameters
+        ----------
+        contacts : Contacts
+            Of the last evaluated configuration.
+
+        Returns
+        -------
+        bool
+            A straight one bends away from the object, and touches in one.
+        """
+        one_place = max(_APART, _LINKS * float(self.layout.lengths.max()))
+        return not self.layout.vibrissa.is_straight and contacts.apart > one_place
 
     def contact_curvature(self, slope: Floats) -> Floats:
         """Curvature of the contour that the beads' centres feel.

@@ -68,8 +68,8 @@ def relax(
             slopes = contacts.slope[contacts.loaded]
             if not obstacle.faces(slopes):
                 break  # pushed out through the far side of the object: no state of the sweep
-            loaded = obstacle.place(slopes)
-            if lookout.move_window(loaded):
+            twice = model.touches_twice(contacts)
+            if lookout.move_window(obstacle.place(slopes)):
                 continue
             if unwatched := lookout.near_the_obstacle() - lookout.watched:
                 lookout.watch(lookout.watched | unwatched)
@@ -77,7 +77,7 @@ def relax(
             if (missed := lookout.overlooked(contacts)) is not None:
                 lookout.use_window(obstacle.window_of(missed))
                 continue
-            if lookout.belied(contacts):
+            if not twice and lookout.belied(contacts):
                 continue
             slope = float(slopes.mean()) if slopes.size else None
             return replace(state, settled=True, stance=stance(model, contacts), slope=slope)

@@ -14,8 +14,6 @@ from mujoco_models.sweep.rest import refine, relax
 from mujoco_models.sweep.state import State, turned
 
 _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
-# Loaded contacts of one place are closer along a curved vibrissa: one link's, or one facet's.
-_APART, _LINKS = 0.05, 2.5  # L, and in links
 # What may follow one state at rest without a snap-off.
 _NEIGHBOURS = {
     (Stance.AHEAD, Stance.AHEAD),
@@ -67,7 +65,6 @@ class Walk:
         self._budget = self._numerics.budget
         self._lost: str | None = None
         self._curved = not model.layout.vibrissa.is_straight
-        self._one_place = max(_APART, _LINKS * float(model.layout.lengths.max()))
         self.snap_off: float | None = None
         self.doubt: str | None = None
 
@@ -173,9 +170,10 @@ class Walk:
     def _relax(self, foot_x: float, start: State) -> State:
         model, numerics = self.model, self._numerics
         state = relax(model, foot_x, start, self._tolerance, numerics)
-        if state.settled or not model.hold_beads():
+        short = abs(foot_x - self._foot_x) < numerics.confirm_step
+        if state.settled or not short or not model.hold_beads():
             return state
-        # A bead that stays leans a little; one that slides past a joint may not come to rest.
+        # A bead that slides past a joint may not come to rest; one that stays leans a little.
         return relax(model, foot_x, start, self._tolerance, numerics, held=True)
 
     def _thoroughly(self, foot_x: float, start: State) -> State:
@@ -256,7 +254,7 @@ class Walk:
             "discrepancy": model.discrepancy(),
             "extension": model.extension(),
         }
-        if self.doubt is None and self._curved and contacts.apart > self._one_place:
+        if self.doubt is None and model.touches_twice(contacts):
             row.update(NOWHERE, status="touches again")
         out_of_balance = len(state.angles) * state.imbalance  # of which the sensors feel the sum
         if state.settled and row["discrepancy"] > _DISCREPANCY + out_of_balance:
