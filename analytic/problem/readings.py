@@ -14,6 +14,7 @@ from analytic.problem.beam import Beam, Varying
 from analytic.problem.columns import SENSED
 from analytic.problem.errors import InputError, require
 from analytic.problem.files import as_path
+from analytic.problem.provenance import check_provenance
 from analytic.problem.readings_file import read_file, write_file
 from analytic.problem.readings_shown import as_html, as_text, plot
 from analytic.problem.support import (
@@ -81,7 +82,7 @@ class Readings:
                 "two or more, each with a finite foot_x",
                 "is it complete? `Readings.of` drops rows without a foot_x",
             )
-        _check_provenance(self.provenance)
+        check_provenance(self.provenance)
         object.__setattr__(self, "table", table)
 
     @classmethod
@@ -372,43 +373,3 @@ def _beam(table: object) -> Beam:
         return Beam(**table)  # type: ignore[arg-type]  # whatever the file holds
     except TypeError as error:
         raise InputError("beam", table, "a table of Beam's numbers", str(error)) from error
-
-
-def _check_provenance(provenance: Mapping[str, Any]) -> None:
-    """Refuse what `snap_off` and `mirrored` could not use."""
-    events = provenance.get("events", {})
-    if not isinstance(events, Mapping) or not all(_is_place(x) for x in events.values()):
-        raise InputError(
-            "provenance.events", _short(events), "foot positions or null by name", "drop it"
-        )
-    support = provenance.get("support", {})
-    if not _is_held(support):
-        raise InputError(
-            "provenance.support", _short(support), "clamp_stiffness and friction", "drop it"
-        )
-    contour = provenance.get("contour", [[], []])
-    try:
-        right = np.ndim(contour) == 2 and len(contour) == 2 and np.isfinite(contour).all()
-    except (TypeError, ValueError):
-        right = False
-    if not right:
-        raise InputError(
-            "provenance.contour", _short(contour), "two lists of as many coordinates", "drop it"
-        )
-
-
-def _is_held(value: object) -> bool:
-    """Whether a value is a clamp's stiffness, None if rigid, and friction, by name."""
-    if not isinstance(value, Mapping):
-        return False
-    known = set(value) <= {"clamp_stiffness", "friction"}
-    return known and all(_is_place(number) for number in value.values())
-
-
-def _is_place(value: object) -> bool:
-    return value is None or (isinstance(value, int | float) and not isinstance(value, bool))
-
-
-def _short(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= 80 else f"{text[:80]}..."

@@ -244,7 +244,7 @@ def _fill(
 ) -> None:
     """Write states at rest into the rows of a table."""
     plain = Vibrissa.of(case.beam, case.clamp_stiffness, 0.0)
-    held = plain._replace(friction=np.tan(angle))  # type: ignore[arg-type]  # an array
+    held = plain._replace(friction=np.tan(angle))
     found = states(case.centreline.at(z[:, 0]), z[:, 1], z[:, 2], held)
     columns = to_columns(found, np.zeros(len(z), dtype=bool), case.beam)
     for name in COLUMNS[1:-1]:

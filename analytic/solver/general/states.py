@@ -37,8 +37,8 @@ class Vibrissa(NamedTuple):
     """Of the unloaded vibrissa; positive to the left of its way from clamp to tip [1/L]."""
     compliance: float = 0.0
     """Rotation of the clamp by moment [L/EI]."""
-    friction: float = 0.0
-    """Coefficient; positive where the object pushes the vibrissa along the contour to the right."""
+    friction: float | Floats = 0.0
+    """Coefficient, or one a state; positive where the object pushes the vibrissa to the right."""
     radius: float = 0.0
     """At the tip [L]."""
     form: Form | None = None

@@ -168,7 +168,7 @@ def _differences(misses: Misses) -> Jacobian:
 
 
 def _states(centreline: Contour, vibrissa: Vibrissa, z: Floats) -> States:
-    held = vibrissa._replace(friction=np.tan(z[:, 3]))  # type: ignore[arg-type]  # an array
+    held = vibrissa._replace(friction=np.tan(z[:, 3]))
     t, force, excess = _in_phase(z).T
     return states(centreline.at(t), force, excess, held)
 
