@@ -86,7 +86,9 @@ class MovingModel:
         self.data = mujoco.MjData(self.model)
         links = len(beam.layout.joints)
         self._surface = Surface.of(self.model, links, obstacle.corners, radius)
+        self._motion = motion
         self._set_contacts(motion)
+        self._follows_inertia = motion.solref is None and motion.integrator == "discrete"
         self.time = 0.0
         self._lookout = Lookout(self.model, self.data, self._surface.beads, obstacle, radius)
         self._foot = self.model.body(FOOT).id
@@ -99,9 +101,7 @@ class MovingModel:
         model = self.model
         geoms = np.concatenate([self._surface.beads, self._surface.sides])
         if motion.solref is None:
-            weight = model.body_invweight0[model.geom_bodyid[geoms], 0]
-            k = motion.stiffness * (1 - motion.solimp) * weight
-            model.geom_solref[geoms] = np.column_stack([-k, -2 * np.sqrt(k)])
+            self._stiffen(geoms, model.body_invweight0[model.geom_bodyid[geoms], 0])
         else:
             model.geom_solref[geoms] = motion.solref
         model.geom_gap[geoms] = 0  # a contact that carries no force costs time
@@ -110,6 +110,31 @@ class MovingModel:
             self._check_step(motion, geoms)
             model.geom_condim[geoms] = 3
             model.geom_friction[geoms, 0] = motion.friction
+
+    def _stiffen(self, geoms: Integers, weight: Floats) -> None:
+        """Make contacts as stiff as stated, where a unit of force accelerates them by `weight`."""
+        with np.errstate(over="ignore"):  # of a motion that is about to diverge
+            k = self._motion.stiffness * (1 - self._motion.solimp) * weight
+        self.model.geom_solref[geoms] = np.column_stack([-k, -2 * np.sqrt(k)])
+
+    def _follow_inertia(self) -> None:
+        """Make contacts as stiff as stated with the inertia that MuJoCo took in the last step.
+
+        ``"discrete"`` counts a step's springs and dampers as inertia. With solref and solimp that
+        stay as they are, a contact is harder by as much: up to 8 times at the tip, which is light,
+        and hardly at all elsewhere. That inertia changes slowly with the vibrissa's shape.
+        """
+        data, h = self.data, self.model.opt.timestep
+        solved = data.contact.efc_address >= 0
+        rows, pairs = data.contact.efc_address[solved], data.contact.geom[solved]
+        k, b, d = data.efc_KBIP[rows, :3].T
+        # A row's spring and damper act at the end of the step, and count as inertia, too.
+        weight = data.efc_diagA[rows] * (1 + h * b + h**2 * k * d)
+        if self._motion.friction and self._motion.cone == "pyramidal":
+            mu = self._motion.friction  # the row is that of a pyramid's edge
+            weight *= self._motion.impratio / (2 * mu**2 * (1 + mu**2))
+        moves = self._surface.moves[pairs]
+        self._stiffen(pairs[moves], np.repeat(weight, moves.sum(axis=1)))
 
     def _check_step(self, motion: Motion, geoms: Integers) -> None:
         """Raise InputError for a step in which MuJoCo's friction overshoots.
@@ -162,6 +187,8 @@ class MovingModel:
         mujoco.mj_step(self.model, self.data)
         if any(self.data.warning[bad].number for bad in _BAD_STATES):
             raise DivergedError("MuJoCo's motion does not stay finite")
+        if self._follows_inertia and self.data.nefc:
+            self._follow_inertia()
         if np.abs(self._positions() - self._seen).max() > _AHEAD / 4:
             self._look()
 
