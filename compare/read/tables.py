@@ -39,6 +39,7 @@ from compare.read.motion import MotionTable
 from compare.read.units import in_si
 from mujoco_models.own.names import ContactKind, OwnModel
 from mujoco_models.settings import Settings
+from mujoco_models.simulate import shipped_models
 
 
 @dataclass(frozen=True)
@@ -343,10 +344,11 @@ class ModelTable(Table):
         Returns
         -------
         OwnModel
-            Not yet looked at.
+            Not yet looked at. Where there is no such file, a shipped model has that name.
         """
         names = self.model_dump(exclude={"file"})
-        return OwnModel(folder / self.file, **names)
+        path = folder / self.file
+        return OwnModel(path if path.exists() else shipped_models().get(self.file, path), **names)
 
 
 class CaseFile(Table):

@@ -182,6 +182,10 @@ def _foot(found: MeasuredBeam) -> Iterator[Remark]:
     elif "force" in found.drive:
         yield Remark("note", "foot", f"{found.drive}: a position or velocity actuator would hold "
                      "its speed")  # fmt: skip
+    elif "mocap" in found.drive:
+        yield Remark("note", "foot", "a mocap body has no speed in MuJoCo, so that the dampers of "
+                     "contacts do not see it move: on the far side of an object contacts chatter. "
+                     "A slide joint with a velocity actuator has one")  # fmt: skip
 
 
 def _sensors(found: MeasuredBeam) -> Iterator[Remark]:

@@ -21,6 +21,7 @@ from mujoco_models.obstacles.faceted import add_hull
 from mujoco_models.obstacles.prism import Prism
 from mujoco_models.obstacles.protocol import GEOM_PREFIX
 from mujoco_models.own.drive import drive_to
+from mujoco_models.stepping.stiffness import stiffen, weights_in_last_step
 
 _HALF_DEPTH = 1.5  # L; as of all prisms
 _SPECK = 1e-4  # L
@@ -90,8 +91,11 @@ class OwnModelInMotion:
         # The object is one more geom of the world, and the world's come first.
         self._geoms = frozenset(g + (g >= self._object) for g in self._parts.geoms)
         self._drive = drive_to(self.model, self._foot, -self._axes[0])
+        self._stiffness = motion.stiffness * beam.base_rigidity / beam.length**3
         if ours:
-            self._take_our_contacts(motion.stiffness * beam.base_rigidity / beam.length**3)
+            self._take_our_contacts()
+        implicit = self.model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_DISCRETE)
+        self._follows_inertia = ours and implicit
         self.model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
         self._dofs = held.dofs
         self._way = 0.0
@@ -126,15 +130,21 @@ class OwnModelInMotion:
     def _pose(self, data: mujoco.MjData) -> tuple[Floats, Floats]:
         return np.array(data.xpos[self._parts.foot]), data.xmat[self._parts.foot].reshape(3, 3)
 
-    def _take_our_contacts(self, stiffness: float) -> None:
-        """Frictionless, and as stiff at every geom; see `mujoco_models.model.model`."""
-        for geom in self._geoms:
-            weight = float(self.model.body_invweight0[self.model.geom_bodyid[geom], 0])
-            if weight > 0:
-                k = stiffness * (1 - _IMPEDANCE) * weight
-                self.model.geom_solref[geom] = [-k, -2 * np.sqrt(k)]
-                self.model.geom_solimp[geom] = [_IMPEDANCE, _IMPEDANCE, 1e-3, 0.5, 2]
-            self.model.geom_condim[geom] = 1
+    def _take_our_contacts(self) -> None:
+        """Frictionless, and as stiff at every geom."""
+        geoms = np.array(sorted(self._geoms))
+        weight = self.model.body_invweight0[self.model.geom_bodyid[geoms], 0]
+        moved = weight > 0  # but for a piece that is fixed to the foot
+        stiffen(self.model, geoms[moved], weight[moved], self._stiffness, _IMPEDANCE)
+        self.model.geom_solimp[geoms[moved]] = [_IMPEDANCE, _IMPEDANCE, 1e-3, 0.5, 2]
+        self.model.geom_condim[geoms] = 1
+
+    def _follow_inertia(self) -> None:
+        pairs, weight = weights_in_last_step(self.model, self.data, friction=0.0)
+        mine = np.isin(pairs, [*self._geoms]) & (weight > 0)[:, None]
+        mine &= (pairs == self._object).any(axis=1)[:, None]
+        weights = np.repeat(weight, mine.sum(axis=1))
+        stiffen(self.model, pairs[mine], weights, self._stiffness, _IMPEDANCE)
 
     @property
     def now(self) -> float:
@@ -175,6 +185,8 @@ class OwnModelInMotion:
         mujoco.mj_step(self.model, self.data)
         if any(self.data.warning[bad].number for bad in _BAD_STATES):
             raise DivergedError("the model's motion does not stay finite")
+        if self._follows_inertia and self.data.nefc:
+            self._follow_inertia()
         behind = self._way - (self._start - self.foot_x)
         if abs(behind) > _LAGS[0] + _LAGS[1] * self._way:
             if np.abs(self.clamp()).max() > _WILD:

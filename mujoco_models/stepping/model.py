@@ -16,6 +16,7 @@ from mujoco_models.model.spec import assemble
 from mujoco_models.model.surface import Surface
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.protocol import Obstacle
+from mujoco_models.stepping.stiffness import stiffen, weights_in_last_step
 
 # (beta L)^4 = 12.36 of the first free vibration of a cantilever gives the mass per length with
 # which it takes the time 1: mass = EI (beta L)^4 (T1/2 pi)^2/L^4.
@@ -112,27 +113,12 @@ class MovingModel:
             model.geom_friction[geoms, 0] = motion.friction
 
     def _stiffen(self, geoms: Integers, weight: Floats) -> None:
-        """Make contacts as stiff as stated, where a unit of force accelerates them by `weight`."""
-        with np.errstate(over="ignore"):  # of a motion that is about to diverge
-            k = self._motion.stiffness * (1 - self._motion.solimp) * weight
-        self.model.geom_solref[geoms] = np.column_stack([-k, -2 * np.sqrt(k)])
+        stiffen(self.model, geoms, weight, self._motion.stiffness, self._motion.solimp)
 
     def _follow_inertia(self) -> None:
-        """Make contacts as stiff as stated with the inertia that MuJoCo took in the last step.
-
-        ``"discrete"`` counts a step's springs and dampers as inertia. With solref and solimp that
-        stay as they are, a contact is harder by as much: up to 8 times at the tip, which is light,
-        and hardly at all elsewhere. That inertia changes slowly with the vibrissa's shape.
-        """
-        data, h = self.data, self.model.opt.timestep
-        solved = data.contact.efc_address >= 0
-        rows, pairs = data.contact.efc_address[solved], data.contact.geom[solved]
-        k, b, d = data.efc_KBIP[rows, :3].T
-        # A row's spring and damper act at the end of the step, and count as inertia, too.
-        weight = data.efc_diagA[rows] * (1 + h * b + h**2 * k * d)
-        if self._motion.friction and self._motion.cone == "pyramidal":
-            mu = self._motion.friction  # the row is that of a pyramid's edge
-            weight *= self._motion.impratio / (2 * mu**2 * (1 + mu**2))
+        """Make contacts as stiff as stated with the inertia that MuJoCo took in the last step."""
+        friction = self._motion.friction or 0.0
+        pairs, weight = weights_in_last_step(self.model, self.data, friction)
         moves = self._surface.moves[pairs]
         self._stiffen(pairs[moves], np.repeat(weight, moves.sum(axis=1)))
 

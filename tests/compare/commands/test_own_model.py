@@ -50,6 +50,13 @@ def test_simulate_sweeps_it(folder):
     assert "model sound chain" in done.stdout
 
 
+def test_a_shipped_model_is_known_by_its_name(folder):
+    (folder / "case.toml").write_text(CASE.replace("mine.xml", "sound-chain"))
+    done = vibrissa("simulate", "case.toml", "--speed", "0.3", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert "model sound chain" in done.stdout
+
+
 @pytest.mark.parametrize(
     ("text", "words", "said"),
     [

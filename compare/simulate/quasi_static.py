@@ -1,0 +1,133 @@
+"""How slow is quasi-static, and what do MuJoCo's settings cost? One setting at a time.
+
+``python -m compare.simulate.quasi_static FILE.csv`` sweeps the catenary in motion, about a minute
+and a half of CPU time, and writes a row a sweep; `compare.show.figures.quasi_static` draws them.
+"""
+
+import math
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from analytic import Sweep, named_case, solve_sweep
+from analytic.problem.files import write_whole
+from compare.comparison import compare
+from compare.measure.disagreement import Disagreement
+from compare.simulate.workers import Workers, available_cores
+from mujoco_models.errors import DivergedError
+from mujoco_models.motion import Motion
+from mujoco_models.settings import Settings
+
+_BASE = Motion(speed=0.1, timestep=0.02, damping_ratio=0.05)
+_SETTINGS = Settings(segments=40, contour_points=800)
+_STATIONS = 100
+_STOCK = 20 / 28  # MuJoCo's default time constant, 20 ms, of a wire whose first period is 28 ms
+_RUBBING = replace(
+    _BASE, timestep=0.002, contact_stiffness=1e3, damping_ratio=0.2, friction=0.2
+)  # as stiff as friction allows with such a step
+
+_ALONE: dict[str, tuple[Any, ...]] = {
+    "speed": (0.02, 0.04, 0.1, 0.2, 0.4, 1.0),
+    "timestep": (0.005, 0.01, 0.02, 0.04),
+    "damping_ratio": (0.0, 0.01, 0.05, 0.2, 0.5, 2.0),
+    "contact_stiffness": (1e3, 1e4, 1e5, 1e6),
+    "solver": ("newton", "cg", "pgs"),
+}
+"""Settings of a motion, each varied on its own."""
+
+
+def variants() -> Iterator[tuple[str, str, Motion, Settings]]:
+    """All sweeps of the page.
+
+    Yields
+    ------
+    setting, value : str
+        What is varied, and what it is.
+    motion, settings
+        The numerics.
+    """
+    for name, values in _ALONE.items():
+        for value in values:
+            yield name, f"{value}", replace(_BASE, **{name: value}), _SETTINGS
+    for speed in _ALONE["speed"]:
+        damped = replace(_BASE, speed=speed, damping_ratio=0.5)
+        yield "speed, damping ratio 0.5", f"{speed}", damped, _SETTINGS
+    for segments in (10, 20, 40, 80):
+        yield "segments", f"{segments}", _BASE, replace(_SETTINGS, segments=segments)
+    yield "clamp", "naive", _BASE, replace(_SETTINGS, clamp="naive")
+    for time_constant, solimp in (
+        (_STOCK, 0.9),
+        (0.14, 0.9),
+        (0.14, 0.99),
+        (0.04, 0.9),
+        (0.04, 0.99),
+    ):
+        stock = replace(_BASE, solref=(time_constant, 1.0), solimp=solimp)
+        yield "solref, solimp", f"{time_constant:.2g}, {solimp}", stock, _SETTINGS
+    for integrator in ("discrete", "implicitfast", "implicit", "euler", "rk4"):
+        heavy = replace(_BASE, integrator=integrator, armature=1.0, contact_stiffness=2.5e3)
+        yield "integrator, armature 1", integrator, heavy, _SETTINGS
+    for cone in ("elliptic", "pyramidal"):
+        yield "cone, friction 0.2", cone, replace(_RUBBING, cone=cone), _SETTINGS
+
+
+def measure(name: str, value: str, motion: Motion, settings: Settings) -> dict[str, Any]:
+    """One sweep in motion against the closed form.
+
+    Parameters
+    ----------
+    name, value : str
+        What is varied.
+    motion, settings
+        The numerics.
+
+    Returns
+    -------
+    dict
+        A row: the worst reading's rms in each phase relative to its largest magnitude, how late
+        the vibrissa lets go [L], the stations that chatter, and CPU seconds. A motion that diverges
+        has none of them.
+    """
+    from mujoco_models import simulate_motion  # MuJoCo is imported only where it is used
+
+    case = replace(named_case("catenary"), sweep=Sweep(_STATIONS), friction=motion.friction or 0.0)
+    row = {"setting": name, "value": value, **asdict(motion), **asdict(settings)}
+    try:
+        moved = simulate_motion(case, motion, settings)
+    except DivergedError:
+        return row
+    exact = solve_sweep(case)
+    found = compare(exact, moved)
+    shift = found.snap_off.difference
+    return row | {
+        "tip": _worst(found.disagreement, "tip"),
+        "tangent": _worst(found.disagreement, "tangent"),
+        "late": math.nan if shift is None else -shift,
+        "chattering": int((moved.table["status"] != "ok").sum()),
+        "seconds": moved.provenance["seconds"],
+    }
+
+
+def _worst(found: Mapping[str, Disagreement], phase: str) -> float:
+    return max((d.rms_by_phase.get(phase, math.nan) for d in found.values()), default=math.nan)
+
+
+def main(path: Path) -> None:
+    """Sweep all variants, on all cores, and write them down.
+
+    Parameters
+    ----------
+    path : Path
+        A CSV file.
+    """
+    with Workers(available_cores()) as pool:
+        rows = [*pool.map(measure, *zip(*variants(), strict=True))]
+    write_whole(path, pd.DataFrame(rows).to_csv(index=False))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

@@ -1,0 +1,67 @@
+"""Contacts in motion that are as stiff as stated."""
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats, Integers
+
+
+def stiffen(
+    model: mujoco.MjModel, geoms: Integers, weight: Floats, stiffness: float, impedance: float
+) -> None:
+    """Make contacts critically damped, and as stiff as stated at rest.
+
+    At rest MuJoCo's contact force is -k/((1 - d) A) times the distance, with solref = (-k, -b), the
+    impedance d of solimp, and A the acceleration by a unit of force.
+
+    Parameters
+    ----------
+    model : mujoco.MjModel
+        Changed in place.
+    geoms : array of int, shape (n,)
+        The beam's.
+    weight : array, shape (n,)
+        A [1/mass].
+    stiffness : float
+        Force over penetration.
+    impedance : float
+        The same at all depths.
+    """
+    with np.errstate(over="ignore"):  # of a motion that is about to diverge
+        k = stiffness * (1 - impedance) * weight
+    model.geom_solref[geoms] = np.column_stack([-k, -2 * np.sqrt(k)])
+
+
+def weights_in_last_step(
+    model: mujoco.MjModel, data: mujoco.MjData, friction: float
+) -> tuple[Integers, Floats]:
+    """What MuJoCo took a unit of force to accelerate contacts by in a step of ``discrete``.
+
+    This integrator counts the springs and dampers of a step as inertia, so that with the same
+    solref a contact is harder by as much: up to 8 times at the tip, which is light, and hardly at
+    all elsewhere. The inertia changes slowly, with the vibrissa's shape.
+
+    Parameters
+    ----------
+    model, data : mujoco.MjModel, mujoco.MjData
+        After the step.
+    friction : float
+        Coulomb's coefficient of all contacts.
+
+    Returns
+    -------
+    pairs : array of int, shape (n, 2)
+        The geoms of the contacts that MuJoCo solved.
+    weight : array, shape (n,)
+        The inverse inertia along their normals.
+    """
+    h, contact = model.opt.timestep, data.contact
+    solved = contact.efc_address >= 0
+    rows = contact.efc_address[solved]
+    k, b, d = data.efc_KBIP[rows, :3].T
+    # A row's own spring and damper act at the end of the step, and count as inertia, too.
+    weight = data.efc_diagA[rows] * (1 + h * b + h**2 * k * d)
+    if friction and model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:
+        # The row is that of a pyramid's edge.
+        weight = weight * model.opt.impratio / (2 * friction**2 * (1 + friction**2))
+    return contact.geom[solved], weight
