@@ -130,7 +130,12 @@ def test_without_the_contour_what_explains_badly_is_not_named():
 @pytest.mark.parametrize(
     ("name", "settings", "said"),
     [
-        ("catenary", Settings(segments=20, clamp="naive"), "discretisation of first order"),
+        pytest.param(
+            "catenary",
+            Settings(segments=20, clamp="naive"),
+            "discretisation of first order",
+            marks=pytest.mark.slow,
+        ),
         ("tip-only", Settings(segments=20, clamp="naive"), "discretisation of first order"),
         pytest.param(
             "catenary",
@@ -141,7 +146,7 @@ def test_without_the_contour_what_explains_badly_is_not_named():
         ("tip-only", Settings(contact_stiffness=5e3), "softness"),
         # A second-order beam's error, and softness spread over several beads in Phase B, bear no
         # signature that is known.
-        ("catenary", Settings(segments=10), None),
+        pytest.param("catenary", Settings(segments=10), None, marks=pytest.mark.slow),
         pytest.param("catenary", Settings(contact_stiffness=1e3), None, marks=pytest.mark.slow),
     ],
 )
@@ -175,6 +180,7 @@ def test_a_contour_that_is_not_known_or_not_smooth_is_no_obstacle():
     assert str(found.likely).startswith("flexural rigidity +1.00%")
 
 
+@pytest.mark.slow
 def test_the_message_names_the_cause_or_the_budgets():
     case = named_case("catenary")
     exact, stiff = exact_sweep("catenary"), swept(Beam(flexural_rigidity=1.01))(case)

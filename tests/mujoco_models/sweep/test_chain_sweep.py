@@ -89,6 +89,7 @@ def test_results_scale_with_the_beam():
     np.testing.assert_allclose(b["moment_z"], a["moment_z"] * beam.moment_unit, atol=1e-7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", [{"contact_stiffness": 1e8}, {"tolerance": 1e-10}])
 def test_snap_off_stays_when_the_relaxation_is_refined(change):
     rough = simulated_sweep("parabola")
@@ -96,6 +97,7 @@ def test_snap_off_stays_when_the_relaxation_is_refined(change):
     assert abs(fine.snap_off - rough.snap_off) < 1e-4
 
 
+@pytest.mark.slow
 def test_the_tip_is_not_pushed_out_through_the_top():
     """The mesh goes on beyond the reach of the tip; cut there, first contacts had -9e4 EI/L^2."""
     table = simulated_sweep("catenary", Settings(contour_points=12_800)).table

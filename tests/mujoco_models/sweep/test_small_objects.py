@@ -11,8 +11,11 @@ from mujoco_models.beams.chain import Chain
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.sweep import run_sweep
 
-SMALL = [(0.1, 5), (0.05, 8), (0.02, 12)]
-SMALLER = [pytest.param(*s, marks=pytest.mark.slow) for s in [(0.05, 12), (0.01, 20), (0.002, 60)]]
+SMALL = [(0.1, 5), (0.05, 8)]
+SMALLER = [
+    pytest.param(*s, marks=pytest.mark.slow)
+    for s in [(0.05, 12), (0.02, 12), (0.01, 20), (0.002, 60)]
+]
 
 
 @pytest.mark.parametrize(("radius", "stations"), SMALL + SMALLER)
