@@ -11,6 +11,8 @@ from mujoco_models.model.sides import FUSED, Sides
 from mujoco_models.model.surface import CONTACT_GAP, Surface
 
 _AT_TIP = 1e-9  # L
+# Loaded contacts of one place are closer along a curved vibrissa: one link's, or one facet's.
+_APART, _LINKS = 0.05, 2.5  # L, and in links
 NOWHERE = dict.fromkeys(("contact_angle", "contact_arc_length", "contact_x", "contact_y"), np.nan)
 
 
@@ -150,8 +152,8 @@ class Contacts(NamedTuple):
 
         Parameters
         ----------
-        place : array, shape (n, 3)
-            Where MuJoCo has each contact [L].
+        place : array, shape (n, 2)
+            Where the engine has each contact [L].
 
         Returns
         -------
@@ -164,7 +166,7 @@ class Contacts(NamedTuple):
             return {"phase": "free", **NOWHERE, "penetration": 0.0}
         weight = self.distance[loaded] / self.distance[loaded].sum()
         normal, s = weight @ self.normal[loaded], self.arc_length[loaded]
-        x, y = weight @ place[loaded, :2]
+        x, y = weight @ place[loaded]
         return {
             "phase": "tip" if s.min() > 1 - _AT_TIP else "tangent",
             "contact_angle": float(np.arctan2(normal[0], -normal[1])),
@@ -178,6 +180,22 @@ class Contacts(NamedTuple):
     def apart(self) -> float:
         """The longest stretch of the beam between neighbouring loaded contacts [L]."""
         return float(np.diff(np.sort(self.arc_length[self.loaded])).max(initial=0.0))
+
+    def touch_twice(self, layout: Layout) -> bool:
+        """Whether a vibrissa that is curved at rest touches in two places.
+
+        Parameters
+        ----------
+        layout : Layout
+            Of the beam.
+
+        Returns
+        -------
+        bool
+            A straight one bends away from the object, and touches in one.
+        """
+        one_place = max(_APART, _LINKS * float(layout.lengths.max()))
+        return not layout.vibrissa.is_straight and self.apart > one_place
 
     @property
     def slope(self) -> Floats:

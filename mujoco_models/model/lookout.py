@@ -1,5 +1,7 @@
 """What of beam and obstacle takes part in collisions, and what that could overlook."""
 
+from typing import Protocol
+
 import mujoco
 import numpy as np
 
@@ -11,15 +13,81 @@ _NEAR = 1e-6  # L; beads that are nearer to the obstacle must be watched at rest
 _OVERLOOKED = 1e-6  # L; how deep an unloaded bead may be in the obstacle, or a depth be off
 
 
+class Scene(Protocol):
+    """The beads and the obstacle as an engine has them, and what of them collides."""
+
+    radii: Floats
+    """Of the beads, shape (n_beads,) [L]."""
+
+    def positions(self) -> Floats:
+        """Where the beads are.
+
+        Returns
+        -------
+        array, shape (n_beads, 2)
+            Positions of their centres [L].
+        """
+
+    def show(self, window: int) -> None:
+        """Let what the obstacle has for a window, and nothing else of it, collide.
+
+        Parameters
+        ----------
+        window : int
+            See `Obstacle.window_of`.
+        """
+
+    def collide(self, beads: frozenset[int]) -> None:
+        """Let these beads, and no others, collide with the obstacle.
+
+        Parameters
+        ----------
+        beads : frozenset of int
+            Their numbers.
+        """
+
+
+class MujocoScene:
+    """That of a compiled model of MuJoCo's, whose collision masks are changed in place.
+
+    Parameters
+    ----------
+    model, data : mujoco.MjModel, mujoco.MjData
+        The compiled model and its state.
+    beads : array of int, shape (n_beads,)
+        The beads' geoms.
+    obstacle : Obstacle
+        What the beam is swept past.
+    """
+
+    def __init__(
+        self, model: mujoco.MjModel, data: mujoco.MjData, beads: Integers, obstacle: Obstacle
+    ) -> None:
+        self._model, self._data, self._beads, self._obstacle = model, data, beads, obstacle
+        self.radii = model.geom_size[beads, 0].copy()
+        self._geoms = np.array([model.geom(f"{GEOM_PREFIX}{i}").id for i in range(obstacle.geoms)])
+
+    def positions(self) -> Floats:
+        """As MuJoCo has them."""
+        return np.asarray(self._data.geom_xpos[self._beads, :2])
+
+    def show(self, window: int) -> None:
+        """By the obstacle itself."""
+        self._obstacle.show(self._model, self._geoms, window)
+
+    def collide(self, beads: frozenset[int]) -> None:
+        """By their masks."""
+        self._model.geom_conaffinity[self._beads] = 0
+        self._model.geom_conaffinity[self._beads[sorted(beads)]] = 1
+
+
 class Lookout:
     """The obstacle's window and the watched beads: all else is left out of collisions, for speed.
 
     Parameters
     ----------
-    model, data : mujoco.MjModel, mujoco.MjData
-        The compiled model and its state; collision masks are changed in place.
-    beads : array of int, shape (n_beads,)
-        The beads' geoms.
+    scene : Scene
+        The engine's.
     obstacle : Obstacle
         What the beam is swept past.
     radius : float
@@ -33,29 +101,16 @@ class Lookout:
         The beads that do.
     """
 
-    def __init__(
-        self,
-        model: mujoco.MjModel,
-        data: mujoco.MjData,
-        beads: Integers,
-        obstacle: Obstacle,
-        radius: float,
-    ) -> None:
-        self._model = model
-        self._data = data
-        self._beads = beads
-        self._obstacle = obstacle
-        self._radius, self._radii = radius, model.geom_size[beads, 0].copy()
-        self._obstacle_geoms = np.array(
-            [model.geom(f"{GEOM_PREFIX}{i}").id for i in range(obstacle.geoms)]
-        )
+    def __init__(self, scene: Scene, obstacle: Obstacle, radius: float) -> None:
+        self._scene, self._obstacle, self._radius = scene, obstacle, radius
+        self._count = len(scene.radii)
         self.window = -1
         self.face(np.pi / 2)  # where a sweep to the left begins
         self.watched: frozenset[int] = frozenset()
-        self.watch(frozenset(range(len(beads))))
+        self.watch(frozenset(range(self._count)))
 
     def use_window(self, window: int) -> None:
-        """Let MuJoCo see what the obstacle has for this window.
+        """Let the engine see what the obstacle has for this window.
 
         Parameters
         ----------
@@ -63,7 +118,7 @@ class Lookout:
             See `Obstacle.window_of`.
         """
         if window != self.window:
-            self._obstacle.show(self._model, self._obstacle_geoms, window)
+            self._scene.show(window)
             self.window = window
 
     def move_window(self, loaded: Floats) -> bool:
@@ -77,7 +132,7 @@ class Lookout:
         Returns
         -------
         bool
-            True if the window had to be changed: MuJoCo's answer is then out of date.
+            True if the window had to be changed: the engine's answer is then out of date.
         """
         if loaded.size == 0 or self._obstacle.is_inside(self.window, loaded):
             return False
@@ -121,19 +176,18 @@ class Lookout:
             Their numbers.
         """
         if beads != self.watched:
-            self._model.geom_conaffinity[self._beads] = 0
-            self._model.geom_conaffinity[self._beads[sorted(beads)]] = 1
+            self._scene.collide(beads)
             self.watched = beads
 
     def near_the_obstacle(self) -> frozenset[int]:
-        """Beads that touch the obstacle or nearly do, whether or not MuJoCo looks at them.
+        """Beads that touch the obstacle or nearly do, whether or not the engine looks at them.
 
         Returns
         -------
         frozenset of int
             Their numbers.
         """
-        near = self._obstacle.near(self._positions(), self._radius + _NEAR)
+        near = self._obstacle.near(self._scene.positions(), self._radius + _NEAR)
         return frozenset(near.tolist())
 
     def overlooked(self, contacts: Contacts) -> float | None:
@@ -155,8 +209,8 @@ class Lookout:
         unloaded = np.setdiff1d(
             sorted(self.watched), contacts.touch[contacts.loaded | contacts.fused]
         )
-        positions = self._positions()[unloaded]
-        inside = self._radii[unloaded] - _OVERLOOKED
+        positions = self._scene.positions()[unloaded]
+        inside = self._scene.radii[unloaded] - _OVERLOOKED
         for suspect in self._obstacle.near(positions, self._radius - _OVERLOOKED):
             clearance, place = self._obstacle.clearance(positions[suspect])
             if clearance < inside[suspect]:
@@ -164,7 +218,7 @@ class Lookout:
         return None
 
     def belied(self, contacts: Contacts) -> bool:
-        """Whether MuJoCo's depth of a loaded bead is not that of the contour.
+        """Whether the engine's depth of a loaded bead is not that of the contour.
 
         The search over a mesh can end at a vertex far from the nearest one: a window of a circle of
         radius 0.038 L had facets of 0.11 rad so. If there is another window that has all of the
@@ -178,17 +232,17 @@ class Lookout:
         Returns
         -------
         bool
-            True if MuJoCo's answer cannot be used.
+            True if the engine's answer cannot be used.
         """
         if not self._obstacle.upright:
             return False
-        beads = contacts.loaded & (contacts.touch < len(self._beads))
+        beads = contacts.loaded & (contacts.touch < self._count)
         if not beads.any():
             return False
         touch = contacts.touch[beads]
-        points = self._positions()[touch]
+        points = self._scene.positions()[touch]
         found = np.array([self._obstacle.clearance(point) for point in points])
-        off = np.abs(found[:, 0] - self._radii[touch] - contacts.distance[beads])
+        off = np.abs(found[:, 0] - self._scene.radii[touch] - contacts.distance[beads])
         if off.max() < _OVERLOOKED:
             return False
         for other in (self.window - 1, self.window + 1):
@@ -212,8 +266,4 @@ class Lookout:
         """
         if len(self._obstacle.corners) == 0:
             return False
-        return self._obstacle.is_cut(np.vstack([joints, self._positions()[-1]]))
-
-    def _positions(self) -> Floats:
-        """Shape (n_beads, 2) [L]."""
-        return np.asarray(self._data.geom_xpos[self._beads, :2])
+        return self._obstacle.is_cut(np.vstack([joints, self._scene.positions()[-1]]))

@@ -11,7 +11,7 @@ from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.errors import DivergedError
 from mujoco_models.model import clamp
 from mujoco_models.model.contacts import Contacts
-from mujoco_models.model.lookout import Lookout
+from mujoco_models.model.lookout import Lookout, MujocoScene
 from mujoco_models.model.sides import FUSED, Sides
 from mujoco_models.model.sliding import SlidingBeads
 from mujoco_models.model.spec import assemble
@@ -27,8 +27,6 @@ _BAD_STATES = (
     mujoco.mjtWarning.mjWARN_BADQACC,
 )
 _FULL = (mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL)
-# Loaded contacts of one place are closer along a curved vibrissa: one link's, or one facet's.
-_APART, _LINKS = 0.05, 2.5  # L, and in links
 _IMPEDANCE = 0.9  # MuJoCo's d; with the stiffness set below it cancels out of the law at rest
 
 
@@ -77,7 +75,8 @@ class BeamModel:
         self._joints = np.unique(model.jnt_bodyid, return_index=True)[1]
         self._set_contact_stiffness()
         self._sliding = SlidingBeads(model, self.beads, self.layout, obstacle)
-        self.lookout = Lookout(model, self.data, self.beads, obstacle, radius)
+        scene = MujocoScene(model, self.data, self.beads, obstacle)
+        self.lookout = Lookout(scene, obstacle, radius)
 
     def _set_contact_stiffness(self) -> None:
         """The same stiffness at every contact, whatever the time step.
@@ -186,6 +185,10 @@ class BeamModel:
         self.data.qpos[:] = configuration
         self.evaluate()
 
+    def stiffness(self, angles: Floats) -> Floats:
+        """That of the beam's joints."""
+        return self.beam.stiffness(angles)
+
     def elastic_moments(self) -> Floats:
         """The beam's own moment at each joint.
 
@@ -234,21 +237,9 @@ class BeamModel:
         """
         return Contacts.of(self.data, self._surface, self.layout, self.joint_positions())
 
-    def touches_twice(self, contacts: Contacts) -> bool:
-        """Whether a vibrissa that is curved at rest touches in two places.
-
-        Parameters
-        ----------
-        contacts : Contacts
-            Of the last evaluated configuration.
-
-        Returns
-        -------
-        bool
-            A straight one bends away from the object, and touches in one.
-        """
-        one_place = max(_APART, _LINKS * float(self.layout.lengths.max()))
-        return not self.layout.vibrissa.is_straight and contacts.apart > one_place
+    def contact_places(self) -> Floats:
+        """Where MuJoCo has each contact: between the two surfaces."""
+        return np.asarray(self.data.contact.pos[:, :2])
 
     def contact_curvature(self, slope: Floats) -> Floats:
         """Curvature of the contour that the beads' centres feel.

@@ -4,8 +4,8 @@ from enum import Enum
 
 import numpy as np
 
+from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import Contacts
-from mujoco_models.model.model import BeamModel
 
 _POKES = -0.05  # cosine; a tip that pokes at right angles is on neither side
 
@@ -19,7 +19,7 @@ class Stance(Enum):
     PASSED = "free, the object is behind"
 
 
-def stance(model: BeamModel, contacts: Contacts) -> Stance:
+def stance(model: Balance, contacts: Contacts) -> Stance:
     """The stance of the last evaluated configuration.
 
     A sweep goes from AHEAD to NEAR, and by snap-off to FAR or PASSED. Any other change of stance is
@@ -27,7 +27,7 @@ def stance(model: BeamModel, contacts: Contacts) -> Stance:
 
     Parameters
     ----------
-    model : BeamModel
+    model : Balance
         Evaluated.
     contacts : Contacts
         Of that configuration.

@@ -79,6 +79,21 @@ class FileMesh(Faceted):
             f"it, its normals leave the plane of the sweep by up to {solid.tilt:.1e}"
         )
 
+    def hull(self, window: int) -> Floats:
+        """The mesh's own points.
+
+        Parameters
+        ----------
+        window : int
+            The only one.
+
+        Returns
+        -------
+        array, shape (n, 3)
+            Positions [L].
+        """
+        return self._solid.vertices
+
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """One geom."""
         vertices = self._solid.vertices

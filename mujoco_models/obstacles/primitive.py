@@ -118,6 +118,23 @@ class Primitive(Obstacle):
         model.geom_rbound[geom] = radius * np.hypot(1, _HALF_LENGTH)
         model.geom_pos[geom, :2] = self._circles.centre[window]
 
+    def circle(self, window: int) -> tuple[Floats, float]:
+        """A window's circle of curvature, for engines that make a cylinder of it themselves.
+
+        Parameters
+        ----------
+        window : int
+            Its number.
+
+        Returns
+        -------
+        centre : array, shape (2,)
+            Position [L].
+        radius : float
+            Of the circle [L].
+        """
+        return self._circles.centre[window], float(self._circles.radius[window])
+
     def curvature(self, slope: Floats) -> Floats:
         """That of the nearest circle."""
         nearest = np.rint(self.place(slope)).astype(int)

@@ -141,14 +141,34 @@ class Prism(Faceted):
         """Whether `window` has all of the contour around these vertices."""
         return bool((np.abs(places - self._centres[window]) <= self._fine - 2).all())
 
+    def hull(self, window: int) -> Floats:
+        """The points of a window's convex mesh, the two ends of the extrusion one after the other.
+
+        Parameters
+        ----------
+        window : int
+            Its number.
+
+        Returns
+        -------
+        array, shape (n, 3)
+            Positions [L].
+        """
+        polygon = self._polygon(window)
+        ends = [np.insert(polygon, 2, z, axis=1) for z in (-_HALF_DEPTH, _HALF_DEPTH)]
+        return np.concatenate(ends)
+
+    def _polygon(self, window: int) -> Floats:
+        centre = int(self._centres[window])
+        return np.vstack([self.vertices[self._kept(centre)], self.outline[-1]])
+
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """Add one mesh a window."""
         for i, centre in enumerate(self._centres.tolist()):
-            polygon = np.vstack([self.vertices[self._kept(centre)], self.outline[-1]])
-            ends = [np.insert(polygon, 2, z, axis=1) for z in (-_HALF_DEPTH, _HALF_DEPTH)]
+            polygon = self._polygon(i)
             inner, depth = self._inside(self.vertices[centre], polygon)
             size = min(_SPECK, depth / _SPECK_REACH)
-            add_hull(spec, i, np.concatenate(ends), np.append(inner, 0), size)
+            add_hull(spec, i, self.hull(i), np.append(inner, 0), size)
 
     def _inside(self, here: Floats, polygon: Floats) -> tuple[Floats, float]:
         """A place near a vertex, and how deep it is in a window's polygon.

@@ -11,7 +11,7 @@ from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.errors import DivergedError
 from mujoco_models.model.clamp import Clamp, by_sensors
 from mujoco_models.model.contacts import Contacts
-from mujoco_models.model.lookout import Lookout
+from mujoco_models.model.lookout import Lookout, MujocoScene
 from mujoco_models.model.spec import assemble
 from mujoco_models.model.surface import Surface
 from mujoco_models.motion import Motion
@@ -91,7 +91,8 @@ class MovingModel:
         self._set_contacts(motion)
         self._follows_inertia = motion.solref is None and motion.integrator == "discrete"
         self.time = 0.0
-        self._lookout = Lookout(self.model, self.data, self._surface.beads, obstacle, radius)
+        scene = MujocoScene(self.model, self.data, self._surface.beads, obstacle)
+        self._lookout = Lookout(scene, obstacle, radius)
         self._foot = self.model.body(FOOT).id
         self._joints = np.unique(self.model.jnt_bodyid[1:])
         mujoco.mj_forward(self.model, self.data)
@@ -239,7 +240,7 @@ class MovingModel:
             By column.
         """
         return {
-            **self.contacts().as_reading(self.data.contact.pos),
+            **self.contacts().as_reading(self.data.contact.pos[:, :2]),
             "tip_angle": self.tip_angle,
             "status": "ok",
             "kinetic_share": self.kinetic_share(speed),

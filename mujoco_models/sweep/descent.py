@@ -7,7 +7,7 @@ turns the beam by little: a beam 1e-4 L before its fold stays, one as far beyond
 
 import numpy as np
 
-from mujoco_models.model.model import BeamModel
+from mujoco_models.model.balance import Balance
 from mujoco_models.sweep.newton import Newton
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.rest import around, one_bead_a_link
@@ -16,12 +16,12 @@ from mujoco_models.sweep.state import State, turned
 _SHORTER, _LONGER = 2.0, 0.25  # the most by which inertia changes from one step to the next
 
 
-def descend(model: BeamModel, foot_x: float, start: State, numerics: Numerics, steps: int) -> State:
+def descend(model: Balance, foot_x: float, start: State, numerics: Numerics, steps: int) -> State:
     """Let the beam go down, with the foot at `foot_x`, until it is free or rests.
 
     Parameters
     ----------
-    model : BeamModel
+    model : Balance
         The beam and the obstacle.
     foot_x : float
         Foot position [L].

@@ -12,8 +12,8 @@ from scipy.optimize import nnls
 
 from analytic.problem.arrays import Floats
 from mujoco_models.errors import DivergedError
+from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import Contacts
-from mujoco_models.model.model import BeamModel
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.state import State, turned
 
@@ -38,13 +38,13 @@ class Newton:
 
     Parameters
     ----------
-    model : BeamModel
+    model : Balance
         Evaluated at the state that a step starts from.
     numerics : Numerics
         Constants.
     """
 
-    def __init__(self, model: BeamModel, numerics: Numerics) -> None:
+    def __init__(self, model: Balance, numerics: Numerics) -> None:
         self._model = model
         self._numerics = numerics
         self._last: dict[int, Touch] = {}
@@ -86,7 +86,7 @@ class Newton:
         force = self._forces(state, contacts)
         loaded = force > 0
 
-        stiffness = np.diag((1 + inertia) * model.beam.stiffness(state.angles))
+        stiffness = np.diag((1 + inertia) * model.stiffness(state.angles))
         # The lever of a force turns with every joint below the outer one of two ...
         outer = np.maximum.outer(np.arange(count), np.arange(count))
         at_bead = np.where(on_side, 0.0, force)

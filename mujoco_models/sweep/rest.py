@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from mujoco_models.model.model import BeamModel
+from mujoco_models.model.balance import Balance
 from mujoco_models.model.stance import stance
 from mujoco_models.sweep.newton import Newton
 from mujoco_models.sweep.numerics import Numerics
@@ -18,7 +18,7 @@ from mujoco_models.sweep.state import State, turned
 
 
 def relax(
-    model: BeamModel,
+    model: Balance,
     foot_x: float,
     start: State,
     tolerance: float,
@@ -30,7 +30,7 @@ def relax(
 
     Parameters
     ----------
-    model : BeamModel
+    model : Balance
         The beam and the obstacle; left in the returned state.
     foot_x : float
         Foot position [L].
@@ -68,7 +68,7 @@ def relax(
             slopes = contacts.slope[contacts.loaded]
             if not obstacle.faces(slopes):
                 break  # pushed out through the far side of the object: no state of the sweep
-            twice = model.touches_twice(contacts)
+            twice = contacts.touch_twice(model.layout)
             if lookout.move_window(obstacle.place(slopes)):
                 continue
             if unwatched := lookout.near_the_obstacle() - lookout.watched:
@@ -88,14 +88,14 @@ def relax(
     return replace(best, stance=stance(model, model.contacts()))
 
 
-def refine(model: BeamModel, foot_x: float, start: State, numerics: Numerics) -> State:
+def refine(model: Balance, foot_x: float, start: State, numerics: Numerics) -> State:
     """Newton's method with the differences of MuJoCo's moments, from a state that nearly rests.
 
     What `relax` knows of the stiffness of beam and contact takes no part in it.
 
     Parameters
     ----------
-    model : BeamModel
+    model : Balance
         The beam and the obstacle.
     foot_x : float
         Foot position [L].
@@ -126,12 +126,12 @@ def refine(model: BeamModel, foot_x: float, start: State, numerics: Numerics) ->
     return best
 
 
-def around(model: BeamModel, loaded: dict[int, float], reach: int) -> frozenset[int]:
+def around(model: Balance, loaded: dict[int, float], reach: int) -> frozenset[int]:
     """The loaded beads, and as many on either side; all past corners, where they are few.
 
     Parameters
     ----------
-    model : BeamModel
+    model : Balance
         Whose beads they are.
     loaded : dict
         Contact force by bead [EI/L^2].
@@ -151,12 +151,12 @@ def around(model: BeamModel, loaded: dict[int, float], reach: int) -> frozenset[
     )
 
 
-def one_bead_a_link(model: BeamModel) -> frozenset[int]:
+def one_bead_a_link(model: Balance) -> frozenset[int]:
     """The last bead of each link: they see a contact coming long before it is loaded.
 
     Parameters
     ----------
-    model : BeamModel
+    model : Balance
         Whose beads they are.
 
     Returns

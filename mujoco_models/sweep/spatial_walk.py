@@ -35,7 +35,7 @@ class _Departure(NamedTuple):
     timestep: float
 
 
-class SpatialWalk(Walk):
+class SpatialWalk(Walk[BeamModel]):
     """A walk that leaves the plane where the planar equilibrium is not stable in space.
 
     Attributes

@@ -1,18 +1,19 @@
 """From station to station at rest, and the snap-off found by smaller and smaller steps."""
 
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from mujoco_models.errors import ClampError
+from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import NOWHERE
-from mujoco_models.model.model import BeamModel
 from mujoco_models.model.stance import Stance
 from mujoco_models.sweep.descent import descend
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.rest import refine, relax
 from mujoco_models.sweep.state import State, turned
 
+Model = TypeVar("Model", bound=Balance)
 _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
 # What may follow one state at rest without a snap-off.
 _NEIGHBOURS = {
@@ -30,13 +31,13 @@ _OF_A_CURVED_TIP = {
 }
 
 
-class Walk:
+class Walk(Generic[Model]):
     """The beam on its way: the last state on the branch, and the one before it.
 
     Parameters
     ----------
-    model : BeamModel
-        The beam and the obstacle.
+    model : Balance
+        The beam and the obstacle, as an engine has them.
     foot_x : float
         Where the foot of the straight beam starts, clear of the object [L].
     tolerance : float
@@ -53,7 +54,7 @@ class Walk:
     """
 
     def __init__(
-        self, model: BeamModel, foot_x: float, tolerance: float, numerics: Numerics | None = None
+        self, model: Model, foot_x: float, tolerance: float, numerics: Numerics | None = None
     ) -> None:
         self.model = model
         self._tolerance = tolerance
@@ -247,14 +248,14 @@ class Walk:
         clamp, contacts = model.clamp(), model.contacts()
         row: dict[str, Any] = {
             **clamp._asdict(),
-            **contacts.as_reading(model.data.contact.pos),
+            **contacts.as_reading(model.contact_places()),
             "tip_angle": model.layout.tip_angle(state.angles),
             "status": "ok" if self.doubt is None else "unsettled",
             "residual": state.imbalance,
             "discrepancy": model.discrepancy(),
             "extension": model.extension(),
         }
-        if self.doubt is None and model.touches_twice(contacts):
+        if self.doubt is None and contacts.touch_twice(model.layout):
             row.update(NOWHERE, status="touches again")
         out_of_balance = len(state.angles) * state.imbalance  # of which the sensors feel the sum
         if state.settled and row["discrepancy"] > _DISCREPANCY + out_of_balance:

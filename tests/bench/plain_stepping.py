@@ -36,7 +36,7 @@ def main(quick: bool) -> None:
         title=f"Chain of 40 to {Settings().tolerance:g} EI/L, {stations} stations of the catenary",
         caption=f"w: frequency times step; near: far beads do not collide; at most {CAP:,} steps",
     )  # fmt: skip
-    ways: dict[str, Callable[[Walk], np.ndarray]] = {
+    ways: dict[str, Callable[[Walk[BeamModel]], np.ndarray]] = {
         "Newton": lambda walk: by_newton(walk, case),
         "stepping, w = 0.5": lambda walk: by_stepping(walk.model, case, 0.5, False),
         "near, w = 0.3": lambda walk: by_stepping(walk.model, case, 0.3, True),
@@ -60,7 +60,7 @@ def main(quick: bool) -> None:
     Console().print(table)
 
 
-def by_newton(walk: Walk, case: Case) -> np.ndarray:
+def by_newton(walk: Walk[BeamModel], case: Case) -> np.ndarray:
     """Residual at each station."""
     residuals = []
     for foot_x in case.foot_x:

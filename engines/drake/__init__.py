@@ -1,0 +1,1 @@
+"""The same chain of rigid links as MuJoCo's, computed by Drake: a twin."""

@@ -1,0 +1,124 @@
+"""A walk through all stations, and its readings in the units of the case."""
+
+import platform
+import time
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+from threadpoolctl import threadpool_limits
+
+from analytic.problem.case import Case
+from analytic.problem.columns import COLUMNS
+from analytic.problem.readings import Readings
+from mujoco_models.errors import DivergedError
+from mujoco_models.sweep.walk import Model, Walk
+
+_DIVERGED = {"phase": "free", "status": "diverged"}  # the row of a station without numbers
+_UNITS = {
+    "force": ("force_x", "force_y"),
+    "moment": ("moment_z", "residual"),
+    "length": ("contact_arc_length", "contact_x", "contact_y", "penetration", "out_of_plane"),
+}
+
+
+@dataclass(frozen=True)
+class Account:
+    """What the readings of a sweep say of their origin.
+
+    Attributes
+    ----------
+    source : str
+        Who produces them.
+    provenance : mapping
+        ``engine``, with its version, and ``settings``.
+    begun : float
+        Processor time when the work began [s].
+    """
+
+    source: str
+    provenance: Mapping[str, Any]
+    begun: float
+
+
+def follow(
+    case: Case,
+    walk: Walk[Model],
+    account: Account,
+    advance: Callable[[], None] = lambda: None,
+    keep: Callable[[Readings], None] = lambda _: None,
+) -> Readings:
+    """Go to all stations, one after the other.
+
+    Parameters
+    ----------
+    case : Case
+        Of a sweep to the left.
+    walk : Walk
+        At the first station.
+    account : Account
+        For the provenance.
+    advance, keep : callable
+        See `mujoco_models.simulate_sweep`.
+
+    Returns
+    -------
+    Readings
+        In the units of the case's beam.
+
+    Raises
+    ------
+    DivergedError, MemoryError, ClampError
+        As `mujoco_models.simulate_sweep` does.
+    """
+    rows: list[dict[str, Any]] = []
+    doubts: Counter[str] = Counter()
+    try:
+        # The matrices are small: more threads only wait for each other, on a busy machine for long.
+        with threadpool_limits(1):
+            for target in case.foot_x / case.beam.length:
+                walk.go_to(float(target))
+                doubts.update([walk.doubt] if walk.doubt else [])
+                rows.append(walk.row())
+                advance()
+    except BaseException as error:  # whatever it is, what there is must not be lost
+        if isinstance(error, DivergedError):
+            rows.append(_DIVERGED)
+        if len(rows) > 1:
+            keep(_readings(case, walk, rows, doubts, account))
+        if isinstance(error, DivergedError):
+            place = f"station {len(rows)} of {len(case.foot_x)}, foot_x = {target:.6g} L"
+            raise DivergedError(f"diverged at {place}: {error}") from error
+        raise
+    return _readings(case, walk, rows, doubts, account)
+
+
+def _readings(
+    case: Case,
+    walk: Walk[Model],
+    rows: list[dict[str, Any]],
+    doubts: Counter[str],
+    account: Account,
+) -> Readings:
+    """In the units of the case's beam."""
+    table, beam = pd.DataFrame(rows), case.beam
+    units = {"force": beam.force_unit, "moment": beam.moment_unit, "length": beam.length}
+    for kind, names in _UNITS.items():
+        for name in filter(table.columns.__contains__, names):
+            table[name] *= units[kind]
+    if "sideways_stiffness" in table:
+        table["sideways_stiffness"] *= beam.force_unit / beam.length
+    table.insert(0, "foot_x", case.foot_x[: len(rows)])
+    provenance = {
+        **case.provenance(),
+        **account.provenance,
+        "python": platform.python_version(),
+        "obstacle": walk.model.obstacle.label,
+        "seconds": round(time.process_time() - account.begun, 3),
+        "unsettled": dict(doubts),
+        "events": {name: None if x is None else x * beam.length for name, x in walk.events.items()},
+    }
+    extra = [name for name in table if name not in COLUMNS]
+    return Readings(table[[*COLUMNS, *extra]], beam, account.source, provenance)
