@@ -5,6 +5,7 @@ ARGS ?=
 
 BIN := .venv/bin
 BIN_MUJOCO3 := .venv-mujoco3/bin
+BIN_ENGINES := .venv-engines/bin
 
 STUDIES := resolution contact-stiffness phase-b sweep-step sensor-noise methods-deflection methods-noise
 CASES := catenary parabola two-circles shallow-catenary tip-only
@@ -16,7 +17,7 @@ FOUND = --budget --beam $(BEAM) --out $(@D) $(ARGS) || test $$? -eq 1; test -f $
 
 .NOTPARALLEL:
 .PHONY: help install develop run test test-slow test-all coverage lint docs wheel fuzz bench results again studies \
-  install-mujoco3 test-mujoco3 versions clean
+  install-mujoco3 test-mujoco3 install-engines test-engines versions clean
 
 help:            ## list the targets
 	@grep -E '^[a-z0-9-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -86,6 +87,11 @@ install-mujoco3: .venv-mujoco3/installed   ## build .venv-mujoco3 with MuJoCo 3.
 test-mujoco3: install-mujoco3    ## the fast tests under MuJoCo 3.17
 	$(BIN_MUJOCO3)/python -m pytest -n auto $(ARGS)
 
+install-engines: .venv-engines/installed   ## build .venv-engines with Drake and Exudyn
+
+test-engines: install-engines    ## the tests of the other engines, on two cases each; ARGS="-m slow" for more
+	$(BIN_ENGINES)/python -m pytest -n auto tests/engines $(ARGS)
+
 versions: install install-mujoco3    ## the beams of both MuJoCo versions and the closed form side by side
 	set -e; for beam in chain rod; do \
 	  $(BIN)/vibrissa simulate $(CASE) --beam $$beam --out results/versions/4 $(ARGS); done
@@ -95,7 +101,7 @@ versions: install install-mujoco3    ## the beams of both MuJoCo versions and th
 	  $(foreach sweep,3.17/mujoco-chain 3.17/mujoco-cable 4/mujoco-chain 4/mujoco-rod,results/versions/$(sweep).parquet)
 
 clean:           ## remove what the targets above made
-	rm -rf .venv .venv-mujoco3 .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf .venv .venv-mujoco3 .venv-engines .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
 	rm -rf site htmlcov .coverage* dist results/*/
 
 results/runs/%-chain/report.html: BEAM = chain
@@ -117,6 +123,11 @@ results/runs/%-cable/report.html: | install-mujoco3
 
 .venv/developed: .venv/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,dask,docs]'
+	touch $@
+
+.venv-engines/installed: pyproject.toml
+	$(PYTHON) -m venv .venv-engines
+	$(BIN_ENGINES)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,drake,exudyn]'
 	touch $@
 
 .venv-mujoco3/installed: pyproject.toml

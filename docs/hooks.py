@@ -12,7 +12,7 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("analytic", "mujoco_models", "compare")
+PACKAGES = ("analytic", "mujoco_models", "engines", "compare")
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:

@@ -123,7 +123,7 @@ def test_the_plugin_and_the_types_come_with_it(environment, tmp_path):
     )
     packages = Path(found.stdout.strip()).parent
     assert packages.is_relative_to(environment.parent)
-    for package in ("analytic", "mujoco_models", "compare"):
+    for package in ("analytic", "mujoco_models", "engines", "compare"):
         assert (packages / package / "py.typed").exists()
         assert (packages / package / "__init__.pyi").exists()
     assert not (packages / "tests").exists()

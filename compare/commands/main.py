@@ -42,6 +42,7 @@ COMMANDS: tuple[Callable[..., int], ...] = (
     study.study,
     study.study_report,
     sweeps.cases,
+    sweeps.engines,
 )
 
 

@@ -77,6 +77,15 @@ Timestep = Annotated[
     float | None,
     typer.Option(metavar="DT", help="MuJoCo's, in motion [T1].", show_default="the case's"),
 ]
+Engines = Annotated[
+    str | None,
+    typer.Option(
+        "--engine",
+        metavar="A,B,...",
+        help="Engines that sweep the case at rest; `vibrissa engines` lists them.",
+        show_default="the case's, or mujoco",
+    ),
+]
 BeamFile = Annotated[
     Path | None,
     typer.Option(
@@ -108,6 +117,7 @@ class Changes:
     motion: bool = False
     speed: float | None = None
     timestep: float | None = None
+    engines: str | None = None
 
     def job(self, name: str) -> "Job":
         """The job of that name or TOML file, with these changes.
@@ -142,6 +152,10 @@ class Changes:
             "planar": False if self.spatial else None,
         }
         given = {key: value for key, value in named.items() if value is not None}
+        if self.engines is not None:
+            from engines.found import named_engines
+
+            job = replace(job, engines=tuple(named_engines(self.engines)))
         return replace(
             job, case=case, settings=replace(job.settings, **given), motion=self._moved(job.motion)
         )
@@ -219,6 +233,7 @@ class Changes:
             *(["in-motion"] if self.motion else []),
             *([f"speed-{self.speed:g}"] if self.speed is not None else []),
             *([f"timestep-{self.timestep:g}"] if self.timestep is not None else []),
+            *(self.engines.replace(" ", "").split(",") if self.engines is not None else []),
         ]
         return out or Path("results") / "-".join(words)
 

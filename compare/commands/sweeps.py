@@ -15,6 +15,7 @@ from compare.commands.options import (
     Beam,
     CaseName,
     Changes,
+    Engines,
     InMotion,
     Obstacle,
     Out,
@@ -44,15 +45,21 @@ def run(
     motion: InMotion = False,
     speed: Speed = None,
     timestep: Timestep = None,
+    engine: Engines = None,
 ) -> int:
     """Sweep in both models, compare, and write the report.
 
     In motion, if the case has a [motion] table or an option asks for it; the same model is then
-    also swept at rest, to see what the motion adds.
+    also swept at rest, to see what the motion adds. With other engines than MuJoCo, one report
+    compares all of them.
     """
-    changes = Changes(stations, segments, beam, obstacle, spatial, motion, speed, timestep)
+    changes = Changes(stations, segments, beam, obstacle, spatial, motion, speed, timestep, engine)
     job = changes.job_at_rest(case, "--budget") if with_budget else changes.job(case)
     with output_folder(changes.folder(out, job.case.name)) as folder:
+        if job.engines != ("mujoco",):
+            from compare.commands.many import run_many
+
+            return run_many(job, folder, with_budget)
         from analytic import solve_sweep
         from compare.commands import terminal
         from compare.commands.engines import at_rest, measured_budget, simulated, sweep_file
@@ -171,12 +178,22 @@ def simulate(
     motion: InMotion = False,
     speed: Speed = None,
     timestep: Timestep = None,
+    engine: Engines = None,
 ) -> int:
-    """Sweep in MuJoCo, at rest at every station or in motion."""
-    changes = Changes(stations, segments, beam, obstacle, spatial, motion, speed, timestep)
+    """Sweep in MuJoCo, at rest at every station or in motion; or at rest in other engines."""
+    changes = Changes(stations, segments, beam, obstacle, spatial, motion, speed, timestep, engine)
     job = changes.job(case)
     with output_folder(changes.folder(out, job.case.name)) as folder:
         from compare.commands import terminal
+
+        if job.engines != ("mujoco",):
+            from compare.commands.many import swept
+
+            for one in swept(job, folder):
+                if one.readings is not None:
+                    terminal.print_sweep(one.readings)
+                    terminal.print_written(folder / f"{one.engine}.parquet")
+            return AGREES
         from compare.commands.engines import simulated, sweep_file
 
         terminal.print_sweep(simulated(job, folder))
@@ -241,4 +258,15 @@ def cases() -> int:
         beyond = beyond_the_paper(case.beam, case.clamp_stiffness, case.friction)
         parts = [place, *(f"{what} {value:g}" for what, value in beyond.items())]
         typer.echo(f"{name:18}{profile.label:40}{'; '.join(parts)}")
+    return AGREES
+
+
+def engines() -> int:
+    """List the engines that can sweep a case, and whether they are installed."""
+    from engines import list_engines
+
+    for found in list_engines():
+        role = "" if found.engine is None else found.engine.role
+        there = found.trouble or found.version or ""
+        typer.echo(f"{found.name:12}{role:14}{there}")
     return AGREES

@@ -30,6 +30,7 @@ from compare.measure.repeats import Repeat
 from compare.read.assumed import ASSUMED
 from compare.read.passes import Pass
 from compare.read.rig import OWN_UNITS
+from compare.show.engines import ManyEngines
 from compare.show.figures.budget_bars import headline
 from compare.show.quantities import quantity
 from compare.show.side_by_side import SideBySide
@@ -482,6 +483,38 @@ def print_side_by_side(found: SideBySide) -> None:
     for i, name in enumerate(names[1:], 1):
         between.add_row(numbers[name], *(f"{worst[one, name]:.1e}" for one in names[:i]))
     _output().print(between)
+
+
+def print_engines(many: ManyEngines) -> None:
+    """Print each engine against the closed form, and what the disagreement is made of.
+
+    Parameters
+    ----------
+    many : ManyEngines
+        All sweeps of a case.
+    """
+    table = Table(
+        "engine", "role", *CLAMP_READINGS, "snap-off", "ms/station", "",
+        title=Text(f"{many.case.name}: each engine against the closed form, relative rms"),
+    )  # fmt: skip
+    for one in many.to_dict()["engines"]:
+        rms, took, apart = one["rms"], one["seconds_a_station"], one["snap_off_apart"]
+        table.add_row(
+            one["name"],
+            one["role"],
+            *("none" if rms is None else f"{rms[name]:.1e}" for name in CLAMP_READINGS),
+            "none" if apart is None else f"{apart:+.1e}",
+            "" if took is None else f"{1e3 * took:.1f}",
+            "no readings" if one["trouble"] else "agrees" if one["agrees"] else "disagrees",
+        )
+    _output().print(table)
+    if many.parts():
+        parts = Table("part", *CLAMP_READINGS, title="What the disagreement is made of")
+        for part, readings in many.parts().items():
+            parts.add_row(Text(part), *(f"{readings[name]:.1e}" for name in CLAMP_READINGS))
+        _output().print(parts)
+    if many.split is not None:
+        print_line(many.split.sentence)
 
 
 def _output() -> Console:

@@ -16,6 +16,7 @@ from compare.read.tables import BeamFile, CaseFile, Table
 from compare.read.toml import Place, TomlFile
 from compare.read.uncertainty import uncertainties_of
 from compare.validate.stated import Uncertainties
+from engines.found import named_engines
 from mujoco_models.motion import Motion
 from mujoco_models.own.names import OwnModel
 from mujoco_models.settings import Settings
@@ -42,6 +43,10 @@ class Job:
         What is uncertain about the case; None if nothing is stated.
     model : OwnModel or None
         The user's own model, if that is to be swept; it is always in motion.
+    engines : tuple of str
+        Which engines sweep the case at rest.
+    timeout : float
+        The longest that each of them may take [s].
     """
 
     case: Case
@@ -50,6 +55,8 @@ class Job:
     motion: Motion | None = None
     uncertainties: Uncertainties | None = None
     model: OwnModel | None = None
+    engines: tuple[str, ...] = ("mujoco",)
+    timeout: float = 600.0
 
 
 def load_job(name_or_path: str) -> Job:
@@ -94,7 +101,36 @@ def load_job(name_or_path: str) -> Job:
         motion = Motion() if moved is None else moved.of_a_model(case.beam, file.place)
     stated = uncertainties_of(case_file.uncertainty, case, file.place)
     model = None if own is None else own.build(path.parent)
-    return Job(case, case_file.mujoco, limits, motion, stated, model)
+    engines, timeout = engines_of(case_file, file.place), case_file.engine.timeout
+    return Job(case, case_file.mujoco, limits, motion, stated, model, engines, timeout)
+
+
+def engines_of(case: CaseFile, place: Place) -> tuple[str, ...]:
+    """The engines that a case file names.
+
+    Parameters
+    ----------
+    case : CaseFile
+        The file.
+    place : callable
+        What an error calls a key.
+
+    Returns
+    -------
+    tuple of str
+        Their names; whether they are installed does not matter.
+
+    Raises
+    ------
+    InputError
+        If there is none of such a name.
+    """
+    try:
+        return tuple(named_engines(case.engine.name))
+    except InputError as error:
+        raise InputError(
+            place(["engine", "name"]), repr(case.engine.name), "names of engines", str(error)
+        ) from error
 
 
 def validate(tables: Mapping[str, Any], place: Place) -> CaseFile:

@@ -351,6 +351,13 @@ class ModelTable(Table):
         return OwnModel(path if path.exists() else shipped_models().get(self.file, path), **names)
 
 
+class EngineTable(Table):
+    """Which engines sweep the case, and how long each may take [s]."""
+
+    name: str = "mujoco"
+    timeout: Annotated[float, Field(gt=0, le=86_400)] = 600.0
+
+
 class CaseFile(Table):
     """What a case file holds; dimensions in one system of units, SI if units are given.
 
@@ -366,6 +373,8 @@ class CaseFile(Table):
         A model of the user's own, if it is to be swept instead of ours.
     motion : table, optional
         How the foot moves, if it is not at rest at every station (`compare.read.motion`).
+    engine : table
+        Which engines sweep it at rest: names between commas, of `engines.list_engines`.
     tolerances : table
         How far two sweeps of the case may disagree (`compare.read.limits`).
     uncertainty : table
@@ -391,6 +400,7 @@ class CaseFile(Table):
     mujoco: Annotated[Settings, Field(default_factory=Settings)]
     model: ModelTable | None = None
     motion: MotionTable | None = None
+    engine: EngineTable = EngineTable()
     tolerances: dict[str, Any] = {}
     uncertainty: dict[str, Any] = {}
 

@@ -13,7 +13,7 @@ from itertools import zip_longest
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-_FOLDERS = ("analytic", "mujoco_models", "compare", "tests", "docs")
+_FOLDERS = ("analytic", "mujoco_models", "engines", "compare", "tests", "docs")
 _FILES = [*ROOT.glob("*.md"), ROOT / "results" / "README.md"]
 _FILES += [path for folder in _FOLDERS for path in (ROOT / folder).rglob("*.md")]
 PAGES = sorted(path.relative_to(ROOT) for path in _FILES)

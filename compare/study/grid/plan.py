@@ -16,6 +16,7 @@ from analytic import InputError
 from compare.study.grid.axes import MOST_RUNS, Axis, Value
 from compare.study.grid.sources import sources_digest
 from compare.study.grid.study import MESH, Study
+from engines.found import list_engines
 
 
 class PlannedRun(NamedTuple):
@@ -76,9 +77,12 @@ class Plan:
         InputError
             If there are more than `MOST_RUNS` of them.
         """
-        engines = ["vibrissa-testbed", *(["mujoco"] if study.beams else [])]
+        known = {found.name: found.version or "none" for found in list_engines()}
+        versions = {"vibrissa-testbed": version("vibrissa-testbed")}
+        versions |= {name: known[name] for name in study.engines}
         packages = ["analytic", "compare", *(["mujoco_models"] if study.beams else [])]
-        versions = {name: version(name) for name in engines}
+        if any(name != "mujoco" for name in study.engines):
+            packages.append("engines")
         return cls(study, versions | {"sources": sources_digest(*packages)})
 
     def to_json(self) -> str:
@@ -163,7 +167,9 @@ class Plan:
         if MESH in described:
             described[MESH] = _content(str(described[MESH]))
         if not study.beams:
-            described = {k: v for k, v in described.items() if not k.startswith("mujoco.")}
+            described = {
+                k: v for k, v in described.items() if not k.startswith(("mujoco.", "engine."))
+            }
         content = [described, sorted(study.record), study.keep_readings, self.versions]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 

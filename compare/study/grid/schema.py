@@ -10,7 +10,7 @@ from compare.study.grid.estimator import Estimator
 from compare.study.grid.sensor import SensorNoise
 from compare.study.grid.study import Record
 
-CASE_TABLES = ("beam", "support", "contact", "profile", "sweep", "mujoco", "motion")
+CASE_TABLES = ("beam", "support", "contact", "profile", "sweep", "mujoco", "motion", "engine")
 # A day: no sweep of this project takes so long, and the alarm that ends a run must not overflow.
 _LONGEST = 86_400.0
 
@@ -42,3 +42,4 @@ class StudyFile(Table):
     sweep: dict[str, Any] = Field(default_factory=dict)
     mujoco: dict[str, Any] = Field(default_factory=dict)
     motion: dict[str, Any] = Field(default_factory=dict)
+    engine: dict[str, Any] = Field(default_factory=dict)

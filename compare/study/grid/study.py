@@ -13,6 +13,7 @@ from compare.study.grid.sensor import SensorNoise
 Record: TypeAlias = Literal["events", "disagreement", "reconstruction"]
 RECORDS: tuple[Record, ...] = ("events", "disagreement", "reconstruction")
 BEAM = "mujoco.beam"
+ENGINE = "engine.name"
 MESH = "profile.file"
 
 
@@ -53,6 +54,17 @@ class Study:
     def crossed(self) -> tuple[Axis, ...]:
         """All axes, that of the beams included."""
         return (*self.axes, Axis.of({BEAM: self.beams})) if self.beams else self.axes
+
+    @property
+    def engines(self) -> tuple[str, ...]:
+        """The engines that sweep at rest in any of its runs; without a beam there are none."""
+        if not self.beams:
+            return ()
+        found = {str(self.base.get(ENGINE, "mujoco"))}
+        for axis in self.axes:
+            if ENGINE in axis.keys:
+                found = {str(point[axis.keys.index(ENGINE)]) for point in axis.points}
+        return tuple(sorted(found))
 
 
 def flatten(tables: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from compare.study.grid.axes import Value
 from compare.study.grid.plan import PlannedRun
 from compare.study.grid.study import RECORDS, Record, Study, case_file
 from compare.study.work import metrics
+from engines.apart import checked
 from mujoco_models import DivergedError
 
 Outcome: TypeAlias = Literal["done", "diverged", "unsettled", "timeout", "failed", "bad-input"]
@@ -193,12 +194,18 @@ def _measure(recipe: Recipe, parameters: dict[str, Value], readings: dict[str, R
     reference = solve_sweep(case)
     simulated = reference
     if recipe.simulate:
-        from mujoco_models import simulate_motion, simulate_sweep  # only where MuJoCo is used
+        from engines import find_engine  # engines are imported only where they are used
+        from mujoco_models import simulate_motion
 
         begin = time.perf_counter()
         deadline = _deadline(begin + recipe.timeout)
         if file.motion is None:
-            simulated = simulate_sweep(case, file.mujoco, deadline)
+            engine = find_engine(file.engine.name)
+            simulated = checked(engine.sweep(case, file.mujoco, deadline), case)
+        elif file.engine.name != "mujoco":
+            raise InputError(
+                "engine.name", file.engine.name, "mujoco in motion", "leave [motion] out"
+            )
         else:
             simulated = simulate_motion(case, file.motion.build(case.beam), file.mujoco, deadline)
         row["seconds_candidate"] = time.perf_counter() - begin

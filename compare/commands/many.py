@@ -1,0 +1,99 @@
+"""Several engines on one case: what ``--engine`` asks of ``run`` and ``simulate``."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from analytic import InputError, solve_sweep
+from compare.commands import terminal
+from compare.commands.engines import measured_budget
+from compare.commands.options import AGREES, DISAGREES
+from compare.read.case import Job
+from compare.show.engines import EngineRow, ManyEngines, write_engines
+from compare.simulate.many import sweep_many
+from engines import Outcome, list_engines
+
+
+def run_many(job: Job, folder: Path, with_budget: bool) -> int:
+    """Sweep a case with the engines of its job, and write one report of all.
+
+    Parameters
+    ----------
+    job : Job
+        With the names of the engines.
+    folder : Path
+        For sweeps, page, numbers and picture.
+    with_budget : bool
+        Whether to split MuJoCo's disagreement by controlled changes, too.
+
+    Returns
+    -------
+    int
+        The exit code.
+
+    Raises
+    ------
+    InputError
+        If the case is in motion, or no engine gives readings.
+    """
+    outcomes = swept(job, folder)
+    exact = solve_sweep(job.case)
+    exact.write(folder / "analytic.parquet")
+    sweeps = {one.engine: one.readings for one in outcomes if one.readings is not None}
+    budget = None
+    if with_budget and "mujoco" in sweeps:
+        budget, _ = measured_budget(job)
+    many = ManyEngines.of(job.case, exact, _rows(outcomes), sweeps, budget)
+    terminal.print_engines(many)
+    for path in write_engines(many, folder):
+        terminal.print_written(path)
+    return AGREES if many.agree else DISAGREES
+
+
+def swept(job: Job, folder: Path) -> Sequence[Outcome]:
+    """The sweeps of a job's engines, each written to ``ENGINE.parquet``.
+
+    Parameters
+    ----------
+    job : Job
+        Case, settings and engines.
+    folder : Path
+        Where to.
+
+    Returns
+    -------
+    sequence of Outcome
+        One for each engine.
+
+    Raises
+    ------
+    InputError
+        If the case is in motion or has a model of its own, or no engine gives readings.
+    """
+    if job.motion is not None or job.model is not None:
+        raise InputError(
+            "engine", ", ".join(job.engines), "mujoco for a case in motion or with a [model]",
+            "take [motion] and [model] out of the case",
+        )  # fmt: skip
+    with terminal.progress("engines", len(job.engines)) as advance:
+        found = sweep_many(job.case, job.settings, job.engines, job.timeout, advance)
+    for one in found:
+        if one.readings is None:
+            terminal.print_line(f"{one.engine}: {one.trouble}")
+        else:
+            one.readings.write(folder / f"{one.engine}.parquet")
+    if all(one.readings is None for one in found):
+        raise InputError(
+            "engine", ", ".join(job.engines), "one that sweeps the case",
+            f"{found[0].engine}: {found[0].trouble}",
+        )  # fmt: skip
+    return found
+
+
+def _rows(outcomes: Sequence[Outcome]) -> list[EngineRow]:
+    known = {found.name: found for found in list_engines()}
+    rows = []
+    for one in outcomes:
+        found = known[one.engine]
+        role, tuned = ("", "") if found.engine is None else (found.engine.role, found.engine.tuned)
+        rows.append(EngineRow(one.engine, role, found.version or "none", tuned, one.trouble))
+    return rows

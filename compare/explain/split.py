@@ -1,0 +1,154 @@
+"""A disagreement split by other engines: what of it is implementation, and what is the model.
+
+MuJoCo's disagreement with the exact solution is the sum of two differences: MuJoCo from a twin,
+which computes the same discrete model, and the twin from the exact solution. The first is
+implementation, of whichever of the two; the second is the model's. An engine with a discretisation
+of its own shows what another model of the same rod does.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from analytic import CLAMP_READINGS, Readings
+from compare.judge.tolerances import Tolerances
+from compare.measure.measurement import Measurement, measure
+
+ROUNDING = 1e-7
+"""Relative rms below which twins are equal: a rest to 1e-8 EI/L in either leaves 1e-9 to 1e-8."""
+
+
+@dataclass(frozen=True)
+class Split:
+    """What of a subject's disagreement is its implementation.
+
+    Attributes
+    ----------
+    subject, twin : str
+        Names of the engines.
+    disagreement, implementation, model : dict
+        Relative rms of each clamp reading: subject from exact, subject from twin, twin from exact.
+    others : dict
+        The same of each other model from the exact solution, by engine and reading.
+    snap_off : float or None
+        Of the subject less that of the twin [L].
+    """
+
+    subject: str
+    twin: str
+    disagreement: dict[str, float]
+    implementation: dict[str, float]
+    model: dict[str, float]
+    others: dict[str, dict[str, float]]
+    snap_off: float | None
+
+    @property
+    def blame(self) -> str:
+        """Where most of the disagreement is: ``"implementation"`` or ``"model"``.
+
+        Of the reading whose implementation has the largest share of its disagreement.
+        """
+        return "implementation" if self.share > 0.5 else "model"
+
+    @property
+    def share(self) -> float:
+        """The implementation's largest share of a reading's disagreement; 0 below rounding."""
+        return max(
+            self.implementation[name] / max(self.disagreement[name], self.model[name])
+            if self.implementation[name] > ROUNDING
+            else 0.0
+            for name in CLAMP_READINGS
+        )
+
+    @property
+    def sentence(self) -> str:
+        """What it says, in a sentence or two."""
+        worst = max(self.implementation.values())
+        apart = f"{self.subject} and its twin {self.twin} are {worst:.1e} apart"
+        if worst <= ROUNDING:
+            return (
+                f"{apart}: {self.subject} computes this model right, and its disagreement of "
+                f"{max(self.disagreement.values()):.1e} is the model's."
+            )
+        if self.blame == "model":
+            return (
+                f"{apart}, {self.share:.0%} of the disagreement: most of it is the model's, some "
+                "of it one of the two implementations'."
+            )
+        return (
+            f"{apart}, {self.share:.0%} of the disagreement: {self.subject} or {self.twin} does "
+            "not compute the model that was asked for."
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``engines.json`` holds of it.
+
+        Returns
+        -------
+        dict
+            JSON can hold it.
+        """
+        return {
+            "subject": self.subject,
+            "twin": self.twin,
+            "disagreement": self.disagreement,
+            "implementation": self.implementation,
+            "model": self.model,
+            "others": self.others,
+            "snap_off": self.snap_off,
+            "blame": self.blame,
+            "sentence": self.sentence,
+        }
+
+
+def split(
+    exact: Readings, sweeps: Mapping[str, Readings], roles: Mapping[str, str]
+) -> Split | None:
+    """Split the subject's disagreement.
+
+    Parameters
+    ----------
+    exact : Readings
+        The closed form.
+    sweeps : mapping of Readings
+        By engine.
+    roles : mapping of str
+        Of each engine, see `engines.engine.Role`.
+
+    Returns
+    -------
+    Split or None
+        None without a subject or without a twin.
+
+    Raises
+    ------
+    InputError
+        If sweeps have no common stretch.
+    """
+    by_role = {roles[name]: name for name in reversed(list(sweeps))}
+    if "subject" not in by_role or "twin" not in by_role:
+        return None
+    subject, twin = by_role["subject"], by_role["twin"]
+    between = _measured(sweeps[twin], sweeps[subject])
+    apart = between.snap_off.difference
+    return Split(
+        subject,
+        twin,
+        _rms(_measured(exact, sweeps[subject])),
+        _rms(between),
+        _rms(_measured(exact, sweeps[twin])),
+        {
+            name: _rms(_measured(exact, readings))
+            for name, readings in sweeps.items()
+            if name not in (subject, twin)
+        },
+        None if apart is None else apart / exact.beam.length,
+    )
+
+
+def _measured(reference: Readings, candidate: Readings) -> Measurement:
+    return measure(reference, candidate, Tolerances().snap_off_window)
+
+
+def _rms(found: Measurement) -> dict[str, float]:
+    return {name: found.disagreement[name].rms for name in CLAMP_READINGS}

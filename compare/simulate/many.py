@@ -1,0 +1,43 @@
+"""A case in several engines, one after the other, each in a process of its own."""
+
+from collections.abc import Callable, Sequence
+
+from analytic import Case
+from engines.apart import TIMEOUT, Outcome, sweep_apart
+from mujoco_models.settings import Settings
+
+
+def sweep_many(
+    case: Case,
+    settings: Settings,
+    names: Sequence[str],
+    timeout: float = TIMEOUT,
+    advance: Callable[[], None] = lambda: None,
+) -> list[Outcome]:
+    """Sweep a case with each of several engines.
+
+    One after the other: times are compared, and a machine with few cores would lend them unequally.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+    settings : Settings
+        The numerics, the same for all.
+    names : sequence of str
+        Of the engines.
+    timeout : float
+        The longest that each may take [s].
+    advance : callable
+        Called after each of them.
+
+    Returns
+    -------
+    list of Outcome
+        One for each name; what goes wrong with one does not stop the others.
+    """
+    found = []
+    for name in names:
+        found.append(sweep_apart(name, case, settings, timeout))
+        advance()
+    return found

@@ -1,0 +1,9 @@
+"""Engines that sweep the same case: MuJoCo, and others that say what of a disagreement is its own.
+
+The names are listed in ``__init__.pyi`` and loaded when first used, an engine's own library when it
+sweeps.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,9 @@
+from .apart import Outcome as Outcome
+from .apart import sweep_apart as sweep_apart
+from .engine import Engine as Engine
+from .found import Found as Found
+from .found import find_engine as find_engine
+from .found import list_engines as list_engines
+from .stations import Rest as Rest
+from .stations import Row as Row
+from .stations import sweep_stations as sweep_stations

@@ -1,0 +1,153 @@
+"""An engine in a process of its own: whatever it does there, there is an outcome in time."""
+
+import math
+from dataclasses import dataclass
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnProcess
+
+import numpy as np
+
+from analytic.problem.case import Case
+from analytic.problem.columns import CLAMP_READINGS, SENSED
+from analytic.problem.errors import InputError
+from analytic.problem.readings import Readings
+from engines.found import find_engine
+from mujoco_models.settings import Settings
+
+TIMEOUT = 600.0
+"""Seconds that a sweep may take unless something else is said: a slow engine needs one or two."""
+_GRACE = 5.0  # s, to end a process before it is killed
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of an engine's sweep.
+
+    Attributes
+    ----------
+    engine : str
+        Its name.
+    readings : Readings or None
+        None if there are none.
+    trouble : str or None
+        Why there are none, in a line.
+    """
+
+    engine: str
+    readings: Readings | None = None
+    trouble: str | None = None
+
+
+def sweep_apart(name: str, case: Case, settings: Settings, timeout: float = TIMEOUT) -> Outcome:
+    """Sweep a case with an engine in a process of its own.
+
+    Parameters
+    ----------
+    name : str
+        Of the engine.
+    case : Case
+        The problem.
+    settings : Settings
+        The numerics.
+    timeout : float
+        The longest that it may take [s].
+
+    Returns
+    -------
+    Outcome
+        Also if the engine is missing, refuses the case, raises, hangs, dies, or returns what are
+        no readings of this case.
+    """
+    context = get_context("spawn")
+    here, there = context.Pipe(duplex=False)
+    work = context.Process(target=_sweep, args=(there, name, case, settings), daemon=True)
+    try:
+        work.start()
+        there.close()  # so that a process that dies closes the pipe
+        if not here.poll(timeout):
+            return Outcome(name, trouble=f"not finished after {timeout:g} s")
+        found: Readings | str = here.recv()
+    except EOFError:
+        work.join(_GRACE)
+        return Outcome(name, trouble=f"its process ended without a word, code {work.exitcode}")
+    finally:
+        _end(work)
+        here.close()
+    if isinstance(found, str):
+        return Outcome(name, trouble=found)
+    return Outcome(name, found)
+
+
+def _end(work: SpawnProcess) -> None:
+    if work.pid is None:
+        return
+    work.join(0.1)
+    if work.is_alive():
+        work.terminate()
+        work.join(_GRACE)
+    if work.is_alive():
+        work.kill()
+        work.join()
+
+
+def _sweep(to: Connection, name: str, case: Case, settings: Settings) -> None:
+    """In the other process: readings, or a line that says why there are none."""
+    try:
+        to.send(checked(find_engine(name).sweep(case, settings), case))
+    except InputError as error:
+        to.send(str(error))
+    except BaseException as error:  # an engine may raise, or exit
+        to.send(" ".join(f"{type(error).__name__}: {error}".split())[:400])
+
+
+def checked(found: object, case: Case) -> Readings:
+    """What an engine returned, if those are readings of the case.
+
+    Parameters
+    ----------
+    found : object
+        What it returned.
+    case : Case
+        What it was asked for.
+
+    Returns
+    -------
+    Readings
+        The same, where stations that claim to be ok have numbers.
+
+    Raises
+    ------
+    InputError
+        If they are none, of other stations or of another vibrissa, or not a number where the
+        status is ``"ok"``.
+    """
+    if not isinstance(found, Readings):
+        raise InputError("readings", f"a {type(found).__name__}", "Readings", "see Engine.sweep")
+    foot_x = found.values("foot_x")
+    if len(foot_x) != len(case.foot_x) or not np.allclose(
+        foot_x, case.foot_x, rtol=0, atol=1e-12 * case.beam.length
+    ):
+        raise InputError(
+            "stations",
+            f"{len(foot_x)} from {foot_x[0]:g} to {foot_x[-1]:g}",
+            f"the {len(case.foot_x)} of the case, from {case.foot_x[0]:g} to {case.foot_x[-1]:g}",
+            "return a row a station, untrusted ones with another status",
+        )
+    if not math.isclose(found.beam.length, case.beam.length, rel_tol=1e-12):
+        raise InputError(
+            "length of the vibrissa", found.beam.length, f"{case.beam.length:g}", "return case.beam"
+        )
+    claimed = np.ones(len(foot_x), dtype=bool)
+    if "status" in found.table:
+        claimed = (found.table["status"] == "ok").to_numpy()
+    lacking = claimed & ~np.isfinite(found.table[list(SENSED)].to_numpy(dtype=float)).all(axis=1)
+    if lacking.any():
+        first = foot_x[np.argmax(lacking)]
+        raise InputError(
+            f"stations without a number in {', '.join(CLAMP_READINGS)}, but with status ok",
+            f"{int(lacking.sum())} of {len(foot_x)}, the first at foot_x = {first:g}",
+            "none",
+            "give them the status diverged or unsettled",
+        )
+    return found

@@ -1,0 +1,297 @@
+"""How the chain touches the obstacle in Drake: by its own contact law, or by its distances.
+
+Drake's compliant point contact is right to rounding where it has formulas, as for a sphere on a
+cylinder. On a convex mesh of fine facets its search for the depth is not: 1e-5 L deep in 400 facets
+its normal can be along an axis, 0.8 rad off, and in facets of 5e-4 L its depth is off by more than
+1e-5 L. Its distance of a *point* from the same mesh is exact to 1e-16 L and 1e-13 rad. So on meshes
+the spheres' centres are asked for that, and the force, stiffness times depth, is applied to the
+links as an external one: distance, levers and the clamp's reaction are Drake's still.
+"""
+
+from typing import Protocol
+
+import numpy as np
+from pydrake.common.value import Value
+from pydrake.geometry import (
+    AddContactMaterial,
+    CollisionFilterDeclaration,
+    GeometryId,
+    GeometrySet,
+    ProximityProperties,
+    QueryObject,
+    SceneGraph,
+    Sphere,
+)
+from pydrake.math import RigidTransform
+from pydrake.multibody.math import SpatialForce
+from pydrake.multibody.plant import (
+    CoulombFriction,
+    ExternallyAppliedSpatialForce,
+    MultibodyPlant,
+)
+from pydrake.multibody.tree import MultibodyForces, RigidBody
+from pydrake.systems.framework import Context
+
+from analytic.problem.arrays import Floats, Integers
+from mujoco_models.model.contacts import Contacts
+
+
+class Beads:
+    """The spheres, as places on links.
+
+    Parameters
+    ----------
+    links : list of RigidBody
+        Those of the chain.
+    carriers : array of int, shape (n_beads,)
+        The link that carries each of them.
+    places : array, shape (n_beads, 2)
+        In the frames of their links [L].
+    radii : array, shape (n_beads,)
+        Of the spheres [L].
+    """
+
+    def __init__(
+        self, links: list[RigidBody], carriers: Integers, places: Floats, radii: Floats
+    ) -> None:
+        self.links, self.carriers, self.places, self.radii = links, carriers, places, radii
+
+    def body(self, bead: int) -> RigidBody:
+        """The link of a bead.
+
+        Parameters
+        ----------
+        bead : int
+            Its number.
+
+        Returns
+        -------
+        RigidBody
+            Drake's.
+        """
+        return self.links[int(self.carriers[bead])]
+
+
+class Touch(Protocol):
+    """A way to touch."""
+
+    def collide(self, root: Context, beads: frozenset[int]) -> None:
+        """Let these beads, and no others, touch the obstacle.
+
+        Parameters
+        ----------
+        root : Context
+            The diagram's.
+        beads : frozenset of int
+            Their numbers.
+        """
+
+    def gap(self, query: QueryObject, bead: int, point: Floats) -> tuple[Floats, float]:
+        """How far a bead is from the obstacle.
+
+        Parameters
+        ----------
+        query : QueryObject
+            Of the configuration asked for.
+        bead : int
+            Its number.
+        point : array, shape (2,)
+            Where its centre is [L].
+
+        Returns
+        -------
+        outward : array, shape (3,)
+            The obstacle's normal there.
+        distance : float
+            Of the surfaces; negative if it touches [L].
+        """
+
+    def moments(self, context: Context, contacts: Contacts) -> Floats:
+        """Generalised forces of the contacts.
+
+        Parameters
+        ----------
+        context : Context
+            The plant's, in the configuration asked for.
+        contacts : Contacts
+            Of that configuration.
+
+        Returns
+        -------
+        array, shape (n_velocities,)
+            In Drake's order [EI/L].
+        """
+
+    def wrench(self, context: Context, contacts: Contacts, foot_x: float) -> Floats:
+        """Forces on the beam, and their moment about the foot.
+
+        Parameters
+        ----------
+        context : Context
+            The plant's.
+        contacts : Contacts
+            Of its configuration.
+        foot_x : float
+            Foot position [L].
+
+        Returns
+        -------
+        array, shape (3,)
+            force_x, force_y and moment_z [EI/L^2, EI/L].
+        """
+
+
+class OwnLaw:
+    """Drake's own compliant point contact between spheres and obstacle; see `Touch`.
+
+    Parameters
+    ----------
+    plant : MultibodyPlant
+        Not yet finalized; the spheres are added to it.
+    scene : SceneGraph
+        Its geometry.
+    beads : Beads
+        The spheres.
+    thing : GeometryId
+        The obstacle's geometry.
+    obstacle : RigidBody
+        Its body.
+    material : ProximityProperties
+        Of both, see `material`.
+    """
+
+    def __init__(
+        self,
+        plant: MultibodyPlant,
+        scene: SceneGraph,
+        beads: Beads,
+        thing: GeometryId,
+        obstacle: RigidBody,
+        material: ProximityProperties,
+    ) -> None:
+        self._plant, self._scene, self._obstacle = plant, scene, obstacle
+        self._beads = [
+            plant.RegisterCollisionGeometry(
+                beads.body(i),
+                RigidTransform(np.append(place, 0.0)),
+                Sphere(radius),
+                f"bead{i}",
+                material,
+            )
+            for i, (place, radius) in enumerate(
+                zip(beads.places, beads.radii.tolist(), strict=True)
+            )
+        ]
+        self._all, self._thing, self._id = GeometrySet(self._beads), GeometrySet([thing]), thing
+        filters = scene.collision_filter_manager()
+        filters.Apply(CollisionFilterDeclaration().ExcludeWithin(self._all))
+
+    def collide(self, root: Context, beads: frozenset[int]) -> None:
+        """By filters on pairs."""
+        filters = self._scene.collision_filter_manager(
+            self._scene.GetMyMutableContextFromRoot(root)
+        )
+        filters.Apply(CollisionFilterDeclaration().ExcludeBetween(self._thing, self._all))
+        if watched := [self._beads[i] for i in sorted(beads)]:
+            allowed = CollisionFilterDeclaration().AllowBetween(self._thing, GeometrySet(watched))
+            filters.Apply(allowed)
+
+    def gap(self, query: QueryObject, bead: int, point: Floats) -> tuple[Floats, float]:
+        """By Drake's distance of the two."""
+        pair = query.ComputeSignedDistancePairClosestPoints(self._beads[bead], self._id)
+        outward = np.asarray(pair.nhat_BA_W)  # in whichever order Drake has them
+        return outward if pair.id_B == self._id else -outward, float(pair.distance)
+
+    def moments(self, context: Context, contacts: Contacts) -> Floats:
+        """Drake's generalised contact forces."""
+        instance = self._obstacle.model_instance()
+        port = self._plant.get_generalized_contact_forces_output_port(instance)
+        return np.array(port.Eval(context))
+
+    def wrench(self, context: Context, contacts: Contacts, foot_x: float) -> Floats:
+        """The sum of Drake's contact results."""
+        found = self._plant.get_contact_results_output_port().Eval(context)
+        total = np.zeros(3)
+        for i in range(found.num_point_pair_contacts()):
+            pair = found.point_pair_contact_info(i)
+            on_beam = -1.0 if pair.bodyB_index() == self._obstacle.index() else 1.0
+            force = on_beam * pair.contact_force()
+            arm = pair.contact_point() - [foot_x, 0.0, 0.0]
+            total += [force[0], force[1], arm[0] * force[1] - arm[1] * force[0]]
+        return total
+
+
+class ByDistance:
+    """Stiffness times the depth that Drake's distances have, as external forces; see `Touch`.
+
+    Parameters
+    ----------
+    plant : MultibodyPlant
+        Not yet finalized.
+    beads : Beads
+        The spheres; the obstacle is the only geometry that Drake has.
+    stiffness : float
+        Force over depth [EI/L^3].
+    """
+
+    def __init__(self, plant: MultibodyPlant, beads: Beads, stiffness: float) -> None:
+        self._plant, self._beads, self._stiffness = plant, beads, stiffness
+
+    def collide(self, root: Context, beads: frozenset[int]) -> None:
+        """The contacts are of watched beads only."""
+
+    def gap(self, query: QueryObject, bead: int, point: Floats) -> tuple[Floats, float]:
+        """By Drake's distance of the centre."""
+        (found,) = query.ComputeSignedDistanceToPoint(np.append(point, 0.0))
+        return np.asarray(found.grad_W), float(found.distance - self._beads.radii[bead])
+
+    def moments(self, context: Context, contacts: Contacts) -> Floats:
+        """Of the forces that are applied; Drake's reactions then know of them, too."""
+        forces, applied = MultibodyForces(self._plant), []
+        for i in np.flatnonzero(contacts.loaded).tolist():
+            bead = int(contacts.touch[i])
+            body, place = self._beads.body(bead), np.append(self._beads.places[bead], 0.0)
+            force = np.append(self._force(contacts, i), 0.0)
+            one = ExternallyAppliedSpatialForce()
+            one.body_index, one.p_BoBq_B = body.index(), place
+            one.F_Bq_W = SpatialForce(np.zeros(3), force)
+            applied.append(one)
+            turned = body.EvalPoseInWorld(context).rotation() @ place
+            body.AddInForceInWorld(context, one.F_Bq_W.Shift(-turned), forces)
+        port = self._plant.get_applied_spatial_force_input_port()
+        port.FixValue(context, Value[list[ExternallyAppliedSpatialForce]](applied))
+        return np.asarray(self._plant.CalcGeneralizedForces(context, forces))
+
+    def wrench(self, context: Context, contacts: Contacts, foot_x: float) -> Floats:
+        """The sum of the forces that are applied."""
+        total = np.zeros(3)
+        for i in np.flatnonzero(contacts.loaded).tolist():
+            force, arm = self._force(contacts, i), contacts.point[i] - [foot_x, 0.0]
+            total += [*force, arm[0] * force[1] - arm[1] * force[0]]
+        return total
+
+    def _force(self, contacts: Contacts, i: int) -> Floats:
+        return np.asarray(-self._stiffness * contacts.distance[i] * contacts.normal[i])
+
+
+def material(stiffness: float) -> ProximityProperties:
+    """What makes Drake's contact of two bodies as stiff as that, without friction and damping.
+
+    Parameters
+    ----------
+    stiffness : float
+        Force over penetration of a pair [EI/L^3].
+
+    Returns
+    -------
+    ProximityProperties
+        For both bodies: Drake has them one behind the other, each twice as stiff as the pair.
+    """
+    properties = ProximityProperties()
+    AddContactMaterial(
+        dissipation=0.0,
+        point_stiffness=2 * stiffness,
+        friction=CoulombFriction(0.0, 0.0),
+        properties=properties,
+    )
+    return properties

@@ -1,0 +1,62 @@
+"""What an engine is: a name, what it needs, what it computes, and a sweep."""
+
+from collections.abc import Callable
+from typing import Literal, Protocol, TypeAlias
+
+from analytic.problem.case import Case
+from analytic.problem.readings import Readings
+from mujoco_models.settings import Settings
+
+Role: TypeAlias = Literal["subject", "twin", "other model"]
+"""Of an engine in a comparison of many.
+
+The ``subject`` is MuJoCo. A ``twin`` computes MuJoCo's very model, with the same settings: what it
+differs by from MuJoCo is implementation. An ``other model`` has a discretisation of its own.
+"""
+
+
+class Engine(Protocol):
+    """What can sweep a case; found by `engines.find_engine`.
+
+    It never sees the exact solution: `analytic.problem` states the case, and that is all.
+    """
+
+    name: str
+    """What ``--engine`` calls it."""
+    role: Role
+    """What its difference from MuJoCo says."""
+    requires: str
+    """The distribution that it needs, as pip writes it: ``"drake>=1.40,<2"``."""
+    tuned: str
+    """What was set for it, why, and by whom: for a fair comparison."""
+
+    def sweep(
+        self, case: Case, settings: Settings, advance: Callable[[], None] = lambda: None
+    ) -> Readings:
+        """Sweep a case quasi-statically, at rest at every station.
+
+        Parameters
+        ----------
+        case : Case
+            The problem, whichever way its foot moves; `solve_either_way` makes it one to the left.
+        settings : Settings
+            Number of segments, contact stiffness and the like; what has no meaning for the engine
+            it ignores.
+        advance : callable
+            To be called after every station.
+
+        Returns
+        -------
+        Readings
+            A row a station, in the units of the case's beam. A station that cannot be trusted is
+            there with another status than ``"ok"``. ``provenance["engine"]`` is its name and
+            version, ``provenance["seconds"]`` the processor time, and
+            ``provenance["events"]["snap_off"]`` where the vibrissa let go.
+
+        Raises
+        ------
+        InputError
+            If the engine has no such vibrissa, object or contact.
+        DivergedError
+            If it is not a number any more.
+        """

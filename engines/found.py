@@ -1,0 +1,140 @@
+"""Which engines there are: those shipped here, and those of other distributions by entry points."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, version
+
+from packaging.requirements import InvalidRequirement, Requirement
+
+from analytic.problem.errors import InputError
+from engines.engine import Engine
+
+GROUP = "vibrissa.engines"
+"""The entry points by which other distributions offer engines: ``name = "module:ENGINE"``."""
+_SHIPPED = {
+    "mujoco": "engines.mujoco:ENGINE",
+    "drake": "engines.drake.engine:ENGINE",
+}
+
+
+@dataclass(frozen=True)
+class Found:
+    """An engine by name, whether or not it can be used here.
+
+    Attributes
+    ----------
+    name : str
+        What ``--engine`` calls it.
+    engine : Engine or None
+        None if its module cannot be imported.
+    version : str or None
+        Of the distribution that it needs; None if that is not installed.
+    trouble : str or None
+        Why it cannot be used, and what to do; None if it can.
+    """
+
+    name: str
+    engine: Engine | None
+    version: str | None
+    trouble: str | None
+
+
+def list_engines() -> list[Found]:
+    """All engines that are known here, the shipped ones first.
+
+    Returns
+    -------
+    list of Found
+        A name each; an entry point cannot take the name of a shipped engine.
+    """
+    return [_found(name, target) for name, target in _known().items()]
+
+
+def find_engine(name: str) -> Engine:
+    """The engine of that name, ready for use.
+
+    Parameters
+    ----------
+    name : str
+        As `list_engines` has it.
+
+    Returns
+    -------
+    Engine
+        That can be asked for a sweep.
+
+    Raises
+    ------
+    InputError
+        If there is none, or what it needs is missing or of the wrong version.
+    """
+    known = _known()
+    if name not in known:
+        raise InputError(
+            "engine", repr(name), f"one of {', '.join(known)}", "`vibrissa engines` lists them"
+        )
+    found = _found(name, known[name])
+    if found.engine is None or found.trouble is not None:
+        raise InputError("engine", repr(name), "installed", found.trouble or "install it")
+    return found.engine
+
+
+def named_engines(names: str) -> list[str]:
+    """The engines of a list.
+
+    Parameters
+    ----------
+    names : str
+        Names between commas, each once.
+
+    Returns
+    -------
+    list of str
+        The names.
+
+    Raises
+    ------
+    InputError
+        If one is empty, unknown, or there twice. Whether it is installed does not matter.
+    """
+    listed, known = [name.strip() for name in names.split(",")], _known()
+    if len(set(listed)) < len(listed) or not set(listed) <= set(known):
+        raise InputError(
+            "engine",
+            repr(names),
+            f"names between commas, each once, of {', '.join(known)}",
+            "`vibrissa engines` lists them",
+        )
+    return listed
+
+
+def _known() -> dict[str, str]:
+    """Where each engine is, by its name."""
+    offered = {point.name: point.value for point in sorted(_offered(), key=lambda p: p.value)}
+    return {**_SHIPPED, **{n: where for n, where in offered.items() if n not in _SHIPPED}}
+
+
+def _offered() -> Iterator[EntryPoint]:
+    yield from entry_points(group=GROUP)
+
+
+def _found(name: str, target: str) -> Found:
+    module, _, attribute = target.partition(":")
+    try:
+        engine: Engine = getattr(import_module(module), attribute)
+        needed = Requirement(engine.requires)
+    except (Exception, SystemExit) as error:  # whatever another's module does when imported
+        what = " ".join(f"{type(error).__name__}: {error}".split())
+        if isinstance(error, InvalidRequirement):
+            what = f"its requirement cannot be read: {what}"
+        return Found(name, None, None, f"{target} cannot be loaded ({what})")
+    try:
+        there = version(needed.name)
+    except PackageNotFoundError:
+        remedy = f"{needed.name} is not installed: pip install '{engine.requires}'"
+        return Found(name, engine, None, remedy)
+    if not needed.specifier.contains(there, prereleases=True):
+        remedy = f"{needed.name} {there} is not {needed.specifier}: pip install '{engine.requires}'"
+        return Found(name, engine, there, remedy)
+    return Found(name, engine, there, None)

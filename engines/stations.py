@@ -1,0 +1,227 @@
+"""A sweep by an engine that can solve a station: in smaller steps where it takes them.
+
+For engines with a static solver of their own. They say where the vibrissa is at rest with the foot
+at a place, from their last state; the way from station to station, the snap-off, the units and the
+form of the readings are the same for all of them, and here.
+"""
+
+import platform
+import time
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+import pandas as pd
+
+from analytic.problem.case import Case
+from analytic.problem.columns import COLUMNS
+from analytic.problem.mirror import solve_either_way
+from analytic.problem.readings import Readings
+
+_SMALLEST = 1e-6  # L; a step of the foot that small which leaves the branch is at its end
+_TURN = 0.35  # rad; a tip that turns farther in a step has left the branch
+_SHIFT = 1.0  # rad; so has a contact whose slope angle jumps by more
+_HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below this just faded
+# At a fold the tip turns like the square root of the way to it, so ten times as fast a hundredth
+# of the way before. Where it does not turn three times as fast, the solver failed for its own sake.
+_FAR, _FASTER = 100.0, 3.0
+
+
+@dataclass(frozen=True)
+class Row:
+    """A state at rest, dimensionless: L = EI = 1.
+
+    Attributes
+    ----------
+    force_x, force_y, moment_z : float
+        The clamp's action on the vibrissa, at the foot.
+    tip_angle : float
+        Slope angle of the tip [rad].
+    phase : str
+        ``"free"``, ``"tip"`` or ``"tangent"``.
+    contact_angle, contact_arc_length, contact_x, contact_y : float
+        Slope angle of the contour, arc length and place of the contact; NaN where nothing touches.
+    residual : float
+        Largest force or moment out of balance, by the engine's own account.
+    status : str
+        ``"ok"``, or why the station cannot be trusted.
+    """
+
+    force_x: float = 0.0
+    force_y: float = 0.0
+    moment_z: float = 0.0
+    tip_angle: float = float(np.pi / 2)
+    phase: str = "free"
+    contact_angle: float = np.nan
+    contact_arc_length: float = np.nan
+    contact_x: float = np.nan
+    contact_y: float = np.nan
+    residual: float = 0.0
+    status: str = "ok"
+
+    @property
+    def load(self) -> float:
+        """Of the contact, which the clamp holds."""
+        return float(np.hypot(self.force_x, self.force_y))
+
+
+class Rest(Protocol):
+    """What an engine is asked: a station, from the last state that was accepted."""
+
+    def at(self, foot_x: float) -> Row | None:
+        """Bring the vibrissa to rest.
+
+        Parameters
+        ----------
+        foot_x : float
+            Foot position [L].
+
+        Returns
+        -------
+        Row or None
+            None if it did not come to rest.
+        """
+
+    def accept(self) -> None:
+        """Go on from the state of the last `at`, which is on the branch."""
+
+
+def sweep_stations(
+    case: Case,
+    rest: Callable[[Case], Rest],
+    source: str,
+    about: Mapping[str, Any],
+    advance: Callable[[], None] = lambda: None,
+) -> Readings:
+    """Sweep a case with an engine that solves stations.
+
+    Parameters
+    ----------
+    case : Case
+        The problem, in any units, whichever way its foot moves.
+    rest : callable
+        Makes the engine's model of a case whose foot moves to the left, in units of that case.
+    source : str
+        What the readings call the engine.
+    about : mapping
+        ``engine``, with its version, and ``settings``, for the provenance.
+    advance : callable
+        Called after every station.
+
+    Returns
+    -------
+    Readings
+        In the units of the case's beam, with a column ``residual``. Snap-off is where even the
+        smallest step leaves the branch, if the tip turned ever faster on the way there, as at a
+        fold; if it did not, that station and all after it are unsettled, and no snap-off is known.
+
+    Raises
+    ------
+    InputError
+        As `rest` does.
+    """
+    begun = time.process_time()
+
+    def swept(leftward: Case) -> Readings:
+        way, length = _Way(rest(leftward)), leftward.beam.length
+        way.foot_x = float(leftward.foot_x[0]) / length
+        rows, doubts = [], Counter[str]()
+        for target in (leftward.foot_x / length).tolist():
+            row, doubt = way.go_to(target)
+            doubts.update([doubt] if doubt else [])
+            rows.append(asdict(row))
+            advance()
+        table = pd.DataFrame(rows)
+        units = {
+            "force_x": leftward.beam.force_unit,
+            "force_y": leftward.beam.force_unit,
+            "moment_z": leftward.beam.moment_unit,
+            "residual": leftward.beam.moment_unit,
+            **dict.fromkeys(("contact_arc_length", "contact_x", "contact_y"), length),
+        }
+        for name, unit in units.items():
+            table[name] *= unit
+        table.insert(0, "foot_x", leftward.foot_x)
+        snap_off = None if way.snap_off is None else way.snap_off * length
+        provenance = {
+            **leftward.provenance(),
+            **about,
+            "python": platform.python_version(),
+            "seconds": round(time.process_time() - begun, 3),
+            "unsettled": dict(doubts),
+            "events": {"snap_off": snap_off},
+        }
+        return Readings(table[[*COLUMNS, "residual"]], leftward.beam, source, provenance)
+
+    return solve_either_way(case, swept)
+
+
+class _Way:
+    """The vibrissa on its way: the last state on the branch."""
+
+    def __init__(self, rest: Rest) -> None:
+        self._rest = rest
+        self._last = Row()
+        self._trail: list[tuple[float, float]] = []  # foot position and tip angle
+        self._lost: str | None = None
+        self.foot_x = 0.0
+        self.snap_off: float | None = None
+
+    def go_to(self, target: float) -> tuple[Row, str | None]:
+        """The state at a station, and why it cannot be trusted."""
+        if self.snap_off is not None:
+            return Row(), None
+        if self._lost is None:
+            self._advance(target)
+        if self._lost is not None:
+            return replace(self._last, status="unsettled"), self._lost
+        return (Row() if self.snap_off is not None else self._last), None
+
+    def _advance(self, target: float) -> None:
+        step, begin = target - self.foot_x, self.foot_x == target
+        while begin or self.foot_x != target:
+            begin = False
+            trial = target if abs(step) >= abs(target - self.foot_x) else self.foot_x + step
+            row = self._rest.at(trial)
+            if row is not None and self._follows(row):
+                self._rest.accept()
+                self.foot_x, self._last = trial, row
+                self._trail.append((trial, row.tip_angle))
+                step *= 2
+            elif abs(trial - self.foot_x) > _SMALLEST:
+                step = (trial - self.foot_x) / 2
+            else:
+                self._end(trial)
+                return
+
+    def _follows(self, row: Row) -> bool:
+        """Whether a state is the neighbour of the last one."""
+        last = self._last
+        if not np.isfinite([row.force_x, row.force_y, row.moment_z, row.tip_angle]).all():
+            return False
+        near = abs(row.tip_angle - last.tip_angle) < _TURN
+        if row.phase == "free":
+            return near and last.load < _HELD
+        if last.phase == "free":
+            return near
+        return near and abs(row.contact_angle - last.contact_angle) < _SHIFT
+
+    def _end(self, trial: float) -> None:
+        """The branch ends here: in a fold, or because the solver failed."""
+        if self._last.load >= _HELD and self._folds(trial):
+            self.snap_off = (self.foot_x + trial) / 2
+        else:
+            self._lost = "the solver found no neighbour of the last state at rest, and no fold"
+
+    def _folds(self, end: float) -> bool:
+        """Whether the tip turned ever faster on the way there."""
+        x, angle = np.array(self._trail[::-1]).T
+        way = np.abs(x - end)
+        near, far = np.searchsorted(way, [10 * _SMALLEST, 10 * _SMALLEST * _FAR])
+        if far + 1 >= len(x) or near == 0:
+            return False
+        fast = abs(angle[0] - angle[near]) / abs(x[0] - x[near])
+        slow = abs(angle[far] - angle[far + 1]) / abs(x[far] - x[far + 1])
+        return bool(fast > _FASTER * slow)

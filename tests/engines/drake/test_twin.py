@@ -1,0 +1,124 @@
+"""Drake computes MuJoCo's chain: on a smooth obstacle to rounding, on a mesh to its facets."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import CLAMP_READINGS, Beam, Case, InputError, circle, named_case, polygon
+from mujoco_models import Settings, simulate_sweep
+from mujoco_models.obstacles.prism import Prism
+
+pytest.importorskip("pydrake", reason="Drake is an extra: pip install '.[drake]'")
+
+from engines import find_engine
+
+SMOOTH = Settings(obstacle="primitive")
+
+
+def apart(case: Case, settings: Settings) -> tuple[dict[str, float], float]:
+    """Largest difference by reading over its largest magnitude, and of the snap-off [L]."""
+    twin, mujoco = find_engine("drake").sweep(case, settings), simulate_sweep(case, settings)
+    assert (twin.table["phase"] == mujoco.table["phase"]).all()
+    assert (twin.table["status"] == mujoco.table["status"]).all()
+    settled = twin.trusted & mujoco.trusted
+    assert settled.mean() > 0.95
+    found = {
+        name: np.abs(twin.values(name) - mujoco.values(name))[settled].max()
+        / np.abs(mujoco.values(name)).max()
+        for name in CLAMP_READINGS
+    }
+    assert np.nanmax(twin.values("discrepancy")) < 1e-6  # EI/L^2, EI/L
+    return found, (twin.snap_off - mujoco.snap_off) / case.beam.length
+
+
+def short(name: str, stations: int) -> Case:
+    case = named_case(name)
+    return replace(case, sweep=replace(case.sweep, stations=stations))
+
+
+@pytest.mark.parametrize("name", ["catenary", "parabola"])
+def test_the_twin_equals_mujoco_on_a_smooth_obstacle(name):
+    """A rest to 1e-8 EI/L, in either, is all that they may differ by."""
+    readings, snap_off = apart(short(name, 40), replace(SMOOTH, segments=20))
+    assert max(readings.values()) < 1e-8
+    assert abs(snap_off) < 1e-9
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("segments", [20, 40, 80])
+@pytest.mark.parametrize("name", ["catenary", "parabola", "two-circles", "tip-only"])
+def test_so_it_does_with_links_of_any_size(name, segments):
+    readings, snap_off = apart(short(name, 30), replace(SMOOTH, segments=segments))
+    assert max(readings.values()) < 1e-8
+    assert abs(snap_off) < 1e-9
+
+
+@pytest.mark.parametrize(
+    "beam",
+    [
+        Beam(tip_radius=0.0035),
+        Beam(natural_curvature=-0.2),
+        Beam(length=0.05, flexural_rigidity=2e-6, radius=0.00025, si=True),
+    ],
+    ids=["cone", "curved", "in metres"],
+)
+def test_so_it_does_for_other_vibrissae(beam):
+    scale = beam.length
+    case = Case(beam, circle(scale, (0.0, 0.4 * scale)), clamp_stiffness=20 * beam.moment_unit)
+    case = replace(case, sweep=replace(case.sweep, stations=20))
+    readings, snap_off = apart(case, replace(SMOOTH, segments=12))
+    assert max(readings.values()) < 1e-8
+    assert abs(snap_off) < 1e-9
+
+
+def test_a_sweep_to_the_right_is_the_mirror_image():
+    case = short("parabola", 20)
+    mirrored = case.mirrored()
+    settings = replace(SMOOTH, segments=10)
+    left, right = (find_engine("drake").sweep(one, settings) for one in (case, mirrored))
+    np.testing.assert_allclose(right.values("force_x"), -left.values("force_x"), atol=1e-12)
+
+
+def test_on_a_mesh_they_differ_by_mujocos_normals():
+    """MuJoCo keeps a mesh's vertices in single precision; Drake's normals are the facets' own.
+
+    A tip that rests on one facet feels its normal, and the force turns with it.
+    """
+    case, settings = short("parabola", 30), Settings(segments=20)
+    twin, mujoco = find_engine("drake").sweep(case, settings), simulate_sweep(case, settings)
+    tips = ((twin.table["phase"] == "tip") & twin.trusted & mujoco.trusted).to_numpy()
+    assert tips.sum() > 5
+    facets = Prism.of(case, settings.contour_points).facet_angles
+
+    def off(angles):
+        return np.abs(np.subtract.outer(angles, facets)).min(axis=1)
+
+    ours, theirs = (sweep.values("contact_angle")[tips] for sweep in (twin, mujoco))
+    assert np.median(off(ours)) < 1e-9
+    assert 1e-7 < np.median(off(theirs)) < 1e-4
+    turned = np.abs(ours - theirs).max()
+    assert turned < 1e-4
+    readings, snap_off = apart(case, settings)
+    assert max(readings.values()) < 10 * turned
+    assert abs(snap_off) < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("case", "settings", "says"),
+    [
+        (named_case("catenary"), Settings(beam="rod"), "beam for drake"),
+        (named_case("catenary"), Settings(planar=False), "out of the plane"),
+        (
+            Case(profile=polygon([(-0.5, 0.8), (0.0, 0.5), (0.5, 0.8)])),
+            Settings(),
+            "with sharp corners",
+        ),
+        (Case(profile=circle(0.01, (0.0, 0.5))), Settings(), "smallest radius of curvature"),
+        (Case(Beam(radius=0.0), circle(1.0, (0.0, 0.4))), Settings(), "cannot collide a line"),
+        (replace(named_case("catenary"), friction=0.2), Settings(), "friction"),
+    ],
+)
+def test_what_drake_has_not_is_a_line(case, settings, says):
+    with pytest.raises(InputError, match=says):
+        find_engine("drake").sweep(case, settings)
