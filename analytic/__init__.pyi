@@ -1,4 +1,7 @@
 from .checks.certificate import certify as certify
+from .from_clamp.calibration.calibrate import Calibration as Calibration
+from .from_clamp.calibration.calibrate import Estimate as Estimate
+from .from_clamp.calibration.calibrate import calibrate as calibrate
 from .from_clamp.noise import relative_noise as relative_noise
 from .from_clamp.reconstruct import reconstruct as reconstruct
 from .from_clamp.reconstruct import reconstruct_by_decision as reconstruct_by_decision

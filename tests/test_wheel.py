@@ -49,6 +49,7 @@ COMMANDS = {
     "compare": (1, "compare a/analytic.parquet a/mujoco-chain.parquet"),
     "side-by-side": (1, "side-by-side a/analytic.parquet a/mujoco-chain.parquet --out side"),
     "reconstruct": (0, "reconstruct a/analytic.parquet --out a"),
+    "calibrate": (0, "calibrate mine.toml a/analytic.parquet --fit clamp_stiffness --out a"),
     "rig": (0, "rig rig.csv --rig rig.toml --out passes"),
     "methods": (0, "methods mine.toml --out methods"),
     "run": (1, "run mine.toml --out runs/mine --budget"),

@@ -12,7 +12,7 @@ import typer
 from typer.exceptions import TyperException
 
 from analytic.problem.errors import InputError
-from compare.commands import budget, inspect, methods, readings, rig, study, sweeps
+from compare.commands import budget, calibrate, inspect, methods, readings, rig, study, sweeps
 from compare.commands.output import ended_by_signals
 
 BAD_INPUT = 2
@@ -33,6 +33,7 @@ COMMANDS: tuple[Callable[..., int], ...] = (
     sweeps.report,
     readings.compare,
     readings.reconstruct,
+    calibrate.calibrate,
     readings.side_by_side,
     rig.rig,
     methods.methods,

@@ -28,13 +28,15 @@ class Solved(NamedTuple):
     events: dict[str, float | None]
 
 
-def solve(case: Case) -> Solved:
+def solve(case: Case, stations: Floats | None = None) -> Solved:
     """Solve a sweep to the left.
 
     Parameters
     ----------
     case : Case
         The problem.
+    stations : array, shape (n,), optional
+        Foot positions in any order [length]; the case's if not given.
 
     Returns
     -------
@@ -43,7 +45,8 @@ def solve(case: Case) -> Solved:
     """
     beam = case.beam
     vibrissa = Vibrissa.of(beam, case.clamp_stiffness, case.friction)
-    centreline, foot_x = case.centreline, case.foot_x / beam.length
+    stations = case.foot_x if stations is None else stations
+    centreline, foot_x = case.centreline, stations / beam.length
     touch = first_touch(centreline, case.reach, vibrissa.unloaded)
     path = follow(centreline, vibrissa, touch, case.reach)
     last = path.foot_x[path.snap_off]
@@ -53,7 +56,7 @@ def solve(case: Case) -> Solved:
     lost[past] |= ~is_rest_clear(centreline, vibrissa, foot_x[past])
     where = held | lost
 
-    columns = _nothing(case.foot_x, "diverged" if not path.complete else "touches again")
+    columns = _nothing(stations, "diverged" if not path.complete else "touches again")
     if held.any():
         touching, found = solve_stations(centreline, vibrissa, path, foot_x[held])
         solved = to_columns(touching, ~is_clear(centreline, touching), beam)

@@ -22,6 +22,7 @@ COLUMNS = (
     "foot_x=foot_x:parsec", "=", "foot_x=", "foot_x=foot_x:m", "force_x=force_x:N",
     "force_y=force_y:N", "moment_z=moment_z:N mm", "moment_z=moment_z:N", "force_x=force_y",
 )  # fmt: skip
+FITTED = ("flexural_rigidity", "clamp_stiffness", "natural_curvature", "friction", "offset", "x")
 
 
 def data(dice: Dice) -> Trial:
@@ -36,6 +37,7 @@ def data(dice: Dice) -> Trial:
     files = {name: content, "good.csv": good_csv(), "beam.toml": b"[beam]\nlength = 1.0\n"}
     words = dice.pick(
         ["reconstruct", name],
+        ["calibrate", dice.pick("parabola", "catenary"), name],
         ["compare", "good.csv", name],
         ["compare", name, "good.csv"],
         ["side-by-side", "good.csv", name],
@@ -46,6 +48,8 @@ def data(dice: Dice) -> Trial:
     if dice.chance(0.3):
         words += ["--beam", dice.pick("beam.toml", "good.csv", "nowhere.toml")]
     words += dice.some(("--direction=left", "--direction=right"), 1)
+    if words[0] == "calibrate":
+        words += ["--fit", ",".join(dice.some(FITTED, 2)) or dice.pick(*FITTED)]
     if words[0] != "side-by-side":
         words += dice.some(("--noise=0.01", "--noise=0", "--noise=auto", "--noise=-1"), 1)
     if words[0] == "compare":

@@ -66,6 +66,7 @@ def toml(dice: Dice) -> Trial:
                         ["study", "case.toml", "--dry-run"],
                         ["compare", "good.csv", "good.csv", "--tolerances", "case.toml"],
                         ["reconstruct", "good.csv", "--beam", "case.toml"],
+                        ["calibrate", "case.toml", "good.csv"],
                         ["side-by-side", "case.toml", "good.csv"])  # fmt: skip
     return Trial("toml", command, {"case.toml": content, "good.csv": good_csv()})
 

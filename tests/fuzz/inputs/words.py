@@ -49,6 +49,7 @@ def written(dice: Dice) -> Trial:
                       ["compare", "runs/one/analytic.parquet", "runs/one/mujoco-chain.parquet"],
                       ["compare", "runs/one/written.csv", "runs/one/mujoco-chain.parquet"],
                       ["reconstruct", "runs/one/mujoco-chain.parquet"],
+                      ["calibrate", "parabola", "runs/one/mujoco-chain.parquet"],
                       ["reconstruct", "runs/one/written.csv"],
                       ["report", "runs/one"],
                       ["side-by-side", "catenary", "runs/one/mujoco-chain.parquet"])  # fmt: skip

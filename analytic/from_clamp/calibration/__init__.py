@@ -1,0 +1,1 @@
+"""What a vibrissa is, from a sweep past an object that is known."""

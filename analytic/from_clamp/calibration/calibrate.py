@@ -1,0 +1,252 @@
+"""Rigidity, clamp, natural curvature, taper and friction from a sweep past a known object."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.from_clamp.calibration.fit import Fit
+from analytic.from_clamp.calibration.measured import Measured, check_size, measured_under_load
+from analytic.from_clamp.calibration.unknowns import UNKNOWNS, Sought, checked_unknowns
+from analytic.problem.arrays import Floats
+from analytic.problem.case import Case, Direction, Sweep
+from analytic.problem.errors import InputError, require
+from analytic.problem.readings import Readings
+
+_DOUBLE_SIDED_95 = 1.959964
+_NOT_EXPLAINED = 0.1  # share of the stations that may be of no such vibrissa
+_ROUNDS = 4  # of fits, as stations that are of no such vibrissa are left out
+_WIDEST = 0.25  # half an interval that says something, of a dimensionless number
+_SATISFIED = 1.5  # times the noise; a fit that leaves more is tried from elsewhere too
+_STARTS = 3
+_AT_THE_END = 1e-6  # from an end of what a number can be
+_TINY = 1e-12  # singular value of columns of length 1: rounding
+_ALIKE = 0.9  # correlation of two unknowns that trade off
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A quantity with its interval.
+
+    Parameters
+    ----------
+    value : float
+        In the unit of the case; infinite for a rigid clamp.
+    lowest, highest : float
+        The true one lies between them in 95 % of all cases.
+    """
+
+    value: float
+    lowest: float
+    highest: float
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """What a sweep past a known object says of the vibrissa.
+
+    Parameters
+    ----------
+    found : dict
+        `Estimate` by unknown.
+    case : Case
+        The case with the values found.
+    offset : float
+        By how much the readings' ``foot_x`` is too large, if that was asked for [length].
+    correlation : array, shape (unknowns, unknowns)
+        Of the errors, of the clamp's compliance in place of its stiffness.
+    stations : int
+        How many the values are from.
+    misfit : float
+        Root mean square of what the fit leaves, over the noise: 1 if the case is right in
+        everything else, less for readings without noise. If it is more, the intervals are as much
+        wider, and still miss what a wrong object or another beam does to all stations alike.
+    """
+
+    found: dict[str, Estimate]
+    case: Case
+    offset: float
+    correlation: Floats
+    stations: int
+    misfit: float
+
+    @property
+    def explains(self) -> bool:
+        """Whether the fit leaves little more than the noise."""
+        return self.misfit <= _SATISFIED
+
+
+def calibrate(
+    readings: Readings,
+    case: Case,
+    unknowns: Sequence[str] = ("flexural_rigidity",),
+    noise: Mapping[str, float] | None = None,
+) -> Calibration:
+    """Numbers of a vibrissa, its clamp or its friction, from a sweep past a known object.
+
+    The closed form's readings are fitted to the measured ones by least squares, each weighed by its
+    noise, over the stations under load; not next to the snap-off, where readings grow without
+    bound. The intervals are those of the linearised fit.
+
+    Parameters
+    ----------
+    readings : Readings
+        The four sensed columns are used, in the case's units, and ``status`` to leave stations out.
+    case : Case
+        The object and all that is known of the vibrissa. What is unknown is first tried as it is
+        there. Its stations do not matter.
+    unknowns : sequence of str
+        Some of ``flexural_rigidity`` (at the clamp), ``clamp_stiffness``, ``natural_curvature``,
+        ``tip_radius`` (of a cone whose rigidity follows it), ``friction``, and ``offset``, by how
+        much ``foot_x`` is too large.
+    noise : mapping, optional
+        Standard deviation of each sensed column's noise, in the column's unit. If it is not given,
+        it is what the readings themselves show.
+
+    Returns
+    -------
+    Calibration
+        Values, intervals, and the case with the values.
+
+    Raises
+    ------
+    InputError
+        If an unknown is none, or none of the case's numbers, the noise is no such mapping, too few
+        stations are under load, the readings do not tell the unknowns apart, or are of no such
+        vibrissa.
+    """
+    require("readings", readings, Readings, "as Readings(table, beam)")
+    require("case", case, Case, "named_case('catenary') makes one")
+    names = checked_unknowns(unknowns, case)
+    check_size(readings, case)
+    measured = measured_under_load(readings, noise, len(names))
+    direction: Direction = "right" if measured.foot_x[-1] > measured.foot_x[0] else "left"
+    if direction != case.sweep.direction:
+        case = replace(case, sweep=Sweep(case.sweep.stations, direction=direction))
+    fit, numbers, cost = _fitted(measured, case, names)
+    freedom = fit.measured.readings.size - len(names)
+    misfit = float(np.sqrt(cost / freedom))
+    covariance = _covariance(fit, numbers, max(1.0, misfit))
+    deviations = np.sqrt(np.diag(covariance))
+    for i, (name, number) in enumerate(zip(names, numbers.tolist(), strict=True)):
+        _check_inside(name, number, fit.sought(numbers))
+        if not _DOUBLE_SIDED_95 * deviations[i] <= _WIDEST * max(1.0, abs(number)):
+            raise _not_told_apart(names, covariance, i)
+    sought = fit.sought(numbers)
+    return Calibration(
+        {
+            name: _interval(fit, numbers, i, _DOUBLE_SIDED_95 * float(deviations[i]))
+            for i, name in enumerate(names)
+        },
+        sought.case,
+        sought.offset,
+        covariance / np.outer(deviations, deviations),
+        len(fit.measured.foot_x),
+        misfit,
+    )
+
+
+def _fitted(measured: Measured, case: Case, names: tuple[str, ...]) -> tuple[Fit, Floats, float]:
+    """The fit, without the stations that are of no such vibrissa; its numbers, its squares."""
+    every = len(measured.foot_x)
+    fit = Fit(measured, case, names)
+    numbers, cost = _best(fit)
+    for _ in range(_ROUNDS):
+        expected = fit.expected(numbers)
+        there = np.asarray(np.isfinite(expected).all(axis=0))
+        touching = int(np.any(expected[:, there] != 0, axis=0).sum())
+        if touching < (1 - _NOT_EXPLAINED) * every:
+            raise InputError(
+                "readings",
+                f"loaded at {every} stations, at {every - touching} of which the best fit does not "
+                "touch",
+                "of the case's vibrissa and object, but for the unknowns",
+                "check foot_x, units and object, or fit offset too",
+            )
+        if there.all():
+            break
+        fit = Fit(fit.measured.at(there), case, names)
+        numbers, cost = fit.best_from(_inside(fit, numbers))
+    return fit, numbers, cost
+
+
+def _best(fit: Fit) -> tuple[Floats, float]:
+    """The best numbers from the case's own, or from elsewhere if those leave too much."""
+    starts = [fit.start]
+    for i, kind in enumerate(fit.kinds):
+        this = np.arange(len(fit.start)) == i
+        starts += [np.where(this, number, fit.start) for number in kind.starts]
+    starts = [fit.scaled_rigidity(_inside(fit, start)) for start in starts]
+    costs = [float(np.sum(fit.misses(start) ** 2)) for start in starts]
+    enough = _SATISFIED**2 * fit.measured.readings.size
+    best, least = starts[0], np.inf
+    for at in np.argsort(costs)[:_STARTS].tolist():
+        numbers, cost = fit.best_from(starts[at])
+        if cost < least:
+            best, least = numbers, cost
+        if least < enough:
+            break
+    return best, least
+
+
+def _inside(fit: Fit, numbers: Floats) -> Floats:
+    return np.clip(numbers, fit.lowest, fit.highest)
+
+
+def _covariance(fit: Fit, numbers: Floats, misfit: float) -> Floats:
+    """Of the numbers' errors, shape (unknowns, unknowns)."""
+    jacobian = fit.jacobian(numbers)
+    sizes = np.linalg.norm(jacobian, axis=0)
+    for name, size in zip(fit.names, sizes.tolist(), strict=True):
+        if not size > 0:
+            raise InputError(
+                "unknowns", name, "something that the readings depend on", "leave it out"
+            )
+    _, singular, ways = np.linalg.svd(jacobian / sizes, full_matrices=False)
+    scaled = (ways.T / np.maximum(singular, _TINY) ** 2) @ ways
+    return np.asarray(scaled / np.outer(sizes, sizes) * misfit**2)
+
+
+def _check_inside(name: str, number: float, sought: Sought) -> None:
+    """Refuse what is best at an end of what a number can be that the quantity has not."""
+    kind = UNKNOWNS[name]
+    for end, possible in zip((kind.lowest, kind.highest), kind.possible, strict=True):
+        if not possible and abs(number - end) < _AT_THE_END * max(1.0, abs(end)):
+            raise InputError(
+                f"{name} of the best fit",
+                f"{kind.value(sought):g}",
+                "a vibrissa's",
+                "the object, the units or something else of the case is not as stated",
+            )
+
+
+def _not_told_apart(names: tuple[str, ...], covariance: Floats, which: int) -> InputError:
+    """The error for unknowns of which the readings say too little."""
+    sizes = np.sqrt(np.diag(covariance))
+    alike = np.abs(covariance[which] / sizes / sizes[which])
+    alike[which] = 0
+    other = int(np.argmax(alike))
+    if alike[other] < _ALIKE:
+        return InputError(
+            "unknowns",
+            names[which],
+            "something that these readings determine",
+            "leave it out, take less noise, or sweep further",
+        )
+    return InputError(
+        "unknowns",
+        f"{names[which]} and {names[other]}",
+        "ones that these readings tell apart",
+        f"a change of one undoes that of the other (correlation {alike[other]:.4f}): state one of "
+        "them, take less noise, or sweep further",
+    )
+
+
+def _interval(fit: Fit, numbers: Floats, i: int, half: float) -> Estimate:
+    kind = fit.kinds[i]
+    ends = []
+    for number in (numbers[i] - half, numbers[i] + half):
+        moved = numbers.copy()
+        moved[i] = np.clip(number, kind.lowest, kind.highest)
+        ends.append(kind.value(fit.sought(moved)))
+    return Estimate(kind.value(fit.sought(numbers)), min(ends), max(ends))

@@ -1,0 +1,190 @@
+"""Least squares: the numbers with which the closed form comes nearest to a sweep's readings."""
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from analytic.from_clamp.calibration.expected import expected_readings
+from analytic.from_clamp.calibration.measured import Measured
+from analytic.from_clamp.calibration.unknowns import UNKNOWNS, Sought
+from analytic.problem.arrays import Floats
+from analytic.problem.case import Case
+from analytic.problem.errors import InputError
+
+_STEP = 1e-5  # of a number, for a derivative; the solver's 1e-11 must not matter
+_SETTLED = 1e-8  # relative, of the sum of squares and of the numbers: far below any noise
+_MOST_SWEEPS = 40  # of a fit, without those for derivatives
+
+
+class Fit:
+    """The sum of squares over some unknowns, each station weighed by its noise.
+
+    Noise of the foot position moves all three readings of its station along their slopes over the
+    foot position; both enter the station's covariance.
+
+    Parameters
+    ----------
+    measured : Measured
+        The readings.
+    given : Case
+        All that is known; of what is unknown, in which units.
+    names : tuple of str
+        The unknowns, of `UNKNOWNS`.
+    """
+
+    def __init__(self, measured: Measured, given: Case, names: tuple[str, ...]) -> None:
+        self.measured, self.given, self.names = measured, given, names
+        self.kinds = [UNKNOWNS[name] for name in names]
+        self.lowest = np.array([kind.lowest for kind in self.kinds])
+        self.highest = np.array([kind.highest for kind in self.kinds])
+        self.start = np.array([kind.now(Sought(given), given) for kind in self.kinds])
+        self._whitening = np.linalg.inv(self._root(measured.readings))
+        self._last: tuple[bytes, Floats] = b"", np.empty(0)
+
+    def sought(self, numbers: Floats) -> Sought:
+        """The vibrissa with these numbers.
+
+        Parameters
+        ----------
+        numbers : array, shape (unknowns,)
+            As `Unknown.now` gives them.
+
+        Returns
+        -------
+        Sought
+            The given one but for them.
+        """
+        found = Sought(self.given)
+        for kind, number in zip(self.kinds, numbers.tolist(), strict=True):
+            found = kind.tried(found, self.given, number)
+        return found
+
+    def expected(self, numbers: Floats) -> Floats:
+        """The readings that these numbers make one expect.
+
+        Parameters
+        ----------
+        numbers : array, shape (unknowns,)
+            As `Unknown.now` gives them.
+
+        Returns
+        -------
+        array, shape (3, n)
+            NaN where there is no state that slides on.
+        """
+        try:
+            sought = self.sought(numbers)
+            return expected_readings(sought.case, self.measured.foot_x - sought.offset)
+        except (InputError, ArithmeticError):
+            return np.full_like(self.measured.readings, np.nan)
+
+    def misses(self, numbers: Floats) -> Floats:
+        """What they differ from the measured ones by, over the noise.
+
+        Parameters
+        ----------
+        numbers : array, shape (unknowns,)
+            As `Unknown.now` gives them.
+
+        Returns
+        -------
+        array, shape (3 n,)
+            Beyond the snap-off the readings next to it are taken, so that all of it is continuous;
+            without any state, none.
+        """
+        key, misses = self._last  # the derivatives begin where the step before them ended
+        if key != numbers.tobytes():
+            misses = self._misses(numbers)
+            self._last = numbers.tobytes(), misses
+        return misses
+
+    def jacobian(self, numbers: Floats) -> Floats:
+        """Derivatives of the misses.
+
+        Parameters
+        ----------
+        numbers : array, shape (unknowns,)
+            As `Unknown.now` gives them.
+
+        Returns
+        -------
+        array, shape (3 n, unknowns)
+            By differences to one side, good to five digits.
+        """
+        here, columns = self.misses(numbers), []
+        for i, number in enumerate(numbers.tolist()):
+            step = _STEP if number + _STEP <= self.highest[i] else -_STEP
+            moved = np.where(np.arange(len(numbers)) == i, number + step, numbers)
+            columns.append((self._misses(moved) - here) / step)
+        return np.stack(columns, axis=1)
+
+    def scaled_rigidity(self, numbers: Floats) -> Floats:
+        """The same with the rigidity that fits best if nothing else depended on it.
+
+        Parameters
+        ----------
+        numbers : array, shape (unknowns,)
+            As `Unknown.now` gives them.
+
+        Returns
+        -------
+        array, shape (unknowns,)
+            The numbers themselves if the rigidity is known.
+        """
+        if "flexural_rigidity" not in self.names:
+            return numbers
+        zero = np.einsum("nij,jn->ni", self._whitening, -self.measured.readings).ravel()
+        model = self.misses(numbers) - zero
+        if not model.any():
+            return numbers
+        i = self.names.index("flexural_rigidity")
+        factor = float(-(model @ zero) / (model @ model))
+        scaled = numbers.copy()
+        scaled[i] = np.clip(numbers[i] * factor, 2 * self.lowest[i], self.highest[i] / 2)
+        return scaled
+
+    def best_from(self, numbers: Floats) -> tuple[Floats, float]:
+        """Least squares.
+
+        Parameters
+        ----------
+        numbers : array, shape (unknowns,)
+            Where to start.
+
+        Returns
+        -------
+        numbers : array, shape (unknowns,)
+            The best ones near by.
+        cost : float
+            Sum of squares.
+        """
+        found = least_squares(
+            self.misses,
+            numbers,
+            self.jacobian,
+            bounds=(self.lowest, self.highest),
+            x_scale="jac",
+            ftol=_SETTLED,
+            xtol=_SETTLED,
+            gtol=None,
+            max_nfev=_MOST_SWEEPS,
+        )
+        return found.x, 2 * float(found.cost)
+
+    def _misses(self, numbers: Floats) -> Floats:
+        found = self.expected(numbers)
+        known = np.asarray(np.isfinite(found).all(axis=0))
+        order = np.arange(len(known))
+        if known.any():
+            found = np.stack([np.interp(order, order[known], row[known]) for row in found])
+        else:
+            found = np.zeros_like(found)
+        missed = found - self.measured.readings
+        return np.asarray(np.einsum("nij,jn->ni", self._whitening, missed).ravel())
+
+    def _root(self, readings: Floats) -> Floats:
+        """Root of the covariance of each station's three readings, shape (n, 3, 3)."""
+        foot, *sizes = self.measured.spread
+        slopes = np.gradient(readings, axis=1) / np.gradient(self.measured.foot_x)
+        moved = foot * slopes.T
+        covariance = np.diag(np.square(sizes)) + moved[:, :, None] * moved[:, None, :]
+        return np.linalg.cholesky(covariance)

@@ -1,0 +1,143 @@
+"""The stations of a measured sweep that a calibration is from."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.from_clamp.noise import checked_noise, largest, reading_noise
+from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.case import Case
+from analytic.problem.columns import CLAMP_READINGS, SENSED
+from analytic.problem.errors import InputError
+from analytic.problem.readings import Readings
+
+_LEAST = 1e-9  # of the largest magnitude; readings without noise count as of so much
+_SIGMAS = 5.0  # of its noise; a force of less is none
+_NEXT_TO_SNAP_OFF = 0.02  # of the loaded travel, where readings grow without bound: left out
+_PER_UNKNOWN = 5  # loaded stations at least
+_DECADES = 6  # by which loads may differ from EI/L^2 and EI/L; else the units do
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Readings of a sweep, as a fit needs them.
+
+    Attributes
+    ----------
+    foot_x : array, shape (n,)
+        Of the stations that count, in the order of the sweep [length].
+    readings : array, shape (3, n)
+        Force and moment at the clamp.
+    spread : array, shape (4,)
+        Standard deviation of the foot position and of the three readings.
+    """
+
+    foot_x: Floats
+    readings: Floats
+    spread: Floats
+
+    def at(self, kept: Booleans) -> "Measured":
+        """Some of the stations.
+
+        Parameters
+        ----------
+        kept : array of bool, shape (n,)
+            Which ones.
+
+        Returns
+        -------
+        Measured
+            Of them.
+        """
+        return Measured(self.foot_x[kept], self.readings[:, kept], self.spread)
+
+
+def check_size(readings: Readings, case: Case) -> None:
+    """Refuse readings that have no load, or are in other units than the case.
+
+    Parameters
+    ----------
+    readings : Readings
+        One sweep.
+    case : Case
+        What they are taken to be of.
+
+    Raises
+    ------
+    InputError
+        If a reading is zero throughout, or of another magnitude than any vibrissa's.
+    """
+    beam = case.beam
+    for name, unit in zip(
+        CLAMP_READINGS, (beam.force_unit, beam.force_unit, beam.moment_unit), strict=True
+    ):
+        size = largest(readings.values(name)[readings.trusted]) / unit
+        if size == 0:
+            raise InputError(
+                f"{name} of the readings", "zero at all stations", "under load somewhere",
+                "the vibrissa never touches, or the column is a dead channel",
+            )  # fmt: skip
+        if not 10.0**-_DECADES < size < 10.0**_DECADES:
+            raise InputError(
+                f"{name} of the readings",
+                f"up to {size:.1e} of what EI and length of the case make its unit",
+                f"within {_DECADES} decades of it",
+                "give readings and case in the same units",
+            )
+
+
+def measured_under_load(
+    readings: Readings, noise: Mapping[str, float] | None, unknowns: int
+) -> Measured:
+    """The stations under load, but for those next to the snap-off.
+
+    Parameters
+    ----------
+    readings : Readings
+        One sweep.
+    noise : mapping or None
+        Standard deviation by sensed column; None for what the readings show.
+    unknowns : int
+        How many numbers are to be found from them.
+
+    Returns
+    -------
+    Measured
+        In the order of the sweep, no two at one foot position.
+
+    Raises
+    ------
+    InputError
+        If the noise is no such mapping, or too few stations are under load.
+    """
+    stated = None if noise is None else checked_noise(noise)
+    known = reading_noise(readings) if stated is None else stated
+    spread = np.array([known.get(name, 0.0) for name in SENSED])
+    least = [_LEAST * largest(readings.values(name)) for name in CLAMP_READINGS]
+    spread[1:] = np.maximum(spread[1:], least)
+    x = readings.values("foot_x")
+    force = np.hypot(readings.values("force_x"), readings.values("force_y"))
+    loaded = np.flatnonzero(readings.trusted & (force > _SIGMAS * np.hypot(*spread[1:3])))
+    fewest = _PER_UNKNOWN * unknowns
+    order = _kept(readings, loaded) if len(loaded) else loaded
+    if len(order) < fewest:
+        raise InputError(
+            "stations under load, but for those next to the snap-off",
+            len(order),
+            f"{fewest} or more, {_PER_UNKNOWN} for each unknown",
+            "sweep further or with more stations, or state less noise",
+        )
+    return Measured(x[order], np.stack([readings.values(n)[order] for n in CLAMP_READINGS]), spread)
+
+
+def _kept(readings: Readings, loaded: Integers) -> Integers:
+    """The stations from the first loaded one to shortly before the last, as the foot passes."""
+    x = readings.values("foot_x")
+    first, last = x[loaded[0]], x[loaded[-1]]
+    kept = readings.trusted & (x >= min(first, last)) & (x <= max(first, last))
+    if loaded[-1] < len(x) - 1:  # it lets go
+        kept &= np.abs(x - last) >= _NEXT_TO_SNAP_OFF * abs(last - first)
+    _, order = np.unique(np.where(kept, x, np.nan), return_index=True)
+    order = order[kept[order]]
+    return np.asarray(order if last > first else order[::-1])

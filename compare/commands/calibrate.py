@@ -1,0 +1,76 @@
+"""The command ``calibrate``: what a vibrissa is, from a sweep past an object that is known."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from compare.commands.options import (
+    AGREES,
+    DISAGREES,
+    BeamFile,
+    CaseName,
+    Columns,
+    Way,
+    number_or_auto,
+    out_folder,
+)
+from compare.commands.output import distinct_name, output_folder
+from compare.commands.waiting import waiting
+
+
+def calibrate(
+    case: CaseName,
+    file: Annotated[
+        Path, typer.Argument(metavar="READINGS", help="Readings of that object, Parquet or CSV.")
+    ],
+    fit: Annotated[
+        str,
+        typer.Option(
+            metavar="A,B,...",
+            help="What is unknown: flexural_rigidity, clamp_stiffness, natural_curvature, "
+            "tip_radius, friction, offset (of foot_x).",
+        ),
+    ] = "flexural_rigidity",
+    out: Annotated[Path | None, out_folder("results/FILE-calibrated")] = None,
+    column: Columns = None,
+    beam: BeamFile = None,
+    direction: Way = None,
+    noise: Annotated[
+        str,
+        typer.Option(
+            metavar="NUMBER|auto",
+            help="Noise of the clamp readings over their largest magnitude, as 0.01; auto: what "
+            "the readings show.",
+        ),
+    ] = "auto",
+) -> int:
+    """Fit what is unknown of a vibrissa to a sweep past a known object.
+
+    The case has the object, and all that is known of vibrissa, clamp and friction. Exit code 1: the
+    fit leaves more than the noise.
+    """
+    level = number_or_auto("--noise", noise)
+    names = [name.strip() for name in fit.split(",")]
+    from analytic import calibrate as calibrate_case
+    from analytic import relative_noise
+    from compare.commands import terminal
+    from compare.read.case import load_job
+    from compare.read.rig import read_measured
+    from compare.show.calibration import calibration_document, calibration_lines
+
+    known = load_job(case).case
+    readings = read_measured(file, beam, column or (), known.beam, direction)
+    with waiting("fitting"):
+        sizes = None if level == "auto" else relative_noise(readings, level)
+        found = calibrate_case(readings, known, names, sizes)
+    with output_folder(out or Path("results") / f"{distinct_name(file)}-calibrated") as folder:
+        from analytic.problem.files import write_whole
+        from compare.show.page import document
+
+        terminal.note_rows(readings)
+        for line in calibration_lines(found):
+            terminal.print_line(line)
+        written = write_whole(folder / "calibration.json", document(calibration_document(found)))
+        terminal.print_written(written)
+    return AGREES if found.explains else DISAGREES

@@ -1,0 +1,191 @@
+"""Numbers of the vibrissa from a sweep past a known object."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import (
+    Beam,
+    Case,
+    InputError,
+    Readings,
+    Sweep,
+    calibrate,
+    catenary,
+    circle,
+    find_events,
+    polygon,
+    relative_noise,
+    solve_sweep,
+)
+
+CIRCLE = circle(1.0, lowest=(0, 0.4))
+SOFT = Case(Beam(), catenary(0.5, -0.8), Sweep(60), clamp_stiffness=8.0)
+
+
+def noisy(readings, level, rng) -> tuple[Readings, dict[str, float]]:
+    noise = relative_noise(readings, level)
+    columns = {n: readings.values(n) + s * rng.standard_normal(len(readings.table))
+               for n, s in noise.items()}  # fmt: skip
+    return replace(readings, table=readings.table.assign(**columns)), noise
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("direction", ["left", "right"])
+@pytest.mark.parametrize(
+    "profile", [CIRCLE, catenary(0.5, -0.8), polygon([(-1, 1.2), (0, 0.4), (1, 1.2)])]
+)
+def test_exact_readings_give_the_numbers_back(profile, direction):
+    """From the paper's vibrissa of another rigidity, in SI."""
+    scale = 0.05
+    true = Case(
+        Beam(scale, 2e-6, 2e-4, natural_curvature=-0.2 / scale),
+        profile.scaled(scale),
+        Sweep(40, direction=direction),
+        clamp_stiffness=3e-4,
+        friction=0.1,
+    )
+    believed = Case(Beam(scale, 1.5e-6, 2e-4), true.profile)
+    numbers = {
+        "flexural_rigidity": 2e-6,
+        "clamp_stiffness": 3e-4,
+        "natural_curvature": -0.2 / scale,
+        "friction": 0.1,
+    }
+    found = calibrate(solve_sweep(true), believed, list(numbers))
+    assert {n: one.value for n, one in found.found.items()} == pytest.approx(numbers, rel=1e-6)
+    assert found.case.clamp_stiffness == pytest.approx(3e-4, rel=1e-6)
+    assert found.case.beam.flexural_rigidity == pytest.approx(2e-6, rel=1e-6)
+    assert found.explains
+
+
+def test_a_foot_that_is_off_is_found_too():
+    readings = solve_sweep(SOFT)
+    moved = replace(readings, table=readings.table.assign(foot_x=readings.values("foot_x") + 0.1))
+    found = calibrate(moved, replace(SOFT, clamp_stiffness=math.inf), ["clamp_stiffness", "offset"])
+    assert found.offset == pytest.approx(0.1, abs=1e-8)
+    assert found.found["clamp_stiffness"].value == pytest.approx(8.0, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_a_cone_is_found():
+    true = Case(Beam(tip_radius=0.002), CIRCLE, Sweep(40))
+    found = calibrate(solve_sweep(true), replace(true, beam=Beam()), ["tip_radius"])
+    assert found.found["tip_radius"].value == pytest.approx(0.002, rel=1e-6)
+
+
+def test_a_rigid_clamp_is_found_and_its_interval_has_no_end():
+    readings, noise = noisy(solve_sweep(replace(SOFT, clamp_stiffness=math.inf)), 0.01,
+                            np.random.default_rng(3))  # fmt: skip
+    found = calibrate(readings, SOFT, ["clamp_stiffness"], noise).found["clamp_stiffness"]
+    assert found.lowest > 100
+    assert found.highest == math.inf
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("level", "true", "unknowns"),
+    [
+        (0.01, SOFT, {"flexural_rigidity": 1.0, "clamp_stiffness": 8.0}),
+        (
+            0.03,
+            replace(SOFT, beam=Beam(natural_curvature=-0.3), friction=0.3),
+            {"natural_curvature": -0.3, "friction": 0.3},
+        ),
+    ],
+)
+def test_intervals_hold_the_true_values(level, true, unknowns):
+    """95 % of 200 sweeps, +-1.6 % standard deviation: 90 to 99 % in three of them."""
+    exact, rng = solve_sweep(true), np.random.default_rng(1)
+    held = dict.fromkeys(unknowns, 0)
+    for _ in range(200):
+        readings, noise = noisy(exact, level, rng)
+        found = calibrate(readings, true, list(unknowns), noise).found
+        for name, value in unknowns.items():
+            held[name] += found[name].lowest <= value <= found[name].highest
+    assert all(180 <= count <= 198 for count in held.values()), held
+
+
+def test_noise_is_stated_as_an_interval():
+    """Noise that the readings show makes the interval that the same noise makes if it is stated."""
+    readings, noise = noisy(solve_sweep(SOFT), 0.01, np.random.default_rng(2))
+    stated, seen = (calibrate(readings, SOFT, ["clamp_stiffness"], n).found["clamp_stiffness"]
+                    for n in (noise, None))  # fmt: skip
+    assert stated.lowest < 8.0 < stated.highest
+    assert 0.005 < (stated.highest - stated.lowest) / 8.0 < 0.03
+    assert seen.highest - seen.lowest == pytest.approx(stated.highest - stated.lowest, rel=0.5)
+    shaken = calibrate(readings, SOFT, ["clamp_stiffness"], {**noise, "foot_x": 0.02})
+    wider = shaken.found["clamp_stiffness"]
+    assert wider.highest - wider.lowest > stated.highest - stated.lowest
+
+
+@pytest.mark.slow
+def test_what_else_is_off_shows_as_a_misfit():
+    readings, noise = noisy(solve_sweep(replace(SOFT, friction=0.3)), 0.01,
+                            np.random.default_rng(2))  # fmt: skip
+    found = calibrate(readings, SOFT, ["flexural_rigidity", "clamp_stiffness"], noise)
+    assert found.misfit > 3
+    assert not found.explains
+    right = calibrate(readings, SOFT, ["friction"], noise)
+    assert right.explains
+    assert right.misfit == pytest.approx(1, abs=0.2)
+
+
+@pytest.mark.slow
+def test_unknowns_that_trade_off_are_named():
+    """A tip that is hardly bent gives way by the sum of both, L^3/(3 EI) + L^2/c."""
+    first = find_events(SOFT.profile, SOFT.beam, clamp_stiffness=8.0).first_contact.foot_x
+    short = solve_sweep(replace(SOFT, sweep=Sweep(60, stop=first - 0.05)))
+    readings, noise = noisy(short, 0.01, np.random.default_rng(1))
+    with pytest.raises(
+        InputError, match=r"unknowns = .* and .* tell apart.*correlation (1\.00|0\.99)"
+    ):
+        calibrate(readings, SOFT, ["flexural_rigidity", "clamp_stiffness"], noise)
+    found = calibrate(readings, SOFT, ["flexural_rigidity"], noise).found["flexural_rigidity"]
+    assert found.lowest < 1 < found.highest < 1.05
+
+
+READINGS = solve_sweep(SOFT)
+
+
+def changed(**columns) -> Readings:
+    return replace(READINGS, table=READINGS.table.assign(**columns))
+
+
+@pytest.mark.parametrize(
+    ("readings", "case", "unknowns", "message"),
+    [
+        (READINGS, SOFT, ["stiffness"], "unknowns = 'stiffness': must be of flexural_rigidity, "),
+        (READINGS, SOFT, [], "unknowns"),
+        (READINGS, SOFT, 5, "unknowns"),
+        (READINGS, SOFT, ["friction", "friction"], "friction twice"),
+        (3, SOFT, ["friction"], "readings"),
+        (READINGS, 3, ["friction"], "case"),
+        (READINGS, replace(SOFT, beam=Beam(natural_curvature=lambda s: -s)), ["natural_curvature"],
+         "natural_curvature, which varies"),
+        (READINGS, replace(SOFT, beam=Beam(radius=0.0)), ["tip_radius"], "tip_radius of a vib"),
+        (changed(force_x=0.0, force_y=0.0, moment_z=0.0), SOFT, ["friction"], "never touches"),
+        (changed(moment_z=0.0), SOFT, ["friction"], "moment_z of the readings = zero"),
+        (changed(force_x=1e12 * READINGS.values("force_x")), SOFT, ["friction"], "same units"),
+        (changed(foot_x=50 * READINGS.values("foot_x")), SOFT, ["friction"], "does not touch"),
+        (changed(force_x=-READINGS.values("force_x"), force_y=-READINGS.values("force_y"),
+                 moment_z=-READINGS.values("moment_z")), SOFT, ["flexural_rigidity"],
+         "flexural_rigidity of the best fit = 0.01"),
+        (replace(READINGS, table=READINGS.table.iloc[:9]), SOFT,
+         ["flexural_rigidity", "friction"], "must be 10 or more, 5 for each unknown"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_fitted_is_refused(readings, case, unknowns, message):
+    with pytest.raises(InputError, match=message) as refused:
+        calibrate(readings, case, unknowns)
+    assert "\n" not in str(refused.value)
+
+
+def test_noise_that_is_none_is_refused():
+    for noise in ({"x": 1.0}, 0.01, {"force_x": -1.0}):
+        with pytest.raises(InputError, match="noise"):
+            calibrate(READINGS, SOFT, noise=noise)
+    with pytest.raises(InputError, match="stations under load"):
+        calibrate(READINGS, SOFT, noise={"force_x": 1e9})

@@ -1,0 +1,69 @@
+"""`vibrissa calibrate`: what is printed, written, and refused."""
+
+import json
+
+import pytest
+
+from analytic import Case, Sweep, circle, solve_sweep
+from tests.compare.command import vibrissa
+
+OBJECT = '[profile]\nkind = "circle"\nradius = 1.0\nlowest = [0.0, 0.4]\n'
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("calibrate")
+    case = Case(profile=circle(1.0, lowest=(0, 0.4)), sweep=Sweep(40), clamp_stiffness=8.0)
+    readings = solve_sweep(case)
+    readings.write(folder / "swept.parquet")
+    sensed = readings.table[["foot_x", "force_x", "force_y", "moment_z"]]
+    sensed.to_csv(folder / "rig.csv", index=False)
+    sensed.assign(force_x=0.0, force_y=0.0, moment_z=0.0).to_csv(folder / "idle.csv", index=False)
+    (folder / "object.toml").write_text(OBJECT)
+    (folder / "rubs.toml").write_text(f"{OBJECT}[contact]\nfriction = 0.4\n")
+    return folder
+
+
+@pytest.mark.parametrize("file", ["swept.parquet", "rig.csv"])
+def test_the_clamp_is_found_and_written(file, folder, tmp_path):
+    done = vibrissa(
+        "calibrate", folder / "object.toml", folder / file,
+        "--fit", "clamp_stiffness, flexural_rigidity", "--noise", "0.01", "--out", "found",
+        cwd=tmp_path,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert lines[0].startswith("clamp_stiffness = 8, with 95 % between 7.")
+    assert lines[2].startswith("trading off most: clamp_stiffness and flexural_rigidity, corr")
+    written = json.loads((tmp_path / "found" / "calibration.json").read_text())
+    assert written["found"]["clamp_stiffness"]["value"] == pytest.approx(8.0)
+    assert written["stations"] > 30
+
+
+def test_a_case_that_is_wrong_in_something_else_disagrees(folder, tmp_path):
+    done = vibrissa(
+        "calibrate", folder / "rubs.toml", folder / "rig.csv", "--fit", "clamp_stiffness",
+        "--noise", "0.001", cwd=tmp_path,
+    )  # fmt: skip
+    assert done.returncode == 1
+    assert "something else is not as the case says" in done.stdout
+    assert (tmp_path / "results").exists()
+
+
+@pytest.mark.parametrize(
+    ("file", "options", "message"),
+    [
+        ("rig.csv", ["--fit", "stiffness"], "unknowns = 'stiffness': must be of flexural_rigidity"),
+        ("rig.csv", ["--fit", ""], "unknowns"),
+        ("rig.csv", ["--noise", "much"], "--noise = 'much': must be a number or auto"),
+        ("rig.csv", ["--noise", "2"], "noise"),
+        ("idle.csv", [], "zero at all stations"),
+        ("nowhere.csv", [], "nowhere.csv"),
+    ],
+)
+def test_bad_input_is_one_line(file, options, message, folder, tmp_path):
+    done = vibrissa("calibrate", folder / "object.toml", folder / file, *options, cwd=tmp_path)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    assert not (tmp_path / "results").exists()
