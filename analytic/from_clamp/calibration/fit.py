@@ -157,17 +157,18 @@ class Fit:
         cost : float
             Sum of squares.
         """
-        found = least_squares(
-            self.misses,
-            numbers,
-            self.jacobian,
-            bounds=(self.lowest, self.highest),
-            x_scale="jac",
-            ftol=_SETTLED,
-            xtol=_SETTLED,
-            gtol=None,
-            max_nfev=_MOST_SWEEPS,
-        )
+        with np.errstate(invalid="ignore"):  # where nothing touches, nothing depends on anything
+            found = least_squares(
+                self.misses,
+                numbers,
+                self.jacobian,
+                bounds=(self.lowest, self.highest),
+                x_scale="jac",
+                ftol=_SETTLED,
+                xtol=_SETTLED,
+                gtol=None,
+                max_nfev=_MOST_SWEEPS,
+            )
         return found.x, 2 * float(found.cost)
 
     def _misses(self, numbers: Floats) -> Floats:

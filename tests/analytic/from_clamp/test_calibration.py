@@ -76,6 +76,7 @@ def test_a_cone_is_found():
     assert found.found["tip_radius"].value == pytest.approx(0.002, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_rigid_clamp_is_found_and_its_interval_has_no_end():
     readings, noise = noisy(solve_sweep(replace(SOFT, clamp_stiffness=math.inf)), 0.01,
                             np.random.default_rng(3))  # fmt: skip
@@ -108,6 +109,7 @@ def test_intervals_hold_the_true_values(level, true, unknowns):
     assert all(180 <= count <= 198 for count in held.values()), held
 
 
+@pytest.mark.slow
 def test_noise_is_stated_as_an_interval():
     """Noise that the readings show makes the interval that the same noise makes if it is stated."""
     readings, noise = noisy(solve_sweep(SOFT), 0.01, np.random.default_rng(2))

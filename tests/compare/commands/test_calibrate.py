@@ -24,7 +24,7 @@ def folder(tmp_path_factory):
     return folder
 
 
-@pytest.mark.parametrize("file", ["swept.parquet", "rig.csv"])
+@pytest.mark.parametrize("file", [pytest.param("swept.parquet", marks=pytest.mark.slow), "rig.csv"])
 def test_the_clamp_is_found_and_written(file, folder, tmp_path):
     done = vibrissa(
         "calibrate", folder / "object.toml", folder / file,
@@ -40,6 +40,7 @@ def test_the_clamp_is_found_and_written(file, folder, tmp_path):
     assert written["stations"] > 30
 
 
+@pytest.mark.slow
 def test_a_case_that_is_wrong_in_something_else_disagrees(folder, tmp_path):
     done = vibrissa(
         "calibrate", folder / "rubs.toml", folder / "rig.csv", "--fit", "clamp_stiffness",
