@@ -330,7 +330,7 @@ def print_budget(found: Budget, case: str) -> None:
     print_line(f"{headline(found)}.")
     for suspect in found.suspects:
         print_line(
-            f"  suspect: {suspect.name} differs by {suspect.change:+.2%} "
+            f"  suspect: {suspect.name} differs by {suspect.size} "
             f"(accounts for {suspect.share:.0%} of the unexplained)"
         )
 

@@ -9,6 +9,7 @@ from analytic.problem.arrays import Floats
 from compare.explain.fit import fitted
 from compare.explain.variations import STEP
 
+_UNITS = {"friction": "", "natural_curvature": "/L", "clamp_compliance": " L/EI"}
 _CONVINCING = 0.8  # share of the unexplained that a suspect must account for
 
 
@@ -16,14 +17,22 @@ _CONVINCING = 0.8  # share of the unexplained that a suspect must account for
 class Suspect:
     """A quantity of the physics that seems to differ between the two sweeps.
 
-    `change` is by how much in the candidate, relative to its value (``foot_x``: to the length;
-    ``friction``: the coefficient itself); `share` is how much of the unexplained disagreement's
+    `change` is by how much in the candidate, relative to its value (``foot_x``: to the length L;
+    ``friction``: the coefficient itself; ``natural_curvature``: 1/L; ``clamp_compliance``, the
+    clamp's rotation by its moment: L/EI); `share` is how much of the unexplained disagreement's
     square it accounts for.
     """
 
     name: str
     change: float
     share: float
+
+    @property
+    def size(self) -> str:
+        """By how much it differs, as text."""
+        if self.name in _UNITS:
+            return f"{self.change:+.2g}{_UNITS[self.name]}"
+        return f"{self.change:+.2%}"
 
 
 def suspects(

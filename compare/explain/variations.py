@@ -5,7 +5,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic import Case, Readings, polygon, solve_sweep, with_friction
+from analytic import (
+    CLAMP_READINGS,
+    Beam,
+    Case,
+    Readings,
+    polygon,
+    solve_sweep,
+    with_friction,
+)
 from analytic.problem.arrays import Floats
 
 STEP = 1e-3
@@ -15,8 +23,12 @@ STEP = 1e-3
 def variations(case: Case) -> dict[str, Readings]:
     """The exact sweep over the case's stations with one thing of the physics changed, by name.
 
-    ``flexural_rigidity``, ``length`` and ``radius`` are larger by a thousandth, ``foot_x`` is by a
-    thousandth of the length, and ``friction`` is a coefficient larger by a thousandth.
+    ``flexural_rigidity``, ``length``, ``radius`` and ``tip_radius`` are larger by a thousandth,
+    ``foot_x`` is by a thousandth of the length, ``natural_curvature`` by a thousandth over the
+    length, ``clamp_compliance``, its rotation by moment, by a thousandth of L/EI, and ``friction``
+    is a coefficient larger by a thousandth. A tip is never thicker than the vibrissa, and one that
+    is more curved towards the object may touch it twice: of those two the sweep is the exact one
+    less what the opposite change does.
 
     Parameters
     ----------
@@ -47,7 +59,31 @@ def variations(case: Case) -> dict[str, Readings]:
     # Friction's closed form ends where the vibrissa sticks or lets go; the integration of a plain
     # one goes on over all stations.
     rubs = replace(case, friction=case.friction + STEP, sweep=same)
-    return {**found, "friction": with_friction(case, STEP) if case.is_plain else solve_sweep(rubs)}
+    found["friction"] = with_friction(case, STEP) if case.is_plain else solve_sweep(rubs)
+    softer = 1 / case.clamp_stiffness + STEP / beam.moment_unit
+    found["clamp_compliance"] = solve_sweep(replace(case, clamp_stiffness=1 / softer, sweep=same))
+    exact = solve_sweep(replace(case, sweep=same))
+    away = -1 if case.sweep.direction == "left" else 1
+    bent = solve_sweep(replace(case, beam=_bent(beam, away * STEP / length), sweep=same))
+    found["natural_curvature"] = bent if away > 0 else _opposite(exact, bent)
+    if beam.radius > 0 and isinstance(beam.flexural_rigidity, float):
+        tip_radius = (beam.radius if beam.tip_radius is None else beam.tip_radius) * (1 - STEP)
+        thinner = replace(case, beam=replace(beam, tip_radius=tip_radius), sweep=same)
+        found["tip_radius"] = _opposite(exact, solve_sweep(thinner))
+    return found
+
+
+def _bent(beam: Beam, by: float) -> Beam:
+    """The vibrissa with another natural curvature, the same all along it more."""
+    given = beam.natural_curvature
+    bent = given + by if isinstance(given, float) else lambda s: beam.curvature_at(s) + by
+    return replace(beam, natural_curvature=bent)
+
+
+def _opposite(exact: Readings, changed: Readings) -> Readings:
+    """The sweep that differs from the exact one by the opposite."""
+    columns = {name: 2 * exact.values(name) - changed.values(name) for name in CLAMP_READINGS}
+    return replace(changed, table=changed.table.assign(**columns))
 
 
 def on_polygon(case: Case, points: int) -> Readings:

@@ -160,7 +160,7 @@ def _advice(comparison: Comparison, budget: Budget) -> str:
         first = budget.suspects[0]
         return (
             f"the numerics do not explain it, but {first.name} does if it is "
-            f"{first.change:+.2%} off in {comparison.candidate.source}: check it"
+            f"{first.size} off in {comparison.candidate.source}: check it"
         )
     if budget.blame == "unexplained" and budget.undecided:
         return "the numerics are too uncertain to explain it: refine them"

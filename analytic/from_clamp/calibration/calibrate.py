@@ -112,7 +112,7 @@ def calibrate(
     ------
     InputError
         If an unknown is none, or none of the case's numbers, the noise is no such mapping, too few
-        stations are under load, the readings do not tell the unknowns apart, or are of no such
+        stations are under load, the readings do not distinguish the unknowns, or are of no such
         vibrissa.
     """
     require("readings", readings, Readings, "as Readings(table, beam)")
@@ -131,7 +131,7 @@ def calibrate(
     for i, (name, number) in enumerate(zip(names, numbers.tolist(), strict=True)):
         _check_inside(name, number, fit.sought(numbers))
         if not _DOUBLE_SIDED_95 * deviations[i] <= _WIDEST * max(1.0, abs(number)):
-            raise _not_told_apart(names, covariance, i)
+            raise _not_distinguished(names, covariance, i)
     sought = fit.sought(numbers)
     return Calibration(
         {
@@ -220,7 +220,7 @@ def _check_inside(name: str, number: float, sought: Sought) -> None:
             )
 
 
-def _not_told_apart(names: tuple[str, ...], covariance: Floats, which: int) -> InputError:
+def _not_distinguished(names: tuple[str, ...], covariance: Floats, which: int) -> InputError:
     """The error for unknowns of which the readings say too little."""
     sizes = np.sqrt(np.diag(covariance))
     alike = np.abs(covariance[which] / sizes / sizes[which])
@@ -236,7 +236,7 @@ def _not_told_apart(names: tuple[str, ...], covariance: Floats, which: int) -> I
     return InputError(
         "unknowns",
         f"{names[which]} and {names[other]}",
-        "ones that these readings tell apart",
+        "ones that these readings distinguish",
         f"a change of one undoes that of the other (correlation {alike[other]:.4f}): state one of "
         "them, take less noise, or sweep further",
     )

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, Field, ValidationError
 
 from analytic import CASE_NAMES, CLAMP_READINGS, InputError
+from compare.explain.suspects import Suspect
 
 
 class _Beam(BaseModel):
@@ -54,11 +55,6 @@ class _Part(BaseModel):
     rms: float
 
 
-class _Suspect(BaseModel):
-    name: str
-    change: float
-
-
 class BudgetFile(BaseModel):
     """What the findings need of a ``budget.json``."""
 
@@ -67,7 +63,7 @@ class BudgetFile(BaseModel):
     closes: bool
     undecided: bool = False  # files of older versions do not say
     order: float
-    suspects: list[_Suspect]
+    suspects: list[Suspect]
 
 
 _File = TypeVar("_File", bound=BaseModel)

@@ -95,7 +95,7 @@ def _blame(runs: Sequence[RunRecord]) -> str:
         for part, group in parts.items()
     ]
     suspects = [
-        f"in the {run.beam} {first.name} seems {100 * first.change:+.2f} % off"
+        f"in the {run.beam} {first.name} seems {first.size} off"
         for run in runs
         for first in _budget(run).suspects[:1]
     ]

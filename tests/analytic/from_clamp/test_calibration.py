@@ -142,7 +142,7 @@ def test_unknowns_that_trade_off_are_named():
     short = solve_sweep(replace(SOFT, sweep=Sweep(60, stop=first - 0.05)))
     readings, noise = noisy(short, 0.01, np.random.default_rng(1))
     with pytest.raises(
-        InputError, match=r"unknowns = .* and .* tell apart.*correlation (1\.00|0\.99)"
+        InputError, match=r"unknowns = .* and .* distinguish.*correlation (1\.00|0\.99)"
     ):
         calibrate(readings, SOFT, ["flexural_rigidity", "clamp_stiffness"], noise)
     found = calibrate(readings, SOFT, ["flexural_rigidity"], noise).found["flexural_rigidity"]

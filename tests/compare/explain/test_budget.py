@@ -164,6 +164,8 @@ WRONG_BEAMS = {
     "flexural_rigidity": (Beam(flexural_rigidity=1.01), 0.01),
     "radius": (Beam(radius=0.0025), -0.5),
     "length": (Beam(length=1.004), 0.004),
+    "natural_curvature": (Beam(natural_curvature=-0.05), -0.05),
+    "tip_radius": (Beam(tip_radius=0.0045), -0.1),
 }
 
 
@@ -177,6 +179,19 @@ def test_wrong_physics_is_unexplained_and_suspected(name):
     assert not found.closes
     assert found.suspects[0].name == name
     assert found.suspects[0].change == pytest.approx(change, rel=0.2)
+
+
+@pytest.mark.slow
+def test_a_clamp_that_turns_is_suspected():
+    """And kept apart from less rigidity, which leaves hundreds of times as much of the square."""
+    claimed = replace(CASE, sweep=GRID)
+    found = measured(claimed, replace(claimed, clamp_stiffness=50.0), Settings(segments=20))
+    assert found.blame == "unexplained"
+    first, *others = found.suspects
+    assert first.name == "clamp_compliance"
+    assert first.change == pytest.approx(0.02, rel=0.2)
+    assert first.size.endswith(" L/EI")
+    assert all(1 - other.share > 30 * (1 - first.share) for other in others)
 
 
 @pytest.mark.slow
