@@ -62,6 +62,8 @@ bench: develop   ## speed, side by side on one core; ARGS="analytic mujoco stepp
 results: $(RUNS) | install ## results/README.md: all named cases, all beams there are; goes on where it stopped
 	$(BIN)/python -m compare.simulate.overview results/overview.png
 	$(BIN)/python -m compare.show.figures.hysteresis results/hysteresis.png
+	$(BIN)/python -m compare.simulate.quasi_static results/quasi-static.csv
+	$(BIN)/python -m compare.show.figures.quasi_static results/quasi-static.csv results/quasi-static.png
 	$(BIN)/vibrissa analytic catenary --figures --out results/pictures
 	$(BIN)/vibrissa methods catenary --out results/pictures
 	cp results/pictures/methods.png results/methods-catenary.png
