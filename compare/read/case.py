@@ -12,7 +12,8 @@ from analytic import NAMED_TABLES, Beam, Case, InputError, named_case
 from compare.judge.tolerances import Tolerances
 from compare.read.complaints import complaint, name_of
 from compare.read.limits import tolerances_of
-from compare.read.tables import BeamFile, CaseFile, Table
+from compare.read.quantities import Table
+from compare.read.tables import BeamFile, CaseFile
 from compare.read.toml import Place, TomlFile
 from compare.read.uncertainty import uncertainties_of
 from compare.validate.stated import Uncertainties

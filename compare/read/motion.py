@@ -1,54 +1,26 @@
 """The ``[motion]`` table of a case file: natural units, or quantities with units."""
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, PlainValidator
-from pydantic_core import PydanticCustomError
 
 from analytic import Beam, InputError
+from compare.read.quantities import Dimension, InSI
 from compare.read.toml import Place
-from compare.read.units import in_si
 from mujoco_models.motion import ConeKind, IntegratorKind, Motion, SolverKind
 
-_EXAMPLES = {"m/s": "10 mm/s", "s": "1 ms", "1/s": "500 Hz", "kg/m^3": "7850 kg/m^3"}
 _FIRST_ROOT = 1.8751040687119611  # of cos(x) cosh(x) = -1: the first vibration of a cantilever
 
 
 _OF_A_MODEL = ("speed", "ramp", "average", "cutoff", "contact_stiffness")
 
 
-class InSI(float):
-    """A number that was given with a unit."""
-
-
-@dataclass(frozen=True)
-class _Quantity:
-    """A validator: a number, or a text with a unit of `unit`, which becomes SI and `InSI`."""
-
-    unit: str
-
-    def __call__(self, value: object) -> float:
-        """The number."""
-        try:
-            if isinstance(value, int | float) and not isinstance(value, bool):
-                return float(value)
-            if isinstance(value, str):
-                return InSI(in_si(value, self.unit))
-        except (InputError, OverflowError):
-            pass
-        raise PydanticCustomError(
-            "quantity",
-            "a number, or a text with a known unit of {unit}, as '{example}'",
-            {"unit": self.unit, "example": _EXAMPLES[self.unit]},
-        )
-
-
-Speed = Annotated[float, PlainValidator(_Quantity("m/s"))]
-Time = Annotated[float, PlainValidator(_Quantity("s"))]
-Rate = Annotated[float, PlainValidator(_Quantity("1/s"))]
-Density = Annotated[float, PlainValidator(_Quantity("kg/m^3"))]
+Speed = Annotated[float, PlainValidator(Dimension("m/s"))]
+Time = Annotated[float, PlainValidator(Dimension("s"))]
+Rate = Annotated[float, PlainValidator(Dimension("1/s"))]
+Density = Annotated[float, PlainValidator(Dimension("kg/m^3"))]
 Contact = Annotated[tuple[Time, float], Field(strict=False)]
 
 

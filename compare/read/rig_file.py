@@ -7,7 +7,8 @@ from pydantic import Field, ValidationError
 
 from analytic import SENSED, InputError
 from compare.read.complaints import complaint
-from compare.read.tables import BeamTable, Length, Table
+from compare.read.quantities import Length, Table
+from compare.read.tables import BeamTable
 from compare.read.toml import TomlFile
 from compare.read.units import DIMENSIONS, unit_in_si
 

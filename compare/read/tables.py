@@ -1,22 +1,15 @@
 """The tables of a case file: what each of them may hold, and what is built from it."""
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self, get_args
+from typing import Annotated, Any, NamedTuple, Self
 
 from pydantic import (
-    AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
     Field,
     ModelWrapValidatorHandler,
     PrivateAttr,
     model_validator,
 )
-from pydantic_core import PydanticCustomError
 
 from analytic import (
     Beam,
@@ -25,119 +18,30 @@ from analytic import (
     Direction,
     InputError,
     Sweep,
-    catenary,
-    circle,
-    ellipse,
-    parabola,
-    polygon,
-    through_points,
-    two_circles,
 )
 from analytic.problem.support import check_support
-from compare.read.complaints import plain_name
 from compare.read.motion import MotionTable
-from compare.read.units import in_si
+from compare.read.profiles import (
+    CatenaryTable,
+    CircleTable,
+    EllipseTable,
+    MeshTable,
+    ParabolaTable,
+    PointsTable,
+    PolygonTable,
+    TwoCirclesTable,
+)
+from compare.read.quantities import (
+    CurvatureAlong,
+    FileName,
+    Length,
+    RigidityAlong,
+    RotationalStiffness,
+    Table,
+)
 from mujoco_models.own.names import ContactKind, OwnModel
 from mujoco_models.settings import Settings
 from mujoco_models.simulate import shipped_models
-
-
-@dataclass(frozen=True)
-class Dimension:
-    """A validator: a number, or a text with a unit of `unit`, which becomes SI."""
-
-    unit: str
-
-    def __call__(self, value: object) -> float:
-        """The number."""
-        try:
-            if isinstance(value, int | float) and not isinstance(value, bool):
-                return float(value)
-            if isinstance(value, str):
-                return in_si(value, self.unit)
-        except (InputError, OverflowError):
-            pass
-        what, example = _EXAMPLES[self.unit]
-        raise PydanticCustomError(
-            "quantity",
-            "a number, or a text with a known unit of {what}, as '{example}'",
-            {"what": what, "example": example},
-        )
-
-
-_EXAMPLES = {
-    "m": ("length", "50 mm"),
-    "1/m": ("inverse length", "0.5 1/mm"),
-    "N m^2": ("force times length squared", "2 N mm^2"),
-    "N m/rad": ("moment by angle", "0.3 mN m/rad"),
-}
-
-
-@dataclass(frozen=True)
-class Varying(Dimension):
-    """The same, or a table of it: pairs of an arc length from the clamp and the value there."""
-
-    def __call__(self, value: object) -> Any:  # noqa: ANN401  # a number, or pairs of them
-        """The number, or the pairs."""
-        if not isinstance(value, list | tuple):
-            return super().__call__(value)
-        number, length = Dimension(self.unit), Dimension("m")
-        pairs = [pair for pair in value if isinstance(pair, list | tuple) and len(pair) == 2]
-        if len(pairs) < len(value):
-            what = _EXAMPLES[self.unit][0]
-            raise PydanticCustomError(
-                "table",
-                "a number, or a list of pairs [arc length from the clamp, {what}]",
-                {"what": what},
-            )
-        return tuple((length(s), number(x)) for s, x in pairs)
-
-
-@dataclass(frozen=True)
-class Pair:
-    """A validator: two values, called by `names` where there are not two."""
-
-    names: str
-
-    def __call__(self, value: object) -> object:
-        """The two."""
-        if isinstance(value, list | tuple) and len(value) == 2:
-            return value
-        raise PydanticCustomError("pair", "two lengths, [{names}]", {"names": self.names})
-
-
-Length = Annotated[float, BeforeValidator(Dimension("m"))]
-PerLength = Annotated[float, BeforeValidator(Dimension("1/m"))]
-Pairs = tuple[tuple[float, float], ...]
-RigidityAlong = Annotated[float | Pairs, BeforeValidator(Varying("N m^2"))]
-CurvatureAlong = Annotated[float | Pairs, BeforeValidator(Varying("1/m"))]
-RotationalStiffness = Annotated[float, BeforeValidator(Dimension("N m/rad"))]
-Two = Annotated[tuple[Length, Length], Field(strict=False)]
-Point = Annotated[Two, BeforeValidator(Pair("x, y"))]
-SemiAxes = Annotated[Two, BeforeValidator(Pair("along x, along y"))]
-Points = list[Point]
-FileName = Annotated[str, AfterValidator(plain_name)]
-
-
-class Table(BaseModel):
-    """A table without unknown keys, whose numbers are numbers: no text, no boolean."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
-
-    @classmethod
-    def quantities(cls) -> list[str]:
-        """Keys that may have a unit.
-
-        Returns
-        -------
-        list of str
-            Names of the fields with a dimension.
-        """
-        return [
-            name
-            for name, field in cls.model_fields.items()
-            if _has_dimension([*field.metadata, field.annotation])
-        ]
 
 
 class BeamTable(Table):
@@ -188,110 +92,6 @@ class ContactTable(Table):
     """How the vibrissa slides along the object."""
 
     friction: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)] = 0.0
-
-
-class ProfileTable(Table):
-    """The object: a kind of contour, and the numbers that `factory` makes it from."""
-
-    factory: ClassVar[Callable[..., Contour]]
-    scale: Length = Field(default=1.0, gt=0)
-
-    def build(self, folder: Path) -> Contour:  # files are in it, if there are any
-        """The contour.
-
-        Parameters
-        ----------
-        folder : Path
-            What the path of a mesh file is relative to.
-
-        Returns
-        -------
-        Contour
-            In the units of the file, or SI.
-        """
-        numbers = self.model_dump(exclude={"kind", "scale"})
-        return type(self).factory(**numbers).scaled(self.scale)
-
-
-class CatenaryTable(ProfileTable):
-    """See `analytic.catenary`."""
-
-    factory = staticmethod(catenary)
-    kind: Literal["catenary"]
-    a: PerLength
-    c: Length
-
-
-class ParabolaTable(ProfileTable):
-    """See `analytic.parabola`."""
-
-    factory = staticmethod(parabola)
-    kind: Literal["parabola"]
-    a: PerLength
-    c: Length
-
-
-class CircleTable(ProfileTable):
-    """See `analytic.circle`."""
-
-    factory = staticmethod(circle)
-    kind: Literal["circle"]
-    radius: Length
-    lowest: Point
-
-
-class EllipseTable(ProfileTable):
-    """See `analytic.ellipse`."""
-
-    factory = staticmethod(ellipse)
-    kind: Literal["ellipse"]
-    semi_axes: SemiAxes
-    lowest: Point
-
-
-class TwoCirclesTable(ProfileTable):
-    """See `analytic.two_circles`."""
-
-    factory = staticmethod(two_circles)
-    kind: Literal["two-circles"]
-    right_radius: Length = 2.0
-    left_radius: Length = 0.5
-    lowest: Point = (0.0, 0.5)
-
-
-class PolygonTable(ProfileTable):
-    """See `analytic.polygon`."""
-
-    factory = staticmethod(polygon)
-    kind: Literal["polygon"]
-    points: Points
-
-
-class PointsTable(ProfileTable):
-    """See `analytic.through_points`."""
-
-    factory = staticmethod(through_points)
-    kind: Literal["points"]
-    points: Points
-
-
-class MeshTable(ProfileTable):
-    """See `analytic.mesh_section`."""
-
-    kind: Literal["mesh"]
-    file: str
-    offset: Point = (0.0, 0.0)
-    height: float = 0.0
-    axes: str = "xy"
-    hull: bool = False
-    tolerance: float = 0.0
-
-    def build(self, folder: Path) -> Contour:
-        """The section of the mesh."""
-        from analytic import mesh_section  # slow to load, and few cases have a mesh
-
-        numbers = self.model_dump(exclude={"kind", "file"})
-        return mesh_section(folder / self.file, **numbers)
 
 
 class SweepTable(Table):
@@ -401,8 +201,8 @@ class CaseFile(Table):
     model: ModelTable | None = None
     motion: MotionTable | None = None
     engine: EngineTable = EngineTable()
-    tolerances: dict[str, Any] = {}
-    uncertainty: dict[str, Any] = {}
+    tolerances: Annotated[dict[str, Any], Field(default_factory=dict)]
+    uncertainty: Annotated[dict[str, Any], Field(default_factory=dict)]
 
     def physics(self, folder: Path) -> Physics:
         """The vibrissa, how it is held and rubs, and the object, without a sweep.
@@ -500,10 +300,3 @@ class BeamFile(Table):
         friction = 0.0 if self.contact is None else self.contact.friction
         check_support(stiffness or math.inf, friction, self.beam.build(), signed=False)
         return {"support": {"clamp_stiffness": stiffness, "friction": friction}}
-
-
-def _has_dimension(parts: list[Any]) -> bool:
-    return any(
-        isinstance(getattr(part, "func", None), Dimension) or _has_dimension(list(get_args(part)))
-        for part in parts
-    )

@@ -9,7 +9,7 @@ from pydantic import Field
 from scipy.stats import qmc
 
 from analytic.problem.arrays import Floats
-from compare.read.tables import Table
+from compare.read.quantities import Table
 
 Value: TypeAlias = bool | int | float | str
 MOST_RUNS = 1_000_000

@@ -10,7 +10,8 @@ from pydantic import ValidationError
 from analytic import NAMED_TABLES, InputError
 from compare.read.case import validate
 from compare.read.complaints import complaint, shown
-from compare.read.tables import CaseFile, Table
+from compare.read.quantities import Table
+from compare.read.tables import CaseFile
 from compare.read.toml import TomlFile
 from compare.study.grid.axes import Value
 from compare.study.grid.schema import CASE_TABLES, StudyFile

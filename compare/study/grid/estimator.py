@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import AfterValidator
 
 from analytic.from_clamp.earlier.methods import NAMES
-from compare.read.tables import Table
+from compare.read.quantities import Table
 
 
 def _known(name: str) -> str:

@@ -4,7 +4,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from compare.read.tables import FileName, Table
+from compare.read.quantities import FileName, Table
 from compare.study.grid.axes import Sample
 from compare.study.grid.estimator import Estimator
 from compare.study.grid.sensor import SensorNoise

@@ -3,7 +3,7 @@
 from pydantic import Field
 
 from analytic import CLAMP_READINGS, Readings
-from compare.read.tables import Table
+from compare.read.quantities import Table
 from compare.sense.noise import with_noise
 
 

@@ -1,0 +1,123 @@
+"""The object of a case file: a table for each kind of contour."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from analytic import (
+    Contour,
+    catenary,
+    circle,
+    ellipse,
+    parabola,
+    polygon,
+    through_points,
+    two_circles,
+)
+from compare.read.quantities import Length, PerLength, Point, Points, SemiAxes, Table
+
+
+class ProfileTable(Table):
+    """The object: a kind of contour, and the numbers that `factory` makes it from."""
+
+    factory: ClassVar[Callable[..., Contour]]
+    scale: Length = Field(default=1.0, gt=0)
+
+    def build(self, folder: Path) -> Contour:  # files are in it, if there are any
+        """The contour.
+
+        Parameters
+        ----------
+        folder : Path
+            What the path of a mesh file is relative to.
+
+        Returns
+        -------
+        Contour
+            In the units of the file, or SI.
+        """
+        numbers = self.model_dump(exclude={"kind", "scale"})
+        return type(self).factory(**numbers).scaled(self.scale)
+
+
+class CatenaryTable(ProfileTable):
+    """See `analytic.catenary`."""
+
+    factory = staticmethod(catenary)
+    kind: Literal["catenary"]
+    a: PerLength
+    c: Length
+
+
+class ParabolaTable(ProfileTable):
+    """See `analytic.parabola`."""
+
+    factory = staticmethod(parabola)
+    kind: Literal["parabola"]
+    a: PerLength
+    c: Length
+
+
+class CircleTable(ProfileTable):
+    """See `analytic.circle`."""
+
+    factory = staticmethod(circle)
+    kind: Literal["circle"]
+    radius: Length
+    lowest: Point
+
+
+class EllipseTable(ProfileTable):
+    """See `analytic.ellipse`."""
+
+    factory = staticmethod(ellipse)
+    kind: Literal["ellipse"]
+    semi_axes: SemiAxes
+    lowest: Point
+
+
+class TwoCirclesTable(ProfileTable):
+    """See `analytic.two_circles`."""
+
+    factory = staticmethod(two_circles)
+    kind: Literal["two-circles"]
+    right_radius: Length = 2.0
+    left_radius: Length = 0.5
+    lowest: Point = (0.0, 0.5)
+
+
+class PolygonTable(ProfileTable):
+    """See `analytic.polygon`."""
+
+    factory = staticmethod(polygon)
+    kind: Literal["polygon"]
+    points: Points
+
+
+class PointsTable(ProfileTable):
+    """See `analytic.through_points`."""
+
+    factory = staticmethod(through_points)
+    kind: Literal["points"]
+    points: Points
+
+
+class MeshTable(ProfileTable):
+    """See `analytic.mesh_section`."""
+
+    kind: Literal["mesh"]
+    file: str
+    offset: Point = (0.0, 0.0)
+    height: float = 0.0
+    axes: str = "xy"
+    hull: bool = False
+    tolerance: float = 0.0
+
+    def build(self, folder: Path) -> Contour:
+        """The section of the mesh."""
+        from analytic import mesh_section  # slow to load, and few cases have a mesh
+
+        numbers = self.model_dump(exclude={"kind", "file"})
+        return mesh_section(folder / self.file, **numbers)

@@ -1,0 +1,123 @@
+"""Values of a file: numbers, and texts with a unit; and tables of them, checked."""
+
+from dataclasses import dataclass
+from typing import Annotated, Any, get_args
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic_core import PydanticCustomError
+
+from analytic import InputError
+from compare.read.complaints import plain_name
+from compare.read.units import in_si
+
+_EXAMPLES = {
+    "m": ("length", "50 mm"),
+    "1/m": ("inverse length", "0.5 1/mm"),
+    "N m^2": ("force times length squared", "2 N mm^2"),
+    "N m/rad": ("moment by angle", "0.3 mN m/rad"),
+    "m/s": ("speed", "10 mm/s"),
+    "s": ("time", "1 ms"),
+    "1/s": ("rate", "500 Hz"),
+    "kg/m^3": ("density", "7850 kg/m^3"),
+}
+
+
+class InSI(float):
+    """A number that was given with a unit."""
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """A validator: a number, or a text with a unit of `unit`, which becomes SI and `InSI`."""
+
+    unit: str
+
+    def __call__(self, value: object) -> float:
+        """The number."""
+        try:
+            if isinstance(value, int | float) and not isinstance(value, bool):
+                return float(value)
+            if isinstance(value, str):
+                return InSI(in_si(value, self.unit))
+        except (InputError, OverflowError):
+            pass
+        what, example = _EXAMPLES[self.unit]
+        raise PydanticCustomError(
+            "quantity",
+            "a number, or a text with a known unit of {what}, as '{example}'",
+            {"what": what, "example": example},
+        )
+
+
+@dataclass(frozen=True)
+class Varying(Dimension):
+    """The same, or a table of it: pairs of an arc length from the clamp and the value there."""
+
+    def __call__(self, value: object) -> Any:  # noqa: ANN401  # a number, or pairs of them
+        """The number, or the pairs."""
+        if not isinstance(value, list | tuple):
+            return super().__call__(value)
+        number, length = Dimension(self.unit), Dimension("m")
+        pairs = [pair for pair in value if isinstance(pair, list | tuple) and len(pair) == 2]
+        if len(pairs) < len(value):
+            what = _EXAMPLES[self.unit][0]
+            raise PydanticCustomError(
+                "table",
+                "a number, or a list of pairs [arc length from the clamp, {what}]",
+                {"what": what},
+            )
+        return tuple((length(s), number(x)) for s, x in pairs)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A validator: two values, called by `names` where there are not two."""
+
+    names: str
+
+    def __call__(self, value: object) -> object:
+        """The two."""
+        if isinstance(value, list | tuple) and len(value) == 2:
+            return value
+        raise PydanticCustomError("pair", "two lengths, [{names}]", {"names": self.names})
+
+
+Length = Annotated[float, BeforeValidator(Dimension("m"))]
+PerLength = Annotated[float, BeforeValidator(Dimension("1/m"))]
+Pairs = tuple[tuple[float, float], ...]
+RigidityAlong = Annotated[float | Pairs, BeforeValidator(Varying("N m^2"))]
+CurvatureAlong = Annotated[float | Pairs, BeforeValidator(Varying("1/m"))]
+RotationalStiffness = Annotated[float, BeforeValidator(Dimension("N m/rad"))]
+Two = Annotated[tuple[Length, Length], Field(strict=False)]
+Point = Annotated[Two, BeforeValidator(Pair("x, y"))]
+SemiAxes = Annotated[Two, BeforeValidator(Pair("along x, along y"))]
+Points = list[Point]
+FileName = Annotated[str, AfterValidator(plain_name)]
+
+
+class Table(BaseModel):
+    """A table without unknown keys, whose numbers are numbers: no text, no boolean."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    @classmethod
+    def quantities(cls) -> list[str]:
+        """Keys that may have a unit.
+
+        Returns
+        -------
+        list of str
+            Names of the fields with a dimension.
+        """
+        return [
+            name
+            for name, field in cls.model_fields.items()
+            if _has_dimension([*field.metadata, field.annotation])
+        ]
+
+
+def _has_dimension(parts: list[Any]) -> bool:
+    return any(
+        isinstance(getattr(part, "func", None), Dimension) or _has_dimension(list(get_args(part)))
+        for part in parts
+    )
