@@ -1,0 +1,81 @@
+"""Where the command line prints: standard output, with progress beside it."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    Task,
+    TextColumn,
+    TimeRemainingColumn,
+)
+from rich.text import Text
+
+
+def print_line(text: str) -> None:
+    """Print a line as it is: no markup, no folding.
+
+    Parameters
+    ----------
+    text : str
+        The line.
+    """
+    console().print(text, soft_wrap=True, markup=False)
+
+
+def print_written(path: Path) -> None:
+    """Print which file there is now.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    """
+    print_line(f"wrote {path}")
+
+
+class _Rate(ProgressColumn):
+    def render(self, task: Task) -> Text:
+        return Text("" if task.speed is None else f"{task.speed:.3g}/s")
+
+
+@contextmanager
+def progress(what: str, total: int) -> Iterator[Callable[[], None]]:
+    """Show a bar with rate and remaining time on a terminal, nothing elsewhere.
+
+    Parameters
+    ----------
+    what : str
+        What is counted.
+    total : int
+        How many there are.
+
+    Yields
+    ------
+    callable
+        To be called after each of them.
+    """
+    console = Console(stderr=True, highlight=False)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), _Rate(),
+               TimeRemainingColumn())  # fmt: skip
+    with Progress(
+        *columns, console=console, disable=not console.is_terminal, transient=True
+    ) as bar:
+        task = bar.add_task(Text(what).markup, total=total)
+        yield lambda: bar.advance(task)
+
+
+def console() -> Console:
+    """Standard output, as it is now: tests and notebooks replace it.
+
+    Returns
+    -------
+    rich.console.Console
+        Without colours of its own.
+    """
+    return Console(highlight=False)

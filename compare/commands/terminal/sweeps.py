@@ -1,0 +1,222 @@
+"""What one sweep has: its events, doubts, contacts, and its distance from other sweeps of a rig."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+from rich.console import Console
+from rich.table import Column, Table
+from rich.text import Text
+
+from analytic import CLAMP_READINGS, PHASES, Readings
+from compare.commands.terminal.console import console, print_line
+from compare.measure.repeats import Repeat
+from compare.read.assumed import ASSUMED
+from compare.read.passes import Pass
+from compare.read.rig import OWN_UNITS
+from compare.show.quantities import quantity
+from compare.show.style import PHASE_LETTERS
+
+_MEANINGS = {
+    "touches again": ": another part of the vibrissa would lie in the object, no readings",
+    "chattering": ": the contact was lost more than once between two stations",
+    "lost": ": no contact, between stations with one",
+    "sticks": ": the contact would slide back, which friction prevents as the foot moves on; the "
+    "readings are those of one that slides on",
+}
+
+
+def print_sweep(readings: Readings) -> None:
+    """Print what a sweep found, in a line: stations, phases, snap-off, the worst residuals.
+
+    Parameters
+    ----------
+    readings : Readings
+        Of an engine.
+    """
+    table, length = readings.table, readings.beam.length
+    parts = [f"{int(readings.trusted.sum())} of {len(table)} stations ok"]
+    parts += _untrusted(readings)
+    if "phase" in table:
+        counts = table["phase"].value_counts()
+        found = [f"{counts[phase]} {phase}" for phase in PHASES if phase in counts]
+        parts.append(", ".join(found))
+    unsettled = readings.provenance.get("unsettled", {})
+    parts.extend(f"{count} unsettled: {reason}" for reason, count in unsettled.items())
+    snap_off = readings.snap_off
+    parts.append(
+        "no snap-off" if snap_off is None else f"snap-off at foot_x = {snap_off / length:.4f} L"
+    )
+    for name, unit in (
+        ("residual", " EI/L"),
+        ("residual_boundary", ""),
+        ("residual_moment", " EI/L"),
+    ):
+        if name in table:
+            worst = np.nanmax(table[name].to_numpy(dtype=float), initial=0.0)
+            parts.append(f"{name.replace('_', ' ')} at most {worst:.1e}{unit}")
+    if "kinetic_share" in readings.table:
+        touching = table.loc[table["phase"] != "free", "kinetic_share"].to_numpy(dtype=float)
+        parts.append(f"kinetic share in contact at most {np.nanmax(touching, initial=0.0):.1e}")
+        parts.append(f"{table['time'].max():.4g} T1")
+    parts += [f"{name} {value:g}" for name, value in readings.beyond_the_paper.items()]
+    print_line(f"{readings.source}: {'; '.join(parts)}")
+
+
+def _untrusted(readings: Readings) -> list[str]:
+    """How many stations have a status that nothing else is said of, where, and what it means."""
+    if "status" not in readings.table:
+        return []
+    said = []
+    for name, group in readings.table.groupby("status", sort=False)["foot_x"]:
+        if name in ("ok", "unsettled"):
+            continue
+        ends = (x / readings.beam.length for x in (group.iloc[0], group.iloc[-1]))
+        where = " to ".join(f"{x:.4f}" for x in ends)
+        meaning = _MEANINGS.get(str(name), "")
+        said.append(f"{len(group)} {name} (foot_x {where} L{meaning})")
+    return said
+
+
+def note_rows(readings: Readings) -> None:
+    """Say on standard error what was assumed of a rig's file or done to its rows, if anything.
+
+    Parameters
+    ----------
+    readings : Readings
+        As `compare.read_measured` returns them.
+    """
+    rows = readings.provenance.get("rows", {})
+    notes = []
+    if ASSUMED in readings.provenance:
+        notes.append("no vibrissa given, L = EI = 1 is assumed")
+    if units := readings.provenance.get(OWN_UNITS):
+        shown = ", ".join(f"{name} in {unit}" for name, unit in units.items())
+        notes.append(f"units taken from the line below the names: {shown}")
+    notes += [
+        f"{count} rows {what}"
+        for name, what in (
+            ("out_of_order", "out of order were sorted by foot_x"),
+            ("averaged", "averaged with the one before, at the same foot_x"),
+        )
+        if (count := rows.get(name))
+    ]
+    if notes:
+        Console(stderr=True, highlight=False).print(
+            f"vibrissa: {readings.source}: {'; '.join(notes)}", soft_wrap=True, markup=False
+        )
+
+
+def print_reconstruction(readings: Readings, found: pd.DataFrame, method: str) -> None:
+    """Print what a reconstruction found, in a line.
+
+    Parameters
+    ----------
+    readings : Readings
+        What the contact was found from.
+    found : pandas.DataFrame
+        As `analytic.reconstruct` returns it.
+    method : str
+        By which method.
+    """
+    counts = found["phase"].value_counts()
+    touching = int(np.isfinite(found["contact_x"].to_numpy(dtype=float)).sum())
+    words = [
+        f"{touching} contact points from {len(found)} stations",
+        ", ".join(f"{counts[phase]} {phase}" for phase in PHASES if phase in counts),
+    ]
+    if "unexplained" in counts:
+        words.append(f"{counts['unexplained']} with readings that no such vibrissa has")
+    unused = int((~readings.trusted).sum())
+    if unused:
+        words.append(f"{unused} not used, their readings are not to be trusted")
+    if touching:
+        x, y = (found[name].to_numpy(dtype=float) for name in ("contact_x", "contact_y"))
+        length = readings.beam.length
+        words.append(
+            f"x from {np.nanmin(x) / length:.4g} to {np.nanmax(x) / length:.4g} L, "
+            f"y from {np.nanmin(y) / length:.4g} to {np.nanmax(y) / length:.4g} L"
+            + (f" (L = {quantity(length, 'length', readings.beam)})" if readings.beam.si else "")
+        )
+    unanswered = int((found["status"] == "no answer").sum())
+    if unanswered:
+        words.append(f"{unanswered} to which the method has no answer")
+    by = "" if method == "elastica" else f", {method}"
+    print_line(f"{readings.source}{by}: {'; '.join(words)}")
+
+
+def print_passes(passes: Sequence[Pass], repeats: Mapping[tuple[str, str], Repeat]) -> None:
+    """Print what was read of each pass, what was not used, and how far passes repeat each other.
+
+    Parameters
+    ----------
+    passes : sequence of Pass
+        All of them.
+    repeats : mapping of Repeat
+        By the names of the two passes.
+    """
+    reasons = [name for name in passes[0].dropped if any(one.dropped[name] for one in passes)]
+    table = Table(
+        Column("pass", overflow="fold"), "to the", "rows", "kept",
+        *(name.replace("_", " ") for name in reasons), "sorted", "gaps",
+        *(f"drift of {name}" for name in CLAMP_READINGS),
+        title="Passes: rows, why some are not used, and drift of the zero over the largest reading",
+    )  # fmt: skip
+    for one in passes:
+        largest = {n: np.nanmax(np.abs(one.readings.values(n)), initial=0.0) for n in one.drift}
+        drifts = [one.drift[n] / largest[n] if largest[n] > 0 else np.nan for n in one.drift]
+        table.add_row(
+            Text(one.name),
+            one.direction,
+            *(str(n) for n in (one.rows, one.kept)),
+            *(str(one.dropped[name]) for name in reasons),
+            *(str(n) for n in (one.sorted, one.record.gaps)),
+            *("not known" if np.isnan(x) else f"{x:+.1e}" for x in drifts),
+        )
+    console().print(table)
+    length = passes[0].readings.beam.length
+    for (first, second), found in repeats.items():
+        apart = max(found.rms.values())
+        left = max(found.rms_without_shift.values())
+        shift = (
+            "no shift of the foot to be seen"
+            if found.shift is None
+            else f"foot_x reads {found.shift / length:+.1e} L more "
+            f"(+- {found.shift_uncertainty / length:.0e}), without that {left:.1e} rms"
+        )
+        print_line(f"{second} after {first}: {apart:.1e} rms apart; {shift}")
+
+
+def print_methods(found: pd.DataFrame, title: str) -> None:
+    """Print each method's median error by noise, and how many contacts it has an answer for.
+
+    Parameters
+    ----------
+    found : pandas.DataFrame
+        As `compare.measure.methods.method_errors` has it.
+    title : str
+        Which sweep.
+    """
+    levels = sorted(found["noise"].unique())
+    table = Table(
+        Column("method", no_wrap=True), "phase", Column("answered", justify="right"),
+        *(f"noise {level:g}" if level else "no noise" for level in levels),
+        Column("contacts/s", justify="right"),
+        title=Text(f"Median error of the contact, over L: {title}"),
+    )  # fmt: skip
+    for method, rows in found.groupby("method", sort=False):
+        name = str(method)
+        for phase, by_noise in rows.groupby("phase", sort=False):
+            by = by_noise.set_index("noise")
+            if not by["contacts"][levels[0]]:
+                continue
+            medians = (by["median"][level] for level in levels)
+            table.add_row(
+                name,
+                PHASE_LETTERS[str(phase)],
+                f"{by['answered'][levels[0]]:.0%}",
+                *("-" if np.isnan(x) else f"{x:.1e}" for x in medians),
+                f"{1 / by['seconds'].median():.0f}" if name and by["seconds"].min() > 0 else "",
+            )
+            name = ""
+    console().print(table)
