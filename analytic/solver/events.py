@@ -4,6 +4,7 @@ Will, Steigenberger and Behn, section 4.
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +20,7 @@ from analytic.problem.roots import zeros
 from analytic.problem.support import check_support, is_plain
 from analytic.solver.branch import trace
 from analytic.solver.contact_length import surplus_and_rate
-from analytic.solver.equilibria import Equilibria, equilibria, tangent_contact, to_columns
+from analytic.solver.equilibria import Column, Equilibria, equilibria, tangent_contact, to_columns
 from analytic.solver.general.clearance import is_clear
 from analytic.solver.general.columns import to_columns as general_columns
 from analytic.solver.general.path import follow
@@ -149,11 +150,13 @@ def _general_events(
         z = path.z[i : i + 1]
         found = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
         columns = general_columns(found, np.zeros(1, dtype=bool), beam)
+        if name == "first_contact":  # two rigid bodies: no force whose direction could be checked
+            return _only(columns)
         columns = without_inexact(columns, beam, vibrissa)
-        if name != "first_contact" and not is_clear(centreline, found)[0]:
+        if not is_clear(centreline, found)[0]:
             columns = general_columns(found, np.ones(1, dtype=bool), beam)
             columns["foot_x"] = path.foot_x[i : i + 1] * beam.length
-        return Event(**{name: column[0].item() for name, column in columns.items()})
+        return _only(columns)
 
     first, snap_off = event("first_contact"), event("snap_off")
     assert first is not None and snap_off is not None
@@ -175,7 +178,11 @@ def _contact_length_minimum(centreline: Contour, reach: tuple[float, float]) -> 
 
 
 def _event(state: Equilibria, beam: Beam) -> Event:
-    columns = to_columns(state, beam)
+    return _only(to_columns(state, beam))
+
+
+def _only(columns: Mapping[str, Column]) -> Event:
+    """The one row of a table."""
     row: dict[str, Any] = {name: column[0].item() for name, column in columns.items()}
     return Event(**row)
 

@@ -12,6 +12,7 @@ from analytic.problem.errors import InputError
 
 _STEP = 1e-5  # of a number, for a derivative; the solver's 1e-11 must not matter
 _SETTLED = 1e-8  # relative, of the sum of squares and of the numbers: far below any noise
+_AN_END = 1e-9  # a fit that stays inside comes so near to an end that is best
 _MOST_SWEEPS = 40  # of a fit, without those for derivatives
 
 
@@ -169,7 +170,8 @@ class Fit:
                 gtol=None,
                 max_nfev=_MOST_SWEEPS,
             )
-        return found.x, 2 * float(found.cost)
+        numbers = np.where(found.x - self.lowest < _AN_END, self.lowest, found.x)
+        return numbers, 2 * float(found.cost)
 
     def _misses(self, numbers: Floats) -> Floats:
         found = self.expected(numbers)

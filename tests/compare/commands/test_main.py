@@ -425,6 +425,18 @@ def test_a_whisker(tmp_path):
     assert "192 contact points from 200 stations" in found.stdout
 
 
+def test_a_vibrissa_that_locks_itself_is_said(tmp_path):
+    """Its tip climbs as it is straightened, which friction prevents: where, and why."""
+    (tmp_path / "locks.toml").write_text(
+        "[beam]\nnatural_curvature = 0.5\n[contact]\nfriction = 0.9\n"
+        '[profile]\nkind = "parabola"\na = 0.5\nc = 0.5\n'
+    )
+    done = vibrissa("analytic", "locks.toml", "--stations", 60, "--out", "out", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "5 sticks (foot_x 1.1757 to 0.9986 L: the contact would slide back, " in done.stdout
+    assert len(done.stdout.splitlines()) == 2
+
+
 def test_a_vibrissa_that_would_touch_twice_is_said(tmp_path):
     (tmp_path / "forward.toml").write_text(
         '[beam]\nnatural_curvature = 0.5\n[profile]\nkind = "catenary"\na = 0.5\nc = -0.8\n'

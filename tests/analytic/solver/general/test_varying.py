@@ -226,6 +226,15 @@ def test_limit_is_smooth(varied):
     np.testing.assert_allclose(twice, 2 * once, atol=1e-4 * np.abs(once).max())
 
 
+@pytest.mark.parametrize("name", ["taper 0.1", "two wires", "bow"])
+def test_first_contact_is_an_event(name):
+    found = find_events(OBJECT, BEAMS[name], clamp_stiffness=8.0, friction=0.2).first_contact
+    case = case_of(BEAMS[name], stations=5, clamp_stiffness=8.0, friction=0.2)
+    swept = solve_sweep(case).provenance["events"]["first_contact"]
+    assert found.status == "ok" and found.force_y == 0
+    assert found.foot_x == pytest.approx(swept, abs=1e-14)
+
+
 @pytest.mark.parametrize("ratio", [0.7, 0.1, 0.05, 1e-3])
 @pytest.mark.parametrize("a", [0.3, 0.9, 1.0])
 def test_small_deflection_of_a_cone(a, ratio):
