@@ -320,6 +320,13 @@ class Readings:
         path = as_path(path, "readings file")
         content = read_file(path)
         metadata = content.metadata
+        if "tangent" in metadata:
+            raise InputError(
+                f"readings file {path}",
+                "of a sweep in space",
+                "one sweep in the plane",
+                "read it with `analytic.space.SpatialReadings` or `vibrissa space`",
+            )
         try:
             beam = _beam(metadata["beam"]) if "beam" in metadata else otherwise
             return cls.of(

@@ -1,0 +1,8 @@
+"""The sweep in space, past any convex body: the problem, its closed form, and the way back.
+
+The names are listed in ``__init__.pyi`` and loaded when first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,1 @@
+"""Back from the clamp's six components to the body."""

@@ -1,0 +1,1 @@
+"""The problem in space: a vibrissa, a convex body, and the way of the foot."""

@@ -1,0 +1,1 @@
+"""Convex bodies in space."""

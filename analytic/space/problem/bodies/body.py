@@ -1,0 +1,119 @@
+"""What the solver needs of a convex body in space: the nearest point of it to any point outside."""
+
+from abc import ABC, abstractmethod
+from typing import NamedTuple
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+
+
+class Spot(NamedTuple):
+    """A point of a body's surface with one of its normals.
+
+    On a face there is one normal, on an edge a fan of them, at a corner a cone. Point and normal
+    together are a point of the parallel surface at a distance, which has no edges and no corners.
+    """
+
+    point: Floats
+    """Shape (3,) [length]."""
+    normal: Floats
+    """Outward, of length 1, shape (3,)."""
+    distance: float
+    """Of the point that was asked for; zero or less if it lies inside or on the body [length]."""
+    turning: Floats
+    """How the normal turns as the point of the parallel surface moves: a symmetric tensor, shape
+    (3, 3) [1/length]. Its principal values are 1/(rho + distance of the parallel surface) with the
+    principal radii of curvature rho: zero on a face, the inverse distance at a corner."""
+
+
+class Body(ABC):
+    """A convex body, smooth or not, bounded or not."""
+
+    label: str
+
+    @abstractmethod
+    def nearest(self, x: Floats, apart: float) -> Spot:
+        """The surface's nearest point.
+
+        Parameters
+        ----------
+        x : array, shape (3,)
+            A point outside [length]; of one inside only the sign of the distance is right.
+        apart : float
+            Distance of the parallel surface that `Spot.turning` belongs to, positive [length].
+
+        Returns
+        -------
+        Spot
+            Point, normal, distance and how the normal turns.
+        """
+
+    @abstractmethod
+    def scaled(self, factor: float) -> "Body":
+        """The body enlarged about the origin, to change its unit of length.
+
+        Parameters
+        ----------
+        factor : float
+            How many new units of length an old one has.
+
+        Returns
+        -------
+        Body
+            In the new unit.
+        """
+
+    @abstractmethod
+    def patches(self, centre: Floats, reach: float) -> Floats:
+        """Polygons to draw the body with.
+
+        Parameters
+        ----------
+        centre : array, shape (3,)
+            Where the picture is of [length].
+        reach : float
+            How far unbounded bodies are drawn from there [length].
+
+        Returns
+        -------
+        array, shape (n, k, 3)
+            Polygons of k corners [length].
+        """
+
+
+def grid_patches(x: Floats) -> Floats:
+    """The cells of a grid of points.
+
+    Parameters
+    ----------
+    x : array, shape (n, m, 3)
+        Points of a surface.
+
+    Returns
+    -------
+    array, shape ((n - 1) (m - 1), 4, 3)
+        Quadrilaterals.
+    """
+    cells = np.stack([x[:-1, :-1], x[1:, :-1], x[1:, 1:], x[:-1, 1:]], axis=2)
+    return cells.reshape(-1, 4, 3)
+
+
+def across(normal: Floats) -> Floats:
+    """Two unit vectors that span the plane normal to a vector.
+
+    Parameters
+    ----------
+    normal : array, shape (3,)
+        Of length 1.
+
+    Returns
+    -------
+    array, shape (2, 3)
+        The three are right-handed: second, third, normal.
+    """
+    axis = np.zeros(3)
+    axis[np.argmin(np.abs(normal))] = 1.0
+    first = np.cross(axis, normal)
+    first /= np.linalg.norm(first)
+    return np.stack([first, np.cross(normal, first)])

@@ -1,0 +1,150 @@
+"""Spheres and ellipsoids."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from analytic.problem.arrays import Floats
+from analytic.problem.errors import InputError
+from analytic.problem.numbers import positive
+from analytic.space.problem.bodies.body import Body, Spot, grid_patches
+from analytic.space.problem.numbers import Vector, axes, vector
+
+_STEPS = 60  # of Newton's method, from below: it cannot overshoot
+_EPS = float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True, eq=False)
+class Ellipsoid(Body):
+    """An ellipsoid; made by `sphere` and `ellipsoid`.
+
+    Parameters
+    ----------
+    semi_axes, centre : array, shape (3,)
+        Its numbers [length].
+    frame : array, shape (3, 3)
+        Unit vectors along the semi-axes, a row each.
+    label : str
+        What reports call it.
+    """
+
+    semi_axes: Floats
+    centre: Floats
+    frame: Floats
+    label: str
+
+    def nearest(self, x: Floats, apart: float) -> Spot:
+        """By the root of the secular equation sum (a_i y_i/(a_i^2 + m))^2 = 1."""
+        squares = self.semi_axes**2
+        y = self.frame @ (x - self.centre)
+        inside = float(np.sum(y * y / squares))
+        if inside <= 1:
+            inward = (np.sqrt(inside) - 1) * float(self.semi_axes.min())
+            return Spot(x, np.zeros(3), inward, np.zeros((3, 3)))
+        multiplier = self._multiplier(y, squares)
+        point = squares * y / (squares + multiplier)
+        gradient = y / (squares + multiplier)
+        steepness = float(np.linalg.norm(gradient))
+        normal = gradient / steepness
+        flat = np.eye(3) - np.outer(normal, normal)
+        # n = D p/|D p| with D = 1/a^2, and p + m D p stays as far apart as the parallel surface.
+        bend = flat @ np.diag(1 / squares) @ flat / steepness
+        turning = self.frame.T @ _of_parallel(bend, apart) @ self.frame
+        return Spot(
+            self.centre + point @ self.frame,
+            normal @ self.frame,
+            multiplier * steepness,
+            turning,
+        )
+
+    def _multiplier(self, y: Floats, squares: Floats) -> float:
+        weighted = squares * y * y
+        m = max(0.0, float((np.sqrt(weighted) - squares).max()))
+        for _ in range(_STEPS):
+            parts = weighted / (squares + m) ** 2
+            step = (float(parts.sum()) - 1) / float(2 * (parts / (squares + m)).sum())
+            m += max(step, 0.0)
+            if step <= 2 * _EPS * m:
+                break
+        return m
+
+    def scaled(self, factor: float) -> "Ellipsoid":
+        """With the same label."""
+        return replace(self, semi_axes=factor * self.semi_axes, centre=factor * self.centre)
+
+    def patches(self, centre: Floats, reach: float) -> Floats:
+        """By longitude and latitude; all of it."""
+        around, down = np.meshgrid(
+            np.linspace(0, 2 * np.pi, 49), np.linspace(0, np.pi, 25), indexing="ij"
+        )
+        unit = np.stack(
+            [np.sin(down) * np.cos(around), np.cos(down), np.sin(down) * np.sin(around)], axis=-1
+        )
+        return grid_patches(self.centre + (unit * self.semi_axes) @ self.frame)
+
+
+def _of_parallel(bend: Floats, apart: float) -> Floats:
+    """The turning on the parallel surface, from that on the surface itself."""
+    turned = np.linalg.solve(np.eye(3) + apart * bend, bend)
+    return np.asarray((turned + turned.T) / 2)
+
+
+def sphere(radius: float, centre: Vector) -> Ellipsoid:
+    """A sphere.
+
+    Parameters
+    ----------
+    radius : float
+        Positive [length].
+    centre : array_like, shape (3,)
+        (x, y, z) [length].
+
+    Returns
+    -------
+    Ellipsoid
+        With three equal semi-axes.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be.
+    """
+    size = positive("body sphere.radius", radius)
+    middle = vector("body sphere.centre", centre)
+    return Ellipsoid(np.full(3, size), middle, np.eye(3), f"sphere of radius {size:g}")
+
+
+def ellipsoid(semi_axes: Vector, centre: Vector, frame: ArrayLike | None = None) -> Ellipsoid:
+    """An ellipsoid.
+
+    Parameters
+    ----------
+    semi_axes : array_like, shape (3,)
+        Positive [length].
+    centre : array_like, shape (3,)
+        (x, y, z) [length].
+    frame : array_like, shape (3, 3), optional
+        Unit vectors along the semi-axes, a row each; x, y and z if not given.
+
+    Returns
+    -------
+    Ellipsoid
+        The body.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be, the frame is none, or one semi-axis is more than 1e4 of another.
+    """
+    sizes = vector("body ellipsoid.semi_axes", semi_axes)
+    for i, size in enumerate(sizes):
+        positive(f"body ellipsoid.semi_axes[{i}]", float(size))
+    if sizes.max() > 1e4 * sizes.min():
+        raise InputError(
+            "body ellipsoid.semi_axes", semi_axes, "within 1e4 of each other", "it is a disc else"
+        )
+    name = " by ".join(f"{size:g}" for size in sizes)
+    rows = np.eye(3) if frame is None else axes("body ellipsoid.frame", frame)
+    middle = vector("body ellipsoid.centre", centre)
+    return Ellipsoid(sizes, middle, rows, f"ellipsoid {name}")

@@ -1,0 +1,237 @@
+"""A convex mesh: faces, edges and corners, each with the normals that it has."""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from analytic.problem.arrays import Floats, Integers
+from analytic.problem.contours.mesh_file import read_body
+from analytic.problem.errors import InputError
+from analytic.problem.numbers import positive
+from analytic.space.problem.bodies.body import Body, Spot
+from analytic.space.problem.numbers import Vector, vector
+
+
+@dataclass(frozen=True, eq=False)
+class Polyhedron(Body):
+    """A bounded convex mesh; made by `convex_mesh`.
+
+    Parameters
+    ----------
+    vertices : array, shape (n, 3)
+        [length]
+    faces : array of int, shape (m, 3)
+        Triangles of vertices.
+    normals : array, shape (m, 3)
+        Outward, of length 1, exactly alike on triangles of one plane.
+    label : str
+        What reports call it.
+    """
+
+    vertices: Floats
+    faces: Integers
+    normals: Floats = field(repr=False)
+    label: str
+
+    @cached_property
+    def corners(self) -> Floats:
+        """Corners of the triangles, shape (m, 3, 3) [length]."""
+        return self.vertices[self.faces]
+
+    @cached_property
+    def heights(self) -> Floats:
+        """Distance of each triangle's plane from the origin, shape (m,) [length]."""
+        return np.asarray((self.normals * self.corners.mean(axis=1)).sum(axis=1))
+
+    @cached_property
+    def _around(self) -> tuple[Integers, Integers]:
+        """The triangles at each vertex: where they begin in the list, and the list."""
+        order = np.argsort(self.faces.ravel(), kind="stable")
+        begins = np.searchsorted(self.faces.ravel()[order], np.arange(len(self.vertices) + 1))
+        return begins, order // 3
+
+    def nearest(self, x: Floats, apart: float) -> Spot:
+        """Walks over the triangles that the point sees, always to a nearer one.
+
+        The distance from a convex body has no local minimum but the least, so the walk ends there.
+        """
+        ahead = self.normals @ x - self.heights
+        face = int(np.argmax(ahead))
+        if ahead[face] <= 0:
+            return Spot(x, np.zeros(3), float(ahead[face]), np.zeros((3, 3)))
+        tried = np.array([face])
+        best = np.inf
+        while True:
+            found, weights = _nearest_on(self.corners[tried], x)
+            far = ((found - x) ** 2).sum(axis=1)
+            nearest = int(np.argmin(far))
+            if not far[nearest] < best:
+                break
+            best, face = float(far[nearest]), int(tried[nearest])
+            point, weight = found[nearest], weights[nearest]
+            tried = self._neighbours(face)
+            tried = tried[ahead[tried] > 0]
+        return self._spot(x, face, point, weight, apart, float(ahead[face]))
+
+    def _neighbours(self, face: int) -> Integers:
+        begins, triangles = self._around
+        parts = [triangles[begins[v] : begins[v + 1]] for v in self.faces[face]]
+        return np.concatenate(parts)
+
+    def _spot(
+        self, x: Floats, face: int, point: Floats, weight: Floats, apart: float, height: float
+    ) -> Spot:
+        on = weight > 0
+        if on.all():
+            return Spot(
+                x - height * self.normals[face], self.normals[face], height, np.zeros((3, 3))
+            )
+        away = x - point
+        distance = float(np.linalg.norm(away))
+        normal = away / distance
+        flat = np.eye(3) - np.outer(normal, normal)
+        if on.sum() == 2:
+            first, second = self.corners[face][on]
+            along = (second - first) / np.linalg.norm(second - first)
+            if self._is_flat(self.faces[face][on], face):
+                normal, distance = self.normals[face], height
+                return Spot(x - height * normal, normal, height, np.zeros((3, 3)))
+            # An edge: the normal turns about it, and that only.
+            flat = flat - np.outer(along, along)
+        return Spot(point, normal, distance, flat / apart)
+
+    def _is_flat(self, edge: Integers, face: int) -> bool:
+        """Whether the triangles on both sides of an edge lie in one plane."""
+        begins, triangles = self._around
+        one, other = (triangles[begins[v] : begins[v + 1]] for v in edge)
+        both = np.intersect1d(one, other)
+        return bool((self.normals[both] == self.normals[face]).all())
+
+    def scaled(self, factor: float) -> "Polyhedron":
+        """With the same normals."""
+        return replace(self, vertices=factor * self.vertices)
+
+    def patches(self, centre: Floats, reach: float) -> Floats:
+        """Its triangles."""
+        return self.corners
+
+
+def _nearest_on(triangles: Floats, x: Floats) -> tuple[Floats, Floats]:
+    """Nearest points of triangles, and their barycentric coordinates, exactly 0 off a corner.
+
+    After C. Ericson, Real-Time Collision Detection, 2005, section 5.1.5: the nearest of the three
+    edges, or the foot of the perpendicular where that is within.
+    """
+    a = triangles[:, 0]
+    one, two = triangles[:, 1] - a, triangles[:, 2] - a
+    away = x - a
+    d11, d12, d22 = (one * one).sum(1), (one * two).sum(1), (two * two).sum(1)
+    e1, e2 = (one * away).sum(1), (two * away).sum(1)
+    area = d11 * d22 - d12 * d12
+    v, w = (d22 * e1 - d12 * e2) / area, (d11 * e2 - d12 * e1) / area
+    weights = np.stack([1 - v - w, v, w], axis=1)
+    outside = (weights <= 0).any(axis=1)
+    best = np.where(outside, np.inf, -1.0)
+    for i, j in ((0, 1), (1, 2), (2, 0)):
+        begin, along = triangles[:, i], triangles[:, j] - triangles[:, i]
+        share = np.clip(((x - begin) * along).sum(1) / (along * along).sum(1), 0, 1)
+        far = ((begin + share[:, None] * along - x) ** 2).sum(1)
+        nearer = far < best
+        best = np.where(nearer, far, best)
+        edge = np.zeros_like(weights)
+        edge[:, i], edge[:, j] = 1 - share, share
+        weights = np.where(nearer[:, None], edge, weights)
+    return np.einsum("nk,nkc->nc", weights, triangles), weights
+
+
+def convex_mesh(
+    file: str | Path,
+    *,
+    scale: float = 1.0,
+    offset: Vector = (0.0, 0.0, 0.0),
+    hull: bool = False,
+    tolerance: float = 0.0,
+) -> Polyhedron:
+    """A convex body from a mesh file.
+
+    Vertices at one place are merged, a mesh that is inside out is turned. A body of more than
+    50,000 vertices is thinned to that number at most.
+
+    Parameters
+    ----------
+    file : str or Path
+        STL, OBJ, PLY, OFF, GLB or glTF.
+    scale : float
+        The file's unit of length, in the case's [length].
+    offset : array_like, shape (3,)
+        Where the file's origin is put, after scaling [length].
+    hull : bool
+        Whether to take the convex hull of an open or dented mesh.
+    tolerance : float
+        How far vertices may lie outside the body, so that it has fewer [length].
+
+    Returns
+    -------
+    Polyhedron
+        The body.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, its mesh is flat or, unless `hull`, open or dented.
+    """
+    unit = positive("body mesh.scale", scale)
+    place = vector("body mesh.offset", offset)
+    if not (np.isfinite(tolerance) and tolerance >= 0):
+        raise InputError("body mesh.tolerance", tolerance, "0 or more", "correct it")
+    body = read_body(file, hull, tolerance / unit)
+    return _polyhedron(unit * body.vertices + place, body.faces, body.normals, Path(file).name)
+
+
+def polyhedron(points: Floats, label: str = "polyhedron") -> Polyhedron:
+    """The convex hull of points.
+
+    Parameters
+    ----------
+    points : array, shape (n, 3)
+        Four or more, not in one plane [length].
+    label : str
+        What reports call it.
+
+    Returns
+    -------
+    Polyhedron
+        The body.
+
+    Raises
+    ------
+    InputError
+        If they have no volume.
+    """
+    from scipy.spatial import ConvexHull, QhullError  # slow to load, and few cases need it
+
+    try:
+        given = np.asarray(points, dtype=float)
+        found = ConvexHull(given)
+    except (QhullError, ValueError) as error:
+        reason = str(error).split("\n")[0][:80]
+        raise InputError(
+            "body polyhedron.points",
+            f"not usable ({reason})",
+            "four points or more with a volume",
+            "an array of shape (n, 3)",
+        ) from error
+    faces = np.searchsorted(found.vertices, found.simplices)
+    return _polyhedron(given[found.vertices], faces, found.equations[:, :3], label)
+
+
+def _polyhedron(vertices: Floats, faces: Integers, normals: Floats, label: str) -> Polyhedron:
+    """Without triangles that have no area, whose normals are their neighbours'."""
+    corners = vertices[faces]
+    sides = corners - np.roll(corners, 1, axis=1)
+    longest = (sides**2).sum(axis=2).max(axis=1)
+    doubled = np.linalg.norm(np.cross(sides[:, 1], sides[:, 2]), axis=1)
+    solid = doubled > 1e-12 * longest
+    return Polyhedron(vertices, faces[solid], normals[solid], label)

@@ -1,0 +1,206 @@
+"""Bodies that are the same all along an axis: round cylinders, and prisms of planar contours."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.problem.contours.contour import Contour
+from analytic.problem.errors import require
+from analytic.problem.numbers import positive
+from analytic.problem.roots import zeros
+from analytic.space.problem.bodies.body import Body, Spot, across, grid_patches
+from analytic.space.problem.numbers import Vector, direction, vector
+
+
+@dataclass(frozen=True, eq=False)
+class Cylinder(Body):
+    """An endless round cylinder; made by `cylinder`.
+
+    Parameters
+    ----------
+    radius : float
+        [length]
+    through, axis : array, shape (3,)
+        A point of its axis [length] and the axis' direction, of length 1.
+    label : str
+        What reports call it.
+    """
+
+    radius: float
+    through: Floats
+    axis: Floats
+    label: str
+
+    def nearest(self, x: Floats, apart: float) -> Spot:
+        """Straight to the axis."""
+        away = x - self.through
+        away = away - (away @ self.axis) * self.axis
+        far = float(np.linalg.norm(away))
+        if far <= self.radius:
+            return Spot(x, np.zeros(3), far - self.radius, np.zeros((3, 3)))
+        normal = away / far
+        around = np.cross(self.axis, normal)
+        return Spot(
+            x - (far - self.radius) * normal,
+            normal,
+            far - self.radius,
+            np.outer(around, around) / (self.radius + apart),
+        )
+
+    def scaled(self, factor: float) -> "Cylinder":
+        """With the same label."""
+        return replace(self, radius=factor * self.radius, through=factor * self.through)
+
+    def patches(self, centre: Floats, reach: float) -> Floats:
+        """The part within reach."""
+        sides = across(self.axis)
+        middle = self.through + ((centre - self.through) @ self.axis) * self.axis
+        angle = np.linspace(0, 2 * np.pi, 49)
+        ring = self.radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1) @ sides
+        along = np.linspace(-reach, reach, 9)[:, None, None] * self.axis
+        return grid_patches(middle + ring + along)
+
+
+@dataclass(frozen=True, eq=False)
+class Prism(Body):
+    """The prism of a planar contour; made by `prism`.
+
+    Above the contour's ends its sides go straight up, without end.
+
+    Parameters
+    ----------
+    contour : Contour
+        The lower side of its section [length].
+    origin : array, shape (3,)
+        Of the contour's coordinates [length].
+    frame : array, shape (3, 3)
+        The contour's x and y and the prism's axis, a row each.
+    label : str
+        What reports call it.
+    """
+
+    contour: Contour
+    origin: Floats
+    frame: Floats
+    label: str
+
+    def nearest(self, x: Floats, apart: float) -> Spot:
+        """In the plane of the contour."""
+        across_it, up, along = self.frame @ (x - self.origin)
+        t = self._foot_of_perpendicular(across_it, up)
+        point = self.contour.at(np.array([t]))
+        alpha, xi, eta, turning, stretch = (float(value[0]) for value in point)
+        sine, cosine = np.sin(alpha), np.cos(alpha)
+        low, high = self.contour.t_range
+        on_side = t in (low, high) and up > eta
+        if on_side:  # the upright side above the end
+            sine, cosine, eta, turning = np.sign(sine), 0.0, up, 0.0
+        normal = sine * self.frame[0] - cosine * self.frame[1]
+        tangent = cosine * self.frame[0] + sine * self.frame[1]
+        distance = (across_it - xi) * sine - (up - eta) * cosine
+        moved = stretch + apart * turning
+        rate = turning / moved if moved > 0 else 1 / apart
+        place = self.origin + np.array([xi, eta, along]) @ self.frame
+        return Spot(place, normal, float(distance), rate * np.outer(tangent, tangent))
+
+    def _foot_of_perpendicular(self, x: float, y: float) -> float:
+        """Parameter of the contour's point from which (x, y) lies along the normal."""
+        low, high = self.contour.t_range
+
+        def ahead(t: Floats) -> Floats:
+            point = self.contour.at(t)
+            cosine, sine = np.cos(point.alpha), np.sin(point.alpha)
+            return (x - point.xi) * cosine + (y - point.eta) * sine
+
+        ends = ahead(np.array([low, high]))
+        if ends[0] <= 0:
+            return low
+        if ends[1] >= 0:
+            return high
+        return float(zeros(ahead, np.array([low]), np.array([high]))[0])
+
+    def scaled(self, factor: float) -> "Prism":
+        """With the same label."""
+        return replace(self, contour=self.contour.scaled(factor), origin=factor * self.origin)
+
+    def patches(self, centre: Floats, reach: float) -> Floats:
+        """The part within reach."""
+        low, high = self.contour.t_range
+        line = self.contour.outline(low, high, 65)
+        local = self.frame @ (centre - self.origin)
+        line = line[(np.abs(line - local[:2]) <= 2 * reach).all(axis=1)]
+        depth = local[2] + np.linspace(-reach, reach, 9)
+        grid = np.empty((len(line), len(depth), 3))
+        grid[..., :2] = line[:, None]
+        grid[..., 2] = depth
+        return grid_patches(self.origin + grid @ self.frame)
+
+
+def cylinder(radius: float, through: Vector, axis: Vector) -> Cylinder:
+    """An endless round cylinder.
+
+    Parameters
+    ----------
+    radius : float
+        Positive [length].
+    through : array_like, shape (3,)
+        A point of its axis [length].
+    axis : array_like, shape (3,)
+        Along it, of any length.
+
+    Returns
+    -------
+    Cylinder
+        The body.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be.
+    """
+    size = positive("body cylinder.radius", radius)
+    place = vector("body cylinder.through", through)
+    along = direction("body cylinder.axis", axis)
+    return Cylinder(size, place, along, f"cylinder of radius {size:g}")
+
+
+def prism(
+    contour: Contour, axis: Vector = (0.0, 0.0, 1.0), origin: Vector = (0.0, 0.0, 0.0)
+) -> Prism:
+    """The endless prism of a planar contour, tilted as its axis is.
+
+    Parameters
+    ----------
+    contour : Contour
+        The lower side of its section, any of the planar problem [length].
+    axis : array_like, shape (3,)
+        The prism's axis. The contour is turned with it by the shortest way from z.
+    origin : array_like, shape (3,)
+        Where the contour's origin is put [length].
+
+    Returns
+    -------
+    Prism
+        The body; with the default axis the planar problem's is its section at z = 0.
+
+    Raises
+    ------
+    InputError
+        If a number cannot be.
+    """
+    require("body prism.contour", contour, Contour, "as catenary(0.5, -0.8)")
+    along = direction("body prism.axis", axis)
+    if along[2] < 0:  # the prism is endless: its axis has no sense
+        along = -along
+    x, y, z = along
+    # The rotation that takes z to the axis by the shortest way (Rodrigues).
+    turn = np.array(
+        [
+            [1 - x * x / (1 + z), -x * y / (1 + z), x],
+            [-x * y / (1 + z), 1 - y * y / (1 + z), y],
+            [-x, -y, z],
+        ]
+    )
+    place = vector("body prism.origin", origin)
+    return Prism(contour, place, turn.T.copy(), f"prism, {contour.label}")

@@ -1,0 +1,136 @@
+"""The problem in space: a vibrissa, a convex body, and the way of the foot."""
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from analytic.problem.beam import Beam
+from analytic.problem.errors import InputError, require
+from analytic.problem.support import require_plain
+from analytic.space.problem.bodies.body import Body
+from analytic.space.problem.bodies.polyhedron import Polyhedron
+from analytic.space.problem.path import FootPath
+from analytic.space.problem.straight import Way
+
+_FARTHEST = 1e4  # L, from the origin: positions are then good to 2e-12 L
+_LARGEST = 1e3  # L, of a mesh: a larger one is a wall, or in another unit
+_SMALLEST = 1e-3  # L: a smaller one is a grain, or in another unit
+
+
+@dataclass(frozen=True)
+class SpatialCase:
+    """What every engine is given: physics only, no numerics.
+
+    The frame is that of the planar problem: y is up, the base plane is normal to it, x, y and z are
+    right-handed.
+
+    Parameters
+    ----------
+    beam : Beam
+        The vibrissa, straight and uniform.
+    body : Body
+        In the unit of length of `beam`.
+    path : FootPath
+        The way of the foot, likewise.
+    name : str
+        What files and reports call the case.
+
+    Raises
+    ------
+    InputError
+        If a field is of another kind, the vibrissa is not the paper's, the way does not start clear
+        of the body or never touches it, or the body is too far away, too large or too small.
+    """
+
+    beam: Beam = field(default_factory=Beam)
+    body: Body = field(kw_only=True)
+    path: FootPath = field(kw_only=True)
+    name: str = field(default="case", kw_only=True)
+
+    def __post_init__(self) -> None:
+        for name, kind, remedy in (
+            ("beam", Beam, "as Beam(length=..., flexural_rigidity=...)"),
+            ("body", Body, "as sphere(1.0, centre=(0, 1.4, 0))"),
+            ("path", FootPath, "as FootPath([[1, 0.2], [-1, 0.2]])"),
+            ("name", str, "it names files and reports"),
+        ):
+            require(f"case.{name}", getattr(self, name), kind, remedy)
+        require_plain("a sweep in space", self.beam, math.inf, 0.0)
+        self._check_place()
+        way = self.way
+        begin = way.gap(0.0)
+        if begin.size <= 0:
+            raise InputError(
+                "path.points[0]",
+                way.foot(0.0) * self.beam.length,
+                f"such that the straight vibrissa starts clear of the {self.body.label}",
+                "start farther away, or move the body",
+            )
+        if way.next_touch(0.0) is None:
+            travel, gap = way.nearest()
+            x, _, z = way.foot(travel) * self.beam.length
+            raise InputError(
+                "path",
+                f"passing the {self.body.label} at a distance of {gap.size:.4g} L, nearest with "
+                f"the foot at ({x:.4g}, {z:.4g})",
+                "within reach of the vibrissa",
+                "check body, path and their unit",
+            )
+
+    @property
+    def way(self) -> Way:
+        """The straight vibrissa along the way of its foot, in units of its length."""
+        length = self.beam.length
+        return Way(self.body.scaled(1 / length), self.path, length, self.beam.radius)
+
+    def provenance(self) -> dict[str, Any]:
+        """What readings of this case say of it.
+
+        Returns
+        -------
+        dict
+            Anything JSON can hold.
+        """
+        return {
+            "case": self.name,
+            "frame": "world, y up, right-handed; the clamp's action on the vibrissa at the foot",
+            "body": self.body.label,
+            "path": {
+                "points": np.asarray(self.path.points).tolist(),
+                "height": self.path.height,
+                "tangent": self.path.clamp_tangent.tolist(),
+            },
+        }
+
+    def _check_place(self) -> None:
+        length = self.beam.length
+        far = float(np.abs(self.path.corners).max())
+        if far > _FARTHEST * length:
+            raise InputError(
+                "path.points",
+                f"{far / length:.4g} L from the origin",
+                f"within {_FARTHEST:g} L",
+                "check their unit, or move the origin to the body",
+            )
+        if not isinstance(self.body, Polyhedron):
+            return
+        low, high = self.body.vertices.min(axis=0), self.body.vertices.max(axis=0)
+        size, away = float((high - low).max()), float(np.abs([low, high]).max())
+        what = f"body ({self.body.label})"
+        if not _SMALLEST * length <= size <= _LARGEST * length:
+            raise InputError(
+                what,
+                f"{size / length:.4g} L in size",
+                f"{_SMALLEST:g} to {_LARGEST:g} L",
+                'the file is in another unit: scale = "1 mm" for millimetres',
+            )
+        if away > _FARTHEST * length:
+            x, y, z = (low + high) / 2
+            raise InputError(
+                what,
+                f"around ({x:.4g}, {y:.4g}, {z:.4g})",
+                f"within {_FARTHEST:g} L of the origin",
+                "move it with offset, or check its unit",
+            )

@@ -1,0 +1,105 @@
+"""Vectors and axes as they are given, checked with one line that says what is wrong."""
+
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from analytic.problem.arrays import Floats
+from analytic.problem.errors import InputError
+
+Vector: TypeAlias = tuple[float, float, float] | Floats
+
+_LARGEST = 1e100
+
+
+def vector(name: str, value: ArrayLike) -> Floats:
+    """Three finite numbers.
+
+    Parameters
+    ----------
+    name : str
+        What an error calls them.
+    value : array_like, shape (3,)
+        What was given.
+
+    Returns
+    -------
+    array, shape (3,)
+        The numbers.
+
+    Raises
+    ------
+    InputError
+        If they are none.
+    """
+    try:
+        found = np.array(value, dtype=float)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError(name, value, "three numbers", "as (0, 1, 0)") from error
+    if found.shape != (3,) or not (np.abs(found) <= _LARGEST).all():
+        raise InputError(name, value, "three finite numbers", "as (0, 1, 0)")
+    return found
+
+
+def direction(name: str, value: ArrayLike) -> Floats:
+    """A vector of length 1 along three numbers.
+
+    Parameters
+    ----------
+    name : str
+        What an error calls them.
+    value : array_like, shape (3,)
+        What was given.
+
+    Returns
+    -------
+    array, shape (3,)
+        Of length 1.
+
+    Raises
+    ------
+    InputError
+        If they are none, or all zero.
+    """
+    found = vector(name, value)
+    size = float(np.linalg.norm(found))
+    if not size > 1 / _LARGEST:
+        raise InputError(name, value, "a direction", "one of the three must not be 0")
+    return found / size
+
+
+def axes(name: str, value: ArrayLike) -> Floats:
+    """Three unit vectors normal to each other, from three that nearly are.
+
+    Parameters
+    ----------
+    name : str
+        What an error calls them.
+    value : array_like, shape (3, 3)
+        A row each.
+
+    Returns
+    -------
+    array, shape (3, 3)
+        A rotation: rows of length 1, normal to each other to rounding, right-handed.
+
+    Raises
+    ------
+    InputError
+        If they are more than 1e-6 from a rotation.
+    """
+    try:
+        given = np.array(value, dtype=float)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError(name, value, "three vectors", "as [[1, 0, 0], ...]") from error
+    right = given.shape == (3, 3) and bool(np.isfinite(given).all())
+    if right:
+        left_side, _, right_side = np.linalg.svd(given)
+        nearest = left_side @ right_side
+        right = bool(np.abs(nearest - given).max() < 1e-6 and np.linalg.det(nearest) > 0)
+    if not right:
+        raise InputError(
+            name, value, "three unit vectors at right angles, right-handed", "a row an axis"
+        )
+    return np.asarray(nearest)

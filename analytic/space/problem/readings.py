@@ -1,0 +1,225 @@
+"""One sweep's readings in space: six components at the clamp, and the contact."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.beam import Beam
+from analytic.problem.errors import InputError, require
+from analytic.problem.files import as_path
+from analytic.problem.readings_file import read_file, write_file
+from analytic.problem.table import Place, as_numbers, row_number
+from analytic.space.problem.numbers import direction
+
+FOOT = ("foot_x", "foot_y", "foot_z")
+FORCE = ("force_x", "force_y", "force_z")
+MOMENT = ("moment_x", "moment_y", "moment_z")
+SENSED_IN_SPACE = (*FOOT, *FORCE, *MOMENT)
+"""What the clamp of a sweep in space knows: where it is, force and moment."""
+CONTACT_POINT = ("contact_x", "contact_y", "contact_z")
+NORMAL = ("normal_x", "normal_y", "normal_z")
+PHASES_IN_SPACE = ("free", "tip", "tangent")
+STATUSES_IN_SPACE = ("ok", "diverged", "slipped off", "unsettled", "lost")
+_WORDS = {"phase": PHASES_IN_SPACE, "status": STATUSES_IN_SPACE}
+
+
+@dataclass(frozen=True, eq=False)
+class SpatialReadings:
+    """One sweep in space, in the units of its beam.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        A row a station in the order of the sweep. ``foot_*`` [length], ``force_*`` [force] and
+        ``moment_*`` [force length] are the clamp's action on the vibrissa at the foot, in the world
+        frame: y up, x, y, z right-handed. ``travel`` [length] is the way of the foot.
+        ``contact_*`` [length] is the contact on the body's surface, ``normal_*`` the body's outward
+        normal there, ``contact_angle`` [rad] the surface's slope against the plane across the
+        clamp's tangent, ``contact_arc_length`` [length] its place on the vibrissa; ``phase`` and
+        ``status`` are words. All but the nine sensed columns may be missing.
+    beam : Beam
+        The vibrissa that was swept.
+    tangent : array_like, shape (3,)
+        Of the vibrissa at its clamp.
+    source : str
+        Who produced the readings.
+    provenance : mapping
+        Versions, case, events; anything JSON can hold.
+
+    Raises
+    ------
+    InputError
+        If a sensed column is missing, a cell is no number, a foot position is missing, or a phase
+        or status is unknown.
+    """
+
+    table: pd.DataFrame
+    beam: Beam = field(default_factory=Beam)
+    tangent: ArrayLike = (0.0, 1.0, 0.0)
+    source: str = "measured"
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        require("readings' table", self.table, pd.DataFrame, "columns by name")
+        require("readings' beam", self.beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
+        object.__setattr__(self, "tangent", direction("readings' tangent", self.tangent))
+        object.__setattr__(self, "table", _checked(self.table, self.source, row_number))
+
+    @property
+    def clamp_tangent(self) -> Floats:
+        """Direction of the vibrissa at its clamp, of length 1, shape (3,)."""
+        return np.asarray(self.tangent)
+
+    def values(self, *columns: str) -> Floats:
+        """Numeric columns side by side.
+
+        Parameters
+        ----------
+        *columns : str
+            Their names.
+
+        Returns
+        -------
+        array, shape (stations, columns)
+            NaN throughout where one was not measured; shape (stations,) for a single one.
+        """
+        found = [
+            self.table[name].to_numpy(dtype=float)
+            if name in self.table
+            else np.full(len(self.table), np.nan)
+            for name in columns
+        ]
+        return found[0] if len(found) == 1 else np.column_stack(found)
+
+    @property
+    def trusted(self) -> Booleans:
+        """Stations whose sensed values may be used, shape (stations,)."""
+        fine = np.isfinite(self.values(*SENSED_IN_SPACE)).all(axis=1)
+        if "status" in self.table:
+            fine &= (self.table["status"] == "ok").to_numpy()
+        return np.asarray(fine, dtype=bool)
+
+    @property
+    def touching(self) -> Booleans:
+        """Trusted stations with a force, shape (stations,)."""
+        force = np.linalg.norm(self.values(*FORCE), axis=1)
+        return np.asarray(self.trusted & (force > 1e-9 * self.beam.force_unit))
+
+    def write(self, path: str | Path) -> Path:
+        """Write to Parquet (metadata inside) or CSV (metadata in the first line), by the suffix.
+
+        Parameters
+        ----------
+        path : str or Path
+            Named ``*.parquet`` or ``*.csv``.
+
+        Returns
+        -------
+        Path
+            `path`.
+
+        Raises
+        ------
+        InputError
+            If the name has another suffix, or JSON cannot hold the provenance.
+        OSError
+            If the file cannot be written.
+        """
+        metadata = {
+            "beam": asdict(self.beam),
+            "tangent": self.clamp_tangent.tolist(),
+            "source": self.source,
+            "provenance": dict(self.provenance),
+        }
+        path = as_path(path, "readings file")
+        write_file(path, self.table, metadata)
+        return path
+
+    @classmethod
+    def read(
+        cls,
+        path: str | Path,
+        beam: Beam | None = None,
+        tangent: ArrayLike | None = None,
+    ) -> "SpatialReadings":
+        """Read what `write` wrote, or measured data with the nine sensed columns.
+
+        Parameters
+        ----------
+        path : str or Path
+            Named ``*.parquet`` or ``*.csv``.
+        beam : Beam, optional
+            The vibrissa if the file names none; ``Beam()`` if not given.
+        tangent : array_like, shape (3,), optional
+            Of the clamp if the file names none; upright if not given.
+
+        Returns
+        -------
+        SpatialReadings
+            One sweep.
+
+        Raises
+        ------
+        InputError
+            If the file is missing, damaged or not a sweep in space; with line and column of a cell
+            that cannot be read.
+        """
+        path = as_path(path, "readings file")
+        content = read_file(path)
+        metadata = content.metadata
+        try:
+            known = metadata.get("beam")
+            otherwise = Beam() if beam is None else beam
+            upright = (0.0, 1.0, 0.0) if tangent is None else tangent
+            return cls(
+                _checked(content.table, path.name, content.place),
+                otherwise if known is None else Beam(**known),
+                metadata.get("tangent", upright),
+                metadata.get("source", f"measured, {path.name}"),
+                metadata.get("provenance", {}),
+            )
+        except (InputError, TypeError) as error:
+            raise InputError(
+                f"readings file {path}", "unusable", "one sweep in space", str(error)
+            ) from error
+
+
+def _checked(table: pd.DataFrame, source: str, place: Place) -> pd.DataFrame:
+    missing = [name for name in SENSED_IN_SPACE if name not in table]
+    if missing:
+        raise InputError(
+            f"columns of the readings ({source})",
+            f"without {', '.join(missing)}",
+            f"with {', '.join(SENSED_IN_SPACE)}",
+            "add them; the frame is the world's, y up",
+        )
+    columns = {}
+    for name in table.columns:
+        if name in _WORDS:
+            words = table[name].to_numpy(dtype=object)
+            wrong = ~np.isin(words.astype(str), _WORDS[name])
+            if wrong.any():
+                row = int(np.argmax(wrong))
+                raise InputError(
+                    f"{name}, {place(row)},",
+                    words[row],
+                    f"one of {', '.join(_WORDS[name])}",
+                    "fix it",
+                )
+            columns[name] = words
+        else:
+            columns[name] = as_numbers(table[name], str(name), place)
+    found = pd.DataFrame(columns)
+    lost = found[list(FOOT)].isna().any(axis=1).to_numpy()
+    if lost.any() or len(found) < 1:
+        row = int(np.argmax(lost)) if lost.any() else 0
+        raise InputError(
+            f"foot position, {place(row)},", "missing", "three numbers", "drop the row, or fill it"
+        )
+    return found

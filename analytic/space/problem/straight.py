@@ -1,0 +1,221 @@
+"""The straight vibrissa among the bodies: where on its way it first touches. Geometry only."""
+
+from typing import NamedTuple
+
+from scipy.optimize import brentq
+
+from analytic.problem.arrays import Floats
+from analytic.space.problem.bodies.body import Body, Spot
+from analytic.space.problem.path import FootPath
+
+_ANY = 1.0  # L; the parallel surface does not matter here
+_UPRIGHT = 1e-12  # rad
+_CLOSEST = 1e-13  # L, of the way
+
+
+class Gap(NamedTuple):
+    """How near the straight vibrissa is to the body; lengths in L."""
+
+    size: float
+    """Between surface and surface; not positive where they meet."""
+    arc_length: float
+    """Where on the vibrissa they are nearest."""
+    spot: Spot
+    """Where on the body."""
+
+
+def straight_gap(body: Body, foot: Floats, tangent: Floats, radius: float) -> Gap:
+    """Distance between the body and the straight vibrissa of length 1.
+
+    The distance from a convex body is convex along a line: its slope, the cosine between normal and
+    vibrissa, changes its sign once.
+
+    Parameters
+    ----------
+    body : Body
+        In L.
+    foot, tangent : array, shape (3,)
+        Where the vibrissa begins [L], and its direction.
+    radius : float
+        Of the vibrissa [L].
+
+    Returns
+    -------
+    Gap
+        Distance, and where.
+    """
+
+    def rise(s: float) -> float:
+        spot = body.nearest(foot + s * tangent, _ANY)
+        return float(spot.normal @ tangent) if spot.distance > 0 else 0.0
+
+    ends = rise(0.0), rise(1.0)
+    if ends[1] <= 0:
+        s = 1.0
+    elif ends[0] >= 0:
+        s = 0.0
+    else:
+        s = float(brentq(rise, 0.0, 1.0, xtol=1e-15, rtol=9e-16))
+    spot = body.nearest(foot + s * tangent, _ANY)
+    return Gap(spot.distance - radius, s, spot)
+
+
+class Way:
+    """The straight vibrissa along a way of its foot, in units of its length.
+
+    Parameters
+    ----------
+    body : Body
+        In L.
+    path : FootPath
+        The way; lengths are divided by `length`.
+    length, radius : float
+        Of the vibrissa [length].
+    """
+
+    def __init__(self, body: Body, path: FootPath, length: float, radius: float) -> None:
+        self.body = body
+        self.path = path
+        self.length = length
+        self.radius = radius / length
+        self.marks = path.marks / length
+
+    def foot(self, travel: float) -> Floats:
+        """A foot position.
+
+        Parameters
+        ----------
+        travel : float
+            Along the way [L].
+
+        Returns
+        -------
+        array, shape (3,)
+            [L]
+        """
+        return self.path.at(travel * self.length) / self.length
+
+    def gap(self, travel: float) -> Gap:
+        """How near the straight vibrissa is there.
+
+        Parameters
+        ----------
+        travel : float
+            Along the way [L].
+
+        Returns
+        -------
+        Gap
+            Distance, and where.
+        """
+        return straight_gap(self.body, self.foot(travel), self.path.clamp_tangent, self.radius)
+
+    def lowest_contact(self, travel: float, arc_length: float) -> float:
+        """Where the side of the straight vibrissa begins to touch.
+
+        Along an upright face it touches everywhere, and bends about the face's lower end.
+
+        Parameters
+        ----------
+        travel : float
+            Along the way [L].
+        arc_length : float
+            Of a contact [L].
+
+        Returns
+        -------
+        float
+            The least arc length of one [L].
+        """
+        foot, tangent = self.foot(travel), self.path.clamp_tangent
+        low, high = 0.0, arc_length
+        while high - low > _CLOSEST:
+            middle = (low + high) / 2
+            if self.body.nearest(foot + middle * tangent, _ANY).normal @ tangent < -_UPRIGHT:
+                low = middle
+            else:
+                high = middle
+        return high
+
+    def next_touch(self, begin: float) -> float | None:
+        """Where the straight vibrissa touches, from where it is clear.
+
+        Along each straight leg of the way the distance is convex, so it falls to zero once.
+
+        Parameters
+        ----------
+        begin : float
+            Along the way [L].
+
+        Returns
+        -------
+        float or None
+            Along the way [L]; None if it does not touch any more.
+        """
+        for end in self.marks[self.marks > begin]:
+            touch = self._on_leg(begin, float(end))
+            if touch is not None:
+                return touch
+            begin = float(end)
+        return None
+
+    def next_clear(self, begin: float) -> float | None:
+        """Where the straight vibrissa is clear of the body again.
+
+        Parameters
+        ----------
+        begin : float
+            Along the way [L]; it is not clear there.
+
+        Returns
+        -------
+        float or None
+            Along the way [L]; None if it is never.
+        """
+        for end in self.marks[self.marks > begin]:
+            if self._size(float(end)) > 0:
+                return self._crossing(begin, float(end))
+            begin = float(end)
+        return None
+
+    def nearest(self) -> tuple[float, Gap]:
+        """Where the straight vibrissa is nearest to the body, at the way's corners and between.
+
+        Returns
+        -------
+        travel : float
+            Along the way [L].
+        gap : Gap
+            How near.
+        """
+        from scipy.optimize import minimize_scalar
+
+        legs = zip(self.marks[:-1], self.marks[1:], strict=True)
+        between = [minimize_scalar(self._size, bounds=leg, method="bounded").x for leg in legs]
+        found = [(float(at), self.gap(float(at))) for at in (*self.marks, *between)]
+        return min(found, key=lambda one: one[1].size)
+
+    def _size(self, travel: float) -> float:
+        return self.gap(travel).size
+
+    def _on_leg(self, low: float, high: float) -> float | None:
+        begin = low
+        way = self.foot(high) - self.foot(low)
+        if self._size(high) <= 0:
+            return self._crossing(low, high)
+        while high - low > _CLOSEST:
+            middle = (low + high) / 2
+            gap = self.gap(middle)
+            if gap.size <= 0:
+                return self._crossing(begin, middle)
+            if gap.spot.normal @ way < 0:
+                low = middle
+            else:
+                high = middle
+        return None
+
+    def _crossing(self, low: float, high: float) -> float:
+        at_low, at_high = self._size(low), self._size(high)
+        if at_low == 0 or (at_low > 0) == (at_high > 0):  # at a touch to rounding
+            return low
+        return float(brentq(self._size, low, high, xtol=1e-15, rtol=9e-16))

@@ -1,0 +1,1 @@
+"""The sweep in space, in closed form."""

@@ -1,0 +1,141 @@
+"""The sweep in space: every station solved, checked and put into one table."""
+
+from functools import cache
+from importlib.metadata import version
+
+import numpy as np
+import pandas as pd
+
+from analytic.from_clamp.contact import contact_bent_right
+from analytic.problem.arrays import Floats
+from analytic.problem.beam import Beam
+from analytic.space.checks.rod import rod_residuals
+from analytic.space.problem.case import SpatialCase
+from analytic.space.problem.readings import (
+    CONTACT_POINT,
+    FOOT,
+    FORCE,
+    MOMENT,
+    NORMAL,
+    SpatialReadings,
+)
+from analytic.space.solver.contact import Contact, Scene
+from analytic.space.solver.stability import margin, second_variation
+from analytic.space.solver.walk import walk
+
+_SOLVED = 1e-11  # L, EI/L, rad: of the residual by the closed form
+_CERTIFIED = 1e-9  # of that by integration, which is good to 1e-12
+_NUMBERS = ("contact_angle", "contact_arc_length", "stability", "residual")
+_VECTORS = (*FOOT, *FORCE, *MOMENT, *CONTACT_POINT, *NORMAL)
+
+
+def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
+    """The readings of a case in space in closed form, at its stations.
+
+    Parameters
+    ----------
+    case : SpatialCase
+        The problem.
+    certified : bool
+        Whether each station is to be checked by integration from the clamp too.
+
+    Returns
+    -------
+    SpatialReadings
+        In the units of the case's beam; source ``"analytic"``. ``status`` is ``"slipped off"``,
+        without readings, from where the vibrissa slips off to where it would not lie in the body if
+        it were straight: it is against another part of the body then, and which depends on its
+        motion. ``stability`` is the least eigenvalue of the second variation, its rows scaled: it
+        falls to zero where the vibrissa slips off. ``residual`` is the largest miss of the
+        contact's place, arc length and of the foot's, in L, found from the clamp readings by the
+        closed form, or from the clamp by integration if that is larger; ``status`` is
+        ``"diverged"`` where it exceeds 1e-11, or 1e-9 by integration. ``provenance["events"]``
+        lists what happens where.
+
+    Raises
+    ------
+    InputError
+        If the clamp runs into the body.
+    """
+    beam, length = case.beam, case.beam.length
+    way = case.way
+    scene = Scene(way.body, case.path.clamp_tangent, way.radius)
+    travel = case.path.travel
+    walked = walk(scene, way, travel / length)
+    rows = [
+        _row(contact, way.foot(at / length), scene, beam) if contact else _free(fine)
+        for contact, fine, at in zip(walked.contacts, walked.known, travel, strict=True)
+    ]
+    table = pd.DataFrame(rows, columns=["phase", *_VECTORS[3:], *_NUMBERS, "status"])
+    foot = pd.DataFrame(case.path.at(travel), columns=list(FOOT))
+    table = pd.concat([pd.DataFrame({"travel": travel}), foot, table], axis=1)
+    events = [
+        {"kind": e.kind, "travel": e.travel * length, "foot": (e.foot * length).tolist()}
+        for e in walked.events
+    ]
+    provenance = {**case.provenance(), "engine": _engine(), "events": events}
+    tangent = case.path.clamp_tangent
+    readings = SpatialReadings(table, beam, tangent, "analytic", provenance)
+    return _with_certificate(readings) if certified else readings
+
+
+def _row(contact: Contact, foot: Floats, scene: Scene, beam: Beam) -> list[object]:
+    """One station that touches; its foot is the one that was asked for."""
+    plane, radius = contact.plane, scene.radius
+    force = -contact.force * plane.normal
+    moment = np.sqrt(contact.force) * contact.loaded.moment * plane.across
+    stable = margin(second_variation(contact, radius))
+    missed = _missed(contact, foot, scene)
+    status = "ok" if missed <= _SOLVED else "diverged"
+    return [
+        "tangent" if contact.tangent else "tip",
+        *(force * beam.force_unit),
+        *(moment * beam.moment_unit),
+        *(contact.spot.point * beam.length),
+        *plane.normal,
+        plane.alpha,
+        contact.arc_length * beam.length,
+        stable,
+        missed,
+        status,
+    ]
+
+
+def _missed(contact: Contact, foot: Floats, scene: Scene) -> float:
+    """From the clamp back to the contact: place, arc length, distance from the body."""
+    plane = contact.plane
+    force, moment = contact.force, np.sqrt(contact.force) * contact.loaded.moment
+    sensed = np.array([0.0, -force * np.sin(plane.alpha), force * np.cos(plane.alpha), moment])
+    found = contact_bent_right(sensed[:, None])
+    axis = foot + found.xi[0] * plane.lateral + found.eta[0] * plane.tangent
+    extent = max(1.0, float(np.abs(foot).max()))
+    return max(
+        float(np.abs(axis - contact.centre).max()) / extent,
+        abs(float(found.arc_length[0]) - contact.arc_length),
+        contact.arc_length - 1,
+    )
+
+
+def _free(known: bool) -> list[object]:
+    """One station that touches nothing, or of which nothing is known."""
+    nothing = [np.nan] * 6
+    if known:
+        return ["free", *[0.0] * 6, *nothing, np.nan, np.nan, np.nan, 0.0, "ok"]
+    return ["free", *nothing, *nothing, np.nan, np.nan, np.nan, np.nan, "slipped off"]
+
+
+def _with_certificate(readings: SpatialReadings) -> SpatialReadings:
+    found = rod_residuals(readings)
+    table = readings.table
+    wrong = readings.trusted & ~(found <= _CERTIFIED)
+    table = table.assign(
+        residual=np.fmax(table["residual"], found), status=table["status"].mask(wrong, "diverged")
+    )
+    return SpatialReadings(
+        table, readings.beam, readings.tangent, readings.source, readings.provenance
+    )
+
+
+@cache
+def _engine() -> str:
+    return f"vibrissa-testbed {version('vibrissa-testbed')}"

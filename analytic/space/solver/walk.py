@@ -1,0 +1,163 @@
+"""Along the way of the foot: contacts begin, are followed, and end by release or slip-off."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.problem.errors import InputError
+from analytic.space.problem.straight import Way
+from analytic.space.solver.contact import APART, Contact, Scene, contact_at
+from analytic.space.solver.newton import settle
+from analytic.space.solver.stability import is_stable
+
+_CLOSE = 1e-13  # L of the way, to which events are enclosed
+_BEYOND = 1e-9  # L: a state that is missing at one place only was missed by Newton's method
+_MISSES = 8  # of these between two stations
+_BARELY = 1e-7  # L and rad: how far a contact that has just begun is bent
+_LOOSE = 1e-5  # EI/L^2; a contact that ends with less has been released
+_LEAP = 0.3  # L on the parallel surface between neighbouring states: more is another branch
+_LOWEST = 1e-3  # L, of a contact on the vibrissa
+
+
+class Event(NamedTuple):
+    """What happens on the way, and where; lengths in L."""
+
+    kind: str
+    """``"touch"``, ``"phase"``, ``"release"`` or ``"slip-off"``."""
+    travel: float
+    foot: Floats
+
+
+class Walked(NamedTuple):
+    """The states of the stations; lengths in L."""
+
+    contacts: list[Contact | None]
+    """None where the vibrissa is free, or where it is not known where it is."""
+    known: list[bool]
+    """False between a slip-off and where the straight vibrissa is clear of the body again."""
+    events: list[Event]
+
+
+def walk(scene: Scene, way: Way, travel: Sequence[float] | Floats) -> Walked:
+    """Every station's state, in order.
+
+    Parameters
+    ----------
+    scene : Scene
+        Body, clamp tangent, radius.
+    way : Way
+        Of the foot.
+    travel : sequence of float
+        Stations along it, ascending [L].
+
+    Returns
+    -------
+    Walked
+        Contacts and events.
+    """
+    return _Walker(scene, way).along(travel)
+
+
+class _Walker:
+    def __init__(self, scene: Scene, way: Way) -> None:
+        self._scene = scene
+        self._way = way
+        self._events: list[Event] = []
+
+    def along(self, travel: Sequence[float] | Floats) -> Walked:
+        contacts: list[Contact | None] = []
+        known: list[bool] = []
+        contact: Contact | None = None
+        at = 0.0
+        unknown_until = 0.0
+        touch = self._way.next_touch(0.0)
+        for station in travel:
+            while True:
+                if contact is None:
+                    if touch is None or touch >= station:
+                        break
+                    at, contact = touch, self._begin(touch)
+                    self._note("touch", touch)
+                at, contact, arrived = self._follow(contact, at, station)
+                if arrived:
+                    break
+                touch, unknown_until = self._let_go(contact, at)
+                contact = None
+            contacts.append(contact)
+            known.append(contact is not None or station >= unknown_until)
+        return Walked(contacts, known, sorted(self._events, key=lambda event: event.travel))
+
+    def _begin(self, travel: float) -> Contact:
+        """The contact of a vibrissa that is hardly bent."""
+        gap = self._way.gap(travel)
+        if gap.arc_length < _LOWEST:
+            x, _, z = self._way.foot(travel) * self._way.length
+            raise InputError(
+                "path", f"into the body at ({x:.4g}, {z:.4g})", "past the body", "move path or body"
+            )
+        x = gap.spot.point + APART * gap.spot.normal
+        upright = gap.spot.normal @ self._scene.tangent >= -_BARELY
+        if gap.arc_length == 1 and not upright:
+            return contact_at(self._scene, x, _BARELY, tangent=False)
+        lowest = self._way.lowest_contact(travel, gap.arc_length)
+        x = x - (gap.arc_length - lowest + _BARELY) * self._scene.tangent
+        return contact_at(self._scene, x, lowest, tangent=True)
+
+    def _follow(self, contact: Contact, at: float, to: float) -> tuple[float, Contact, bool]:
+        """As far as there is a stable equilibrium near the one before; whether that is all."""
+        failed, missed = np.inf, 0
+        while at < to:
+            if failed - at <= _CLOSE:
+                missed += 1
+                beyond = min(failed + _BEYOND, to)
+                found = self._stable_at(contact, beyond)
+                if found is None or missed > _MISSES:
+                    return at, contact, False
+                goal, failed = beyond, np.inf
+            else:
+                goal = to if failed == np.inf else (at + failed) / 2
+                found = self._stable_at(contact, goal)
+                if found is None:
+                    failed = goal
+                    continue
+            if found.tangent != contact.tangent:
+                self._note("phase", self._change_of_phase(contact, at, found, goal))
+            at, contact = goal, found
+        return at, contact, True
+
+    def _stable_at(self, start: Contact, travel: float) -> Contact | None:
+        found = settle(self._scene, start, self._way.foot(travel))
+        if found is None or not is_stable(found, self._scene.radius):
+            return None
+        leap = float(np.linalg.norm(found.on_parallel - start.on_parallel))
+        return found if leap < _LEAP else None
+
+    def _change_of_phase(self, low: Contact, at: float, high: Contact, to: float) -> float:
+        while to - at > _CLOSE:
+            middle = (at + to) / 2
+            found = self._stable_at(low, middle)
+            if found is None:
+                break
+            if found.tangent == low.tangent:
+                at, low = middle, found
+            else:
+                to = middle
+        return to
+
+    def _let_go(self, contact: Contact, travel: float) -> tuple[float | None, float]:
+        """Where the vibrissa touches next, and from where on it is known to be free."""
+        if contact.force < _LOOSE:
+            self._note("release", travel)
+            return self._way.next_touch(travel + 10 * _CLOSE), travel
+        self._note("slip-off", travel)
+        if self._way.gap(travel).size > 0:
+            return self._way.next_touch(travel), travel
+        clear = self._way.next_clear(travel)
+        if clear is None:
+            return None, np.inf
+        return self._way.next_touch(clear + 10 * _CLOSE), clear
+
+    def _note(self, kind: str, travel: float) -> None:
+        self._events.append(Event(kind, travel, self._way.foot(travel)))

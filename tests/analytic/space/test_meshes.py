@@ -1,0 +1,74 @@
+"""Convex meshes from files in space."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from analytic import InputError
+from analytic.space import FootPath, SpatialCase, convex_mesh, rod_residuals, solve_space, sphere
+
+PATH = FootPath([[1.3, 0.3], [-1.5, 0.25]], stations=40)
+
+
+def saved(mesh, tmp_path, name="body.stl"):
+    mesh.export(tmp_path / name)
+    return tmp_path / name
+
+
+def ball(subdivisions=3, radius=1.0, centre=(0.0, 1.4, 0.0)):
+    mesh = trimesh.creation.icosphere(subdivisions, radius)
+    mesh.apply_translation(centre)
+    return mesh
+
+
+@pytest.mark.parametrize("name", ["body.stl", "body.obj", "body.ply"])
+def test_a_mesh_of_a_ball_is_nearly_the_ball(name, tmp_path):
+    body = convex_mesh(saved(ball(4), tmp_path, name))
+    found = solve_space(SpatialCase(body=body, path=PATH))
+    exact = solve_space(SpatialCase(body=sphere(1.0, (0.0, 1.4, 0.0)), path=PATH))
+    assert np.nanmax(rod_residuals(found)) < 1e-10
+    both = found.touching & exact.touching
+    assert both.sum() > 15
+    force = [
+        np.linalg.norm(r.values("force_x", "force_y", "force_z"), axis=1) for r in (found, exact)
+    ]
+    assert np.abs(force[0] - force[1])[both].max() < 0.02 * np.nanmax(force[1])
+
+
+def test_the_nearest_point_of_a_mesh_is_trimeshs(tmp_path):
+    random = np.random.default_rng(0)
+    mesh = trimesh.convex.convex_hull(random.normal(size=(60, 3)) * [1, 0.5, 2])
+    body = convex_mesh(saved(mesh, tmp_path, "body.ply"))
+    for x in 4 * random.normal(size=(200, 3)):
+        spot = body.nearest(x, 0.25)
+        if spot.distance <= 0:
+            continue
+        best = trimesh.triangles.closest_point(mesh.triangles, np.tile(x, (len(mesh.faces), 1)))
+        assert spot.distance == pytest.approx(np.linalg.norm(best - x, axis=1).min(), rel=1e-5)
+        assert np.abs(spot.point + spot.distance * spot.normal - x).max() < 1e-12
+
+
+def test_a_mesh_in_millimetres_and_inside_out(tmp_path):
+    mesh = ball(3, 1000.0, (0.0, 1400.0, 0.0))
+    mesh.invert()
+    body = convex_mesh(saved(mesh, tmp_path), scale=1e-3)
+    assert solve_space(SpatialCase(body=body, path=PATH)).touching.sum() > 10
+
+
+def test_meshes_that_cannot_be_touched_are_refused_in_one_line(tmp_path):
+    whole = ball()
+    hole = trimesh.Trimesh(whole.vertices, whole.faces[5:], process=False)
+    dented = whole.copy()
+    dented.vertices[0] *= [1, 0.4, 1]
+    for mesh, says in ((hole, "open"), (dented, "dented at")):
+        with pytest.raises(InputError, match=says) as refused:
+            convex_mesh(saved(mesh, tmp_path))
+        assert "\n" not in str(refused.value)
+    for mesh, says in (
+        (ball(2, 2000.0, (0.0, 2800.0, 0.0)), "4000 L in size.*scale"),
+        (ball(2, 1.0, (3e4, 1.4, 0.0)), "around .*check its unit"),
+        (ball(2, 1.0, (0.0, 2.5, 0.0)), "at a distance of 0.5"),
+    ):
+        with pytest.raises(InputError, match=says) as refused:
+            SpatialCase(body=convex_mesh(saved(mesh, tmp_path)), path=PATH)
+        assert "\n" not in str(refused.value)

@@ -1,0 +1,106 @@
+"""The body from six components, there and back, and what does not fit."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import trimesh
+
+from analytic import Beam, InputError, Readings
+from analytic.space import (
+    FootPath,
+    SpatialCase,
+    SpatialReadings,
+    ellipsoid,
+    misses,
+    point_cloud,
+    reconstruct_space,
+    solve_space,
+    wrench_complaint,
+    write_ply,
+)
+from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT, NORMAL
+
+BODY = ellipsoid((2.0, 1.4, 3.2), (0.0, 2.2, 0.0))
+
+
+@pytest.fixture(scope="module")
+def readings():
+    path = FootPath([[3.0, 0.6], [-1.0, 0.1]], tangent=(0.1, 1, 0.05), stations=80)
+    return solve_space(SpatialCase(Beam(2.0, 5.0, 0.01), body=BODY, path=path))
+
+
+def changed(readings, **columns):
+    table = readings.table.assign(**columns)
+    return SpatialReadings(table, readings.beam, readings.tangent, "measured")
+
+
+def test_exact_readings_give_the_exact_body(readings):
+    found, on = reconstruct_space(readings), readings.touching
+    for name in (*CONTACT_POINT, *NORMAL, "contact_arc_length"):
+        assert np.abs(found[name] - readings.values(name))[on].max() < 1e-12, name
+    assert (found["phase"] == readings.table["phase"])[readings.trusted].all()
+    assert set(found["phase"][on]) == {"tip", "tangent"}
+    missed = misses(point_cloud(found), BODY, 2.0)
+    assert missed.distances.max() < 2e-12
+    assert missed.angles.max() < 1e-12
+    assert wrench_complaint(found) is None
+
+
+def test_the_uncertainty_covers_the_true_contact(readings):
+    on = readings.touching
+    noise = {n: 0.01 * np.nanmax(np.abs(readings.values(n))) for n in (*FORCE, *MOMENT)}
+    random = np.random.default_rng(3)
+    inside = total = 0
+    for _ in range(6):
+        disturbed = {n: readings.values(n) + random.normal(0, s, len(on)) for n, s in noise.items()}
+        found = reconstruct_space(changed(readings, **disturbed), noise)
+        far = np.linalg.norm(
+            found[list(CONTACT_POINT)].to_numpy() - readings.values(*CONTACT_POINT), axis=1
+        )
+        known = on & np.isfinite(far)
+        inside += int((far <= found["uncertainty"])[known].sum())
+        total += int(known.sum())
+    assert 0.90 < inside / total <= 1
+
+
+def test_a_torsion_and_a_wrong_frame_are_named(readings):
+    moment = readings.values(*MOMENT)
+    size = np.linalg.norm(moment, axis=1)[:, None]
+    twisted = moment + 0.2 * size * readings.clamp_tangent
+    found = reconstruct_space(changed(readings, **dict(zip(MOMENT, twisted.T, strict=True))))
+    assert "along the clamp's tangent" in wrench_complaint(found)
+    swapped = dict(zip(MOMENT, (moment[:, 2], moment[:, 1], moment[:, 0]), strict=True))
+    assert "frame" in wrench_complaint(reconstruct_space(changed(readings, **swapped)))
+
+
+def test_a_cloud_is_a_file_that_others_read(readings, tmp_path):
+    cloud = point_cloud(reconstruct_space(readings))
+    path = write_ply(cloud, tmp_path / "cloud.ply")
+    read = trimesh.load(path)
+    assert np.abs(np.asarray(read.vertices) - cloud.points).max() < 1e-12
+    with pytest.raises(InputError, match="ply"):
+        write_ply(cloud, tmp_path / "cloud.xyz")
+
+
+@pytest.mark.parametrize("suffix", ["parquet", "csv"])
+def test_readings_come_back_from_their_file(readings, suffix, tmp_path):
+    path = readings.write(tmp_path / f"sweep.{suffix}")
+    again = SpatialReadings.read(path)
+    pd.testing.assert_frame_equal(again.table, readings.table, rtol=1e-15, check_dtype=False)
+    assert again.beam == readings.beam
+    assert np.array_equal(again.clamp_tangent, readings.clamp_tangent)
+    assert again.provenance == dict(readings.provenance)
+    with pytest.raises(InputError, match="in space"):
+        Readings.read(path)
+
+
+def test_readings_that_cannot_be_are_refused_in_one_line(readings, tmp_path):
+    path = tmp_path / "rig.csv"
+    readings.table.drop(columns="force_z").to_csv(path, index=False)
+    with pytest.raises(InputError, match="without force_z"):
+        SpatialReadings.read(path)
+    readings.table.assign(phase="sideways").to_csv(path, index=False)
+    with pytest.raises(InputError, match="line 2 of"):
+        SpatialReadings.read(path)
+    with pytest.raises(InputError, match="force_q"):
+        reconstruct_space(readings, {"force_q": 1.0})
