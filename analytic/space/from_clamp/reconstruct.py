@@ -183,7 +183,7 @@ def _spread(
         far.append(np.linalg.norm(found[:3] - true[:3], axis=0))
         sines.append(found[7])
     return (
-        np.quantile(np.nan_to_num(np.array(far), nan=np.inf), _COVERAGE, axis=0),
+        np.quantile(np.nan_to_num(far, nan=np.inf), _COVERAGE, axis=0, method="higher"),
         np.std(np.array(sines), axis=0),
     )
 

@@ -68,6 +68,15 @@ class SpatialCase:
                 f"such that the straight vibrissa starts clear of the {self.body.label}",
                 "start farther away, or move the body",
             )
+        into = way.meets_clamp()
+        if into is not None:
+            x, _, z = way.foot(into) * self.beam.length
+            raise InputError(
+                "path",
+                f"into the body ({self.body.label}) at ({x:.4g}, {z:.4g})",
+                "past it: the clamp has to pass, too",
+                "raise the body, or move the path",
+            )
         if way.next_touch(0.0) is None:
             travel, gap = way.nearest()
             x, _, z = way.foot(travel) * self.beam.length

@@ -195,6 +195,24 @@ class Way:
         found = [(float(at), self.gap(float(at))) for at in (*self.marks, *between)]
         return min(found, key=lambda one: one[1].size)
 
+    def meets_clamp(self) -> float | None:
+        """Where the clamp itself would run into the body.
+
+        Returns
+        -------
+        float or None
+            Along the way, where it is deepest [L]; None if it passes the body.
+        """
+        from scipy.optimize import minimize_scalar
+
+        def clear(travel: float) -> float:
+            return self.body.nearest(self.foot(travel), _ANY).distance - self.radius
+
+        legs = zip(self.marks[:-1], self.marks[1:], strict=True)
+        between = [float(minimize_scalar(clear, bounds=leg, method="bounded").x) for leg in legs]
+        deepest = min((*self.marks, *between), key=clear)
+        return float(deepest) if clear(deepest) <= 0 else None
+
     def _size(self, travel: float) -> float:
         return self.gap(travel).size
 

@@ -46,6 +46,11 @@ class Contact(NamedTuple):
         return (self.loaded.root_f / self.arc_length) ** 2
 
     @property
+    def energy(self) -> float:
+        """Of bending: the integral of kappa^2/2 = f (sin theta - sin theta_1) [EI/L]."""
+        return self.loaded.root_f / self.arc_length * self.loaded.bending
+
+    @property
     def foot(self) -> Floats:
         """Where the foot must be, shape (3,)."""
         up, reach = self.arc_length * self.loaded.place

@@ -10,7 +10,7 @@ from analytic.space.solver.contact import Contact, Scene, contact_at
 
 _EPS = float(np.finfo(float).eps)
 _EXACT = 64 * _EPS  # of a foot position, in units of the extent: some roundings
-_STEPS = 40
+_STEPS = 20
 _HALVINGS = 6
 _WIDE = 0.1  # L on the parallel surface and rad of the tip, the longest step
 _FLATTEST = 1e-12  # rad, alpha, where the plane of bending is lost, and w, where there is no force
@@ -51,6 +51,8 @@ def settle(scene: Scene, start: Contact, foot: Floats) -> Contact | None:
 
 def _newton(scene: Scene, start: Contact, foot: Floats) -> Contact | None:
     """The contact of given phase; steps are halved while they do not come nearer."""
+    if min(start.plane.alpha, start.excess) <= _FLATTEST:
+        return None
     extent = max(1.0, float(np.abs(foot).max()), float(np.abs(start.centre).max()))
     best, missed = start, _miss(start, foot)
     for _ in range(_STEPS):

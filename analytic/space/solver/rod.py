@@ -79,6 +79,8 @@ class Loaded(NamedTuple):
     """Rate of that with alpha at fixed w, shape (2,)."""
     by_excess: Floats
     """Rate of that with w, shape (2,)."""
+    bending: float
+    """Energy of bending over the root of the force: S - q sin(theta_1)."""
     root_f_rates: Floats
     """Rates of q with w and with alpha, shape (2,)."""
 
@@ -111,5 +113,6 @@ def loaded_part(excess: float, alpha: float) -> Loaded:
         np.array([float(up), float(across)]) / q,
         np.array([float(height.by_alpha), float(reach.by_alpha)]),
         np.array([float(height.by_excess), float(reach.by_excess)]),
+        float(integrals.S) - q * float(np.cos(w + a)),
         np.array([float(by_excess.q), float(by_alpha.q)]),
     )

@@ -51,11 +51,8 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
         closed form, or from the clamp by integration if that is larger; ``status`` is
         ``"diverged"`` where it exceeds 1e-11, or 1e-9 by integration. ``provenance["events"]``
         lists what happens where.
-
-    Raises
-    ------
-    InputError
-        If the clamp runs into the body.
+        A vibrissa that comes to an edge which drops it hops to the stable state of less energy
+        close by, if that is one; the event ``"hop"`` says where.
     """
     beam, length = case.beam, case.beam.length
     way = case.way

@@ -1,4 +1,4 @@
-"""Along the way of the foot: contacts begin, are followed, and end by release or slip-off."""
+"""Along the way of the foot: contacts begin, are followed, hop, and end by release or slip-off."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.errors import InputError
 from analytic.space.problem.straight import Way
 from analytic.space.solver.contact import APART, Contact, Scene, contact_at
+from analytic.space.solver.hop import landing
 from analytic.space.solver.newton import settle
 from analytic.space.solver.stability import is_stable
 
@@ -18,14 +18,13 @@ _MISSES = 8  # of these between two stations
 _BARELY = 1e-7  # L and rad: how far a contact that has just begun is bent
 _LOOSE = 1e-5  # EI/L^2; a contact that ends with less has been released
 _LEAP = 0.3  # L on the parallel surface between neighbouring states: more is another branch
-_LOWEST = 1e-3  # L, of a contact on the vibrissa
 
 
 class Event(NamedTuple):
     """What happens on the way, and where; lengths in L."""
 
     kind: str
-    """``"touch"``, ``"phase"``, ``"release"`` or ``"slip-off"``."""
+    """``"touch"``, ``"phase"``, ``"hop"``, ``"release"`` or ``"slip-off"``."""
     travel: float
     foot: Floats
 
@@ -83,6 +82,10 @@ class _Walker:
                 at, contact, arrived = self._follow(contact, at, station)
                 if arrived:
                     break
+                landed = self._land(contact, at)
+                if landed is not None:
+                    at, contact = landed
+                    continue
                 touch, unknown_until = self._let_go(contact, at)
                 contact = None
             contacts.append(contact)
@@ -92,11 +95,6 @@ class _Walker:
     def _begin(self, travel: float) -> Contact:
         """The contact of a vibrissa that is hardly bent."""
         gap = self._way.gap(travel)
-        if gap.arc_length < _LOWEST:
-            x, _, z = self._way.foot(travel) * self._way.length
-            raise InputError(
-                "path", f"into the body at ({x:.4g}, {z:.4g})", "past the body", "move path or body"
-            )
         x = gap.spot.point + APART * gap.spot.normal
         upright = gap.spot.normal @ self._scene.tangent >= -_BARELY
         if gap.arc_length == 1 and not upright:
@@ -145,6 +143,17 @@ class _Walker:
             else:
                 to = middle
         return to
+
+    def _land(self, contact: Contact, travel: float) -> tuple[float, Contact] | None:
+        """The state to which a vibrissa hops, and where its foot is then."""
+        if contact.force < _LOOSE:
+            return None
+        beyond = min(travel + _BEYOND, float(self._way.marks[-1]))
+        landed = landing(self._scene, contact, self._way.foot(beyond))
+        if landed is None:
+            return None
+        self._note("hop", travel)
+        return beyond, landed
 
     def _let_go(self, contact: Contact, travel: float) -> tuple[float | None, float]:
         """Where the vibrissa touches next, and from where on it is known to be free."""

@@ -49,7 +49,7 @@ def test_the_nearest_point_of_a_mesh_is_trimeshs(tmp_path):
 
 
 def test_a_mesh_in_millimetres_and_inside_out(tmp_path):
-    mesh = ball(3, 1000.0, (0.0, 1400.0, 0.0))
+    mesh = ball(4, 1000.0, (0.0, 1400.0, 0.0))
     mesh.invert()
     body = convex_mesh(saved(mesh, tmp_path), scale=1e-3)
     assert solve_space(SpatialCase(body=body, path=PATH)).touching.sum() > 10
