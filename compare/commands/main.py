@@ -12,7 +12,17 @@ import typer
 from typer.exceptions import TyperException
 
 from analytic.problem.errors import InputError
-from compare.commands import budget, calibrate, inspect, methods, readings, rig, study, sweeps
+from compare.commands import (
+    budget,
+    calibrate,
+    inspect,
+    methods,
+    readings,
+    rig,
+    space,
+    study,
+    sweeps,
+)
 from compare.commands.output import ended_by_signals
 
 BAD_INPUT = 2
@@ -28,6 +38,7 @@ COMMANDS: tuple[Callable[..., int], ...] = (
     sweeps.run,
     sweeps.analytic,
     sweeps.simulate,
+    space.space,
     sweeps.view,
     sweeps.animate,
     sweeps.report,

@@ -22,7 +22,7 @@ from mujoco_models.motion import Motion
 from mujoco_models.own.names import OwnModel
 from mujoco_models.settings import Settings
 
-_WITH_UNITS = ("beam", "support", "profile", "sweep")
+_WITH_UNITS = ("beam", "support", "profile", "sweep", "body", "path")
 _Schema = TypeVar("_Schema", bound=Table)
 
 
@@ -193,12 +193,27 @@ def _validated(schema: type[_Schema], tables: Mapping[str, Any], place: Place) -
         file = schema.model_validate(tables)
     except ValidationError as error:
         raise complaint(error, schema, place) from error
-    _check_units(file, tables, place)
+    check_units(file, tables, place)
     return file
 
 
-def _check_units(file: Table, tables: Mapping[str, Any], place: Place) -> None:
-    """Refuse dimensions with and without units side by side, also those left to a default."""
+def check_units(file: Table, tables: Mapping[str, Any], place: Place) -> None:
+    """Refuse dimensions with and without units side by side, also those left to a default.
+
+    Parameters
+    ----------
+    file : Table
+        The tables, checked.
+    tables : mapping
+        As parsed.
+    place : callable
+        What an error calls a key.
+
+    Raises
+    ------
+    InputError
+        If they are mixed.
+    """
     bare: list[list[str]] = []
     united: list[list[str]] = []
     left_out: list[list[str]] = []

@@ -76,7 +76,7 @@ class Ellipsoid(Body):
     def patches(self, centre: Floats, reach: float) -> Floats:
         """By longitude and latitude; all of it."""
         around, down = np.meshgrid(
-            np.linspace(0, 2 * np.pi, 49), np.linspace(0, np.pi, 25), indexing="ij"
+            np.linspace(0, 2 * np.pi, 97), np.linspace(0, np.pi, 49), indexing="ij"
         )
         unit = np.stack(
             [np.sin(down) * np.cos(around), np.cos(down), np.sin(down) * np.sin(around)], axis=-1

@@ -121,7 +121,7 @@ class SmoothBody(Body):
 
     def patches(self, centre: Floats, reach: float) -> Floats:
         """By longitude and latitude of the normal; all of it."""
-        around, down = np.linspace(0, 2 * np.pi, 49), np.linspace(0, np.pi, 25)
+        around, down = np.linspace(0, 2 * np.pi, 97), np.linspace(0, np.pi, 49)
         grid = [
             [
                 self._at(np.array([np.sin(v) * np.cos(u), np.cos(v), np.sin(v) * np.sin(u)]))

@@ -1,0 +1,132 @@
+"""The command ``space``: a sweep past a body in space, and the body from its clamp."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from compare.commands.options import AGREES, DISAGREES, out_folder
+from compare.commands.output import output_folder
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from analytic.space import SpatialCase, SpatialReadings
+
+
+def space(
+    case: Annotated[
+        str, typer.Argument(metavar="CASE", help="A TOML file with [body] and [path].")
+    ],
+    out: Annotated[Path | None, out_folder("results/CASE")] = None,
+    readings: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Take these readings in place of the closed form's: nine columns, foot_x to "
+            "moment_z.",
+            show_default=False,
+        ),
+    ] = None,
+    noise: Annotated[
+        float,
+        typer.Option(min=0, max=1, help="Noise of each component over its largest magnitude."),
+    ] = 0.0,
+    certified: Annotated[
+        bool, typer.Option("--certified", help="Check each station by integration from the clamp.")
+    ] = False,
+) -> int:
+    """Sweep past a body in space in closed form, and find the body from the clamp.
+
+    Writes the readings, the contacts found as a table and as a point cloud with normals, and a
+    picture.
+    """
+    from compare.read.space import load_space
+
+    found = load_space(case)
+    with output_folder(out or Path("results") / found.name) as folder:
+        from analytic.problem.files import write_whole
+        from analytic.space import (
+            SpatialReadings,
+            point_cloud,
+            reconstruct_space,
+            solve_space,
+            wrench_complaint,
+            write_ply,
+        )
+        from compare.commands import terminal
+        from compare.commands.waiting import waiting
+        from compare.show.figures.space import sweep_in_space
+        from compare.show.page import save_figure
+
+        if readings is None:
+            with waiting("solving"):
+                swept = solve_space(found, certified)
+            terminal.print_line(_solved(swept))
+            terminal.print_written(swept.write(folder / "analytic.parquet"))
+        else:
+            swept = SpatialReadings.read(readings, found.beam, found.path.tangent)
+        with waiting("reconstructing"):
+            points = reconstruct_space(swept, _deviations(swept, noise))
+            cloud = point_cloud(points)
+        terminal.print_line(_reconstructed(points, found))
+        complaint = wrench_complaint(points)
+        if complaint is not None:
+            terminal.print_line(f"readings: {complaint}")
+        terminal.print_written(write_whole(folder / "points.csv", points.to_csv(index=False)))
+        terminal.print_written(write_ply(cloud, folder / "points.ply"))
+        with waiting("drawing"):
+            picture = sweep_in_space(swept, points, found.body)
+            written = save_figure(picture, folder / "space.png")
+        terminal.print_written(written)
+    wrong = complaint is not None
+    if "status" in swept.table:
+        wrong |= bool((swept.table["status"] == "diverged").any())
+    return DISAGREES if wrong else AGREES
+
+
+def _solved(readings: "SpatialReadings") -> str:
+    table, length = readings.table, readings.beam.length
+    counts = table.loc[table["status"] == "ok", "phase"].value_counts()
+    parts = [f"{int(readings.trusted.sum())} of {len(table)} stations ok"]
+    parts += [
+        f"{count} {status}"
+        for status, count in table["status"].value_counts().items()
+        if status != "ok"
+    ]
+    parts.append(", ".join(f"{count} {phase}" for phase, count in counts.items()))
+    for event in readings.provenance["events"]:
+        x, _, z = (value / length for value in event["foot"])
+        if event["kind"] in ("touch", "release", "slip-off"):
+            parts.append(f"{event['kind']} at foot ({x:.4f}, {z:.4f}) L")
+    hops = sum(event["kind"] == "hop" for event in readings.provenance["events"])
+    if hops:
+        parts.append(f"{hops} hops over edges")
+    worst = table["residual"].max()
+    parts.append(f"residual at most {worst:.1e}")
+    return f"{readings.source}: {'; '.join(parts)}"
+
+
+def _reconstructed(points: "pd.DataFrame", case: "SpatialCase") -> str:
+    from numpy import degrees, sqrt
+
+    from analytic.space import misses, point_cloud
+
+    found = misses(point_cloud(points), case.body, case.beam.length)
+    distances = found.distances / case.beam.length
+    return (
+        f"{len(distances)} contacts; from the true body {sqrt((distances**2).mean()):.1e} L rms, "
+        f"{distances.max():.1e} L at most; normals {degrees(found.angles.max()):.1e} degrees"
+    )
+
+
+def _deviations(readings: "SpatialReadings", share: float) -> dict[str, float] | None:
+    import numpy as np
+
+    from analytic.space.problem.readings import FORCE, MOMENT
+
+    if share == 0:
+        return None
+    return {
+        name: share * float(np.nanmax(np.abs(readings.values(name)))) for name in (*FORCE, *MOMENT)
+    }

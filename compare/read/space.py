@@ -1,0 +1,269 @@
+"""Case files of sweeps in space."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BeforeValidator, Field, ValidationError
+from pydantic_core import PydanticCustomError
+
+from analytic import InputError
+from analytic.space import (
+    Body,
+    FootPath,
+    SpatialCase,
+    convex_mesh,
+    cylinder,
+    ellipsoid,
+    polyhedron,
+    prism,
+    sphere,
+)
+from compare.read.case import check_units
+from compare.read.complaints import complaint, name_of
+from compare.read.tables import (
+    BeamTable,
+    CatenaryTable,
+    CircleTable,
+    EllipseTable,
+    FileName,
+    Length,
+    ParabolaTable,
+    PointsTable,
+    PolygonTable,
+    Table,
+    TwoCirclesTable,
+)
+from compare.read.toml import TomlFile
+
+
+def _three(value: object) -> object:
+    if isinstance(value, list | tuple) and len(value) == 3:
+        return value
+    raise PydanticCustomError("triple", "three numbers, [x, y, z]", {})
+
+
+def _two(value: object) -> object:
+    if isinstance(value, list | tuple) and len(value) == 2:
+        return value
+    raise PydanticCustomError("pair", "two lengths, [x, z]", {})
+
+
+Place = Annotated[tuple[Length, Length, Length], Field(strict=False), BeforeValidator(_three)]
+Way = Annotated[tuple[float, float, float], Field(strict=False), BeforeValidator(_three)]
+OnBase = Annotated[tuple[Length, Length], Field(strict=False), BeforeValidator(_two)]
+
+
+class BodyTable(Table):
+    """The body: a kind, and the numbers that `factory` makes it from."""
+
+    factory: ClassVar[Callable[..., Body]]
+
+    def build(self, folder: Path) -> Body:  # files are in it, if there are any
+        """The body.
+
+        Parameters
+        ----------
+        folder : Path
+            What the path of a mesh file is relative to.
+
+        Returns
+        -------
+        Body
+            In the units of the file, or SI.
+        """
+        return type(self).factory(**self.model_dump(exclude={"kind"}))
+
+
+class SphereTable(BodyTable):
+    """See `analytic.space.sphere`."""
+
+    factory = staticmethod(sphere)
+    kind: Literal["sphere"]
+    radius: Length
+    centre: Place
+
+
+class EllipsoidTable(BodyTable):
+    """See `analytic.space.ellipsoid`."""
+
+    factory = staticmethod(ellipsoid)
+    kind: Literal["ellipsoid"]
+    semi_axes: Place
+    centre: Place
+    frame: Annotated[list[Way], Field(min_length=3, max_length=3)] | None = None
+
+
+class CylinderTable(BodyTable):
+    """See `analytic.space.cylinder`."""
+
+    factory = staticmethod(cylinder)
+    kind: Literal["cylinder"]
+    radius: Length
+    through: Place
+    axis: Way
+
+
+class HullTable(BodyTable):
+    """See `analytic.space.polyhedron`."""
+
+    factory = staticmethod(polyhedron)
+    kind: Literal["polyhedron"]
+    points: list[Place]
+
+
+class PrismTable(BodyTable):
+    """See `analytic.space.prism`; the contour is the table ``[profile]``."""
+
+    kind: Literal["prism"]
+    axis: Way = (0.0, 0.0, 1.0)
+    origin: Place = (0.0, 0.0, 0.0)
+
+
+class SolidTable(BodyTable):
+    """See `analytic.space.convex_mesh`."""
+
+    kind: Literal["mesh"]
+    file: str
+    scale: Length = Field(default=1.0, gt=0)
+    offset: Place = (0.0, 0.0, 0.0)
+    hull: bool = False
+    tolerance: Length = Field(default=0.0, ge=0)
+
+    def build(self, folder: Path) -> Body:
+        """The body in the file."""
+        return convex_mesh(folder / self.file, **self.model_dump(exclude={"kind", "file"}))
+
+
+class PathTable(Table):
+    """The way of the foot."""
+
+    points: Annotated[list[OnBase], Field(min_length=2)]
+    height: Length = 0.0
+    tangent: Way = (0.0, 1.0, 0.0)
+    stations: int = 200
+
+    def build(self) -> FootPath:
+        """The way.
+
+        Returns
+        -------
+        FootPath
+            In the units of the file, or SI.
+        """
+        return FootPath(self.points, self.height, self.tangent, self.stations)
+
+
+class SpaceFile(Table):
+    """What a case file of a sweep in space holds.
+
+    Parameters
+    ----------
+    name : str, optional
+        What files and reports call the case.
+    beam, body, path : table
+        The physics.
+    profile : table, optional
+        The contour of a prism, as in the plane.
+    """
+
+    name: FileName | None = None
+    beam: BeamTable = BeamTable()
+    body: Annotated[
+        SphereTable | EllipsoidTable | CylinderTable | HullTable | PrismTable | SolidTable,
+        Field(discriminator="kind"),
+    ]
+    profile: (
+        Annotated[
+            CatenaryTable
+            | ParabolaTable
+            | CircleTable
+            | EllipseTable
+            | TwoCirclesTable
+            | PolygonTable
+            | PointsTable,
+            Field(discriminator="kind"),
+        ]
+        | None
+    ) = None
+    path: PathTable
+
+    def case(self, folder: Path, name: str) -> SpatialCase:
+        """The whole problem.
+
+        Parameters
+        ----------
+        folder : Path
+            What the paths of files are relative to.
+        name : str
+            What the case is called if the file does not say.
+
+        Returns
+        -------
+        SpatialCase
+            The problem.
+
+        Raises
+        ------
+        InputError
+            If it is none that can be solved.
+        """
+        is_prism = isinstance(self.body, PrismTable)
+        if is_prism != (self.profile is not None):
+            raise InputError(
+                "[profile]",
+                "missing" if is_prism else "given",
+                "given for a prism, whose contour it is, and for nothing else",
+                "add it" if is_prism else 'leave it out, or take kind = "prism"',
+            )
+        if isinstance(self.body, PrismTable) and self.profile is not None:
+            body: Body = prism(self.profile.build(folder), self.body.axis, self.body.origin)
+        else:
+            body = self.body.build(folder)
+        return SpatialCase(
+            self.beam.build(), body=body, path=self.path.build(), name=self.name or name
+        )
+
+
+def load_space(path: str | Path) -> SpatialCase:
+    """The case in space from a TOML file.
+
+    Parameters
+    ----------
+    path : str or Path
+        Named ``*.toml``.
+
+    Returns
+    -------
+    SpatialCase
+        With defaults for what the file leaves out.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, has unknown keys, wrong types, unknown units, numbers with and without
+        units mixed, or states no solvable problem.
+    """
+    if not str(path).endswith(".toml"):
+        raise InputError(
+            "case",
+            repr(str(path)),
+            "the path of a .toml file with [body] and [path]",
+            "the named cases are planar: `vibrissa run` takes them",
+        )
+    path = Path(path)
+    file = TomlFile.read(path, "case file")
+    if "profile" in file.tables and "body" not in file.tables:
+        raise InputError(
+            f"{path}: [body]",
+            "missing",
+            "given for a sweep in space",
+            "`vibrissa run` takes cases in the plane",
+        )
+    try:
+        found = SpaceFile.model_validate(file.tables)
+    except ValidationError as error:
+        raise complaint(error, SpaceFile, file.place) from error
+    given: dict[str, Any] = dict(file.tables)
+    check_units(found, given, file.place)
+    return found.case(path.parent, found.name or name_of(path))
