@@ -41,12 +41,22 @@ stations = 12
 [mujoco]
 contour_points = 400
 """
+SPACE = """
+[body]
+kind = "sphere"
+radius = 1
+centre = [0, 1.4, 0]
+[path]
+points = [[1.1, 0.3], [0.2, 0.3]]
+stations = 12
+"""
 # Exit code 1 is a disagreement: these sweeps are as coarse as can be.
 COMMANDS = {
     "cases": (0, "cases"),
     "analytic": (0, "analytic mine.toml --out a --certified"),
     "simulate": (0, "simulate mine.toml --out a"),
     "compare": (1, "compare a/analytic.parquet a/mujoco-chain.parquet"),
+    "space": (0, "space space.toml --out space"),
     "side-by-side": (1, "side-by-side a/analytic.parquet a/mujoco-chain.parquet --out side"),
     "reconstruct": (0, "reconstruct a/analytic.parquet --out a"),
     "calibrate": (0, "calibrate mine.toml a/analytic.parquet --fit clamp_stiffness --out a"),
@@ -84,6 +94,7 @@ def environment(tmp_path_factory) -> Path:
 def test_every_command_runs_elsewhere(environment, tmp_path):
     (tmp_path / "mine.toml").write_text(SMALL)
     (tmp_path / "grid.toml").write_text(STUDY)
+    (tmp_path / "space.toml").write_text(SPACE)
     (tmp_path / "rig.toml").write_text(RIG)
     rows = [f"{1 - i / 20},{-i / 40},{i / 20},{i / 30}" for i in range(20)]
     (tmp_path / "rig.csv").write_text("\n".join(["x,a,b,c", *rows]))

@@ -5,7 +5,15 @@ import pytest
 import trimesh
 
 from analytic import InputError
-from analytic.space import FootPath, SpatialCase, convex_mesh, rod_residuals, solve_space, sphere
+from analytic.space import (
+    FootPath,
+    SpatialCase,
+    convex_mesh,
+    polyhedron,
+    rod_residuals,
+    solve_space,
+    sphere,
+)
 
 PATH = FootPath([[1.3, 0.3], [-1.5, 0.25]], stations=40)
 
@@ -22,17 +30,26 @@ def ball(subdivisions=3, radius=1.0, centre=(0.0, 1.4, 0.0)):
 
 
 @pytest.mark.parametrize("name", ["body.stl", "body.obj", "body.ply"])
-def test_a_mesh_of_a_ball_is_nearly_the_ball(name, tmp_path):
-    body = convex_mesh(saved(ball(4), tmp_path, name))
+def test_formats_hold_the_same_body(name, tmp_path):
+    body = convex_mesh(saved(ball(2), tmp_path, name))
+    x = np.array([0.7, 0.2, 0.4])
+    spot, best = body.nearest(x, 0.25), polyhedron(ball(2).vertices).nearest(x, 0.25)
+    assert np.abs(spot.point - best.point).max() < 1e-6  # STL holds single precision
+
+
+@pytest.mark.slow
+def test_a_mesh_of_a_ball_is_nearly_the_ball(tmp_path):
+    body = convex_mesh(saved(ball(4), tmp_path))
     found = solve_space(SpatialCase(body=body, path=PATH))
     exact = solve_space(SpatialCase(body=sphere(1.0, (0.0, 1.4, 0.0)), path=PATH))
     assert np.nanmax(rod_residuals(found)) < 1e-10
     both = found.touching & exact.touching
     assert both.sum() > 15
-    force = [
-        np.linalg.norm(r.values("force_x", "force_y", "force_z"), axis=1) for r in (found, exact)
-    ]
-    assert np.abs(force[0] - force[1])[both].max() < 0.02 * np.nanmax(force[1])
+    names = ("force_x", "force_y", "force_z")
+    force = [np.linalg.norm(r.values(*names), axis=1) for r in (found, exact)]
+    # Facets 0.07 L wide turn the normal by up to 0.04 rad, and the force's size by as much.
+    assert np.abs(force[0] - force[1])[both].max() < 0.04 * np.nanmax(force[1])
+    assert any(event["kind"] == "hop" for event in found.provenance["events"])
 
 
 def test_the_nearest_point_of_a_mesh_is_trimeshs(tmp_path):
@@ -48,6 +65,7 @@ def test_the_nearest_point_of_a_mesh_is_trimeshs(tmp_path):
         assert np.abs(spot.point + spot.distance * spot.normal - x).max() < 1e-12
 
 
+@pytest.mark.slow
 def test_a_mesh_in_millimetres_and_inside_out(tmp_path):
     mesh = ball(4, 1000.0, (0.0, 1400.0, 0.0))
     mesh.invert()

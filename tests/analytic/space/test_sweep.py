@@ -44,7 +44,13 @@ BODIES = {
 }
 
 
-@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(n, marks=pytest.mark.slow if n in ("polyhedron", "prism") else ())
+        for n in BODIES
+    ],
+)
 @pytest.mark.parametrize("tangent", [(0, 1, 0), LEANING])
 def test_every_state_satisfies_the_equations_of_the_rod(name, tangent):
     body, points = BODIES[name]
@@ -68,7 +74,7 @@ def test_contacts_lie_on_the_ellipsoid_and_nothing_inside():
 
 
 @pytest.mark.parametrize("contour", [circle(1.0, (0.0, 0.4)), catenary(0.5, -0.8)])
-@pytest.mark.parametrize("radius", [0.0, 0.005])
+@pytest.mark.parametrize("radius", [0.0, pytest.param(0.005, marks=pytest.mark.slow)])
 def test_a_prism_across_the_path_is_the_planar_problem(contour, radius):
     beam = Beam(2.0, 3.0, radius)
     contour = contour.scaled(2.0)
@@ -92,6 +98,7 @@ def test_a_prism_across_the_path_is_the_planar_problem(contour, radius):
         assert np.abs(space.values(nothing)[held]).max() < 1e-15
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("contour", [circle(1.0, (0.0, 0.4)), catenary(0.5, -0.8)])
 def test_a_prism_lets_go_where_the_contact_passes_its_lowest_point(contour):
     lowest = float(solve_contact(contour, 0.0)["foot_x"].iloc[0])
@@ -135,6 +142,7 @@ def test_a_mirror_image_reads_the_mirrored_components():
         )
 
 
+@pytest.mark.slow
 def test_a_support_function_is_another_way_to_state_an_ellipsoid():
     squares = AXES**2
     smooth = SmoothBody(lambda n: CENTRE + squares * n / np.sqrt(squares @ n**2))
@@ -144,6 +152,7 @@ def test_a_support_function_is_another_way_to_state_an_ellipsoid():
         assert np.abs(a - b).max() < 1e-9
 
 
+@pytest.mark.slow
 def test_a_vibrissa_turns_about_an_edge_whose_normals_it_runs_through():
     readings = swept(*BODIES["polyhedron"], 60)
     on = readings.touching & (readings.table["phase"] == "tangent").to_numpy()

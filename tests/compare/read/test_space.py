@@ -1,0 +1,94 @@
+"""Case files of sweeps in space."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from analytic import InputError
+from analytic.space import solve_space
+from compare.read.space import load_space
+
+BALL = """
+[beam]
+length = "50 mm"
+flexural_rigidity = "2e-6 N m^2"
+radius = "0.25 mm"
+[body]
+kind = "sphere"
+radius = "50 mm"
+centre = ["0 mm", "70 mm", "0 mm"]
+[path]
+points = [["65 mm", "15 mm"], ["-75 mm", "10 mm"]]
+tangent = [0.1, 1, 0]
+stations = 20
+"""
+
+
+def loaded(text, tmp_path):
+    path = tmp_path / "ball.toml"
+    path.write_text(text)
+    return load_space(path)
+
+
+def test_a_case_with_units_is_in_si(tmp_path):
+    case = loaded(BALL, tmp_path)
+    assert case.name == "ball"
+    assert case.beam.length == 0.05
+    assert np.allclose(case.body.centre, [0, 0.07, 0])
+    assert np.allclose(case.path.corners[0], [0.065, 0, 0.015])
+    assert solve_space(case).touching.sum() > 5
+
+
+def test_a_prism_takes_its_contour_from_the_profile(tmp_path):
+    text = """
+[body]
+kind = "prism"
+axis = [0.2, 0.1, 1]
+[profile]
+kind = "catenary"
+a = 0.5
+c = -0.8
+[path]
+points = [[2.5, 0], [1, 0.2]]
+"""
+    assert "catenary" in loaded(text, tmp_path).body.label
+    with pytest.raises(InputError, match="missing"):
+        loaded(text[: text.index("[profile]")] + text[text.index("[path]") :], tmp_path)
+
+
+def test_a_mesh_stands_beside_its_case_file(tmp_path):
+    mesh = trimesh.creation.icosphere(2, 50.0)
+    mesh.apply_translation([0, 70, 0])
+    mesh.export(tmp_path / "ball.stl")
+    head, tail = BALL.split("[body]")[0], BALL[BALL.index("[path]") :]
+    text = f'{head}[body]\nkind = "mesh"\nfile = "ball.stl"\nscale = "1 mm"\n{tail}'
+    case = loaded(text, tmp_path)
+    assert np.abs(case.body.vertices).max() == pytest.approx(0.12, rel=1e-2)
+    with pytest.raises(InputError, match="scale"):
+        loaded(text.replace('scale = "1 mm"\n', "scale = 1\n"), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ('kind = "sphere"', 'kind = "torus"', "torus"),
+        ('radius = "50 mm"', 'radius = "-50 mm"', "positive"),
+        ('radius = "50 mm"', "radius = 0.05", "without a unit"),
+        ('["0 mm", "70 mm", "0 mm"]', '["0 mm", "70 mm"]', "x, y, z"),
+        ("tangent = [0.1, 1, 0]", "tangent = [0, 0, 0]", "direction"),
+        ("stations = 20", "stations = 1", "stations"),
+        ('"70 mm", "0 mm"]', '"170 mm", "0 mm"]', "within reach"),
+        ("[path]", "[way]", "path"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_line(old, new, says, tmp_path):
+    with pytest.raises(InputError, match=says) as refused:
+        loaded(BALL.replace(old, new), tmp_path)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_planar_case_is_sent_to_its_command(tmp_path):
+    with pytest.raises(InputError, match="vibrissa run"):
+        loaded('[profile]\nkind = "circle"\nradius = 1\nlowest = [0, 0.4]\n', tmp_path)
+    with pytest.raises(InputError, match="vibrissa run"):
+        load_space("catenary")
