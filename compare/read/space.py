@@ -21,19 +21,17 @@ from analytic.space import (
 )
 from compare.read.case import check_units
 from compare.read.complaints import complaint, name_of
-from compare.read.tables import (
-    BeamTable,
+from compare.read.profiles import (
     CatenaryTable,
     CircleTable,
     EllipseTable,
-    FileName,
-    Length,
     ParabolaTable,
     PointsTable,
     PolygonTable,
-    Table,
     TwoCirclesTable,
 )
+from compare.read.quantities import FileName, Length, Table
+from compare.read.tables import BeamTable
 from compare.read.toml import TomlFile
 
 

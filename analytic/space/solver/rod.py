@@ -98,19 +98,21 @@ def loaded_part(excess: float, alpha: float) -> Loaded:
     Returns
     -------
     Loaded
-        Of unit length.
+        Of unit length; not finite where there is no such state.
     """
     w, a = np.array(excess), np.array(alpha)
-    integrals = span(w, a)
-    up, across = frame(integrals, a)
-    height, reach = tip_rates(w, integrals, a)
-    by_excess = span_by_excess(integrals, w, a)
-    by_alpha = span_by_alpha(integrals, by_excess, a)
+    with np.errstate(all="ignore"):  # beyond an upright or level surface: not finite, and no state
+        integrals = span(w, a)
+        up, across = frame(integrals, a)
+        height, reach = tip_rates(w, integrals, a)
+        by_excess = span_by_excess(integrals, w, a)
+        by_alpha = span_by_alpha(integrals, by_excess, a)
+        place = np.array([float(up), float(across)]) / integrals.q
     q = float(integrals.q)
     return Loaded(
         q,
         float(integrals.C),
-        np.array([float(up), float(across)]) / q,
+        place,
         np.array([float(height.by_alpha), float(reach.by_alpha)]),
         np.array([float(height.by_excess), float(reach.by_excess)]),
         float(integrals.S) - q * float(np.cos(w + a)),
