@@ -32,7 +32,8 @@ def budget(
     target: Annotated[
         float | None,
         typer.Option(
-            metavar="RMS", help="Find the cheapest settings with an rms of at most this, as 1e-3."
+            metavar="RMS",
+            help="Find the cheapest settings, or the fastest motion, with an rms of at most this.",
         ),
     ] = None,
     stations: Stations = None,
@@ -45,21 +46,19 @@ def budget(
 ) -> int:
     """Measure what the disagreement is made of.
 
-    In motion, if the case has a [motion] table or an option asks for it: what the speed and the
-    time step add to what is there at rest.
+    In motion, if the case has a [motion] or [model] table or an option asks for it: what speed,
+    damping, time step, contacts, solver and the model's own beam add to what is there at rest.
     """
     changes = Changes(
         stations, segments, beam, obstacle, motion=motion, speed=speed, timestep=timestep
     )
     job = changes.job(case)
-    if job.motion is not None:
-        if target is not None or job.model is not None:
-            job = changes.job_at_rest(case, "budget --target or with a [model]")
-        return _in_motion(job, changes.folder(out, job.case.name))
     from compare.explain.advice import check_target
 
     if target is not None:
         check_target(target)
+    if job.motion is not None:
+        return _in_motion(job, changes.folder(out, job.case.name), target)
     with output_folder(changes.folder(out, job.case.name)) as folder:
         from analytic.problem.files import write_whole
         from compare.commands import terminal
@@ -81,18 +80,24 @@ def budget(
         return AGREES if found.closes and (advice is None or advice.reached) else DISAGREES
 
 
-def _in_motion(job: "Job", place: Path) -> int:
+def _in_motion(job: "Job", place: Path, target: float | None) -> int:
     with output_folder(place) as folder:
         from analytic.problem.files import write_whole
         from compare.commands import terminal
-        from compare.commands.engines import measured_motion_budget
+        from compare.commands.engines import fastest_motion, measured_motion_budget
 
         found, runs = measured_motion_budget(job)
         terminal.print_motion_budget(found, job.case.name)
         for name, readings in runs.items():
             readings.write(folder / f"{name}.parquet")
-        content = json.dumps(found.to_dict(), indent=2)
-        terminal.print_written(write_whole(folder / "motion-budget.json", content))
+        content = found.to_dict()
+        path = write_whole(folder / "motion-budget.json", json.dumps(content, indent=2))
+        terminal.print_written(path)
+        if target is not None:
+            fastest = fastest_motion(job, runs, target)
+            content["fastest"] = fastest.to_dict()
+            write_whole(path, json.dumps(content, indent=2))
+            terminal.print_fastest(fastest)
         return AGREES if found.closes else DISAGREES
 
 

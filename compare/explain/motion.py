@@ -1,4 +1,4 @@
-"""The budget of a sweep in motion: what speed and time step add to what is there at rest."""
+"""The budget of a sweep in motion: what motion and contacts add to what is there at rest."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
@@ -12,8 +12,20 @@ from compare.explain.budget import UNRESOLVED, Part, common_stations
 from compare.judge.tolerances import Tolerances
 from compare.sense.noise import scales
 from mujoco_models.motion import Motion
+from mujoco_models.own.names import OwnModel
 
-PARTS = ("rate", "time step", "at rest", "unexplained")
+OPTIONAL = ("undamped", "ours", "newton")
+"""Sweeps without which a budget has one part less."""
+PARTS = (
+    "rate",
+    "damping",
+    "time step",
+    "contact model",
+    "solver",
+    "beam",
+    "at rest",
+    "unexplained",
+)
 _SAFETY = 1.25  # Roache's, of an extrapolation from three
 _ORDERS = (0.5, 2.0)  # in the speed: of the dampers' moment one, of inertia two, of bounces less
 _LEFT = 0.1  # of the disagreement; what may stay unexplained
@@ -26,8 +38,12 @@ class MotionBudget:
     Attributes
     ----------
     parts : dict
-        `Part` by name and reading: ``rate``, what a slower sweep does not have; ``time step``, what
-        a shorter one does not have; ``at rest``, of the same model and contacts; ``unexplained``.
+        `Part` by name and reading, those of `PARTS` that there are sweeps for: ``damping``, in
+        proportion to the damping ratio; ``rate``, what else a slower sweep does not have; ``time
+        step``, what a shorter one does not have; ``contact model``, of the user's contacts instead
+        of ours; ``solver``, of another one than Newton's, or of its iterations; ``beam``, of what
+        was measured instead of what is stated; ``at rest``, of the same model and our contacts;
+        ``unexplained``.
     disagreement : dict
         Root mean square by reading, over the stations in contact and trusted in all sweeps.
     order : float
@@ -36,9 +52,11 @@ class MotionBudget:
         Whether what is unexplained lies within the uncertainty of the parts, or is less than a
         tenth of the disagreement.
     blame : str
-        The part that dominates.
+        The part that dominates, less what it is uncertain by.
     stations : int
         Compared stations.
+    left_out : tuple of str
+        Sweeps that diverged, and whose part there is none of.
     """
 
     parts: dict[str, dict[str, Part]]
@@ -47,6 +65,7 @@ class MotionBudget:
     closes: bool
     blame: str
     stations: int
+    left_out: tuple[str, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """What ``motion-budget.json`` holds.
@@ -71,22 +90,64 @@ def slower_and_finer(motion: Motion) -> dict[str, Motion]:
     -------
     dict of Motion
         ``half`` and ``quarter`` of its speed; ``fine``, a quarter of its speed and half of its time
-        step, with contacts of the same stiffness.
+        step, with contacts of the same stiffness; ``undamped``, half of its damping; ``ours`` and
+        ``newton``, a quarter of its speed with our contacts or Newton's method, if it has others.
     """
     same = motion
     if motion.solref is None:
         same = replace(motion, contact_stiffness=motion.stiffness)
     quarter = replace(same, speed=motion.speed / 4)
-    return {
+    found = {
         "base": motion,
         "half": replace(same, speed=motion.speed / 2),
         "quarter": quarter,
         "fine": replace(quarter, timestep=motion.timestep / 2),
     }
+    if motion.damping_ratio > 0:
+        found["undamped"] = replace(same, damping_ratio=motion.damping_ratio / 2)
+    if motion.solref is not None:
+        found["ours"] = replace(quarter, solref=None, solimp=Motion.solimp)
+    if motion.solver != "newton":
+        found["newton"] = replace(quarter, solver="newton")
+    return found
+
+
+def slower_and_finer_of_model(
+    model: OwnModel, motion: Motion
+) -> dict[str, tuple[OwnModel, Motion]]:
+    """The same of a user's own model, in memory.
+
+    Parameters
+    ----------
+    model : OwnModel
+        Its file and names.
+    motion : Motion
+        Of the base.
+
+    Returns
+    -------
+    dict of tuple
+        By the names of `slower_and_finer`; ``ours`` where the contacts are the model's own.
+    """
+    quarter = replace(motion, speed=motion.speed / 4)
+    found = {
+        "base": (model, motion),
+        "half": (model, replace(motion, speed=motion.speed / 2)),
+        "quarter": (model, quarter),
+        "fine": (replace(model, timestep=0.5), quarter),
+        "undamped": (replace(model, damping=0.5), motion),
+        "newton": (replace(model, solver="newton"), quarter),
+    }
+    if model.contact == "own":
+        found["ours"] = (replace(model, contact="ours"), quarter)
+    return found
 
 
 def motion_budget(
-    exact: Readings, runs: Mapping[str, Readings], tolerances: Tolerances | None = None
+    exact: Readings,
+    runs: Mapping[str, Readings],
+    tolerances: Tolerances | None = None,
+    of_our_chain: bool = False,
 ) -> MotionBudget:
     """Split the disagreement of ``runs["base"]`` with `exact` into its parts.
 
@@ -95,9 +156,13 @@ def motion_budget(
     exact : Readings
         The reference.
     runs : mapping
-        Sweeps by the names of `slower_and_finer`, and ``rest``, over the same stations.
+        Sweeps by the names of `slower_and_finer`, and ``rest``, over the same stations; ``beam``,
+        the closed form of the vibrissa that was measured.
     tolerances : Tolerances, optional
         Only its window before the snap-off is used.
+    of_our_chain : bool
+        Whether ``rest`` is of our chain instead of a user's model, which has other contacts: it is
+        as uncertain as it is large.
 
     Returns
     -------
@@ -125,20 +190,32 @@ def motion_budget(
         observed = np.log2(np.linalg.norm(coarse) / np.linalg.norm(fine))
     order = float(np.clip(np.nan_to_num(observed, nan=1.0), *_ORDERS))
     limit = run["quarter"] - fine / (2**order - 1)
-    signals = {
-        "rate": run["base"] - limit,
-        "time step": 2 * (run["quarter"] - run["fine"]),  # of first order, as its contacts are
-        "at rest": run["rest"] - truth,
-    }
+    signals = {"rate": run["base"] - limit}
+    unsure = {"rate": _SAFETY * _rms(run["quarter"] - limit)}
+    if "undamped" in run:
+        # As much again as was measured is extrapolated, and as uncertain.
+        signals["damping"] = 2 * (run["base"] - run["undamped"])
+        signals["rate"] -= signals["damping"]
+        unsure["damping"] = _rms(run["base"] - run["undamped"])
+    signals["time step"] = 2 * (run["quarter"] - run["fine"])  # of first order, as its contacts are
+    for name, other in (("contact model", "ours"), ("solver", "newton")):
+        if other in run:
+            signals[name] = run["quarter"] - run[other]
+    if "beam" in run:
+        signals["beam"] = run["beam"] - truth
+    signals["at rest"] = run["rest"] - truth
     total = run["base"] - truth
     signals["unexplained"] = total - np.sum(list(signals.values()), axis=0)
     rms = {name: _rms(part) for name, part in signals.items()}
-    uncertainty = {
-        "rate": _SAFETY * _rms(run["quarter"] - limit),
-        "time step": rms["time step"],
-        "at rest": np.zeros(3),
-    }
-    uncertainty["unexplained"] = np.sqrt(np.sum([u**2 for u in uncertainty.values()], axis=0))
+    uncertainty = {name: unsure.get(name, np.zeros(3)) for name in signals}
+    uncertainty["time step"] = rms["time step"]
+    if of_our_chain:
+        uncertainty["at rest"] = rms["at rest"]
+    # What is rate and what damping does not matter to what is left.
+    left = [u**2 for name, u in uncertainty.items() if name != "damping"]
+    uncertainty["unexplained"] = np.sqrt(np.sum(left, axis=0))
+    if "damping" in uncertainty:
+        uncertainty["rate"] = np.hypot(uncertainty["rate"], uncertainty["damping"])
     allowed = np.hypot(UNRESOLVED, np.maximum(uncertainty["unexplained"], _LEFT * _rms(total)))
     return MotionBudget(
         {
@@ -147,13 +224,18 @@ def motion_budget(
                 for i, reading in enumerate(CLAMP_READINGS)
             }
             for name in PARTS
+            if name in rms
         },
         dict(zip(CLAMP_READINGS, _rms(total).tolist(), strict=True)),
         order,
         bool((rms["unexplained"] <= allowed).all()),
-        max(PARTS, key=lambda name: float(np.linalg.norm(rms[name]))),
+        max(rms, key=lambda name: float(np.linalg.norm(_sure(rms[name], uncertainty[name])))),
         int(kept.sum()),
     )
+
+
+def _sure(rms: Floats, uncertainty: Floats) -> Floats:
+    return np.maximum(rms - uncertainty, 0.0)
 
 
 def _rms(signals: Floats) -> Floats:

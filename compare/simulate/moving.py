@@ -2,13 +2,27 @@
 
 from collections.abc import Callable, Mapping
 from concurrent.futures import BrokenExecutor
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
 
 from analytic import Case, Readings, solve_sweep
-from compare.explain.motion import MotionBudget, motion_budget, slower_and_finer
+from compare.explain.motion import (
+    OPTIONAL,
+    MotionBudget,
+    motion_budget,
+    slower_and_finer,
+    slower_and_finer_of_model,
+)
 from compare.simulate.controlled import sweep_alone
+from compare.simulate.rigidity import by_its_clamp
 from compare.simulate.workers import Workers, available_cores
+from mujoco_models.errors import DivergedError
+from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.motion import Motion
-from mujoco_models.settings import Settings
+from mujoco_models.own.names import OwnModel
+from mujoco_models.settings import CONTACT_STIFFNESSES, Settings
 
 
 def measure_motion_budget(
@@ -46,18 +60,96 @@ def measure_motion_budget(
         If the system ends a worker.
     """
     motions = slower_and_finer(motion)
-    with Workers(min(len(motions), available_cores())) as pool:
-        slowest_first = sorted(motions, key=lambda name: motions[name].speed)
-        sweeps = {name: pool.submit(move_alone, case, motions[name], settings)
-                  for name in slowest_first}  # fmt: skip
-        sweeps["rest"] = pool.submit(sweep_alone, case, at_rest)
-        for sweep in sweeps.values():
+    sweeps = {name: (move_alone, case, one, settings) for name, one in motions.items()}
+    runs = _swept({**sweeps, "rest": (sweep_alone, case, at_rest)}, advance)
+    left_out = tuple(name for name in motions if name not in runs)
+    return replace(motion_budget(solve_sweep(case), runs), left_out=left_out), runs
+
+
+def measure_model_budget(
+    case: Case,
+    model: OwnModel,
+    motion: Motion,
+    settings: Settings,
+    advance: Callable[[], None] = lambda: None,
+) -> tuple[MotionBudget, Mapping[str, Readings]]:
+    """The same of a user's own model; nothing of its files is changed.
+
+    ``at rest`` is of our chain with as many links. ``beam`` is the closed form of the vibrissa that
+    was measured less that of the one that is stated.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+    model : OwnModel
+        Its file and names.
+    motion, settings
+        Of the sweep in question.
+    advance : callable, optional
+        Called after every sweep, for progress bars.
+
+    Returns
+    -------
+    MotionBudget
+        The parts.
+    mapping of Readings
+        The sweeps, and ``beam``.
+
+    Raises
+    ------
+    InputError, MemoryError
+        As `measure_motion_budget` does, or as `mujoco_models.simulate_model`.
+    """
+    from mujoco_models import inspect_model  # MuJoCo is imported only where it is used
+
+    found = inspect_model(
+        model.file, foot=model.foot, force=model.force, torque=model.torque, geoms=model.geoms
+    )
+    stepped = replace(motion, timestep=found.timestep / found.period, integrator=found.integrator)
+    at_rest = replace(
+        settings,
+        segments=max(len(found.joints), 2),
+        contact_stiffness=float(np.clip(stepped.stiffness, *CONTACT_STIFFNESSES)),
+    )
+    of_model = slower_and_finer_of_model(model, motion)
+    sweeps = {name: (move_model_alone, case, *one, settings) for name, one in of_model.items()}
+    runs = _swept({**sweeps, "rest": (sweep_alone, case, at_rest)}, advance)
+    if not case.beam.varies:
+        runs["beam"] = solve_sweep(_as_measured(case, found))
+    left_out = tuple(name for name in of_model if name not in runs)
+    budget = motion_budget(solve_sweep(case), runs, of_our_chain=True)
+    return replace(budget, left_out=left_out), runs
+
+
+def _as_measured(case: Case, found: MeasuredBeam) -> Case:
+    """The case of the vibrissa that was measured, at the same stations."""
+    beam = replace(
+        case.beam,
+        length=found.length,
+        flexural_rigidity=by_its_clamp(found),
+        natural_curvature=found.natural_curvature,
+    )
+    ends = float(case.foot_x[0]), float(case.foot_x[-1])
+    return replace(case, beam=beam, sweep=replace(case.sweep, start=ends[0], stop=ends[1]))
+
+
+def _swept(
+    sweeps: Mapping[str, tuple[Any, ...]], advance: Callable[[], None]
+) -> dict[str, Readings]:
+    """All sweeps, each a function and what it takes, but for optional ones that diverge."""
+    with Workers(min(len(sweeps), available_cores())) as pool:
+        running = {name: pool.submit(*sweep) for name, sweep in sweeps.items()}
+        for sweep in running.values():
             sweep.add_done_callback(lambda _: advance())
         try:
-            runs = {name: sweeps[name].result() for name in (*motions, "rest")}
+            diverged = [
+                name for name in OPTIONAL
+                if name in running and isinstance(running[name].exception(), DivergedError)
+            ]  # fmt: skip
+            return {n: sweep.result() for n, sweep in running.items() if n not in diverged}
         except BrokenExecutor as error:
             raise MemoryError("the system ended a worker process") from error
-    return motion_budget(solve_sweep(case), runs), runs
 
 
 def move_alone(case: Case, motion: Motion, settings: Settings) -> Readings:
@@ -78,3 +170,25 @@ def move_alone(case: Case, motion: Motion, settings: Settings) -> Readings:
     from mujoco_models import simulate_motion  # MuJoCo is imported only where it is used
 
     return simulate_motion(case, motion, settings)
+
+
+def move_model_alone(case: Case, model: OwnModel, motion: Motion, settings: Settings) -> Readings:
+    """One sweep of a user's own model, in a process of its own.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+    model : OwnModel
+        Its file and names.
+    motion, settings
+        The numerics.
+
+    Returns
+    -------
+    Readings
+        Of the sweep.
+    """
+    from mujoco_models import simulate_model  # MuJoCo is imported only where it is used
+
+    return simulate_model(case, model, motion, settings)

@@ -1,6 +1,7 @@
 """Measure the beam that a user's model is: stiffness, mass, clamp, sensors, contacts."""
 
 from pathlib import Path
+from typing import cast
 
 import mujoco
 import numpy as np
@@ -12,6 +13,7 @@ from mujoco_models.inspect.held import Held
 from mujoco_models.inspect.load import load
 from mujoco_models.inspect.measured import Geom, Joint, MeasuredBeam, Sensed
 from mujoco_models.inspect.parts import Names, Parts, axis_of, find, radius_of
+from mujoco_models.motion import IntegratorKind
 
 _LOADS = (0.01, 0.5, 1.0, 2.0, 5.0, 10.0)  # EI/L^2; up to a tip turned by 82 degrees
 _SMALL = 1e-4  # EI/L^2 and EI/L: sensors are probed in the linear range
@@ -106,7 +108,10 @@ def measure(model: mujoco.MjModel, parts: Parts) -> MeasuredBeam:
         torque=sensors[1],
         self_contacts=_self_contacts(model, parts),
         timestep=float(model.opt.timestep),
-        integrator=mujoco.mjtIntegrator(model.opt.integrator).name.removeprefix("mjINT_").lower(),
+        integrator=cast(
+            IntegratorKind,
+            mujoco.mjtIntegrator(model.opt.integrator).name.removeprefix("mjINT_").lower(),
+        ),
         friction_loss=float(model.dof_frictionloss[held.dofs].max()),
         limits=_limits(model, parts),
     )

@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from analytic.problem.arrays import Floats
+from mujoco_models.motion import IntegratorKind
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,7 +161,7 @@ class MeasuredBeam:
     torque: Sensed | None
     self_contacts: tuple[str, ...]
     timestep: float
-    integrator: str
+    integrator: IntegratorKind
     friction_loss: float
     limits: tuple[float, ...]
 

@@ -21,6 +21,7 @@ from mujoco_models.obstacles.faceted import add_hull
 from mujoco_models.obstacles.prism import Prism
 from mujoco_models.obstacles.protocol import GEOM_PREFIX
 from mujoco_models.own.drive import drive_to
+from mujoco_models.own.names import OwnModel
 from mujoco_models.stepping.stiffness import stiffen, weights_in_last_step
 
 _HALF_DEPTH = 1.5  # L; as of all prisms
@@ -29,6 +30,7 @@ _LAGS = 0.1, 0.5  # L, and of the way: farther behind the foot does not follow
 _WILD = 100.0  # EI/L^2 and EI/L; thirty times what a sweep takes
 _AT_TIP = 1e-3  # L
 _IMPEDANCE = 0.9
+_ITERATIONS, _TOLERANCE = 500, 1e-12  # of Newton's method, which takes two or three
 _BAD_STATES = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
     mujoco.mjtWarning.mjWARN_BADQVEL,
@@ -41,8 +43,8 @@ class OwnModelInMotion:
 
     Parameters
     ----------
-    path : Path
-        The model's file.
+    own : OwnModel
+        The model's file, and what is changed of it.
     held : Held
         The same model, at rest with its foot held.
     measured : MeasuredBeam
@@ -55,8 +57,6 @@ class OwnModelInMotion:
         Speed and contact stiffness.
     foot_x : float
         Where the foot starts, in the case's frame [L].
-    ours : bool
-        Whether contacts have our parameters instead of the model's.
 
     Attributes
     ----------
@@ -68,21 +68,20 @@ class OwnModelInMotion:
 
     def __init__(
         self,
-        path: Path,
+        own: OwnModel,
         held: Held,
         measured: MeasuredBeam,
         beam: Beam,
         obstacle: Prism,
         motion: Motion,
         foot_x: float,
-        ours: bool,
     ) -> None:
         self._parts, self._beam, self._period = held.parts, beam, measured.period
         self._axes, self._start, self._origin = sweep_axes(held), foot_x, held.clamp
         self._tip = held.tip_in_body
         self._nodes = np.append([joint.s for joint in measured.joints], measured.length)
         self.label = obstacle.label
-        self.model = self._with_object(path, obstacle)
+        self.model = self._with_object(own.file, obstacle)
         self.data = mujoco.MjData(self.model)
         self._foot = self._parts.foot
         place, turn = self._pose(held.data)
@@ -92,6 +91,8 @@ class OwnModelInMotion:
         self._geoms = frozenset(g + (g >= self._object) for g in self._parts.geoms)
         self._drive = drive_to(self.model, self._foot, -self._axes[0])
         self._stiffness = motion.stiffness * beam.base_rigidity / beam.length**3
+        self._change(own, held)
+        ours = own.contact == "ours"
         if ours:
             self._take_our_contacts()
         implicit = self.model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_DISCRETE)
@@ -129,6 +130,14 @@ class OwnModelInMotion:
 
     def _pose(self, data: mujoco.MjData) -> tuple[Floats, Floats]:
         return np.array(data.xpos[self._parts.foot]), data.xmat[self._parts.foot].reshape(3, 3)
+
+    def _change(self, own: OwnModel, held: Held) -> None:
+        option = self.model.opt
+        option.timestep *= own.timestep
+        self.model.dof_damping[held.dofs] *= own.damping
+        if own.solver == "newton":
+            option.solver = mujoco.mjtSolver.mjSOL_NEWTON
+            option.iterations, option.tolerance = _ITERATIONS, _TOLERANCE
 
     def _take_our_contacts(self) -> None:
         """Frictionless, and as stiff at every geom."""

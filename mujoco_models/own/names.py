@@ -20,6 +20,10 @@ class OwnModel:
     contact : str
         Whether contacts have the model's ``"own"`` parameters, or ``"ours"``: frictionless, and as
         stiff as `mujoco_models.Motion` says.
+    timestep, damping : float
+        What the model's time step and the vibrissa's dampers are multiplied by, in memory.
+    solver : str
+        The model's ``"own"``, or ``"newton"`` with iterations and tolerance that leave nothing.
     """
 
     file: Path
@@ -28,3 +32,6 @@ class OwnModel:
     torque: str | None = None
     geoms: str | None = None
     contact: ContactKind = "own"
+    timestep: float = 1.0
+    damping: float = 1.0
+    solver: Literal["own", "newton"] = "own"

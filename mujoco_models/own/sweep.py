@@ -52,21 +52,23 @@ def run_own(
     parts = find(model, Names(own.foot, own.force, own.torque, own.geoms))
     measured = measure(model, parts)
     _check(case, parts, measured)
-    moved = replace(motion, timestep=measured.timestep / measured.period)
+    moved = replace(
+        motion, timestep=measured.timestep / measured.period, integrator=measured.integrator
+    )
     if motion.contact_stiffness is None and motion.solref is None:  # as stiff as this step allows
         moved = replace(moved, contact_stiffness=min(max(moved.stiffness, 1e3), 1e9))
+    moved = replace(moved, timestep=own.timestep * moved.timestep)
     held = Held(model, parts)
     held.rest()
     record = Record(case.foot_x / case.beam.length, motion.average)
     in_motion = OwnModelInMotion(
-        own.file,
+        own,
         held,
         measured,
         case.beam,
         Prism.of(case, settings.contour_points, settings.corner_radius),
         moved,
         start_of(record, moved),
-        own.contact == "ours",
     )
     about = {
         "source": f"model {measured.model or own.file.stem}",

@@ -17,6 +17,7 @@ from compare.commands.terminal.verdicts import (
     print_budget,
     print_comparison,
     print_engines,
+    print_fastest,
     print_motion_budget,
     print_side_by_side,
 )
@@ -28,6 +29,7 @@ __all__ = [
     "print_budget",
     "print_comparison",
     "print_engines",
+    "print_fastest",
     "print_line",
     "print_methods",
     "print_motion_budget",

@@ -15,6 +15,7 @@ from compare.show.quantities import quantity
 from compare.show.side_by_side import SideBySide
 from compare.show.validity import validation_lines
 from compare.show.verdict import why
+from compare.simulate.fastest import Fastest
 from compare.simulate.target import Followed
 
 
@@ -146,6 +147,23 @@ def print_motion_budget(found: MotionBudget, case: str) -> None:
     closes = "closes" if found.closes else "does not close"
     print_line(f"The budget {closes}; {found.blame} dominates, over {found.stations} stations.")
     print_line(f"Observed order in the speed, halved twice: {found.order:.2f}.")
+    if found.left_out:
+        print_line(f"Diverged, and left out: {', '.join(found.left_out)}.")
+
+
+def print_fastest(found: Fastest) -> None:
+    """Print the fastest motion with a wanted error, and what was tried.
+
+    Parameters
+    ----------
+    found : Fastest
+        What was measured.
+    """
+    print_line(
+        f"Fastest for {found.target:g}: {found.speed:.3g} L/T1, {found.error:.1e} rms, "
+        f"{found.seconds:.1f} s; {found.at_rest:.1e} is left at rest."
+    )
+    print_line("  " + ", ".join(f"{v:.3g}: {error:.1e}" for v, error in found.tried.items()))
 
 
 def print_at_rest(rest: Comparison, motion: Comparison) -> None:

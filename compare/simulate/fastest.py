@@ -1,0 +1,148 @@
+"""The fastest motion with a wanted error."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from analytic import InputError, Readings
+from compare.explain.budget import common_stations
+from compare.judge.tolerances import Tolerances
+from compare.sense.noise import scales
+from mujoco_models.errors import DivergedError
+
+_TRIES = 8
+_CHATTER = 0.1  # share of the stations in contact; what is left of such a sweep says little
+_NEAR = 1.1  # a speed that is known to within a tenth is good enough
+_SPEEDS = 1e-3, 2.0  # L/T1; below it takes hours, above the vibrissa is thrown
+
+
+@dataclass(frozen=True)
+class Fastest:
+    """The fastest motion with a wanted error, and what was measured of it.
+
+    Attributes
+    ----------
+    target : float
+        The wanted error: of the worst reading, rms relative to its largest magnitude.
+    speed : float
+        Of the fastest sweep with at most that [L/T1].
+    error, seconds : float
+        Of that sweep; CPU time.
+    at_rest : float
+        What is left at rest.
+    tried : dict
+        Error by speed, of all sweeps.
+    """
+
+    target: float
+    speed: float
+    error: float
+    seconds: float
+    at_rest: float
+    tried: dict[float, float]
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``motion-budget.json`` holds.
+
+        Returns
+        -------
+        dict
+            JSON can hold it.
+        """
+        return asdict(self)
+
+
+def find_fastest(
+    exact: Readings,
+    runs: Mapping[str, Readings],
+    move: Callable[[float], Readings],
+    target: float,
+) -> Fastest:
+    """Sweep at other speeds until the fastest one with a wanted error is known to a tenth.
+
+    Parameters
+    ----------
+    exact : Readings
+        The reference.
+    runs : mapping
+        The sweeps of a budget in motion.
+    move : callable
+        The same sweep at another speed [L/T1].
+    target : float
+        The wanted error.
+
+    Returns
+    -------
+    Fastest
+        Confirmed by a sweep of its own.
+
+    Raises
+    ------
+    InputError
+        If no speed reaches the target.
+    """
+    swept = {_speed(runs[name]): runs[name] for name in ("base", "half", "quarter")}
+    error = {speed: _error(exact, readings) for speed, readings in swept.items()}
+    at_rest = _rms(exact, runs["rest"])
+    slowest, quickest = _SPEEDS
+    for _ in range(_TRIES):
+        good = [v for v in error if error[v] <= target]
+        bad = [v for v in error if not error[v] <= target]
+        low, high = max(good, default=None), min(bad, default=None)
+        if low is not None and low >= quickest:
+            break
+        if low is None or high is None or high <= low:
+            # As many times slower or faster as an error of first order in the speed asks for.
+            from_here = min(error) if low is None else max(error)
+            factor = target / error[from_here] if math.isfinite(error[from_here]) else 0.25
+            step = factor / 1.1 if low is None else factor * 1.1
+            speed = from_here * (
+                min(max(step, 0.1), 0.7) if low is None else min(max(step, 1.4), 4)
+            )
+        elif high / low <= _NEAR:
+            break
+        else:
+            speed = math.sqrt(low * high)
+        if speed < slowest:
+            break
+        speed = min(speed, quickest)
+        try:
+            swept[speed] = move(speed)
+        except DivergedError:
+            error[speed] = math.inf
+        else:
+            error[speed] = _error(exact, swept[speed])
+    good = [v for v in error if error[v] <= target]
+    if not good:
+        least = min(error.values())
+        raise InputError(
+            "--target", target, f"at least {least:.1e}, with {at_rest:.1e} left at rest",
+            "what is there at rest needs more segments, what is not a shorter time step, "
+            "stiffer contacts or less damping",
+        )  # fmt: skip
+    best = max(good)
+    seconds = float(swept[best].provenance["seconds"])
+    return Fastest(target, best, error[best], seconds, at_rest, dict(sorted(error.items())))
+
+
+def _error(exact: Readings, moved: Readings) -> float:
+    touched = (exact.table["phase"] != "free").to_numpy()
+    if (touched & ~moved.trusted).sum() > _CHATTER * touched.sum():
+        return math.inf
+    return _rms(exact, moved)
+
+
+def _rms(exact: Readings, candidate: Readings) -> float:
+    kept = common_stations(exact, [candidate], Tolerances().snap_off_window)
+    off = [
+        (candidate.values(name) - exact.values(name))[kept] / scale
+        for name, scale in scales(exact).items()
+    ]
+    return float(np.sqrt(np.mean(np.square(off), axis=1)).max()) if kept.any() else math.inf
+
+
+def _speed(readings: Readings) -> float:
+    return float(readings.provenance["motion"]["speed"])
