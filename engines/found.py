@@ -15,6 +15,7 @@ GROUP = "vibrissa.engines"
 _SHIPPED = {
     "mujoco": "engines.mujoco:ENGINE",
     "drake": "engines.drake.engine:ENGINE",
+    "exudyn": "engines.exudyn.engine:ENGINE",
 }
 
 

@@ -24,8 +24,8 @@ _SMALLEST = 1e-6  # L; a step of the foot that small which leaves the branch is 
 _TURN = 0.35  # rad; a tip that turns farther in a step has left the branch
 _SHIFT = 1.0  # rad; so has a contact whose slope angle jumps by more
 _HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below this just faded
-# At a fold the tip turns like the square root of the way to it, so ten times as fast a hundredth
-# of the way before. Where it does not turn three times as fast, the solver failed for its own sake.
+# At a fold a state changes like the square root of the way to it, so ten times as fast a hundredth
+# of the way before. Where it is not three times as fast, the solver failed for its own sake.
 _FAR, _FASTER = 100.0, 3.0
 
 
@@ -114,7 +114,7 @@ def sweep_stations(
     -------
     Readings
         In the units of the case's beam, with a column ``residual``. Snap-off is where even the
-        smallest step leaves the branch, if the tip turned ever faster on the way there, as at a
+        smallest step leaves the branch, if the state changed ever faster on the way there, as at a
         fold; if it did not, that station and all after it are unsettled, and no snap-off is known.
 
     Raises
@@ -164,7 +164,7 @@ class _Way:
     def __init__(self, rest: Rest) -> None:
         self._rest = rest
         self._last = Row()
-        self._trail: list[tuple[float, float]] = []  # foot position and tip angle
+        self._trail: list[tuple[float, ...]] = []  # foot position, clamp's readings, tip angle
         self._lost: str | None = None
         self.foot_x = 0.0
         self.snap_off: float | None = None
@@ -188,7 +188,8 @@ class _Way:
             if row is not None and self._follows(row):
                 self._rest.accept()
                 self.foot_x, self._last = trial, row
-                self._trail.append((trial, row.tip_angle))
+                sensed = row.force_x, row.force_y, row.moment_z
+                self._trail.append((trial, *sensed, row.tip_angle))
                 step *= 2
             elif abs(trial - self.foot_x) > _SMALLEST:
                 step = (trial - self.foot_x) / 2
@@ -216,12 +217,13 @@ class _Way:
             self._lost = "the solver found no neighbour of the last state at rest, and no fold"
 
     def _folds(self, end: float) -> bool:
-        """Whether the tip turned ever faster on the way there."""
-        x, angle = np.array(self._trail[::-1]).T
+        """Whether the state changed ever faster on the way there."""
+        trail = np.array(self._trail[::-1])
+        x, state = trail[:, 0], trail[:, 1:]
         way = np.abs(x - end)
         near, far = np.searchsorted(way, [10 * _SMALLEST, 10 * _SMALLEST * _FAR])
         if far + 1 >= len(x) or near == 0:
             return False
-        fast = abs(angle[0] - angle[near]) / abs(x[0] - x[near])
-        slow = abs(angle[far] - angle[far + 1]) / abs(x[far] - x[far + 1])
+        fast = np.linalg.norm(state[0] - state[near]) / abs(x[0] - x[near])
+        slow = np.linalg.norm(state[far] - state[far + 1]) / abs(x[far] - x[far + 1])
         return bool(fast > _FASTER * slow)

@@ -53,6 +53,7 @@ stations = 12
 # Exit code 1 is a disagreement: these sweeps are as coarse as can be.
 COMMANDS = {
     "cases": (0, "cases"),
+    "engines": (0, "engines"),
     "analytic": (0, "analytic mine.toml --out a --certified"),
     "simulate": (0, "simulate mine.toml --out a"),
     "compare": (1, "compare a/analytic.parquet a/mujoco-chain.parquet"),

@@ -1,0 +1,1 @@
+"""Exudyn's static ANCF cable: another discretisation of the same vibrissa."""
