@@ -25,6 +25,7 @@ _TRUST = 0.1  # by how much a mean rate may lie outside those at the ends, of th
 _FLAT = 1e-5  # L; the same, of a rate that is next to nothing
 _SHORT = 1e-3  # of the curve's length: nothing hides there
 _MOST, _A_BREAK = 1000, 4  # steps tried, and for each break of the contour: tens suffice mostly
+_WITHIN = np.linspace(0, 1, 17)  # of a step, where the phase is looked at
 _HALVINGS = 20  # of a cell, to begin Newton's method from
 
 
@@ -240,16 +241,29 @@ def _points(curve: Curve, touch: Touch, largest: float, length: float) -> list[P
 
 
 def _hides(curve: Curve, begin: Point, end: Point) -> bool:
-    """Whether the foot position may turn between two points though its rates do not show it.
+    """Whether something may happen between two points that neither shows.
 
-    It does not if the mean rate lies between those at the ends, nearly.
+    The foot position may turn though its rates do not show it, unless the mean rate lies between
+    those at the ends, nearly; and the other phase may come and go.
     """
     way = end.z - begin.z
     way[1] /= max(curve.vibrissa.least_force, begin.z[1])
-    mean = (end.foot_x - begin.foot_x) / np.linalg.norm(way)
+    length = float(np.linalg.norm(way))
+    mean = (end.foot_x - begin.foot_x) / length
     low, high = sorted((begin.rate, end.rate))
     slack = _TRUST * max(-low, high) + _FLAT
-    return not low - slack <= mean <= high + slack
+    return not low - slack <= mean <= high + slack or _skips_phase(begin, end, length)
+
+
+def _skips_phase(begin: Point, end: Point, length: float) -> bool:
+    """Whether the excess, as Hermite's cubic, has another sign between two points of one phase."""
+    sign = -1.0 if begin.z[2] < 0 else 1.0
+    excess, rate, after, rate_after = sign * np.array(
+        [begin.z[2], length * begin.direction[2], end.z[2], length * end.direction[2]]
+    )
+    if not (rate < 0 < rate_after and after >= 0):
+        return False
+    return bool((_cubic(_WITHIN, excess, rate, after, rate_after) < 0).any())
 
 
 def _ended(points: list[Point], reach: tuple[float, float]) -> bool:

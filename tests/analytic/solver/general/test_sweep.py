@@ -300,3 +300,13 @@ def test_a_curve_next_to_buckling_is_not_left_for_the_other_one(case, foot_x, fo
     """Forces of MuJoCo's chain of 40, to its rms of 1e-3; the other curve has three to 20 times."""
     found = solve_sweep(replace(case, sweep=Sweep(2, stop=foot_x)), certified=True)
     assert found.values("force_y")[1] == pytest.approx(force_y, rel=2e-3)
+
+
+def test_a_short_phase_b_between_two_points_of_the_path_is_seen():
+    """Both points are of Phase A; between them the contact comes down from the tip by 1e-3 L."""
+    object_ = ellipse((1.01661, 0.544838), (0.0, 0.557823))
+    readings = solve_sweep(Case(profile=object_, sweep=Sweep(120), friction=0.3), certified=True)
+    assert (readings.table["status"] == "ok").all()
+    tangent = readings.table[readings.table["phase"] == "tangent"]
+    assert len(tangent) > 10
+    assert 0.99 < tangent["contact_arc_length"].min() < 0.9995
