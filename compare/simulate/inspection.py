@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic import Beam
 from compare.simulate.remarks import Remark, remarks
-from compare.simulate.rigidity import as_intended, elastica_error
+from compare.simulate.rigidity import as_intended, clamp_stiffness, elastica_error
 from mujoco_models import OwnModel, inspect_model
 from mujoco_models.inspect.measured import MeasuredBeam
 
@@ -70,6 +70,11 @@ class Inspection:
         error = elastica_error(found)
         if np.isfinite(error):
             yield "large bending", f"tip within {error:.1e} L of the exact cantilever"
+        stiffness = clamp_stiffness(found)
+        yield (
+            "clamp",
+            "rigid" if np.isinf(stiffness) else f"turns, by a spring of {stiffness:.3g} EI/L",
+        )
         yield "natural curvature", f"{found.natural_curvature * length:.3g}/L"
         yield "mass", f"{found.mass:.4g}"
         yield "first period T1", f"{period:.4g}; damping ratio {found.damping_ratio:.3g}"
@@ -85,11 +90,12 @@ class Inspection:
         dict
             JSON can hold it.
         """
-        error = elastica_error(self.found)
+        error, stiffness = elastica_error(self.found), clamp_stiffness(self.found)
         return {
             "sound": self.sound,
             "remarks": [asdict(remark) for remark in self.remarks],
             "flexural_rigidity": as_intended(self.found),
+            "clamp_stiffness": stiffness if np.isfinite(stiffness) else None,
             "elastica_error": error if np.isfinite(error) else None,
             "measured": self.found.to_dict(),
         }

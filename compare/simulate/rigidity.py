@@ -9,6 +9,7 @@ from mujoco_models.inspect.measured import MeasuredBeam
 
 _POINTS = 2001  # of an integral along the beam
 _UNEVEN = 0.02  # relative; what tapers by less is uniform
+_TURNS = 0.01  # relative to a cell; what is left of a smooth course of EI
 _CURVATURE = 0.01  # 1/L; the tip of such an arc is 0.005 L aside
 
 
@@ -121,6 +122,27 @@ def by_its_clamp(found: MeasuredBeam) -> float:
     compliance[0] = found.joints[0].compliance
     arm = found.length - np.array([joint.s for joint in found.joints])
     return float(found.length**3 / (3 * compliance @ arm**2))
+
+
+def clamp_stiffness(found: MeasuredBeam) -> float:
+    """Rotational stiffness of the clamp that the first joint stands for beside its own cell.
+
+    Parameters
+    ----------
+    found : MeasuredBeam
+        With its joints.
+
+    Returns
+    -------
+    float
+        Moment by rotation [EI/L], with the EI that is meant; infinite where the first joint turns
+        by no more than its cell bends, to a hundredth of that.
+    """
+    bends = found.joints[0].cell / smooth_rigidity(found)[0]
+    turns = found.joints[0].compliance - bends
+    if turns <= _TURNS * bends:
+        return float("inf")
+    return float(found.length / (as_intended(found) * turns))
 
 
 def tapers(found: MeasuredBeam) -> bool:

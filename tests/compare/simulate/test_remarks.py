@@ -9,6 +9,7 @@ import pytest
 from analytic import Beam
 from compare.measure.cantilever import tip_of
 from compare.simulate.inspection import Inspection
+from compare.simulate.rigidity import clamp_stiffness
 from mujoco_models import inspect_model, shipped_models
 from tests.compare.command import vibrissa
 from tests.mujoco_models.inspect.chains import Chain
@@ -92,6 +93,22 @@ def test_a_curved_one_is_sound_if_that_is_stated(tmp_path):
     curved = Chain(curvature=0.3)
     assert faults(tmp_path, curved, Beam(natural_curvature=0.3)) == []
     assert faults(tmp_path, curved, Beam(natural_curvature=-0.3)) != []
+
+
+@pytest.mark.parametrize(
+    ("chain", "stiffness"),
+    [
+        (Chain(), np.inf),
+        (Chain(first="start"), 40.0),  # the first hinge, EI/h, stands for half a cell: 2 N EI/L
+        (Chain(stiffer={1: 0.5}), 20.0),  # one cell's bending too much: N EI/L
+        (Chain(stiffer={i: (1 - 0.04 * i) ** 4 for i in range(1, 21)}), np.inf),
+    ],
+)
+def test_the_clamps_compliance_is_measured(tmp_path, chain, stiffness):
+    found = Inspection(inspect_model(chain.write(tmp_path)))
+    assert clamp_stiffness(found.found) == pytest.approx(stiffness, rel=1e-6)
+    word = "rigid" if np.isinf(stiffness) else f"turns, by a spring of {stiffness:g} EI/L"
+    assert any(line.split()[0] == "clamp" and word in line for line in found.lines())
 
 
 def test_the_command_prints_and_writes_it(tmp_path):
