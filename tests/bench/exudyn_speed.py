@@ -15,6 +15,7 @@ from rich.table import Table
 from analytic import Case, Readings, Sweep, circle, solve_sweep
 from compare import compare
 from compare.show.page import save_figure
+from engines import find_engine
 from mujoco_models import Settings, available_beams, simulate_sweep
 
 PLOT = Path("results/bench-exudyn.png")
@@ -40,10 +41,7 @@ def main(quick: bool) -> None:
             markup=False,
         )
         return
-    from tests.bench.exudyn_cable import sweep
-
-    exact = solve_sweep(CASE)
-    centre, surface = (LOWEST[0], LOWEST[1] + RADIUS), RADIUS + CASE.beam.radius
+    exact, engine = solve_sweep(CASE), find_engine("exudyn")
     runs: dict[str, dict[int, tuple[float, float]]] = {}
     models = [Settings(beam=beam) for beam in available_beams()] + [Settings(obstacle="primitive")]
     for model in models:
@@ -52,7 +50,7 @@ def main(quick: bool) -> None:
             for n in (SEGMENTS[:1] if quick else SEGMENTS)
         }
     runs["Exudyn, static ANCF cable"] = {
-        n: _run(exact, partial(sweep, n, exact, surface, centre))
+        n: _run(exact, partial(engine.sweep, CASE, Settings(segments=n)))
         for n in (ELEMENTS[:1] if quick else ELEMENTS)
     }
     table = Table(

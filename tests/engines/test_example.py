@@ -1,0 +1,56 @@
+"""The example of the page "Add your engine", installed as pip would, and run."""
+
+import json
+import re
+import sys
+import tomllib
+
+import pytest
+
+from engines import find_engine, list_engines
+from tests.compare.command import vibrissa
+from tests.documentation.blocks import ROOT
+
+EXAMPLE = ROOT / "docs" / "examples" / "engine"
+
+
+@pytest.fixture
+def installed(tmp_path, monkeypatch):
+    """Its module on the path, and its entry points beside it."""
+    project = tomllib.loads((EXAMPLE / "pyproject.toml").read_text())["project"]
+    about = tmp_path / "shooting_engine-1.0.dist-info"
+    about.mkdir()
+    names = f"Metadata-Version: 2.1\nName: {project['name']}\nVersion: {project['version']}\n"
+    (about / "METADATA").write_text(names)
+    points = project["entry-points"]["vibrissa.engines"]
+    lines = ["[vibrissa.engines]", *(f"{name} = {target}" for name, target in points.items())]
+    (about / "entry_points.txt").write_text("\n".join(lines))
+    (tmp_path / "shooting_engine.py").write_text((EXAMPLE / "shooting_engine.py").read_text())
+    monkeypatch.syspath_prepend(tmp_path)
+    yield tmp_path
+    sys.modules.pop("shooting_engine", None)
+
+
+def test_it_is_found(installed):
+    assert "shooting" in [found.name for found in list_engines() if found.trouble is None]
+    assert find_engine("shooting").role == "other model"
+
+
+@pytest.mark.slow
+def test_it_is_as_good_as_the_page_says(installed):
+    page = (EXAMPLE / "README.md").read_text()
+    case = re.search(r"```toml\n(\[profile\].*?)```", page, re.S)
+    (installed / "circle.toml").write_text(case[1])
+    command = ("run", "circle.toml", "--engine", "shooting,mujoco", "--segments", 20)
+    done = vibrissa(*command, "--out", "out", cwd=installed)
+    assert done.returncode == 0, done.stdout + done.stderr
+    rows = json.loads((installed / "out" / "engines.json").read_text())["engines"]
+    assert max(rows[0]["rms"].values()) < 1e-8
+    assert abs(rows[0]["snap_off_apart"]) < 1e-6
+    assert rows[1]["agrees"]
+
+
+def test_it_refuses_what_it_cannot(installed, tmp_path):
+    done = vibrissa("run", "catenary", "--stations", 10, "--engine", "shooting", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "object for shooting" in done.stderr
