@@ -158,7 +158,7 @@ class Fit:
         cost : float
             Sum of squares.
         """
-        with np.errstate(invalid="ignore"):  # where nothing touches, nothing depends on anything
+        with np.errstate(divide="ignore", invalid="ignore"):  # where nothing touches, no slope
             found = least_squares(
                 self.misses,
                 numbers,
