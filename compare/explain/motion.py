@@ -98,7 +98,7 @@ def slower_and_finer(motion: Motion) -> dict[str, Motion]:
         same = replace(motion, contact_stiffness=motion.stiffness)
     quarter = replace(same, speed=motion.speed / 4)
     found = {
-        "base": motion,
+        "base": same,
         "half": replace(same, speed=motion.speed / 2),
         "quarter": quarter,
         "fine": replace(quarter, timestep=motion.timestep / 2),

@@ -22,7 +22,7 @@ from mujoco_models.errors import DivergedError
 from mujoco_models.motion import Motion
 from mujoco_models.settings import Settings
 
-_BASE = Motion(speed=0.1, timestep=0.02, damping_ratio=0.05)
+_BASE = Motion(speed=0.1, timestep=0.02, damping_ratio=0.05, contact_stiffness=1e4)
 _SETTINGS = Settings(segments=40, contour_points=800)
 _STATIONS = 100
 _STOCK = 20 / 28  # MuJoCo's default time constant, 20 ms, of a wire whose first period is 28 ms
@@ -52,7 +52,10 @@ def variants() -> Iterator[tuple[str, str, Motion, Settings]]:
     """
     for name, values in _ALONE.items():
         for value in values:
-            yield name, f"{value}", replace(_BASE, **{name: value}), _SETTINGS
+            one = replace(_BASE, **{name: value})
+            if name == "timestep":
+                one = replace(one, contact_stiffness=4 / value**2)
+            yield name, f"{value}", one, _SETTINGS
     for speed in _ALONE["speed"]:
         damped = replace(_BASE, speed=speed, damping_ratio=0.5)
         yield "speed, damping ratio 0.5", f"{speed}", damped, _SETTINGS
@@ -66,7 +69,7 @@ def variants() -> Iterator[tuple[str, str, Motion, Settings]]:
         (0.04, 0.9),
         (0.04, 0.99),
     ):
-        stock = replace(_BASE, solref=(time_constant, 1.0), solimp=solimp)
+        stock = replace(_BASE, contact_stiffness=None, solref=(time_constant, 1.0), solimp=solimp)
         yield "solref, solimp", f"{time_constant:.2g}, {solimp}", stock, _SETTINGS
     for integrator in ("discrete", "implicitfast", "implicit", "euler", "rk4"):
         heavy = replace(_BASE, integrator=integrator, armature=1.0, contact_stiffness=2.5e3)

@@ -89,7 +89,8 @@ class MovingModel:
         self._surface = Surface.of(self.model, links, obstacle.corners, radius)
         self._motion = motion
         self._set_contacts(motion)
-        self._follows_inertia = motion.solref is None and motion.integrator == "discrete"
+        stated = motion.contact_stiffness is not None
+        self._follows_inertia = stated and motion.integrator == "discrete"
         self.time = 0.0
         scene = MujocoScene(self.model, self.data, self._surface.beads, obstacle)
         self._lookout = Lookout(scene, obstacle, radius)
