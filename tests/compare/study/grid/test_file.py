@@ -211,7 +211,7 @@ def test_edited_sources_are_other_runs(plan_of):
 
 
 def test_shipped_studies_are_valid():
-    assert len(shipped_studies()) == 9
+    assert len(shipped_studies()) == 10
     for name in shipped_studies():
         assert len(Plan.of(load_study(name))) > 10
 

@@ -104,7 +104,7 @@ def test_a_simulation_that_does_not_trust_itself(plan_of, monkeypatch, status):
         readings.table.loc[:9, "status"] = status
         return readings
 
-    monkeypatch.setattr("mujoco_models.simulate_sweep", doubtful)
+    monkeypatch.setattr("engines.mujoco.simulate_sweep", doubtful)
     row = perform(*only(plan_of(ONE_SIMULATION))).row
     assert (row["outcome"], row["reason"]) == (status, f"10 of 40 stations {status}")
 
@@ -115,7 +115,7 @@ def test_a_slow_run_is_ended_between_stations(plan_of, monkeypatch):
             time.sleep(0.01)
             advance()
 
-    monkeypatch.setattr("mujoco_models.simulate_sweep", slow)
+    monkeypatch.setattr("engines.mujoco.simulate_sweep", slow)
     row = perform(*only(plan_of(ONE_SIMULATION.replace("30", "0.1")))).row
     assert row["outcome"] == "timeout"
     assert row["seconds"] < 2
