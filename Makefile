@@ -74,6 +74,10 @@ results: $(RUNS) | install ## results/README.md: all named cases, all beams ther
 	cp results/resolution/report/disagreement-mujoco.segments.png results/study-resolution.png
 	$(BIN)/vibrissa animate catenary --stations 60 --out results/pictures
 	cp results/pictures/figure-15.png results/pictures/still-2.png results/
+	mkdir -p results/pictures/space
+	sed -n '/^\[beam\]/,/^```/{/^```/!p}' analytic/space.md > results/pictures/space/egg.toml
+	$(BIN)/vibrissa space results/pictures/space/egg.toml --out results/pictures/space
+	cp results/pictures/space/space.png results/
 	$(BIN)/vibrissa findings results/runs --out results
 
 again: install   ## the same, but forget the runs that are done

@@ -233,14 +233,14 @@ def print_engines(many: ManyEngines) -> None:
         All sweeps of a case.
     """
     table = Table(
-        "engine", "role", *CLAMP_READINGS, "snap-off", "ms/station", "",
+        "engine", *CLAMP_READINGS, "snap-off", "ms", "",
         title=Text(f"{many.case.name}: each engine against the closed form, relative rms"),
+        caption="snap-off: how far apart [L]; ms: computing time of a station",
     )  # fmt: skip
     for one in many.to_dict()["engines"]:
         rms, took, apart = one["rms"], one["seconds_a_station"], one["snap_off_apart"]
         table.add_row(
             one["name"],
-            one["role"],
             *("none" if rms is None else f"{rms[name]:.1e}" for name in CLAMP_READINGS),
             "none" if apart is None else f"{apart:+.1e}",
             "" if took is None else f"{1e3 * took:.1f}",

@@ -53,14 +53,14 @@ def sweep_in_space(readings: SpatialReadings, found: pd.DataFrame, body: Body) -
         The scene, and below it force and moment over the way of the foot.
     """
     figure = Figure(figsize=(PAGE_WIDTH, 0.8 * PAGE_WIDTH), layout="constrained")
-    grid = figure.add_gridspec(2, 2, height_ratios=(2, 1))
+    grid = figure.add_gridspec(2, 2, height_ratios=(1.8, 1))
     scene = figure.add_subplot(grid[0, :], projection="3d", computed_zorder=False)
     _draw_scene(scene, readings, found, body.scaled(1 / readings.beam.length))
     left, right = (figure.add_subplot(grid[1, i]) for i in range(2))
     unit = readings.beam
     _draw_components(left, readings, FORCE, unit.force_unit, "$F$ / ($EI/L^2$)")
     _draw_components(right, readings, MOMENT, unit.moment_unit, "$M$ / ($EI/L$)")
-    scene.set_title(label(readings.source), loc="left", fontsize=NORMAL)
+    figure.suptitle(label(readings.source), x=0.01, ha="left", fontsize=NORMAL)
     handles = [
         Line2D([], [], color=colour, label=PHASE_NAMES[phase])
         for phase, colour in PHASE_COLOURS.items()
@@ -118,7 +118,7 @@ def _draw_scene(ax: Axes3D, readings: SpatialReadings, found: pd.DataFrame, body
     )
     ax.locator_params(nbins=5)
     extent = high - low + 2 * margin
-    ax.set_box_aspect((extent[0], extent[2], extent[1]), zoom=1.25)
+    ax.set_box_aspect((extent[0], extent[2], extent[1]), zoom=1.45)
     ax.view_init(**_VIEW)
 
 
