@@ -16,11 +16,13 @@ from compare.read.toml import TomlFile
 from compare.study.grid.axes import Value
 from compare.study.grid.schema import CASE_TABLES, StudyFile
 from compare.study.grid.study import BEAM, MESH, flatten
+from engines.found import named_engines
 
 _VARIED = (*CASE_TABLES, "noise", "reconstruction")
 _KEYS = {
     "clamp_stiffness": ["support", "rotational_stiffness"],
     "friction": ["contact", "friction"],
+    "engine": ["engine", "name"],
 }
 
 
@@ -147,6 +149,8 @@ class Base:
         case.sweep.build()
         if case.motion is not None:
             case.motion.build(case.beam.build())
+        if len(names := named_engines(case.engine.name)) > 1:
+            raise InputError("engine", names, "one in a run", "list them as an axis, engine.name")
 
     def _overlaid(self, content: StudyFile) -> dict[str, Any]:
         """The base case's tables with the study's own over them."""

@@ -148,6 +148,8 @@ def test_a_plan_survives_its_file(plan_of):
         ("[noise]\nrelative = true\n", ["line 3", "True"]),
         ("[axes]\nreconstruction.method = ['kanecko']\n", ["line 3", "kanecko", "kaneko"]),
         ("[noise]\nrelative = nan\n", ["line 3", "nan"]),
+        ("[axes]\nengine.name = ['mujoco', 'drak']\n", ["line 3", "drak", "mujoco, drake"]),
+        ("[engine]\nname = 'mujoco,drake'\n", ["line 3", "engine.name", "as an axis"]),
     ],
 )  # fmt: skip
 def test_errors_point_at_the_line(tmp_path, text, stated):
