@@ -16,7 +16,7 @@ RUNS := $(foreach case,$(CASES),$(foreach beam,$(BEAMS),results/runs/$(case)-$(b
 FOUND = --budget --beam $(BEAM) --out $(@D) $(ARGS) || test $$? -eq 1; test -f $@
 
 .NOTPARALLEL:
-.PHONY: help install develop run test test-slow test-all coverage lint docs wheel fuzz bench results again studies \
+.PHONY: help install develop run test test-slow test-all trials coverage lint docs wheel fuzz bench results again studies \
   install-mujoco3 test-mujoco3 install-engines test-engines versions clean
 
 help:            ## list the targets
@@ -36,9 +36,12 @@ test-slow: develop   ## the slow tests alone
 	$(BIN)/python -m pytest -n auto -m slow $(ARGS)
 
 test-all: develop    ## all tests, the slow ones too
-	$(BIN)/python -m pytest -n auto -m "slow or not slow" $(ARGS)
+	$(BIN)/python -m pytest -n auto -m "not trial" $(ARGS)
 
-coverage: develop    ## how much of the code the fast tests run; ARGS='-m "slow or not slow"' for all tests
+trials: develop      ## what intervals and causes promise, on hundreds of random cases each: minutes
+	$(BIN)/python -m pytest -n auto -m trial $(ARGS)
+
+coverage: develop    ## how much of the code the fast tests run; ARGS='-m "not trial"' for all tests
 	$(BIN)/python -m pytest -n auto --cov --cov-report=term --cov-report=html $(ARGS)
 
 lint: develop    ## format, style, types, import rules

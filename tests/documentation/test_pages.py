@@ -19,6 +19,7 @@ from tests.documentation.blocks import PAGES, ROOT, Block, blocks
 WITH_CODE = [page for page in PAGES if any(block.runs for block in blocks(page))]
 BIN = Path(sys.executable).parent
 IDS = {"ids": str}
+_OF_MAKE = ("MAKE", "MFLAGS", "ARGS", "CASE")  # what `make test-all ARGS=...` hands on
 
 
 @pytest.fixture
@@ -41,7 +42,7 @@ def folder(tmp_path) -> Path:
 def run(some: Iterable[Block], folder: Path) -> None:
     """Run blocks in one folder, in their order; check what they print."""
     path = f"{folder.parent / 'bin'}:{BIN}:{os.environ['PATH']}"
-    plain = {k: v for k, v in os.environ.items() if not k.startswith(("MAKE", "MFLAGS"))}
+    plain = {k: v for k, v in os.environ.items() if not k.startswith(_OF_MAKE)}
     for block in some:
         if block.file:
             (folder / block.file).write_text(block.text)

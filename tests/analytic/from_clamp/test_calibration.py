@@ -85,7 +85,12 @@ def test_a_rigid_clamp_is_found_and_its_interval_has_no_end():
     assert found.highest == math.inf
 
 
-@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("repeats", "fewest", "most"),
+    # 95 % are aimed at; 1.5 and 5 % are the standard deviations of that share of 200 and of 20.
+    [pytest.param(200, 180, 198, marks=pytest.mark.trial),
+     pytest.param(20, 16, 20, marks=pytest.mark.slow)],
+)  # fmt: skip
 @pytest.mark.parametrize(
     ("level", "true", "unknowns"),
     [
@@ -97,16 +102,15 @@ def test_a_rigid_clamp_is_found_and_its_interval_has_no_end():
         ),
     ],
 )
-def test_intervals_hold_the_true_values(level, true, unknowns):
-    """95 % of 200 sweeps, +-1.6 % standard deviation: 90 to 99 % in three of them."""
+def test_intervals_hold_the_true_values(repeats, fewest, most, level, true, unknowns):
     exact, rng = solve_sweep(true), np.random.default_rng(1)
     held = dict.fromkeys(unknowns, 0)
-    for _ in range(200):
+    for _ in range(repeats):
         readings, noise = noisy(exact, level, rng)
         found = calibrate(readings, true, list(unknowns), noise).found
         for name, value in unknowns.items():
             held[name] += found[name].lowest <= value <= found[name].highest
-    assert all(180 <= count <= 198 for count in held.values()), held
+    assert all(fewest <= count <= most for count in held.values()), held
 
 
 @pytest.mark.slow

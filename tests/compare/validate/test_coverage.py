@@ -67,7 +67,7 @@ def test_a_right_model_is_mostly_within_its_uncertainty():
     assert np.mean(found.stations) > 0.8
 
 
-@pytest.mark.slow
+@pytest.mark.trial
 def test_400_validations_are_within_the_uncertainty_in_95_of_100():
     tallies = [tallied(name, 80, seed) for seed, name in enumerate(CASES)]
     whole, readings, stations, named = (
