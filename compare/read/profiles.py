@@ -104,6 +104,18 @@ class PointsTable(ProfileTable):
     points: Points
 
 
+Drawn = (
+    CatenaryTable
+    | ParabolaTable
+    | CircleTable
+    | EllipseTable
+    | TwoCirclesTable
+    | PolygonTable
+    | PointsTable
+)
+"""Contours that the file itself has."""
+
+
 class MeshTable(ProfileTable):
     """See `analytic.mesh_section`."""
 

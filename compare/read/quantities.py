@@ -20,6 +20,7 @@ _EXAMPLES = {
     "1/s": ("rate", "500 Hz"),
     "kg/m^3": ("density", "7850 kg/m^3"),
 }
+_COUNTS = {2: "two", 3: "three"}
 
 
 class InSI(float):
@@ -70,16 +71,19 @@ class Varying(Dimension):
 
 
 @dataclass(frozen=True)
-class Pair:
-    """A validator: two values, called by `names` where there are not two."""
+class Several:
+    """A validator: as many values as `names` has, which it is called by where there are not."""
 
     names: str
+    what: str = "lengths"
 
     def __call__(self, value: object) -> object:
-        """The two."""
-        if isinstance(value, list | tuple) and len(value) == 2:
+        """The values."""
+        count = len(self.names.split(", "))
+        if isinstance(value, list | tuple) and len(value) == count:
             return value
-        raise PydanticCustomError("pair", "two lengths, [{names}]", {"names": self.names})
+        context = {"count": _COUNTS[count], "what": self.what, "names": self.names}
+        raise PydanticCustomError("several", "{count} {what}, [{names}]", context)
 
 
 Length = Annotated[float, BeforeValidator(Dimension("m"))]
@@ -89,8 +93,8 @@ RigidityAlong = Annotated[float | Pairs, BeforeValidator(Varying("N m^2"))]
 CurvatureAlong = Annotated[float | Pairs, BeforeValidator(Varying("1/m"))]
 RotationalStiffness = Annotated[float, BeforeValidator(Dimension("N m/rad"))]
 Two = Annotated[tuple[Length, Length], Field(strict=False)]
-Point = Annotated[Two, BeforeValidator(Pair("x, y"))]
-SemiAxes = Annotated[Two, BeforeValidator(Pair("along x, along y"))]
+Point = Annotated[Two, BeforeValidator(Several("x, y"))]
+SemiAxes = Annotated[Two, BeforeValidator(Several("along x, along y"))]
 Points = list[Point]
 FileName = Annotated[str, AfterValidator(plain_name)]
 

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, ValidationError
-from pydantic_core import PydanticCustomError
 
 from analytic import InputError
 from analytic.space import (
@@ -21,35 +20,15 @@ from analytic.space import (
 )
 from compare.read.case import check_units
 from compare.read.complaints import complaint, name_of
-from compare.read.profiles import (
-    CatenaryTable,
-    CircleTable,
-    EllipseTable,
-    ParabolaTable,
-    PointsTable,
-    PolygonTable,
-    TwoCirclesTable,
-)
-from compare.read.quantities import FileName, Length, Table
+from compare.read.profiles import Drawn
+from compare.read.quantities import FileName, Length, Several, Table
 from compare.read.tables import BeamTable
 from compare.read.toml import TomlFile
 
-
-def _three(value: object) -> object:
-    if isinstance(value, list | tuple) and len(value) == 3:
-        return value
-    raise PydanticCustomError("triple", "three numbers, [x, y, z]", {})
-
-
-def _two(value: object) -> object:
-    if isinstance(value, list | tuple) and len(value) == 2:
-        return value
-    raise PydanticCustomError("pair", "two lengths, [x, z]", {})
-
-
-Place = Annotated[tuple[Length, Length, Length], Field(strict=False), BeforeValidator(_three)]
-Way = Annotated[tuple[float, float, float], Field(strict=False), BeforeValidator(_three)]
-OnBase = Annotated[tuple[Length, Length], Field(strict=False), BeforeValidator(_two)]
+_Three = BeforeValidator(Several("x, y, z", "numbers"))
+Place = Annotated[tuple[Length, Length, Length], Field(strict=False), _Three]
+Way = Annotated[tuple[float, float, float], Field(strict=False), _Three]
+OnBase = Annotated[tuple[Length, Length], Field(strict=False), BeforeValidator(Several("x, z"))]
 
 
 class BodyTable(Table):
@@ -171,19 +150,7 @@ class SpaceFile(Table):
         SphereTable | EllipsoidTable | CylinderTable | HullTable | PrismTable | SolidTable,
         Field(discriminator="kind"),
     ]
-    profile: (
-        Annotated[
-            CatenaryTable
-            | ParabolaTable
-            | CircleTable
-            | EllipseTable
-            | TwoCirclesTable
-            | PolygonTable
-            | PointsTable,
-            Field(discriminator="kind"),
-        ]
-        | None
-    ) = None
+    profile: Annotated[Drawn, Field(discriminator="kind")] | None = None
     path: PathTable
 
     def case(self, folder: Path, name: str) -> SpatialCase:

@@ -21,16 +21,7 @@ from analytic import (
 )
 from analytic.problem.support import check_support
 from compare.read.motion import MotionTable
-from compare.read.profiles import (
-    CatenaryTable,
-    CircleTable,
-    EllipseTable,
-    MeshTable,
-    ParabolaTable,
-    PointsTable,
-    PolygonTable,
-    TwoCirclesTable,
-)
+from compare.read.profiles import Drawn, MeshTable
 from compare.read.quantities import (
     CurvatureAlong,
     FileName,
@@ -185,17 +176,7 @@ class CaseFile(Table):
     beam: BeamTable = BeamTable()
     support: SupportTable = SupportTable()
     contact: ContactTable = ContactTable()
-    profile: Annotated[
-        CatenaryTable
-        | ParabolaTable
-        | CircleTable
-        | EllipseTable
-        | TwoCirclesTable
-        | PolygonTable
-        | PointsTable
-        | MeshTable,
-        Field(discriminator="kind"),
-    ]
+    profile: Annotated[Drawn | MeshTable, Field(discriminator="kind")]
     sweep: SweepTable = SweepTable()
     mujoco: Annotated[Settings, Field(default_factory=Settings)]
     model: ModelTable | None = None
