@@ -153,7 +153,7 @@ def _is_csv(path: Path) -> bool:
 
 
 def _read_parquet(path: Path) -> tuple[Any, pd.DataFrame]:
-    with pq.ParquetFile(path) as file:
+    with pq.ParquetFile(path, pre_buffer=False) as file:
         if file.metadata.num_rows * file.metadata.num_columns > _MOST_CELLS:
             raise InputError(
                 f"readings file {path}",
@@ -161,9 +161,10 @@ def _read_parquet(path: Path) -> tuple[Any, pd.DataFrame]:
                 f"at most {_MOST_CELLS:.0e} cells",
                 "split it",
             )
-        columns = file.read()
+        # Not in Arrow's threads: one that still ends while Python does aborts the whole process.
+        columns = file.read(use_threads=False)
     metadata = (columns.schema.metadata or {}).get(_METADATA_KEY, b"{}")
-    return json.loads(metadata), columns.to_pandas(ignore_metadata=True)
+    return json.loads(metadata), columns.to_pandas(ignore_metadata=True, use_threads=False)
 
 
 def _read_csv(path: Path) -> tuple[Any, pd.DataFrame]:

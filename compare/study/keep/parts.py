@@ -91,7 +91,9 @@ def read_part(path: Path) -> pa.Table:
     *_, digest = path.stem.split("-")
     if len(digest) == _DIGITS and digest != _digest(content):
         raise ValueError("its content is not what its name says")
-    return pq.ParquetFile(pa.BufferReader(content), page_checksum_verification=True).read()
+    part = pq.ParquetFile(pa.BufferReader(content), page_checksum_verification=True)
+    # Not in Arrow's threads: one that still ends while Python does aborts the whole process.
+    return part.read(use_threads=False)
 
 
 class Columns:

@@ -50,7 +50,9 @@ def read_rows(folder: Path, warn: Callable[[str], None]) -> pd.DataFrame:
             tables.append(table)
             if lost:
                 damaged(path, f"{lost} of {table.num_rows + lost} lines")
-    frame = merge(tables).to_pandas() if tables else pd.DataFrame({"run": [], "outcome": []})
+    if not tables:
+        return pd.DataFrame({"run": [], "outcome": []})
+    frame = merge(tables).to_pandas(use_threads=False)
     return frame.sort_values("run", ignore_index=True)
 
 
