@@ -1,0 +1,102 @@
+"""Cases and contours that users bring, on the command line."""
+
+import pytest
+import trimesh
+
+from analytic import REAL_CASE_NAMES, Readings, named_case, solve_sweep
+from tests.compare.command import vibrissa
+
+
+def test_the_papers_figures(tmp_path):
+    done = vibrissa(
+        "analytic", "shallow-catenary", "--figures", "--certified", "--out", ".", cwd=tmp_path
+    )
+    assert done.returncode == 0, done.stderr
+    drawn = {path.name for path in tmp_path.glob("*.png")}
+    assert drawn == {"shapes.png"} | {f"figure-{n}.png" for n in (12, 14, 15, 16)}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in REAL_CASE_NAMES if name != "whisker"])
+def test_cases_beyond_the_paper(tmp_path, name):
+    done = vibrissa("analytic", name, "--figures", "--certified", "--out", ".", cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "200 of 200 stations ok" in done.stdout
+    drawn = {path.name for path in tmp_path.glob("*.png")}
+    assert drawn == {"shapes.png"} | {f"figure-{n}.png" for n in (14, 15, 16)}
+    found = vibrissa("reconstruct", "analytic.parquet", "--out", "found", cwd=tmp_path)
+    assert found.returncode == 0, found.stderr
+    same = vibrissa("compare", name, "analytic.parquet", "--out", "compared", cwd=tmp_path)
+    assert same.returncode == 0, same.stdout + same.stderr
+
+
+@pytest.mark.slow
+def test_a_whisker(tmp_path):
+    """A picture that holds for uniform vibrissae alone is not drawn; contacts are found."""
+    done = vibrissa("analytic", "whisker", "--figures", "--certified", "--out", ".", cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert {path.name for path in tmp_path.glob("*.png")} == {"figure-14.png", "figure-15.png"}
+    found = vibrissa("reconstruct", "analytic.parquet", "--out", "found", cwd=tmp_path)
+    assert found.returncode == 0
+    assert "192 contact points from 200 stations" in found.stdout
+
+
+def test_a_vibrissa_that_locks_itself_is_said(tmp_path):
+    """Its tip climbs as it is straightened, which friction prevents: where, and why."""
+    (tmp_path / "locks.toml").write_text(
+        "[beam]\nnatural_curvature = 0.5\n[contact]\nfriction = 0.9\n"
+        '[profile]\nkind = "parabola"\na = 0.5\nc = 0.5\n'
+    )
+    done = vibrissa("analytic", "locks.toml", "--stations", 60, "--out", "out", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "5 sticks (foot_x 1.1757 to 0.9986 L: the contact would slide back, " in done.stdout
+    assert len(done.stdout.splitlines()) == 2
+
+
+def test_a_vibrissa_that_would_touch_twice_is_said(tmp_path):
+    (tmp_path / "forward.toml").write_text(
+        '[beam]\nnatural_curvature = 0.5\n[profile]\nkind = "catenary"\na = 0.5\nc = -0.8\n'
+    )
+    done = vibrissa("analytic", "forward.toml", "--out", ".", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "touches again (foot_x" in done.stdout
+    assert "another part of the vibrissa would lie in the object" in done.stdout
+    table = Readings.read(tmp_path / "analytic.parquet").table
+    again = table[table["status"] == "touches again"]
+    assert len(again) > 10
+    assert again[["force_x", "force_y", "moment_z"]].isna().all(axis=None)
+
+
+@pytest.mark.parametrize(
+    ("profile", "said"),
+    [
+        ('kind = "polygon"\npoints = [[-1, 1.2], [0, 0.4], [1, 1.2]]', None),
+        ('kind = "points"\npoints = [[-1, 1.2], [-0.5, 0.5], [0, 0.4], [1, 1.2]]', None),
+        ('kind = "mesh"\nfile = "ball.stl"\noffset = [0, 1.3]', None),
+        ('kind = "mesh"\nfile = "none.stl"', "none.stl"),
+        ('kind = "polygon"\npoints = [[-1, 1.2], [0, 0.4]]', "three or more"),
+        ('kind = "points"\npoints = [[0, 1], [1, 0], [2, 0.5], [3, 0.8]]', "point 2"),
+    ],
+)
+def test_other_contours(tmp_path, profile, said):
+
+    trimesh.creation.icosphere(subdivisions=3).export(tmp_path / "ball.stl")
+    (tmp_path / "case.toml").write_text(f"[profile]\n{profile}\n[sweep]\nstations = 20\n")
+    done = vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
+    if said is None:
+        assert done.returncode == 0, done.stderr
+    else:
+        assert done.returncode == 2
+        assert said in done.stderr
+        assert done.stderr.count("\n") == 1
+
+
+def test_friction_is_estimated_from_the_clamp(tmp_path):
+    case = named_case("rubbing")
+    solve_sweep(case).with_friction(0.0).write(tmp_path / "rig.csv")
+    done = vibrissa("reconstruct", "rig.csv", "--friction", "auto", "--out", "found", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "friction coefficient 0.3000 +-" in done.stdout
+    for wrong, said in (("2", "from -1 to 1"), ("much", "a number or auto")):
+        done = vibrissa("reconstruct", "rig.csv", "--friction", wrong, cwd=tmp_path)
+        assert done.returncode == 2 and said in done.stderr

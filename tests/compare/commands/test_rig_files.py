@@ -1,0 +1,185 @@
+"""Readings as a rig writes them, read, compared and reconstructed."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import SENSED, Readings, named_case, solve_sweep
+from tests.compare.command import vibrissa
+from tests.compare.commands.case_files import CASE, UNITS
+
+
+def test_reconstruction_of_a_rigs_file(tmp_path):
+    """Own column names, millimetres and millinewtons, and the vibrissa given by a file."""
+    (tmp_path / "case.toml").write_text(UNITS)
+    vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
+    sweep = Readings.read(tmp_path / "analytic.parquet")
+    rig = sweep.table[["foot_x"]] * 1e3
+    rig.columns = ["stage"]
+    rig["Fx"], rig["Fy"] = sweep.values("force_x") * 1e3, sweep.values("force_y") * 1e3
+    rig["Mz"] = sweep.values("moment_z") * 1e6
+    rig.to_csv(tmp_path / "rig.csv", index=False)
+    columns = ["foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm"]
+    words = [word for column in columns for word in ("--column", column)]
+    done = vibrissa(
+        "reconstruct", "rig.csv", "--beam", "case.toml", *words, "--out", "out", cwd=tmp_path
+    )
+    assert done.returncode == 0, done.stderr
+    points = pd.read_csv(tmp_path / "out" / "points.csv")
+    np.testing.assert_allclose(points["contact_x"], sweep.values("contact_x"), atol=1e-12)
+    assert (tmp_path / "out" / "reconstruction.png").exists()
+    for words, said in (
+        (["--column", "foot_x"], "NAME=COLUMN"),
+        (["--column", "foot_x=stagee"], "stagee"),
+        (["--column", "foot_x=stage:parsec s"], "parsec s"),
+        (["--beam", "rig.csv"], "rig.csv"),
+    ):
+        done = vibrissa("reconstruct", "rig.csv", *words, cwd=tmp_path)
+        assert done.returncode == 2
+        assert said in done.stderr
+        assert done.stderr.count("\n") == 1
+
+
+RIG = ("foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm")
+RIG_COLUMNS = tuple(word for column in RIG for word in ("--column", column))
+
+
+@pytest.fixture
+def rig(tmp_path) -> Path:
+    """A folder with a sweep in SI units and the same from a rig: mm, mN, 2 mm off, 0.3 % noise."""
+    (tmp_path / "case.toml").write_text(UNITS.replace("stations = 30", "stations = 120"))
+    vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
+    sweep = Readings.read(tmp_path / "analytic.parquet")
+    rng = np.random.default_rng(1)
+    columns = {"stage": sweep.values("foot_x") * 1e3 + 2.0}
+    for column, name, unit in (
+        ("Fx", "force_x", 1e3),
+        ("Fy", "force_y", 1e3),
+        ("Mz", "moment_z", 1e6),
+    ):
+        values = sweep.values(name) * unit
+        noise = 3e-3 * np.abs(values).max() * rng.standard_normal(len(values))
+        columns[column] = values + noise
+    pd.DataFrame(columns).to_csv(tmp_path / "rig.csv", index=False)
+    return tmp_path
+
+
+@pytest.mark.slow
+def test_compare_with_a_rig(rig):
+    """Own columns, units, an unknown offset, noise; without stating the last two it fails."""
+    words = ("compare", "analytic.parquet", "rig.csv", *RIG_COLUMNS, "--out", "out")
+    done = vibrissa(*words, "--offset", "auto", "--noise", "0.003", cwd=rig)
+    assert done.returncode == 0, done.stdout + done.stderr
+    found = json.loads((rig / "out" / "comparison.json").read_text())
+    assert found["offset"]["value"] == pytest.approx(2e-3, abs=found["offset"]["uncertainty"])
+    assert found["offset"]["uncertainty"] < 1e-4
+    assert "offset" in done.stdout
+    assert "noise" in done.stdout
+    estimated = vibrissa(*words, "--offset", "auto", "--noise", "auto", cwd=rig)
+    assert estimated.returncode == 0, estimated.stdout
+    assert vibrissa(*words, "--offset", "0.002", "--noise", "0.003", cwd=rig).returncode == 0
+    assert vibrissa(*words, "--noise", "0.003", cwd=rig).returncode == 1
+    # The other way round: the rig as the reference, whose vibrissa a file states.
+    columns = [word.replace("--column", "--reference-column") for word in RIG_COLUMNS]
+    beam = ("--reference-beam", "case.toml")
+    words = ("compare", "rig.csv", "analytic.parquet", *columns, *beam, "--out", "back")
+    vibrissa(*words, "--offset", "auto", "--noise", "auto", cwd=rig)
+    found = json.loads((rig / "back" / "comparison.json").read_text())
+    assert found["offset"]["value"] == pytest.approx(-2e-3, abs=2e-4)
+
+
+@pytest.mark.slow
+def test_a_case_is_a_reference_and_its_offset_is_applied(rig):
+    """The vibrissa, the limits and the name are the case's."""
+    (rig / "own").mkdir()
+    (rig / "own" / "analytic.parquet").write_bytes((rig / "analytic.parquet").read_bytes())
+    words = ("rig.csv", *RIG_COLUMNS, "--noise", "0.003", "--offset", "auto")
+    done = vibrissa("compare", "case.toml", *words, cwd=rig)
+    assert done.returncode == 0, done.stdout + done.stderr
+    for reference in ("analytic.parquet", "own/analytic.parquet"):
+        vibrissa("compare", reference, *words, cwd=rig)
+    names = {path.name for path in (rig / "results").iterdir()}
+    assert names == {"case-rig", "analytic-rig", "own-analytic-rig"}
+    found = json.loads((rig / "results" / "case-rig" / "comparison.json").read_text())
+    given = ("--beam", "case.toml", *RIG_COLUMNS, "--offset", found["offset"]["value"])
+    done = vibrissa("reconstruct", "rig.csv", *given, "--out", "out", cwd=rig)
+    assert done.returncode == 0, done.stderr
+    points = pd.read_csv(rig / "out" / "points.csv")
+    foot_x = Readings.read(rig / "analytic.parquet").values("foot_x")
+    np.testing.assert_allclose(points["foot_x"], foot_x, atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("reconstruct", "rig.csv", *RIG_COLUMNS), "vibrissa = none given"),
+        (("reconstruct", "rig.csv"), "--column foot_x="),
+        (("compare", "rig.csv", "rig.csv", *RIG_COLUMNS), "--column foot_x="),
+        (("compare", "nowhere.toml", "rig.csv"), "nowhere.toml"),
+        (("compare", "case.toml", "rig.csv", "--reference-beam", "case.toml"), "reference"),
+        (("reconstruct", "analytic.parquet", "--offset", "nan"), "offset = nan"),
+    ],
+)
+def test_what_is_missing_is_asked_for(rig, words, said):
+    done = vibrissa(*words, cwd=rig)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not (rig / "results").exists()
+
+
+def test_that_length_and_rigidity_are_one_is_said(tmp_path):
+    sweep = solve_sweep(named_case("parabola"))
+    sweep.table[list(SENSED)].to_csv(tmp_path / "bare.csv", index=False)
+    done = vibrissa("reconstruct", "bare.csv", "--out", "out", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "L = EI = 1 is assumed" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--offset", "some"), "--offset = 'some'"),
+        (("--offset", "nan"), "--offset = 'nan'"),
+        (("--noise", "2"), "noise = 2.0"),
+        (("--tolerances", "none.toml"), "none.toml"),
+        (("--tolerances", "case.toml"), "[tolerances]"),
+        (("--beam", "rig.csv"), "rig.csv"),
+    ],
+)
+def test_compare_refuses(rig, words, said):
+    given = ("compare", "analytic.parquet", "rig.csv", *RIG_COLUMNS, "--out", "out", *words)
+    done = vibrissa(*given, cwd=rig)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not (rig / "out").exists()
+
+
+def test_an_offset_that_nothing_determines_is_one_line(rig):
+    lines = (rig / "rig.csv").read_text().splitlines()
+    (rig / "rig.csv").write_text("\n".join(lines[:6]))
+    words = ("compare", "analytic.parquet", "rig.csv", *RIG_COLUMNS, "--offset", "auto")
+    done = vibrissa(*words, cwd=rig)
+    assert done.returncode == 2
+    assert "offset = ambiguous" in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.slow
+def test_tolerances_from_files(tmp_path):
+    """A case file's are those of its runs, a file's those of a comparison."""
+    limits = '[tolerances]\nrms = { limit = 1e-9, reason = "to see it fail" }\n'
+    (tmp_path / "case.toml").write_text(CASE + limits)
+    done = vibrissa("run", "case.toml", "--out", "out", "--segments", 40, cwd=tmp_path)
+    assert done.returncode == 1
+    assert "allowed 1.00e-09 (to see it fail)" in done.stdout
+    assert "to see it fail" in (tmp_path / "out" / "report.html").read_text()
+    (tmp_path / "limits.toml").write_text(limits)
+    both = ("out/analytic.parquet", "out/mujoco-chain.parquet")
+    assert vibrissa("compare", *both, "--out", "again", cwd=tmp_path).returncode == 0
+    words = ("--tolerances", "limits.toml", "--out", "again")
+    assert vibrissa("compare", *both, *words, cwd=tmp_path).returncode == 1
