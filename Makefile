@@ -96,7 +96,7 @@ install-mujoco3: .venv-mujoco3/installed   ## build .venv-mujoco3 with MuJoCo 3.
 test-mujoco3: install-mujoco3    ## the fast tests under MuJoCo 3.17
 	$(BIN_MUJOCO3)/python -m pytest -n auto $(ARGS)
 
-install-engines: .venv-engines/installed   ## build .venv-engines with Drake and Exudyn
+install-engines: .venv-engines/installed   ## build .venv-engines with Drake, Exudyn and MuJoCo Warp
 
 test-engines: install-engines    ## the tests of the other engines, on two cases each; ARGS="-m slow" for more
 	$(BIN_ENGINES)/python -m pytest -n auto tests/engines $(ARGS)
@@ -136,7 +136,7 @@ results/runs/%-cable/report.html: | install-mujoco3
 
 .venv-engines/installed: pyproject.toml
 	$(PYTHON) -m venv .venv-engines
-	$(BIN_ENGINES)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,drake,exudyn]'
+	$(BIN_ENGINES)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,drake,exudyn,warp]'
 	touch $@
 
 .venv-mujoco3/installed: pyproject.toml

@@ -124,18 +124,36 @@ def _found(name: str, target: str) -> Found:
     module, _, attribute = target.partition(":")
     try:
         engine: Engine = getattr(import_module(module), attribute)
-        needed = Requirement(engine.requires)
+        Requirement(engine.requires)
     except (Exception, SystemExit) as error:  # whatever another's module does when imported
         what = " ".join(f"{type(error).__name__}: {error}".split())
         if isinstance(error, InvalidRequirement):
             what = f"its requirement cannot be read: {what}"
         return Found(name, None, None, f"{target} cannot be loaded ({what})")
+    there, trouble = installed(engine.requires)
+    return Found(name, engine, there, trouble)
+
+
+def installed(requires: str) -> tuple[str | None, str | None]:
+    """Whether a distribution is there.
+
+    Parameters
+    ----------
+    requires : str
+        As pip writes it: ``"drake>=1.40,<2"``.
+
+    Returns
+    -------
+    version : str or None
+        None if it is not installed.
+    trouble : str or None
+        Why it cannot be used, and what to do; None if it can.
+    """
+    needed = Requirement(requires)
     try:
         there = version(needed.name)
     except PackageNotFoundError:
-        remedy = f"{needed.name} is not installed: pip install '{engine.requires}'"
-        return Found(name, engine, None, remedy)
-    if not needed.specifier.contains(there, prereleases=True):
-        remedy = f"{needed.name} {there} is not {needed.specifier}: pip install '{engine.requires}'"
-        return Found(name, engine, there, remedy)
-    return Found(name, engine, there, None)
+        return None, f"{needed.name} is not installed: pip install '{requires}'"
+    if needed.specifier.contains(there, prereleases=True):
+        return there, None
+    return there, f"{needed.name} {there} is not {needed.specifier}: pip install '{requires}'"

@@ -15,6 +15,7 @@ from analytic.problem.errors import InputError
 from compare.commands import (
     budget,
     calibrate,
+    float32,
     inspect,
     methods,
     readings,
@@ -55,6 +56,7 @@ COMMANDS: tuple[Callable[..., int], ...] = (
     study.study_report,
     sweeps.cases,
     sweeps.engines,
+    float32.float32,
 )
 
 

@@ -18,6 +18,7 @@ from compare.commands.terminal.verdicts import (
     print_comparison,
     print_engines,
     print_fastest,
+    print_float32,
     print_motion_budget,
     print_side_by_side,
 )
@@ -30,6 +31,7 @@ __all__ = [
     "print_comparison",
     "print_engines",
     "print_fastest",
+    "print_float32",
     "print_line",
     "print_methods",
     "print_motion_budget",

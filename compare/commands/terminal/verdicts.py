@@ -1,6 +1,7 @@
 """How far sweeps disagree, and why."""
 
 import numpy as np
+import pandas as pd
 from rich.table import Column, Table
 from rich.text import Text
 
@@ -254,3 +255,30 @@ def print_engines(many: ManyEngines) -> None:
         console().print(parts)
     if many.split is not None:
         print_line(many.split.sentence)
+
+
+def print_float32(found: pd.DataFrame, case: str) -> None:
+    """Print what single precision loses, by contact stiffness.
+
+    Parameters
+    ----------
+    found : pandas.DataFrame
+        As `engines.warp.gate.by_stiffness` returns it.
+    case : str
+        Its name.
+    """
+    table = Table(
+        "stiffness", "depth", "resolution", "lost", "force off", "imbalance",
+        title=Text(f"{case}: MuJoCo's states at rest in single precision"),
+        caption="found (predicted); lost: stations; force: over the largest load; L = EI = 1",
+    )  # fmt: skip
+    for row in found.to_dict("records"):
+        table.add_row(
+            f"{row['contact_stiffness']:g}",
+            f"{row['depth']:.1e}",
+            f"{row['resolution']:.1e}",
+            f"{row['lost']} of {row['stations']} ({row['predicted_lost']:.1f})",
+            f"{row['force_error']:.1e} ({row['predicted_force_error']:.1e})",
+            f"{row['imbalance']:.1e} ({row['predicted_imbalance']:.1e})",
+        )
+    console().print(table)

@@ -1,0 +1,83 @@
+"""Single precision over contact stiffness: what was predicted and what was found."""
+
+import matplotlib.ticker
+import pandas as pd
+from matplotlib.figure import Figure
+
+from compare.show.style import BLUE, GREY, LARGE, NORMAL, ORANGE, SMALL, label
+
+_WORTH = 0.5  # stations; as many are expected to be lost where a loss is predicted
+
+
+def sentence(found: pd.DataFrame, version: str) -> str:
+    """From which contact stiffness on contacts are lost, predicted and found.
+
+    Parameters
+    ----------
+    found : pandas.DataFrame
+        As `engines.warp.gate.by_stiffness` returns it.
+    version : str
+        Of MuJoCo Warp.
+
+    Returns
+    -------
+    str
+        Plain text.
+    """
+    lost, expected = found["lost"] > 0, found["predicted_lost"] >= _WORTH
+    return (
+        f"MuJoCo Warp {version} {_from(found, lost, 'loses contacts', 'loses no contact')}; from "
+        f"float32's resolution that is predicted {_from(found, expected, '', 'nowhere')}."
+    )
+
+
+def _from(found: pd.DataFrame, where: pd.Series, some: str, none: str) -> str:
+    if not where.any():
+        return none
+    first = found.loc[where, "contact_stiffness"].min()
+    return f"{some} from {first:g} EI/L^3 on".strip()
+
+
+def picture(found: pd.DataFrame, name: str) -> Figure:
+    """Draw losses, errors of force and imbalance over the contact stiffness.
+
+    Parameters
+    ----------
+    found : pandas.DataFrame
+        As `engines.warp.gate.by_stiffness` returns it.
+    name : str
+        Of the case.
+
+    Returns
+    -------
+    Figure
+        Four panels: predictions as lines, what was found as marks.
+    """
+    figure = Figure(figsize=(9.0, 6.4), layout="constrained")
+    figure.suptitle(f"{label(name)}: MuJoCo's states at rest in single precision", fontsize=LARGE)
+    (depths, lost), (force, balance) = figure.subplots(2, 2, sharex=True)
+    k = found["contact_stiffness"]
+    depths.plot(k, found["depth"], "o-", color=GREY, label="depth of a contact, median")
+    depths.plot(k, found["resolution"], "--", color=BLUE, label="resolution, predicted")
+    seen = found["depth_error"] * found["resolution"]
+    depths.plot(k, seen, "s", color=ORANGE, label="error of the depth, found")
+    depths.set(xscale="log", yscale="log", ylabel="[L]")
+    share = 100 / found["stations"]
+    pairs = (
+        (lost, share * found["predicted_lost"], share * found["lost"], "stations lost [%]"),
+        (force, found["predicted_force_error"], found["force_error"], "error of force / largest"),
+        (balance, found["predicted_imbalance"], found["imbalance"], "imbalance [EI/L]"),
+    )
+    for ax, predicted, measured, words in pairs:
+        ax.plot(k, predicted, "--", color=BLUE, label="predicted")
+        ax.plot(k, measured, "s", color=ORANGE, label="found")
+        ax.set_ylabel(words, fontsize=NORMAL)
+    for ax in (force, balance):
+        ax.set_yscale("log")
+        ax.set_xlabel("contact stiffness [EI/L$^3$]")
+    lost.set_ylim(bottom=0)
+    for ax in (depths, lost, force, balance):
+        ax.xaxis.set_major_locator(matplotlib.ticker.LogLocator(10, numticks=12))
+        ax.grid(which="major", alpha=0.25)
+        ax.legend(frameon=False, fontsize=SMALL)
+    return figure

@@ -1,0 +1,101 @@
+"""Single precision loses contacts where its resolution says so; nothing of that is fitted."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import Case, InputError, named_case, polygon
+from mujoco_models import Settings
+from mujoco_models.sweep.sweep import set_out
+from tests.compare.command import vibrissa
+
+pytest.importorskip("mujoco_warp", reason="MuJoCo Warp is an extra: pip install '.[warp]'")
+
+from engines.warp.gate import by_stiffness, gate
+from engines.warp.resolution import chance_of_loss, force_deviation
+from engines.warp.subject import evaluate
+
+SETTINGS = Settings(segments=20)
+STIFFNESSES = (1e4, 1e6, 1e8)
+
+
+def short(name, stations=24):
+    case = named_case(name)
+    return replace(case, sweep=replace(case.sweep, stations=stations))
+
+
+@pytest.fixture(scope="module", params=["catenary", "parabola"])
+def looked_at(request):
+    return gate(short(request.param), SETTINGS, STIFFNESSES)
+
+
+def test_the_depths_are_off_by_the_resolution(looked_at):
+    """Rms over stations and stiffnesses; a spacing twice as wide would be seen."""
+    off = (looked_at["depth_error"] / looked_at["resolution"]).dropna()
+    assert len(off) > 50
+    assert 0.6 < np.sqrt((off**2).mean()) < 1.5
+
+
+def test_contacts_are_lost_where_that_is_predicted(looked_at):
+    """As many as the chances say, to three standard deviations of as many throws."""
+    for stiffness, group in looked_at.groupby("contact_stiffness"):
+        chance = group["chance"]
+        spread = np.sqrt((chance * (1 - chance)).sum())
+        assert abs(group["lost"].sum() - chance.sum()) <= 3 * spread + 0.5, stiffness
+    found = by_stiffness(looked_at).set_index("contact_stiffness")
+    assert found.loc[1e4, "lost"] == 0
+    assert found.loc[1e8, "lost"] > 3
+
+
+def test_forces_and_balance_are_off_by_stiffness_times_resolution(looked_at):
+    found = by_stiffness(looked_at)
+    for name in ("force_error", "imbalance"):
+        ratio = found[name] / found[f"predicted_{name}"]
+        assert ((ratio > 0.5) & (ratio < 2)).all(), name
+
+
+def test_without_a_loaded_contact_both_precisions_agree():
+    case = short("catenary", 4)
+    walk = set_out(case, replace(SETTINGS, obstacle="primitive"))
+    walk.go_to(float(case.foot_x[0]))
+    found = evaluate(walk.model)
+    assert (found.force == 0).all()
+    assert found.imbalance < 1e-6
+
+
+def test_the_chances_are_those_of_many_throws():
+    """Against a million random throws of two correlated depths."""
+    depth, together = np.array([0.5, -0.2]), np.array([[1.0, 0.6], [0.6, 1.0]])
+    thrown = np.random.default_rng(1).multivariate_normal(depth, together, 1_000_000)
+    assert chance_of_loss(depth, together) == pytest.approx(
+        (thrown < 0).all(axis=1).mean(), abs=2e-3
+    )
+    off = np.maximum(thrown, 0) - np.maximum(depth, 0)
+    np.testing.assert_allclose(
+        force_deviation(depth, np.ones(2)), np.sqrt((off**2).mean(axis=0)), rtol=5e-3
+    )
+
+
+@pytest.mark.parametrize(
+    ("case", "settings", "says"),
+    [
+        (named_case("catenary"), Settings(beam="rod"), "beam for mujoco-warp"),
+        (Case(profile=polygon([(-0.5, 0.8), (0.0, 0.5), (0.5, 0.8)])), Settings(), "primitive"),
+        (replace(named_case("catenary"), friction=0.2), Settings(), "friction"),
+    ],
+)
+def test_what_cannot_be_looked_at_is_a_line(case, settings, says):
+    with pytest.raises(InputError, match=says):
+        gate(case, settings)
+
+
+@pytest.mark.slow
+def test_the_command_says_where_it_loses_contacts(tmp_path):
+    command = ("float32", "parabola", "--stations", 20, "--segments", 20, "--out", "out")
+    done = vibrissa(*command, "--contact-stiffness", "1e5,1e9", cwd=tmp_path)
+    assert done.returncode in (0, 1), done.stderr
+    assert "loses contacts from" in done.stdout
+    assert {p.name for p in (tmp_path / "out").iterdir()} == {
+        "float32.csv", "float32.png", "stations.csv",
+    }  # fmt: skip
