@@ -22,7 +22,7 @@ from numpydoc.validate import validate
 from typer.models import ArgumentInfo, OptionInfo
 
 PACKAGES = ("analytic", "mujoco_models", "engines", "compare")
-EXTRAS = ("pydrake", "exudyn")
+EXTRAS = ("pydrake", "exudyn", "mujoco_warp")
 # No docstring; parameters: undocumented, unknown, not described; nothing of what is returned or
 # yielded; no description of it.
 CHECKS = {"GL08", "PR01", "PR02", "PR07", "RT01", "RT03", "YD01"}

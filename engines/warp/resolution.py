@@ -10,7 +10,7 @@ deviation is the spacing over sqrt(12) (Higham, Accuracy and Stability of Numeri
 import numpy as np
 from scipy.stats import multivariate_normal, norm
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 from mujoco_models.model.model import BeamModel
 
 # rad; a product of unit quaternions rounds each of two components three times, to half of 2**-24
@@ -19,7 +19,7 @@ _TURN = 2.0**-24
 _CERTAIN = 5.0  # standard deviations; a depth is not off by more
 
 
-def covariance(model: BeamModel, normal: Floats, beads: Floats) -> Floats:
+def covariance(model: BeamModel, normal: Floats, beads: Integers) -> Floats:
     """Of the depths in single precision.
 
     Neighbours share most of what is rounded: the cylinder's radius and place, the joints before
@@ -97,7 +97,7 @@ def chance_of_loss(depth: Floats, together: Floats) -> float:
     scale = deviation[uncertain]
     correlation = together[np.ix_(uncertain, uncertain)] / np.outer(scale, scale)
     # A seed of its own: the integral is one over random places.
-    normal = multivariate_normal(cov=correlation, allow_singular=True, seed=0, abseps=1e-3)
+    normal = multivariate_normal(cov=correlation, allow_singular=True, seed=0)
     return float(normal.cdf(-depth[uncertain] / scale))
 
 

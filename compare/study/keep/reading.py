@@ -52,7 +52,7 @@ def read_rows(folder: Path, warn: Callable[[str], None]) -> pd.DataFrame:
                 damaged(path, f"{lost} of {table.num_rows + lost} lines")
     if not tables:
         return pd.DataFrame({"run": [], "outcome": []})
-    frame = merge(tables).to_pandas(use_threads=False)
+    frame: pd.DataFrame = merge(tables).to_pandas(use_threads=False)
     return frame.sort_values("run", ignore_index=True)
 
 
