@@ -54,6 +54,7 @@ stations = 12
 COMMANDS = {
     "cases": (0, "cases"),
     "engines": (0, "engines"),
+    "float32": (2, "float32 mine.toml"),  # MuJoCo Warp is an extra
     "analytic": (0, "analytic mine.toml --out a --certified"),
     "simulate": (0, "simulate mine.toml --out a"),
     "compare": (1, "compare a/analytic.parquet a/mujoco-chain.parquet"),
