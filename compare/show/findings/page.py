@@ -17,6 +17,7 @@ from analytic.problem.files import write_whole
 from compare.explain.budget import UNRESOLVED
 from compare.sense.accuracy import phase_table
 from compare.sense.transitions import TRANSITIONS
+from compare.show.findings.engines import EnginesRecord, read_engines, split_overview
 from compare.show.findings.methods import MethodsRecord, method_sentences, read_methods
 from compare.show.findings.records import RunRecord, read_records
 from compare.show.findings.sentences import overview, sentences
@@ -58,14 +59,21 @@ def write_findings(folder: Path, out: Path) -> list[Path]:
         for run in runs
         if run.budget is not None
     }
-    methods = read_methods(folder)
+    methods, engines = read_methods(folder), read_engines(folder)
+    if not runs and not engines:
+        raise InputError(
+            "DIR",
+            folder,
+            "a folder with runs in it",
+            "make one: vibrissa run CASE --budget --out DIR/CASE",
+        )
     pictures |= {f"methods-on-{one.case}.png": one.folder / "methods.png" for one in methods}
     for name in pictures:
         if name not in own and (out / name).exists():
             raise _of_another(out / name)
-    judged = phase_table(_recorded(runs)).to_dict("records")
+    judged = phase_table(_recorded(runs)).to_dict("records") if runs else []
     contents = {
-        "README.md": page(runs, judged, methods).encode(errors="replace"),
+        "README.md": page(runs, judged, methods, engines).encode(errors="replace"),
         **{name: _smaller(file) for name, file in pictures.items()},
     }
     out.mkdir(parents=True, exist_ok=True)
@@ -80,6 +88,7 @@ def page(
     runs: list[RunRecord],
     judged: list[dict[Any, Any]],
     methods: Sequence[MethodsRecord] = (),
+    engines: Sequence[EnginesRecord] = (),
 ) -> str:
     """The findings as a page.
 
@@ -91,6 +100,8 @@ def page(
         Rows of `compare.sense.accuracy.phase_table`; without any the page has no such section.
     methods : sequence of MethodsRecord
         Tables of the methods to find the contact; without any the page has no such section.
+    engines : sequence of EnginesRecord
+        Runs in many engines; without any the page has no such section.
 
     Returns
     -------
@@ -108,10 +119,12 @@ def page(
         mark=Markup(_MARK),
         worst=_worst_transition,
         unresolved=UNRESOLVED,
-        overview=overview(runs),
+        overview=overview(runs) if runs else "",
         sentences=sentences,
         methods=methods,
         method_sentences=method_sentences,
+        engines=engines,
+        split_overview=split_overview(list(engines)) if engines else "",
     )
 
 

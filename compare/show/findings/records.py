@@ -175,34 +175,46 @@ def read_records(folder: Path) -> list[RunRecord]:
     Returns
     -------
     list of RunRecord
-        At least one.
+        None, if there is no run.
 
     Raises
     ------
     InputError
-        If there is none, or what one has left cannot be read.
+        If what one has left cannot be read.
     """
     runs = [
         RunRecord(
             file.parent,
-            _read(file, ComparisonFile),
-            _read(budget, BudgetFile) if budget.exists() else None,
+            read_left(file, ComparisonFile),
+            read_left(budget, BudgetFile) if budget.exists() else None,
         )
         for file in sorted(folder.glob("*/comparison.json"))
         for budget in [file.with_name("budget.json")]
     ]
-    if not runs:
-        raise InputError(
-            "DIR",
-            folder,
-            "a folder with runs in it",
-            "make one: vibrissa run CASE --budget --out DIR/CASE",
-        )
     order = {name: i for i, name in enumerate(CASE_NAMES)}
     return sorted(runs, key=lambda run: (order.get(run.case, len(order)), run.case))
 
 
-def _read(file: Path, kind: type[_File]) -> _File:
+def read_left(file: Path, kind: type[_File]) -> _File:
+    """What a run has left in a file.
+
+    Parameters
+    ----------
+    file : Path
+        JSON.
+    kind : type
+        What it should hold.
+
+    Returns
+    -------
+    BaseModel
+        Of that kind.
+
+    Raises
+    ------
+    InputError
+        If it is damaged or unreadable.
+    """
     try:
         return kind.model_validate(json.loads(file.read_text(encoding="utf-8")))
     except ValidationError as error:

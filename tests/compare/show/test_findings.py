@@ -272,3 +272,45 @@ def test_all_named_cases_are_made():
     makefile = (Path(__file__).parents[3] / "Makefile").read_text()
     (line,) = (line for line in makefile.splitlines() if line.startswith("CASES :="))
     assert line.removeprefix("CASES :=").split() == list(CASE_NAMES)
+
+
+def engines_left(folder, implementation=1e-9):
+    """What a run in MuJoCo and a twin of it leaves, of which one has no readings."""
+    readings = ("force_x", "force_y", "moment_z")
+    rms = dict.fromkeys(readings, 2e-3)
+    row = {"role": "twin", "version": "1.0", "trouble": None, "rms": rms, "snap_off_apart": None}
+    row |= {"seconds_a_station": 0.01, "agrees": True}
+    lost = {"trouble": "not finished after 20 s", "rms": None, "agrees": False}
+    split = {"subject": "mujoco", "twin": "drake", "disagreement": rms, "model": rms}
+    split |= {"implementation": dict.fromkeys(readings, implementation), "blame": "model"}
+    split["others"] = {"exudyn": dict.fromkeys(readings, 5e-5) | {"force_x": None}}
+    engines = [{"name": "mujoco", **row}, {"name": "drake", **row}, {"name": "slow", **row, **lost}]
+    folder.mkdir(parents=True)
+    content = {"case": "catenary", "engines": engines, "split": split}
+    (folder / "engines.json").write_text(json.dumps(content))
+
+
+@pytest.mark.parametrize(
+    ("implementation", "says"),
+    [
+        (1e-9, "mujoco computes its model right: it and its twin drake are at most 1.0e-9 apart"),
+        (3e-4, "are up to 3.0e-4 apart, above rounding in catenary"),
+    ],
+)
+def test_runs_in_many_engines_are_split(tmp_path, implementation, says):
+    """Without any run in MuJoCo alone, too."""
+    engines_left(tmp_path / "runs" / "one", implementation)
+    (written,) = write_findings(tmp_path / "runs", tmp_path / "out")
+    text = " ".join(written.read_text().split())
+    assert says in text
+    assert "2.0e-3. exudyn's is it to 5.0e-5." in text
+    assert "| catenary | slow 1.0 | twin | none | none | none |" in text
+    assert "not finished after 20 s" in text
+    assert "implementation: mujoco against drake" in text
+
+
+def test_a_damaged_run_in_many_engines_is_a_line(tmp_path):
+    (tmp_path / "runs" / "one").mkdir(parents=True)
+    (tmp_path / "runs" / "one" / "engines.json").write_text('{"case": "catenary"}')
+    with pytest.raises(InputError, match=r"engines\.json = damaged \(engines"):
+        write_findings(tmp_path / "runs", tmp_path / "out")
