@@ -1,11 +1,13 @@
 """What an engine is: a name, what it needs, what it computes, and a sweep."""
 
 from collections.abc import Callable
-from typing import Literal, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias
 
 from analytic.problem.case import Case
-from analytic.problem.readings import Readings
 from mujoco_models.settings import Settings
+
+if TYPE_CHECKING:  # whether a case names known engines is checked before pandas is needed
+    from analytic.problem.readings import Readings
 
 Role: TypeAlias = Literal["subject", "twin", "other model"]
 """Of an engine in a comparison of many.
@@ -32,7 +34,7 @@ class Engine(Protocol):
 
     def sweep(
         self, case: Case, settings: Settings, advance: Callable[[], None] = lambda: None
-    ) -> Readings:
+    ) -> "Readings":
         """Sweep a case quasi-statically, at rest at every station.
 
         Parameters

@@ -1,22 +1,14 @@
-"""Which engines there are: those shipped here, and those of other distributions by entry points."""
+"""Which engines there are, and whether they can be used here."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import import_module
-from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, version
+from importlib.metadata import PackageNotFoundError, version
 
 from packaging.requirements import InvalidRequirement, Requirement
 
 from analytic.problem.errors import InputError
 from engines.engine import Engine
-
-GROUP = "vibrissa.engines"
-"""The entry points by which other distributions offer engines: ``name = "module:ENGINE"``."""
-_SHIPPED = {
-    "mujoco": "engines.mujoco:ENGINE",
-    "drake": "engines.drake.engine:ENGINE",
-    "exudyn": "engines.exudyn.engine:ENGINE",
-}
+from engines.known import known_engines
 
 
 @dataclass(frozen=True)
@@ -49,7 +41,7 @@ def list_engines() -> list[Found]:
     list of Found
         A name each; an entry point cannot take the name of a shipped engine.
     """
-    return [_found(name, target) for name, target in _known().items()]
+    return [_found(name, target) for name, target in known_engines().items()]
 
 
 def find_engine(name: str) -> Engine:
@@ -70,7 +62,7 @@ def find_engine(name: str) -> Engine:
     InputError
         If there is none, or what it needs is missing or of the wrong version.
     """
-    known = _known()
+    known = known_engines()
     if name not in known:
         raise InputError(
             "engine", repr(name), f"one of {', '.join(known)}", "`vibrissa engines` lists them"
@@ -79,45 +71,6 @@ def find_engine(name: str) -> Engine:
     if found.engine is None or found.trouble is not None:
         raise InputError("engine", repr(name), "installed", found.trouble or "install it")
     return found.engine
-
-
-def named_engines(names: str) -> list[str]:
-    """The engines of a list.
-
-    Parameters
-    ----------
-    names : str
-        Names between commas, each once.
-
-    Returns
-    -------
-    list of str
-        The names.
-
-    Raises
-    ------
-    InputError
-        If one is empty, unknown, or there twice. Whether it is installed does not matter.
-    """
-    listed, known = [name.strip() for name in names.split(",")], _known()
-    if len(set(listed)) < len(listed) or not set(listed) <= set(known):
-        raise InputError(
-            "engine",
-            repr(names),
-            f"names between commas, each once, of {', '.join(known)}",
-            "`vibrissa engines` lists them",
-        )
-    return listed
-
-
-def _known() -> dict[str, str]:
-    """Where each engine is, by its name."""
-    offered = {point.name: point.value for point in sorted(_offered(), key=lambda p: p.value)}
-    return {**_SHIPPED, **{n: where for n, where in offered.items() if n not in _SHIPPED}}
-
-
-def _offered() -> Iterator[EntryPoint]:
-    yield from entry_points(group=GROUP)
 
 
 def _found(name: str, target: str) -> Found:

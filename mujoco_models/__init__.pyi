@@ -4,10 +4,10 @@ from .errors import DivergedError as DivergedError
 from .inspect.measured import MeasuredBeam as MeasuredBeam
 from .motion import Motion as Motion
 from .own.names import OwnModel as OwnModel
+from .own.shipped import shipped_models as shipped_models
 from .settings import Settings as Settings
 from .simulate import inspect_model as inspect_model
 from .simulate import load_tip as load_tip
-from .simulate import shipped_models as shipped_models
 from .simulate import simulate_model as simulate_model
 from .simulate import simulate_motion as simulate_motion
 from .simulate import simulate_sweep as simulate_sweep

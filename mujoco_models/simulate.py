@@ -5,7 +5,6 @@ MuJoCo itself is imported when one of them is called, not before.
 
 import math
 from collections.abc import Callable
-from importlib.resources import files
 from pathlib import Path
 
 from analytic.problem.beam import Beam
@@ -267,18 +266,6 @@ def simulate_model(
     return solve_either_way(
         case, lambda leftward: run_own(leftward, model, moved, chosen, advance, keep_facing)
     )
-
-
-def shipped_models() -> dict[str, Path]:
-    """Models as people write them, which come with this package.
-
-    Returns
-    -------
-    dict of Path
-        Their files by name; each begins with what it is.
-    """
-    folder = Path(str(files("mujoco_models") / "models"))
-    return {path.stem: path for path in sorted(folder.glob("*.xml"))}
 
 
 def view_sweep(case: Case, settings: Settings | None = None) -> None:

@@ -123,8 +123,9 @@ class Case:
             object.__setattr__(self, name, float(getattr(self, name)))
         touch = self._first_contact * self.beam.length
         farthest = 2 * FARTHEST * self.beam.length
-        for name, value in (("start", self._start), ("stop", self._stop)):
-            if not abs(value) <= farthest:
+        for name in ("start", "stop"):  # by default they are in order, and the stop is not needed
+            value = getattr(self.sweep, name)
+            if value is not None and not abs(value) <= farthest:
                 raise InputError(
                     f"sweep.{name}", value, f"within {farthest:g} of the origin", "check its unit"
                 )
@@ -136,10 +137,11 @@ class Case:
                 "where the tip first touches",
                 "a sweep starts clear of the object",
             )
-        if not self._way * (self._stop - self._start) > _SHORTEST * self.beam.length:
+        stop, shortest = self.sweep.stop, _SHORTEST * self.beam.length
+        if stop is not None and not self._way * (stop - self._start) > shortest:
             raise InputError(
                 "sweep.stop",
-                self._stop,
+                stop,
                 f"{'more' if self._way > 0 else 'less'} than the start, {self._start:.6g}",
                 f"the foot moves to the {self.sweep.direction} (sweep.direction)",
             )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from compare.commands.given import require_folder
 from compare.commands.options import (
     AGREES,
     DISAGREES,
@@ -111,6 +112,7 @@ def findings(
     ] = None,
 ) -> int:
     """Write a page about all runs in a folder."""
+    require_folder(folder, "make runs in it: vibrissa run CASE --out DIR/CASE")
     from compare.commands import terminal
     from compare.show.findings import write_findings
 

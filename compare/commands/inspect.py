@@ -1,12 +1,14 @@
 """The command ``inspect``: what beam a user's own MuJoCo model is."""
 
 import json
+import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from analytic.problem.errors import InputError
+from analytic.problem.files import regular_file
 from compare.commands.options import AGREES, DISAGREES
 from compare.commands.output import output_folder
 
@@ -39,10 +41,8 @@ def inspect(
     ] = None,
 ) -> int:
     """Measure what beam a MuJoCo model is, and say what a user should know of it."""
-    from compare.commands import terminal
     from compare.read.case import read_beam
-    from compare.simulate.inspection import Inspection
-    from mujoco_models import inspect_model, shipped_models
+    from mujoco_models import shipped_models
 
     stated = None if beam is None else read_beam(beam)[0]
     shipped = shipped_models()
@@ -50,9 +50,12 @@ def inspect(
         raise InputError(
             "MODEL", repr(model), f"a file, or one of {', '.join(shipped)}", "name one of them"
         )
-    found = inspect_model(
-        shipped.get(model, Path(model)), foot=foot, force=force, torque=torque, geoms=geoms
-    )
+    path = regular_file(shipped.get(model, Path(model)), "model", sys.maxsize)
+    from compare.commands import terminal
+    from compare.simulate.inspection import Inspection
+    from mujoco_models import inspect_model
+
+    found = inspect_model(path, foot=foot, force=force, torque=torque, geoms=geoms)
     inspection = Inspection(found, stated)
     for line in inspection.lines():
         terminal.print_line(line)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from analytic.problem.errors import InputError
+from compare.commands.given import require_readings
 from compare.commands.options import AGREES, out_folder
 from compare.commands.output import output_folder
 from compare.read.suffixes import TABLES
@@ -37,11 +38,17 @@ def methods(
     ] = "exact",
 ) -> int:
     """How well every method finds the contact from the clamp."""
+    levels = _levels(noise)
+    if Path(case).suffix.lower() in TABLES:
+        require_readings([Path(case)])
+    else:
+        from compare.read.case import load_job
+
+        load_job(case)
     from analytic.from_clamp.earlier.methods import NAMES
     from compare.commands import terminal
     from compare.measure.methods import INFORMED, KNOWN, method_errors
 
-    levels = _levels(noise)
     names = NAMES if method is None else [word.strip() for word in method.split(",")]
     for one in names:
         if one not in NAMES:

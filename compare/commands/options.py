@@ -153,7 +153,7 @@ class Changes:
         }
         given = {key: value for key, value in named.items() if value is not None}
         if self.engines is not None:
-            from engines.found import named_engines
+            from engines.known import named_engines
 
             job = replace(job, engines=tuple(named_engines(self.engines)))
         return replace(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from analytic.problem.errors import InputError
+from compare.commands.given import require_readings
 from compare.commands.options import (
     AGREES,
     DISAGREES,
@@ -83,10 +84,7 @@ def compare(
         number_or_auto("--noise", noise),
     )
     with waiting("comparing"):
-        from compare.comparison import compare as compare_readings
         from compare.read.limits import read_tolerances
-        from compare.read.rig import read_measured
-        from compare.read.run_folder import read_budget
 
         limits = None if tolerances is None else read_tolerances(tolerances)
         job = _job(reference)
@@ -97,8 +95,12 @@ def compare(
                 "a file, beside --reference-...",
                 "leave the option out",
             )
+        require_readings([candidate] if job is not None else [Path(reference), candidate])
         from analytic import solve_sweep
+        from compare.comparison import compare as compare_readings
         from compare.read.assumed import ASSUMED
+        from compare.read.rig import read_measured
+        from compare.read.run_folder import read_budget
 
         if job is None:
             path = Path(reference)
@@ -171,6 +173,7 @@ def reconstruct(
     ] = "elastica",
 ) -> int:
     """Find the object from the clamp readings alone."""
+    require_readings([file])
     import numpy as np
 
     from analytic import CLAMP_READINGS, relative_noise, require_beam
@@ -249,6 +252,7 @@ def side_by_side(
             "FILE", ", ".join(map(str, files)), "each file once", "leave the second one out"
         )
     job = _job(reference)
+    require_readings(files if job is not None else [Path(reference), *files])
     from analytic import Beam, Readings, solve_sweep
     from analytic.problem.readings_file import is_ours
     from compare.commands import terminal

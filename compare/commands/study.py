@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from compare.commands.given import require_folder
 from compare.commands.options import AGREES, DISAGREES
 
 
@@ -40,11 +41,13 @@ def study(
     The exit code is 0 if all are done then, 1 if any failed, diverged, did not settle or took too
     long: those are tried again the next time.
     """
-    from compare.simulate.workers import available_cores
     from compare.study.grid.file import load_study
+
+    read = load_study(file)
+    from compare.simulate.workers import available_cores
     from compare.study.grid.plan import Plan
 
-    plan = Plan.of(load_study(file))
+    plan = Plan.of(read)
     cores = workers or available_cores()
     from compare.commands.terminal import print_line, progress
 
@@ -84,6 +87,7 @@ def study_report(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a study.")],
 ) -> int:
     """Write the report of a study, also under way."""
+    require_folder(folder, "start `vibrissa study FILE --out DIR` first")
     from compare.commands.terminal import print_written
     from compare.study.show.study_report import write_report
 

@@ -60,16 +60,19 @@ def run(
             from compare.commands.many import run_many
 
             return run_many(job, folder, with_budget)
-        from analytic import solve_sweep
-        from compare.commands import terminal
-        from compare.commands.engines import at_rest, measured_budget, simulated, sweep_file
-        from compare.comparison import compare
-        from compare.show.animation import write_animation
-        from compare.show.report import Film, write_report
-        from compare.simulate.inspection import faults_of
+        with waiting("solving"):
+            from analytic import solve_sweep
 
-        exact = solve_sweep(job.case)
-        exact.write(folder / "analytic.parquet")
+            exact = solve_sweep(job.case)
+            exact.write(folder / "analytic.parquet")
+        with waiting("loading MuJoCo"):
+            from compare.commands import terminal
+            from compare.commands.engines import at_rest, measured_budget, simulated, sweep_file
+            from compare.comparison import compare
+            from compare.show.animation import write_animation
+            from compare.show.report import Film, write_report
+            from compare.simulate.inspection import faults_of
+
         found = None
         if with_budget:
             found, runs = measured_budget(job)
@@ -110,6 +113,9 @@ def report(
 
     Also where there is none yet, after `analytic` and `simulate` of a case with one --out.
     """
+    from compare.read.sweep_files import sweep_files
+
+    sweep_files(folder)
     from compare.read.run_folder import read_run
 
     stored = read_run(folder)
@@ -146,10 +152,10 @@ def analytic(
     changes = Changes(stations)
     job = changes.job(case)
     with output_folder(changes.folder(out, job.case.name)) as folder:
-        from analytic import solve_sweep
-        from compare.commands import terminal
-
         with waiting("solving"):
+            from analytic import solve_sweep
+            from compare.commands import terminal
+
             readings = solve_sweep(job.case, certified)
         terminal.print_sweep(readings)
         terminal.print_written(readings.write(folder / "analytic.parquet"))
@@ -184,7 +190,8 @@ def simulate(
     changes = Changes(stations, segments, beam, obstacle, spatial, motion, speed, timestep, engine)
     job = changes.job(case)
     with output_folder(changes.folder(out, job.case.name)) as folder:
-        from compare.commands import terminal
+        with waiting("loading"):
+            from compare.commands import terminal
 
         if job.engines != ("mujoco",):
             from compare.commands.many import swept
@@ -229,13 +236,16 @@ def animate(
     changes = Changes(stations, segments, beam, obstacle)
     job = changes.job(case)
     with output_folder(changes.folder(out, job.case.name)) as folder:
-        from analytic import solve_sweep
-        from compare.commands import terminal
-        from compare.commands.engines import simulated
-        from compare.show.animation import write_animation
+        with waiting("solving"):
+            from analytic import solve_sweep
 
-        exact = solve_sweep(job.case)
-        exact.write(folder / "analytic.parquet")
+            exact = solve_sweep(job.case)
+            exact.write(folder / "analytic.parquet")
+        with waiting("loading MuJoCo"):
+            from compare.commands import terminal
+            from compare.commands.engines import simulated
+            from compare.show.animation import write_animation
+
         candidate = simulated(job, folder)
         with terminal.progress("frames", frames) as advance:
             for path in write_animation(exact, candidate, folder, frames, advance):

@@ -3,11 +3,12 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, TypeGuard
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 import numpy as np
 
-from analytic import Readings
+if TYPE_CHECKING:  # limits are checked before pandas is needed
+    from analytic import Readings
 
 # (beta L)^4/(2 pi)^2 of a cantilever's first vibration: its mass per length [EI T1^2/L^4].
 _MASS = 1.8751040687119611**4 / (2 * math.pi) ** 2
@@ -29,7 +30,7 @@ class Rate:
     damping_ratio: float
 
     @classmethod
-    def of(cls, readings: Readings) -> "Rate | None":
+    def of(cls, readings: "Readings") -> "Rate | None":
         """The rate of a sweep, by its provenance.
 
         Parameters
@@ -77,7 +78,7 @@ class Rate:
         return inertial + damped
 
 
-def free_share(readings: Readings) -> float:
+def free_share(readings: "Readings") -> float:
     """Share of the trusted stations at which nothing touches, as the source recorded.
 
     Parameters

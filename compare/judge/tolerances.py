@@ -3,12 +3,15 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
-from analytic import CLAMP_READINGS, PHASES, InputError, Readings
+from analytic import CLAMP_READINGS, PHASES, InputError
 from compare.judge.rate import Rate, free_share
+
+if TYPE_CHECKING:  # limits are checked before pandas is needed
+    from analytic import Readings
 
 Kind: TypeAlias = Literal["rms", "max"]
 
@@ -118,7 +121,7 @@ class Tolerances:
         special = {name: _limit(name, value) for name, value in self.special.items()}
         object.__setattr__(self, "special", special)
 
-    def suited_to(self, candidate: Readings) -> "Tolerances":
+    def suited_to(self, candidate: "Readings") -> "Tolerances":
         """The same limits, with reasons that hold for the source that they are applied to.
 
         Parameters
@@ -153,7 +156,7 @@ class Tolerances:
         widened: dict[str, Any] = {name: moved[name] for name in moved if name in defaults}
         return replace(suited, **widened)
 
-    def _in_motion(self, rate: Rate, candidate: Readings) -> dict[str, Limit]:
+    def _in_motion(self, rate: Rate, candidate: "Readings") -> dict[str, Limit]:
         """These limits, and what the speed adds to each."""
         foot_x = candidate.values("foot_x")
         stations, travel = len(foot_x), float(np.ptp(foot_x)) / candidate.beam.length
@@ -282,7 +285,7 @@ _CONVENTIONS = {
 """Reasons of the default limits for sources other than the one that they were made for."""
 
 
-def is_smooth_model(readings: Readings) -> bool:
+def is_smooth_model(readings: "Readings") -> bool:
     """Whether a sweep is of a beam in segments past a smooth contour, as far as it says.
 
     Parameters

@@ -17,7 +17,7 @@ from compare.read.tables import BeamFile, CaseFile
 from compare.read.toml import Place, TomlFile
 from compare.read.uncertainty import uncertainties_of
 from compare.validate.stated import Uncertainties
-from engines.found import named_engines
+from engines.known import named_engines
 from mujoco_models.motion import Motion
 from mujoco_models.own.names import OwnModel
 from mujoco_models.settings import Settings

@@ -12,6 +12,7 @@ from analytic import InputError, Readings
 from analytic.problem.files import regular_file
 from compare.explain.budget import Budget
 from compare.judge.tolerances import GENERAL, Limit, Tolerances
+from compare.read.sweep_files import sweep_files
 from compare.validate.validation import Validation
 
 _LARGEST = 64_000_000  # bytes of a JSON file
@@ -60,19 +61,10 @@ def read_run(folder: Path) -> StoredRun:
     InputError
         If a sweep is missing, there are several of MuJoCo, or a file is damaged.
     """
-    found = [*folder.glob("mujoco-*.parquet")]
-    sweeps = [path for path in found if not path.name.endswith(".partial.parquet")]
-    if not (folder / "analytic.parquet").is_file() or len(sweeps) != 1:
-        there = ", ".join(sorted(path.name for path in folder.glob("*.parquet"))) or "no sweep"
-        raise InputError(
-            "DIR",
-            f"{folder} ({there[:200]})",
-            "the folder of one run, with analytic.parquet and one mujoco-BEAM.parquet",
-            "make one: vibrissa run CASE --out DIR",
-        )
+    reference, candidate = sweep_files(folder)
     return StoredRun(
-        Readings.read(folder / "analytic.parquet"),
-        Readings.read(sweeps[0]),
+        Readings.read(reference),
+        Readings.read(candidate),
         _tolerances(folder / "comparison.json"),
         read_budget(folder / "budget.json") if (folder / "budget.json").exists() else None,
         _validation(folder),

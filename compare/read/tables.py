@@ -31,8 +31,8 @@ from compare.read.quantities import (
     Table,
 )
 from mujoco_models.own.names import ContactKind, OwnModel
+from mujoco_models.own.shipped import shipped_models
 from mujoco_models.settings import Settings
-from mujoco_models.simulate import shipped_models
 
 
 class BeamTable(Table):

@@ -3,11 +3,11 @@
 ``studyfile -> plan -> execute(run) -> store -> report``: a study file says what is varied, the plan
 lists the runs lazily, an executor of any kind does them, each becomes one row of a Parquet
 dataset, and the report reads nothing but that.
+
+The names are listed in ``__init__.pyi`` and loaded when first used: a study file is checked before
+what does the runs is loaded.
 """
 
-from compare.study.grid.file import load_study
-from compare.study.grid.plan import Plan
-from compare.study.grid.study import Study
-from compare.study.keep.reading import read_rows
+import lazy_loader
 
-__all__ = ["Plan", "Study", "load_study", "read_rows"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

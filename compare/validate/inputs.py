@@ -1,13 +1,10 @@
 """The inputs of a case that may be uncertain, and the case with one of them changed."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from analytic import CLAMP_READINGS, Case, Sweep, solve_sweep
-from analytic.problem.arrays import Floats
+from analytic import CLAMP_READINGS, Case
 
 GAINS = tuple(f"gain_{name}" for name in CLAMP_READINGS)
 """Of each reading's sensor, relative: its calibration."""
@@ -131,62 +128,3 @@ def possible(case: Case, name: str, error: float) -> float:
         return error
     nominal = INPUTS[name].nominal(case)
     return abs(nominal + error) - nominal
-
-
-@dataclass(frozen=True)
-class Swept:
-    """What a sensor reads of a case, over the stations of the nominal one.
-
-    Attributes
-    ----------
-    readings : array, shape (3, stations)
-        NaN where the vibrissa is free or has no trusted state.
-    snap_off : float or None
-        Its foot position [length].
-    """
-
-    readings: Floats
-    snap_off: float | None
-
-
-def swept(case: Case, changes: Mapping[str, float] | None = None) -> Swept:
-    """The closed form's sweep of a case whose inputs are off, over the stations of the case.
-
-    Parameters
-    ----------
-    case : Case
-        The nominal problem.
-    changes : mapping, optional
-        By how much each input differs, in its unit.
-
-    Returns
-    -------
-    Swept
-        In the unit of the case; its ``foot_x`` are the nominal ones.
-
-    Raises
-    ------
-    InputError, ArithmeticError
-        If the changed problem is none that can be solved.
-    """
-    changes = {} if changes is None else changes
-    start, stop = (float(x) + changes.get("foot_x", 0.0) for x in case.foot_x[[0, -1]])
-    varied = replace(case, sweep=Sweep(2, direction=case.sweep.direction))
-    gains = np.ones((len(CLAMP_READINGS), 1))
-    for name, by in changes.items():
-        if name in GAINS:
-            gains[GAINS.index(name)] += by
-        elif (change := INPUTS[name].changed) is not None and by != 0:
-            varied = change(varied, by)
-    # A sweep has to start clear of the object: stations are put before the first one.
-    number = case.sweep.stations
-    step = (stop - start) / (number - 1)
-    before = max(0, math.ceil((float(varied.foot_x[0]) - start) / -step))
-    sweep = Sweep(number + before, start - before * step, stop, case.sweep.direction)
-    found = solve_sweep(replace(varied, sweep=sweep))
-    known = found.trusted & (found.table["phase"] != "free").to_numpy()
-    readings = np.stack([np.where(known, found.values(n), np.nan) for n in CLAMP_READINGS])
-    away = changes.get("foot_x", 0.0)
-    return Swept(
-        (gains * readings)[:, before:], None if found.snap_off is None else found.snap_off - away
-    )

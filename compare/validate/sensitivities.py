@@ -6,8 +6,9 @@ import numpy as np
 
 from analytic import Case, InputError
 from analytic.problem.arrays import Floats
-from compare.validate.inputs import GAINS, INPUTS, Swept, possible, swept
+from compare.validate.inputs import GAINS, INPUTS, possible
 from compare.validate.stated import Uncertainties
+from compare.validate.swept import Swept, swept
 
 _STEP = 1e-4  # of an input's unit: derivatives are good to 1e-4 of their largest, next to a fold
 _MOST_FAILED = 0.1  # share of the samples that may be of no solvable problem

@@ -129,7 +129,7 @@ class Uncertainties:
             matrix[place[one], place[other]] = matrix[place[other], place[one]] = share
         return matrix
 
-    def draws(self, count: int, rng: np.random.Generator) -> Floats:
+    def draws(self, count: int, rng: "np.random.Generator") -> Floats:
         """Errors of the inputs, as they are stated.
 
         Parameters

@@ -12,7 +12,7 @@ from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
 from compare.study.work.perform import Recipe, perform
 from engines import find_engine, list_engines, sweep_apart
-from engines.found import named_engines
+from engines.known import named_engines
 from mujoco_models import Settings
 from tests.compare.command import vibrissa
 

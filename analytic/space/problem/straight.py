@@ -2,8 +2,6 @@
 
 from typing import NamedTuple
 
-from scipy.optimize import brentq
-
 from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.body import Body, Spot
 from analytic.space.problem.path import FootPath
@@ -44,6 +42,7 @@ def straight_gap(body: Body, foot: Floats, tangent: Floats, radius: float) -> Ga
     Gap
         Distance, and where.
     """
+    from scipy.optimize import brentq  # slow to load, and stating a case needs none of it
 
     def rise(s: float) -> float:
         spot = body.nearest(foot + s * tangent, _ANY)
@@ -233,6 +232,8 @@ class Way:
         return None
 
     def _crossing(self, low: float, high: float) -> float:
+        from scipy.optimize import brentq
+
         at_low, at_high = self._size(low), self._size(high)
         if at_low == 0 or (at_low > 0) == (at_high > 0):  # at a touch to rounding
             return low

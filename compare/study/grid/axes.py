@@ -6,7 +6,6 @@ from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
 from pydantic import Field
-from scipy.stats import qmc
 
 from analytic.problem.arrays import Floats
 from compare.read.quantities import Table
@@ -66,6 +65,8 @@ class Sample(Table):
             Points in the unit cube, shape (count, dimensions).
         """
         if self.method == "latin-hypercube":
+            from scipy.stats import qmc  # slow to load, and few studies draw samples
+
             return np.asarray(qmc.LatinHypercube(dimensions, rng=self.seed).random(self.count))
         return np.random.default_rng(self.seed).random((self.count, dimensions))
 

@@ -16,7 +16,7 @@ from compare.read.toml import TomlFile
 from compare.study.grid.axes import Value
 from compare.study.grid.schema import CASE_TABLES, StudyFile
 from compare.study.grid.study import BEAM, MESH, flatten
-from engines.found import named_engines
+from engines.known import named_engines
 
 _VARIED = (*CASE_TABLES, "noise", "reconstruction")
 _KEYS = {

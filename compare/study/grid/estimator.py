@@ -4,11 +4,12 @@ from typing import Annotated
 
 from pydantic import AfterValidator
 
-from analytic.from_clamp.earlier.methods import NAMES
 from compare.read.quantities import Table
 
 
 def _known(name: str) -> str:
+    from analytic.from_clamp.earlier.methods import NAMES  # slow to load, and few studies name one
+
     if name not in NAMES:
         raise ValueError(f"a method is one of {', '.join(NAMES)}")
     return name

@@ -1,10 +1,14 @@
 """The sensor of a study: noise that is added to the clamp readings of a sweep."""
 
+from typing import TYPE_CHECKING
+
 from pydantic import Field
 
-from analytic import CLAMP_READINGS, Readings
+from analytic import CLAMP_READINGS
 from compare.read.quantities import Table
-from compare.sense.noise import with_noise
+
+if TYPE_CHECKING:
+    from analytic import Readings
 
 
 class SensorNoise(Table):
@@ -21,7 +25,7 @@ class SensorNoise(Table):
     relative: float = Field(default=0.0, ge=0, lt=1)
     seed: int = Field(default=0, ge=0, lt=2**63)  # the row's column has 64 bits
 
-    def add_to(self, readings: Readings) -> Readings:
+    def add_to(self, readings: "Readings") -> "Readings":
         """Add the noise to a sweep.
 
         Parameters
@@ -36,4 +40,6 @@ class SensorNoise(Table):
         """
         if self.relative == 0:
             return readings
+        from compare.sense.noise import with_noise  # pandas is slow to load, a check needs none
+
         return with_noise(readings, dict.fromkeys(CLAMP_READINGS, self.relative), self.seed)

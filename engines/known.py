@@ -1,0 +1,59 @@
+"""The names of the engines: of those shipped here, and of other distributions' by entry points."""
+
+from collections.abc import Iterator
+from importlib.metadata import EntryPoint, entry_points
+
+from analytic.problem.errors import InputError
+
+GROUP = "vibrissa.engines"
+"""The entry points by which other distributions offer engines: ``name = "module:ENGINE"``."""
+_SHIPPED = {
+    "mujoco": "engines.mujoco:ENGINE",
+    "drake": "engines.drake.engine:ENGINE",
+    "exudyn": "engines.exudyn.engine:ENGINE",
+}
+
+
+def named_engines(names: str) -> list[str]:
+    """The engines of a list.
+
+    Parameters
+    ----------
+    names : str
+        Names between commas, each once.
+
+    Returns
+    -------
+    list of str
+        The names.
+
+    Raises
+    ------
+    InputError
+        If one is empty, unknown, or there twice. Whether it is installed does not matter.
+    """
+    listed, known = [name.strip() for name in names.split(",")], known_engines()
+    if len(set(listed)) < len(listed) or not set(listed) <= set(known):
+        raise InputError(
+            "engine",
+            repr(names),
+            f"names between commas, each once, of {', '.join(known)}",
+            "`vibrissa engines` lists them",
+        )
+    return listed
+
+
+def known_engines() -> dict[str, str]:
+    """Where each engine is.
+
+    Returns
+    -------
+    dict
+        ``"module:ATTRIBUTE"`` by name, the shipped ones first.
+    """
+    offered = {point.name: point.value for point in sorted(_offered(), key=lambda p: p.value)}
+    return {**_SHIPPED, **{n: where for n, where in offered.items() if n not in _SHIPPED}}
+
+
+def _offered() -> Iterator[EntryPoint]:
+    yield from entry_points(group=GROUP)
