@@ -1,12 +1,12 @@
 """What may stand in the table of one sweep."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.columns import COLUMNS, CONTACT, PHASES, SENSED, STATUSES
 from analytic.problem.errors import InputError
 
@@ -107,19 +107,49 @@ def checked_table(table: pd.DataFrame, source: str, place: Place = row_number) -
             f"at least {', '.join(SENSED)}",
             f"add {', '.join(missing)}",
         )
-    twice = [name for name in COLUMNS if name in table and table[name].ndim != 1]
+    twice = (
+        []
+        if table.columns.is_unique
+        else [x for x in COLUMNS if table.columns.tolist().count(x) > 1]
+    )
     if twice:
         raise InputError(f"column {twice[0]}", "there more than once", "one column", "drop one")
-    numbers = {
-        name: as_numbers(table[name], name, place) for name in (*SENSED, *CONTACT) if name in table
-    }
-    changed = {name: column for name, column in numbers.items() if table[name].dtype != float}
+    changed: dict[str, Floats] = {}
+    for name in (*SENSED, *CONTACT):
+        if name in table:
+            column = table[name]
+            numbers = as_numbers(column, name, place)
+            if column.dtype != float:
+                changed[name] = numbers
     for name, allowed in (("phase", PHASES), ("status", STATUSES)):
         if name in table:
             _check_words(table[name], name, allowed, place)
     if not isinstance(table.index, pd.RangeIndex):
         table = table.reset_index(drop=True)
     return table.assign(**changed) if changed else table
+
+
+def as_table(columns: Mapping[str, Floats | Integers]) -> pd.DataFrame:
+    """Columns of readings as a table.
+
+    Parameters
+    ----------
+    columns : mapping of array, shape (n,)
+        Numbers; phase and status by their number in `PHASES` and `STATUSES`. A text is made once
+        for all rows that have it: made row by row they would take longer than the closed form.
+
+    Returns
+    -------
+    pandas.DataFrame
+        n rows.
+    """
+    words = {"phase": PHASES, "status": STATUSES}
+    return pd.DataFrame(
+        {
+            name: pd.Series(words[name]).array.take(values.astype(int)) if name in words else values
+            for name, values in columns.items()
+        }
+    )
 
 
 def mirrored_table(table: pd.DataFrame) -> pd.DataFrame:
@@ -168,6 +198,8 @@ def _check_words(
     allowed: tuple[str, ...],
     place: Place,
 ) -> None:
+    if isinstance(column.dtype, pd.StringDtype) and set(column.unique()) <= set(allowed):
+        return
     unknown = ~column.astype(str).isin(allowed).to_numpy()
     if unknown.any():
         row = int(np.argmax(unknown))

@@ -7,15 +7,19 @@ least of all. Cells between grid points are smooth and belong to one phase; the 
 left of a foot position holds the state there.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import TypeAlias
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
-from analytic.solver.contact_length import surplus
-from analytic.solver.equilibria import equilibria
+from analytic.problem.contours.many import Contours
+from analytic.solver.contact_length import surplus_and_rate
+from analytic.solver.equilibria import equilibria, equilibria_at
 from analytic.solver.grid import along, folded
 
 _ASIDE = 1e-3  # of a cell: next to a fold x0 is higher by far more than rounding there
@@ -28,12 +32,17 @@ class Branch:
 
     Attributes
     ----------
+    centreline : Contour
+        What the centreline feels, in units of the vibrissa's length.
     t : array, shape (n,)
         Contour parameters, decreasing along the sweep; the last is the snap-off.
     foot_x, excess : array, shape (n,)
         Foot position [L] and excess rotation of the tip [rad] there.
     tangent : array of bool, shape (n - 1,)
         Whether the cell between two parameters is in Phase B.
+    lowest : tuple of float
+        Contour parameter of the contour's lowest point, and the foot position with the contact
+        there [L], NaN out of reach.
     """
 
     centreline: Contour
@@ -41,6 +50,7 @@ class Branch:
     foot_x: Floats
     excess: Floats
     tangent: Booleans
+    lowest: tuple[float, float]
 
     @property
     def first_contact(self) -> float:
@@ -53,19 +63,19 @@ class Branch:
         return float(self.t[-1])
 
     @property
-    def sideways_limit(self) -> float | None:
-        """Contour parameter of the last equilibrium that is stable in space; None if all are.
+    def sideways_limit(self) -> tuple[float, float] | None:
+        """Contour parameter and foot position of the last equilibrium that is stable in space.
 
-        It is the contour's lowest point, or what a sweep along a polygon visits last before it
-        passes that in a jump; see `analytic.from_clamp.sideways`.
+        It is at the contour's lowest point, or what a sweep along a polygon visits last before it
+        passes that in a jump; see `analytic.from_clamp.sideways`. None if all are stable.
         """
-        lowest = self.centreline.parameter(np.zeros(1))
-        if lowest[0] <= self.snap_off:
+        lowest, foot_x = self.lowest
+        if lowest <= self.snap_off:
             return None
-        before = self.t > lowest[0]
-        t = np.append(self.t[before], lowest)
-        foot_x = np.append(self.foot_x[before], equilibria(self.centreline, lowest).foot_x)
-        return float(t[np.argmin(foot_x)])
+        before = self.t > lowest
+        t, places = np.append(self.t[before], lowest), np.append(self.foot_x[before], foot_x)
+        last = np.argmin(places)
+        return float(t[last]), float(places[last])
 
     @property
     def phase_changes(self) -> Floats:
@@ -88,7 +98,7 @@ class Branch:
         start = self.foot_x[0] if self.tangent[0] else (starts[0] if starts.size else None)
         end = None if self.tangent[-1] or not ends.size else ends[-1]
         limit = self.sideways_limit
-        out = None if limit is None else equilibria(self.centreline, np.array([limit])).foot_x[0]
+        out = None if limit is None else limit[1]
         places = (self.foot_x[0], start, end, out, self.foot_x[-1])
         names = ("first_contact", "phase_b_start", "phase_b_end", "out_of_plane", "snap_off")
         return {n: None if x is None else float(x) for n, x in zip(names, places, strict=True)}
@@ -111,54 +121,95 @@ class Branch:
         return np.clip(end, 1, len(self.t) - 1) - 1
 
 
-def trace(centreline: Contour, reach: tuple[float, float]) -> Branch:
-    """Follow the equilibria along a dimensionless contour, from first contact to snap-off.
+def trace(centrelines: Sequence[Contour], reaches: Sequence[tuple[float, float]]) -> list[Branch]:
+    """Follow the equilibria along dimensionless contours, from first contact to snap-off.
 
     Parameters
     ----------
-    centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length.
-    reach : tuple of float
+    centrelines : sequence of Contour
+        What the centrelines feel, in units of the vibrissae's lengths.
+    reaches : sequence of tuple of float
         Contour parameters of the last point within reach and of the first contact, as
         `contact_range` has them.
 
     Returns
     -------
-    Branch
-        At least two points; all in one place if nothing but the first contact can be reached.
+    list of Branch
+        Of at least two points each; all in one place if nothing but the first contact can be
+        reached.
     """
-    last, first = reach
-    t, foot_x, excess = folded(centreline, along(centreline, first, last))
+    many = Contours(centrelines)
+    last, first = np.array(reaches).T
+    grid, samples = folded(many, along(many, first, last))
+    ends = np.searchsorted(grid.owner, np.arange(len(many) + 1))
+    parts = [
+        _to_snap_off(*(values[begin:end] for values in (grid.t, samples.foot_x, samples.excess)))
+        for begin, end in pairwise(ends)
+    ]
+    parts = _refined(many, parts)
+    counts = [len(t) - 1 for t, _, _ in parts]
+    owner = np.repeat(np.arange(len(many)), counts)
+    middles = np.concatenate([(t[1:] + t[:-1]) / 2 for t, _, _ in parts])
+    tangent = surplus_and_rate(many.at(owner, middles))[0] < 0
+    lowest = np.concatenate([contour.parameter(np.zeros(1)) for contour in centrelines])
+    at_lowest = equilibria_at(many.at(np.arange(len(many)), lowest)).foot_x
+    return [
+        Branch(contour, *part, cells, (float(t), float(foot_x)))
+        for contour, part, cells, t, foot_x in zip(
+            centrelines,
+            parts,
+            np.split(tangent, np.cumsum(counts)[:-1]),
+            lowest,
+            at_lowest,
+            strict=True,
+        )
+    ]
+
+
+_Part: TypeAlias = tuple[Floats, Floats, Floats]
+"""Contour parameters, foot positions and excess rotations along a branch."""
+
+
+def _to_snap_off(t: Floats, foot_x: Floats, excess: Floats) -> _Part:
+    """Up to the least foot position, at least two points."""
     least = int(np.argmin(foot_x))
-    t, foot_x, excess = (values[: least + 1] for values in (t, foot_x, excess))
     if least == 0:
-        t, foot_x, excess = (np.repeat(values, 2) for values in (t, foot_x, excess))
-    else:
-        t[-1], foot_x[-1], excess[-1] = _lowest(centreline, t[-1], (t[-2], foot_x[-1], excess[-1]))
-    return Branch(centreline, t, foot_x, excess, surplus(centreline, (t[1:] + t[:-1]) / 2) < 0)
+        return np.repeat(t[:1], 2), np.repeat(foot_x[:1], 2), np.repeat(excess[:1], 2)
+    return t[: least + 1].copy(), foot_x[: least + 1].copy(), excess[: least + 1].copy()
+
+
+def _refined(many: Contours, parts: list[_Part]) -> list[_Part]:
+    """The same with the snap-off where x0 is least.
+
+    It is where the derivative of x0 vanishes, unless that is inexact, as without a radius of
+    curvature: then x0 is lower next to it.
+    """
+    at = np.array([t[-1] for t, _, _ in parts])
+    width = np.array([t[-2] for t, _, _ in parts]) - at
+    foot_x = np.array([places[-1] for _, places, _ in parts])
+    owner = np.repeat(np.arange(len(many)), 2)
+    aside = (at[:, None] + _ASIDE * width[:, None] * np.array([-1, 1])).ravel()
+    beside = equilibria_at(many.at(owner, aside)).foot_x.reshape(-1, 2)
+    least = foot_x - _ROUNDING * np.maximum(1, np.abs(foot_x))
+    for i in np.flatnonzero((width > 0) & (beside < least[:, None]).any(axis=1)):
+        t, places, excess = parts[i]
+        t[-1], places[-1], excess[-1] = _lowest(
+            many.contours[i], float(at[i]), float(width[i]), float(foot_x[i])
+        )
+    return parts
 
 
 def _lowest(
-    centreline: Contour, at: float, found: tuple[float, float, float]
+    centreline: Contour, at: float, width: float, foot_x: float
 ) -> tuple[float, float, float]:
-    """The snap-off's parameter, foot position and excess rotation.
-
-    It is what was `found` where the derivative of x0 vanishes, unless that is inexact, as without a
-    radius of curvature: then x0 is lower next to it.
-    """
-    before, foot_x, excess = found
-    width = before - at
-    aside = at + _ASIDE * width * np.array([-1, 1])
-    lower = equilibria(centreline, aside).foot_x < foot_x - _ROUNDING * max(1, abs(foot_x))
-    if not lower.any():
-        return at, foot_x, excess
+    """The snap-off's parameter, foot position and excess rotation, next to what was found."""
 
     def place(t: float) -> float:
         value = float(equilibria(centreline, np.array([t])).foot_x[0])
         return foot_x + 1 if np.isnan(value) else value  # out of reach
 
     search = minimize_scalar(
-        place, bounds=(at - width, before), method="bounded", options={"xatol": 1e-9 * width}
+        place, bounds=(at - width, at + width), method="bounded", options={"xatol": 1e-9 * width}
     )
     lowest = equilibria(centreline, np.array([search.x]))
     return float(search.x), float(lowest.foot_x[0]), float(lowest.excess[0])

@@ -10,12 +10,15 @@ from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError, require
 from analytic.problem.support import check_support, is_plain
-from analytic.solver.equilibria import equilibria, to_columns
+from analytic.problem.table import as_table
+from analytic.solver.equilibria import Units, equilibria, to_columns
 from analytic.solver.general.clearance import is_clear
 from analytic.solver.general.columns import to_columns as general_columns
 from analytic.solver.general.contacts import contacts
 from analytic.solver.general.residuals import without_inexact
 from analytic.solver.general.states import Vibrissa
+
+_AT_ONCE = 4096  # contacts: their intermediate results stay in the processor's cache
 
 
 def solve_contact(
@@ -78,7 +81,11 @@ def solve_contact(
     centreline = profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
     t = centreline.parameter(angles)
     if is_plain(beam, clamp_stiffness, friction):
-        return pd.DataFrame(to_columns(equilibria(centreline, t), beam))
+        parts = [
+            to_columns(equilibria(centreline, t[first : first + _AT_ONCE]), Units.of(beam))
+            for first in range(0, max(len(t), 1), _AT_ONCE)
+        ]
+        return as_table({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
     vibrissa = Vibrissa.of(beam, clamp_stiffness, friction)
     found = contacts(centreline, t, vibrissa)
     again = np.isfinite(found.excess) & ~is_clear(centreline, found)

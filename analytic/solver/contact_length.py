@@ -3,7 +3,7 @@
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.contours.contour import Contour
+from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.solver.equilibria import tangent_contact
 
 
@@ -22,27 +22,25 @@ def surplus(centreline: Contour, t: Floats) -> Floats:
     array, shape (n,)
         Dimensionless.
     """
-    return surplus_and_rate(centreline, t)[0]
+    return surplus_and_rate(centreline.at(t))[0]
 
 
-def surplus_and_rate(centreline: Contour, t: Floats) -> tuple[Floats, Floats]:
+def surplus_and_rate(point: ContourPoint) -> tuple[Floats, Floats]:
     """`surplus` and its derivative along the contour.
 
     With the tangential contact's q' = -1/C and (C sin + S cos)' = across - 1/C by the slope angle.
 
     Parameters
     ----------
-    centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length.
-    t : array, shape (n,)
-        Contour parameters.
+    point : ContourPoint
+        Points of contours that the centreline feels, in units of the vibrissa's length.
 
     Returns
     -------
     value, rate : array, shape (n,)
         The rate is NaN where the vibrissa is straight, against an upright side.
     """
-    states = tangent_contact(centreline.at(t))
+    states = tangent_contact(point)
     alpha, _, eta, turning, stretch = states.point
     up, across = states.frame
     q, C, _ = states.span

@@ -24,9 +24,12 @@ span with zero moment at the clamp for alpha < 0.
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import ellipeinc, ellipkinc
+from numpy.polynomial import chebyshev, legendre
 
 from analytic.problem.arrays import Floats
+from analytic.solver.integrals import elliptic_integrals
+
+_DEGREE = 13  # of the polynomials for Phase B: the next coefficients are below 2e-16
 
 
 class Span(NamedTuple):
@@ -64,6 +67,43 @@ def span(excess: Floats, alpha: Floats) -> Span:
     return _span(2 * np.sqrt(np.sin(w / 2) * np.sin(w / 2 + sharp)), k, k_, alpha)
 
 
+def tangent_span(alpha: Floats) -> Span:
+    """Integrals of the span in tangential contact (Phase B), which depend on `alpha` alone.
+
+    With v = pi/2 - |alpha|, for alpha >= 0 (theta from 0 to v, put theta = v t^2),
+
+        q = integral of 1/sqrt(2 sin theta) = sqrt(2 v) g(v^2),
+        S = integral of sqrt(sin(theta)/2) = v^(3/2) h(v^2),
+
+    g and h being analytic; for alpha < 0, where theta passes pi/2, twice the integrals up to there
+    less these.
+
+    Parameters
+    ----------
+    alpha : array, any shape
+        Slope angle of the contour at the contact [rad].
+
+    Returns
+    -------
+    Span
+        What `span` has for an excess of pi/2 - |alpha|.
+    """
+    v = np.pi / 2 - np.abs(alpha)
+    root = np.sqrt(v)
+    z = v * v
+    z *= 2 / _WIDEST
+    z -= 1
+    q = _polynomial(_G, z)
+    q *= root
+    S = _polynomial(_H, z)
+    S *= root
+    S *= v
+    past = alpha < 0
+    np.subtract(2 * _UPRIGHT[0], q, out=q, where=past)
+    np.subtract(2 * _UPRIGHT[1], S, out=S, where=past)
+    return Span(q, np.sqrt(2 * np.sin(v)), S)
+
+
 def span_of_moment(C: Floats, alpha: Floats) -> Span:
     """Integrals of the span whose clamp moment is C sqrt(f): what reconstruction starts from.
 
@@ -87,10 +127,38 @@ def span_of_moment(C: Floats, alpha: Floats) -> Span:
 
 def _span(C: Floats, k: Floats, k_: Floats, alpha: Floats) -> Span:
     a = np.sin(alpha / 2)  # k sin(psi_0); k cos(psi_0) is C/2
-    psi = np.arctan2(C / 2, k_ * a)
-    q = ellipkinc(psi, k * k)
-    S = 2 * (ellipeinc(psi, k * k) - k * a * np.sin(psi)) - q
-    return Span(q, C, S)
+    q, E, sine = elliptic_integrals(C / 2, k_ * a, k, k_)
+    return Span(q, C, 2 * (E - k * a * sine) - q)
+
+
+def _polynomial(coefficients: Floats, z: Floats) -> Floats:
+    """Horner's scheme in place; the highest power's coefficient is the last."""
+    value = np.full_like(z, coefficients[-1])
+    for coefficient in coefficients[-2::-1]:
+        value *= z
+        value += coefficient
+    return value
+
+
+def _means(z: Floats) -> Floats:
+    """sqrt(2) g and h of v^2 = `_WIDEST` (1 + z)/2, shape (2, n), by Gauss's quadrature over t."""
+    nodes, weights = legendre.leggauss(24)
+    t, weights = (nodes + 1) / 2, weights / 2
+    v = np.sqrt(_WIDEST * (1 + z) / 2)
+    root = np.sqrt(2 * np.sinc(v[:, None] * t**2 / np.pi))
+    return np.stack([2 * (weights / root).sum(axis=1), (weights * t**2 * root).sum(axis=1)])
+
+
+_WIDEST = (np.pi / 2) ** 2  # of v^2
+_NODES = chebyshev.chebpts1(_DEGREE + 1)
+_G, _H = (
+    np.asarray(chebyshev.cheb2poly(chebyshev.chebfit(_NODES, values, _DEGREE)), dtype=float)
+    for values in _means(_NODES)
+)
+_UPRIGHT = (  # q and S up to theta = pi/2
+    np.sqrt(np.pi / 2) * float(_G.sum()),
+    (np.pi / 2) ** 1.5 * float(_H.sum()),
+)
 
 
 def least_rotation(alpha: Floats) -> Floats:
@@ -155,6 +223,36 @@ def span_by_excess(span: Span, excess: Floats, alpha: Floats) -> Span:
         ((S - q * sin_1) / 2 + pull) / cos_1,
         cos_1 / C,
         (sin_1 * (S / 2 + pull) - q / 2) / cos_1,
+    )
+
+
+def span_by_excess_twice(span: Span, by_excess: Span, excess: Floats, alpha: Floats) -> Span:
+    """Second derivatives of `span` with respect to the excess rotation, at fixed alpha.
+
+    Parameters
+    ----------
+    span, by_excess : Span
+        The integrals and their first derivatives.
+    excess : array, same shape
+        Excess rotation of the span's end [rad].
+    alpha : array, same shape
+        Slope angle of the contour at the contact [rad].
+
+    Returns
+    -------
+    Span
+        Derivatives [1/rad^2].
+    """
+    q, C, S = span
+    q_w, C_w, S_w = by_excess
+    angle = excess + np.abs(alpha)
+    sin_1, cos_1 = np.cos(angle), np.sin(angle)
+    pull = np.sin(alpha) / C
+    pull_w = -pull * C_w / C
+    return Span(
+        ((S_w - q_w * sin_1 + q * cos_1) / 2 + pull_w - q_w * sin_1) / cos_1,
+        (sin_1 - cos_1 * C_w / C) / C,
+        (sin_1 * (S_w / 2 + pull_w - S_w) - cos_1 * (S / 2 + pull) - q_w / 2) / cos_1,
     )
 
 

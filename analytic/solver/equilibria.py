@@ -7,8 +7,9 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats, Words
+from analytic.problem.arrays import Booleans, Floats, Integers, Words
 from analytic.problem.beam import Beam
+from analytic.problem.columns import PHASES, STATUSES
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.solver.elastica import (
     Frame,
@@ -18,6 +19,7 @@ from analytic.solver.elastica import (
     span,
     span_by_alpha,
     span_by_excess,
+    tangent_span,
 )
 from analytic.solver.tip import tip_excess
 
@@ -129,7 +131,7 @@ def tangent_contact(point: ContourPoint) -> Equilibria:
         Of n contacts.
     """
     excess = np.pi / 2 - np.abs(point.alpha)
-    loaded = span(excess, point.alpha)
+    loaded = tangent_span(point.alpha)
     root_f = frame(loaded, point.alpha).up / point.eta
     return Equilibria(point, excess, loaded, root_f, np.ones_like(point.alpha, dtype=bool))
 
@@ -159,7 +161,7 @@ def contact(point: ContourPoint, excess: Floats, tangent: Booleans) -> Equilibri
 
 
 def equilibria(centreline: Contour, t: Floats) -> Equilibria:
-    """The vibrissa against each contour point: tangential if that fits on it, else at the tip.
+    """The vibrissa against each contour point, as `equilibria_at` has it.
 
     Parameters
     ----------
@@ -173,50 +175,96 @@ def equilibria(centreline: Contour, t: Floats) -> Equilibria:
     Equilibria
         Of n contacts.
     """
-    point = centreline.at(t)
-    tangential = tangent_contact(point)
+    return equilibria_at(centreline.at(t))
+
+
+def equilibria_at(point: ContourPoint) -> Equilibria:
+    """The vibrissa against each contour point: tangential if that fits on it, else at the tip.
+
+    Parameters
+    ----------
+    point : ContourPoint
+        Where the centreline's contour is touched; arrays of shape (n,).
+
+    Returns
+    -------
+    Equilibria
+        Of n contacts.
+    """
+    found = tangent_contact(point)
+    excess, loaded, root_f, _ = found[1:]
     # Beyond alpha = -52.906 deg no tangential contact exists above the foot line.
-    tangent = (tangential.root_f > 0) & (tangential.span.q < tangential.root_f)
-    tip = ~tangent
-    excess = tangential.excess
-    excess[tip] = tip_excess(point.alpha[tip], point.eta[tip])
-    loaded = span(excess, point.alpha)
-    root_f = np.where(tangent, tangential.root_f, loaded.q)
+    tangent = (root_f > 0) & (loaded.q < root_f)
+    tip = np.flatnonzero(~tangent)
+    if tip.size:
+        alpha = point.alpha[tip]
+        excess[tip] = tip_excess(alpha, point.eta[tip])
+        for values, at_tip in zip(loaded, span(excess[tip], alpha), strict=True):
+            values[tip] = at_tip
+        root_f[tip] = loaded.q[tip]
     return Equilibria(point, excess, loaded, root_f, tangent)
 
 
 Column: TypeAlias = Floats | Words
+Numbers: TypeAlias = Floats | Integers
 
 
-def to_columns(states: Equilibria, beam: Beam) -> dict[str, Column]:
+class Units(NamedTuple):
+    """What dimensionless results are multiplied by: of a beam, or of each contact's, shape (n,)."""
+
+    length: float | Floats
+    force: float | Floats
+    moment: float | Floats
+    radius: float | Floats
+    """No unit, but of the same beam: its radius [L]."""
+
+    @classmethod
+    def of(cls, beam: Beam) -> "Units":
+        """Those of a beam.
+
+        Parameters
+        ----------
+        beam : Beam
+            The vibrissa.
+
+        Returns
+        -------
+        Units
+            Numbers.
+        """
+        return cls(beam.length, beam.force_unit, beam.moment_unit, beam.radius / beam.length)
+
+
+def to_columns(states: Equilibria, units: Units) -> dict[str, Numbers]:
     """The readings of `states`, column by column.
 
     Parameters
     ----------
     states : Equilibria
         Of n contacts.
-    beam : Beam
-        The vibrissa, whose units the columns are in.
+    units : Units
+        Of the vibrissa, or of each contact's.
 
     Returns
     -------
     dict of array, shape (n,)
-        The columns of `Readings.table` by name.
+        The columns of `Readings.table` by name; phase and status by their number in `PHASES` and
+        `STATUSES`.
     """
     alpha, xi, eta = states.point[:3]
+    sine, cosine = np.sin(alpha), np.cos(alpha)
     force = states.root_f**2
-    radius = beam.radius / beam.length
     reached = np.isfinite(states.excess)
     return {
-        "foot_x": states.foot_x * beam.length,
-        "force_x": -force * np.sin(alpha) * beam.force_unit,
-        "force_y": force * np.cos(alpha) * beam.force_unit,
-        "moment_z": states.root_f * states.span.C * beam.moment_unit,
-        "phase": np.where(states.tangent, "tangent", "tip"),
+        "foot_x": states.foot_x * units.length,
+        "force_x": -force * sine * units.force,
+        "force_y": force * cosine * units.force,
+        "moment_z": states.root_f * states.span.C * units.moment,
+        "phase": np.where(states.tangent, PHASES.index("tangent"), PHASES.index("tip")),
         "contact_angle": alpha,
-        "contact_arc_length": np.where(reached, states.arc_length, np.nan) * beam.length,
-        "contact_x": (xi - radius * np.sin(alpha)) * beam.length,
-        "contact_y": (eta + radius * np.cos(alpha)) * beam.length,
+        "contact_arc_length": np.where(reached, states.arc_length, np.nan) * units.length,
+        "contact_x": (xi - units.radius * sine) * units.length,
+        "contact_y": (eta + units.radius * cosine) * units.length,
         "tip_angle": states.tip_angle,
-        "status": np.where(reached, "ok", "unreachable"),
+        "status": np.where(reached, STATUSES.index("ok"), STATUSES.index("unreachable")),
     }

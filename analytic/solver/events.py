@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from analytic.problem.beam import Beam
-from analytic.problem.columns import COLUMNS
+from analytic.problem.columns import COLUMNS, PHASES, STATUSES
 from analytic.problem.contours.contour import Contour
+from analytic.problem.contours.many import Contours
 from analytic.problem.errors import require
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
@@ -20,7 +21,14 @@ from analytic.problem.roots import zeros
 from analytic.problem.support import check_support, is_plain
 from analytic.solver.branch import trace
 from analytic.solver.contact_length import surplus_and_rate
-from analytic.solver.equilibria import Column, Equilibria, equilibria, tangent_contact, to_columns
+from analytic.solver.equilibria import (
+    Column,
+    Equilibria,
+    Units,
+    equilibria,
+    tangent_contact,
+    to_columns,
+)
 from analytic.solver.general.clearance import is_clear
 from analytic.solver.general.columns import to_columns as general_columns
 from analytic.solver.general.path import follow
@@ -111,7 +119,7 @@ def find_events(
     if not is_plain(beam, clamp_stiffness, friction):
         vibrissa = Vibrissa.of(beam, clamp_stiffness, friction)
         return _general_events(centreline, reach, vibrissa, beam)
-    branch = trace(centreline, reach)
+    (branch,) = trace([centreline], [reach])
     touch = _first_touch(centreline, branch.first_contact, beam)
 
     def event(t: float) -> Event:
@@ -128,7 +136,7 @@ def find_events(
         starts,
         ends,
         minimum if minimum.contact_arc_length < beam.length else _imaginary(minimum),
-        None if branch.sideways_limit is None else event(branch.sideways_limit),
+        None if branch.sideways_limit is None else event(branch.sideways_limit[0]),
         event(branch.snap_off),
     )
 
@@ -167,18 +175,21 @@ def _general_events(
 
 def _contact_length_minimum(centreline: Contour, reach: tuple[float, float]) -> float:
     """Contour parameter at which the s1 of eq. 21 is least."""
-    last, first = reach
-    grid = along(centreline, first, last)
-    value, rate = surplus_and_rate(centreline, grid)
+    last, first = (np.array([end]) for end in reach)
+    _, grid = along(Contours([centreline]), first, last)
+    value, rate = surplus_and_rate(centreline.at(grid))
     dips = np.flatnonzero((rate[:-1] > 0) & (rate[1:] < 0))
-    extrema = zeros(lambda t: surplus_and_rate(centreline, t)[1], grid[dips + 1], grid[dips])
+    extrema = zeros(lambda t: surplus_and_rate(centreline.at(t))[1], grid[dips + 1], grid[dips])
     places = np.append(grid, extrema)
-    lowest = np.append(value, surplus_and_rate(centreline, extrema)[0])
+    lowest = np.append(value, surplus_and_rate(centreline.at(extrema))[0])
     return float(places[np.argmin(lowest)])
 
 
 def _event(state: Equilibria, beam: Beam) -> Event:
-    return _only(to_columns(state, beam))
+    columns: dict[str, Any] = {**to_columns(state, Units.of(beam))}
+    columns["phase"] = np.array(PHASES)[columns["phase"]]
+    columns["status"] = np.array(STATUSES)[columns["status"]]
+    return _only(columns)
 
 
 def _only(columns: Mapping[str, Column]) -> Event:

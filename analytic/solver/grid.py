@@ -1,18 +1,23 @@
-"""A grid along the contour that is fine enough to miss neither a phase limit nor a fold.
+"""Grids along contours that are fine enough to miss neither a phase limit nor a fold.
 
-Between neighbours on it the slope angle and the height change little; the surplus of eq. 21, which
+Between neighbours on one the slope angle and the height change little; the surplus of eq. 21, which
 decides the phase, and the foot position change about as fast as their derivatives at both ends say;
 and where either has an extremum that matters, or the surplus a zero, a point of the grid lies on
 it. Where the contour is not smooth there are two points, the neighbouring numbers on either side.
+
+The grids of many contours are made at once, one after the other in the same arrays: `owner` says
+whose a point is. What is done to one grid does not depend on the others.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats
-from analytic.problem.contours.contour import Contour
+from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.contours.many import Contours
 from analytic.problem.roots import zeros
-from analytic.solver.contact_length import surplus, surplus_and_rate
-from analytic.solver.equilibria import equilibria
+from analytic.solver.contact_length import surplus_and_rate
+from analytic.solver.equilibria import equilibria_at
 
 _COARSE = 65  # samples of the whole contour to begin with
 _TURN = 0.1  # rad; the largest change of the slope angle between neighbours
@@ -24,57 +29,90 @@ _AT_END, _INSIDE = 2, 16  # times that so many points are put where the reach en
 _MOST = 2000  # points more: beyond, derivatives are lost in rounding, as next to an upright side
 
 
-def along(centreline: Contour, first: float, last: float) -> Floats:
+class Grid(NamedTuple):
+    """Points along contours, shape (n,): contours ascending, on each of them t descending."""
+
+    owner: Integers
+    t: Floats
+
+    def with_points(self, owner: Integers, t: Floats) -> "Grid":
+        """The grid with more points, each once.
+
+        Parameters
+        ----------
+        owner, t : array, shape (m,)
+            In any order.
+
+        Returns
+        -------
+        Grid
+            Of at most n + m points.
+        """
+        whose, where = np.append(self.owner, owner), np.append(self.t, t)
+        order = _order(whose, where)
+        return Grid(whose[order], where[order])
+
+    @property
+    def cells(self) -> Booleans:
+        """Whether a point and the next one are of one contour, shape (n - 1,)."""
+        return np.asarray(self.owner[1:] == self.owner[:-1])
+
+    def middles(self, chosen: Booleans) -> "Grid":
+        """The middles of the chosen cells, but for those that have none.
+
+        Parameters
+        ----------
+        chosen : array of bool, shape (n - 1,)
+            Which cells.
+
+        Returns
+        -------
+        Grid
+            Those that lie between two numbers.
+        """
+        t = self.t
+        middle = t[1:] + (t[:-1] - t[1:]) / 2
+        among = chosen & self.cells & (middle > t[1:]) & (middle < t[:-1])
+        return Grid(self.owner[1:][among], middle[among])
+
+
+def along(centrelines: Contours, first: Floats, last: Floats) -> Grid:
     """Contour parameters, descending from `first` to `last`, that show all changes of phase.
 
     Parameters
     ----------
-    centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length.
-    first, last : float
-        Contour parameters between which it lies within reach.
+    centrelines : Contours
+        What the centrelines feel, in units of the vibrissae's lengths; n of them.
+    first, last : array, shape (n,)
+        Contour parameters between which each lies within reach.
 
     Returns
     -------
-    array, shape (n,)
-        With the zeros of the surplus and the points next to each break of the contour.
+    Grid
+        With the zeros of the surplus and the points next to each break of a contour.
     """
     # Dense at both ends: x0 starts like a square root at first contact and folds before the last.
     fraction = (1 - np.cos(np.linspace(0, np.pi, _COARSE))) / 2
-    breaks = centreline.breaks()
-    breaks = breaks[(breaks > last) & (breaks < first)]
-    grid = _descending(
-        np.clip(first + (last - first) * fraction, last, first),
-        np.nextafter(breaks, last),
-        np.nextafter(breaks, first),
+    coarse = first[:, None] + (last - first)[:, None] * fraction
+    owner = np.repeat(np.arange(len(centrelines)), _COARSE)
+    grid = Grid(owner[:0], first[:0]).with_points(
+        owner, np.clip(coarse, last[:, None], first[:, None]).ravel()
     )
+    for i, contour in enumerate(centrelines.contours):
+        breaks = contour.breaks()
+        breaks = breaks[(breaks > last[i]) & (breaks < first[i])]
+        if breaks.size:
+            beside = np.append(np.nextafter(breaks, last[i]), np.nextafter(breaks, first[i]))
+            grid = grid.with_points(np.full(beside.size, i), beside)
     for _ in range(_LEVELS):
-        point = centreline.at(grid)
+        point = centrelines.at(*grid)
         turn, rise = np.abs(np.diff(point.alpha)), np.abs(np.diff(point.eta))
         steep = (turn > _TURN) | (rise > _RISE * np.minimum(point.eta[1:], point.eta[:-1]))
-        if not steep.any():
+        new = grid.middles(steep)
+        if not new.t.size:
             break
-        grid = _descending(grid, middles(grid, steep))
-    return _with_phase_changes(centreline, grid)
-
-
-def middles(grid: Floats, chosen: Booleans) -> Floats:
-    """The middles of the chosen cells, but for those that have none.
-
-    Parameters
-    ----------
-    grid : array, shape (n,)
-        Descending.
-    chosen : array of bool, shape (n - 1,)
-        Which cells.
-
-    Returns
-    -------
-    array, shape (m,)
-        Those that lie between two numbers; m is at most how many cells are chosen.
-    """
-    middle = grid[1:] + (grid[:-1] - grid[1:]) / 2
-    return np.asarray(middle[chosen & (middle > grid[1:]) & (middle < grid[:-1])])
+        grid = grid.with_points(*new)
+    return _with_phase_changes(centrelines, grid)
 
 
 def doubtful(t: Floats, value: Floats, rate: Floats) -> Booleans:
@@ -83,7 +121,7 @@ def doubtful(t: Floats, value: Floats, rate: Floats) -> Booleans:
     Parameters
     ----------
     t, value, rate : array, shape (n,)
-        Contour parameters, descending; values, and derivatives, NaN where unknown.
+        Contour parameters, descending on each contour; values, and derivatives, NaN where unknown.
 
     Returns
     -------
@@ -91,7 +129,7 @@ def doubtful(t: Floats, value: Floats, rate: Floats) -> Booleans:
         Where the mean slope does not lie between those at the ends.
     """
     change, width = np.diff(value), np.diff(t)
-    with np.errstate(over="ignore"):  # between points that differ by a rounding only
+    with np.errstate(all="ignore"):  # between points that differ by a rounding only, or contours
         mean = change / width
     low, high = np.minimum(rate[1:], rate[:-1]), np.maximum(rate[1:], rate[:-1])
     slack = _TRUST * np.maximum(np.abs(low), np.abs(high))
@@ -100,110 +138,176 @@ def doubtful(t: Floats, value: Floats, rate: Floats) -> Booleans:
     return np.asarray(((mean < low - slack) | (mean > high + slack)) & large)
 
 
-def _with_phase_changes(centreline: Contour, grid: Floats) -> Floats:
-    most = _MOST + len(grid)
+def _with_phase_changes(centrelines: Contours, grid: Grid) -> Grid:
+    value, rate = surplus_and_rate(centrelines.at(*grid))
+    most = np.bincount(grid.owner, minlength=len(centrelines)) + _MOST
     for _ in range(_LEVELS):
-        value, rate = surplus_and_rate(centreline, grid)
         # How near the surplus can come to zero, if it goes on as steeply as at either end.
-        steepest = np.fmax(np.abs(rate[1:]), np.abs(rate[:-1])) * -np.diff(grid)
+        steepest = np.fmax(np.abs(rate[1:]), np.abs(rate[:-1])) * -np.diff(grid.t)
         near = np.minimum(np.abs(value[1:]), np.abs(value[:-1])) < 2 * steepest
-        new = middles(grid, doubtful(grid, value, rate) & near)
-        if not 0 < new.size <= most - len(grid):
+        new = _allowed(grid, grid.middles(doubtful(grid.t, value, rate) & near), most)
+        if not new.t.size:
             break
-        grid = _descending(grid, new)
-    grid = _descending(grid, _extrema(centreline, grid))
-    below = surplus(centreline, grid) < 0
-    turns = np.flatnonzero(below[1:] != below[:-1])
-    return _descending(grid, zeros(lambda t: surplus(centreline, t), grid[turns + 1], grid[turns]))
+        grid, (value, rate) = _merged(
+            grid, (value, rate), new, surplus_and_rate(centrelines.at(*new))
+        )
+    new = _extrema(centrelines, grid, value, rate)
+    grid, (value,) = _merged(grid, (value,), new, surplus_and_rate(centrelines.at(*new))[:1])
+    below = value < 0
+    turns = np.flatnonzero(grid.cells & (below[1:] != below[:-1]))
+    owner = grid.owner[turns]
+
+    def surplus(t: Floats) -> Floats:
+        return surplus_and_rate(centrelines.at(owner, t))[0]
+
+    return grid.with_points(owner, zeros(surplus, grid.t[turns + 1], grid.t[turns]))
 
 
-def _extrema(centreline: Contour, grid: Floats) -> Floats:
+def _extrema(centrelines: Contours, grid: Grid, value: Floats, rate: Floats) -> Grid:
     """Where the surplus comes nearest to zero, in cells at whose ends the tangents pass it."""
-    value, rate = surplus_and_rate(centreline, grid)
     side = np.where(value < 0, -1.0, 1.0)
     before, after = side[:-1] * value[:-1], side[:-1] * value[1:]
     rate_before, rate_after = side[:-1] * rate[:-1], side[:-1] * rate[1:]
-    dips = (side[:-1] == side[1:]) & (rate_after < 0) & (rate_before > 0)
+    dips = grid.cells & (side[:-1] == side[1:]) & (rate_after < 0) & (rate_before > 0)
     with np.errstate(all="ignore"):
-        width = grid[:-1] - grid[1:]
+        width = grid.t[:-1] - grid.t[1:]
         ahead = (before - after - rate_before * width) / (rate_after - rate_before)
         crosses = after + rate_after * ahead < 0
     at = np.flatnonzero(dips & crosses)
-    return zeros(lambda t: surplus_and_rate(centreline, t)[1], grid[at + 1], grid[at])
+    owner = grid.owner[at]
+
+    def rates(t: Floats) -> Floats:
+        return surplus_and_rate(centrelines.at(owner, t))[1]
+
+    return Grid(owner, zeros(rates, grid.t[at + 1], grid.t[at]))
 
 
-def _descending(*grids: Floats) -> Floats:
-    return np.unique(np.concatenate(grids))[::-1]
+class Samples(NamedTuple):
+    """Foot position along grids, arrays of shape (n,); NaN out of reach."""
+
+    foot_x: Floats
+    """[L]."""
+    rate: Floats
+    """Its derivative along the contour."""
+    excess: Floats
+    """Excess rotation of the tip [rad]."""
 
 
-def folded(centreline: Contour, grid: Floats) -> Floats:
-    """Foot position along the grid, with more points of the grid where it folds.
+def folded(centrelines: Contours, grid: Grid) -> tuple[Grid, Samples]:
+    """Foot positions along the grids, with more points of them where it folds.
 
     Parameters
     ----------
-    centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length.
-    grid : array, shape (n,)
+    centrelines : Contours
+        What the centrelines feel, in units of the vibrissae's lengths.
+    grid : Grid
         From `along`.
 
     Returns
     -------
-    array, shape (3, m)
-        Contour parameters, descending; foot position [L] and excess rotation of the tip [rad], up
-        to where the vibrissa cannot reach any more.
+    Grid, Samples
+        Of each contour up to where the vibrissa cannot reach any more.
     """
-    first = centreline.at(grid[:1])
-    begin = np.array([[grid[0]], first.xi, [np.nan], [0.0]])
-    samples = np.hstack([begin, _sample(centreline, grid[1:])])
+    samples = _sample(centrelines, grid)
+    most = np.bincount(grid.owner, minlength=len(centrelines)) + _MOST
+    begins = np.flatnonzero(np.append(True, ~grid.cells))  # the first contact, without a load
+    samples.foot_x[begins] = centrelines.at(grid.owner[begins], grid.t[begins]).xi
+    samples.rate[begins], samples.excess[begins] = np.nan, 0.0
     for _ in range(_AT_END):
-        samples = _merged(samples, _sample(centreline, _end_of_reach(samples)))
+        new = _end_of_reach(grid, samples)
+        grid, samples = _more(grid, samples, new, _sample(centrelines, new))
     for _ in range(_LEVELS):
-        t, foot_x, rate, _ = samples
-        new = middles(t, doubtful(t, foot_x, rate))
-        if not 0 < new.size <= _MOST + len(grid) - t.size:
+        chosen = grid.middles(doubtful(grid.t, samples.foot_x, samples.rate))
+        new = _allowed(grid, chosen, most)
+        if not new.t.size:
             break
-        samples = _merged(samples, _sample(centreline, new))
-    samples = _merged(samples, _sample(centreline, _folds(centreline, samples)))
-    unreachable = np.flatnonzero(np.isnan(samples[1]))
-    end = unreachable[0] if unreachable.size else samples.shape[1]
-    return np.asarray(samples[[0, 1, 3], :end])
+        grid, samples = _more(grid, samples, new, _sample(centrelines, new))
+    new = _folds(centrelines, grid, samples)
+    grid, samples = _more(grid, samples, new, _sample(centrelines, new))
+    # Nothing is within reach again behind the first point that is not.
+    gone = np.isnan(samples.foot_x)
+    so_far = np.cumsum(gone)
+    begins = np.flatnonzero(np.append(True, ~grid.cells))
+    before = (so_far - gone)[begins]
+    reached = so_far == np.repeat(before, np.diff(np.append(begins, grid.t.size)))
+    return (
+        Grid(grid.owner[reached], grid.t[reached]),
+        Samples(*(values[reached] for values in samples)),
+    )
 
 
-def _end_of_reach(samples: Floats) -> Floats:
+def _end_of_reach(grid: Grid, samples: Samples) -> Grid:
     """Places between the last sample within reach and the next one; none if all are within reach.
 
     Past a nearly sharp edge x0 may dip a last time there, within a small part of a cell.
     """
-    gone = np.flatnonzero(np.isnan(samples[1]))
-    if gone.size == 0:
-        return np.zeros(0)
-    return np.linspace(samples[0, gone[0] - 1], samples[0, gone[0]], _INSIDE + 2)[1:-1]
+    gone = np.flatnonzero(np.isnan(samples.foot_x))
+    gone = gone[np.unique(grid.owner[gone], return_index=True)[1]]  # the first of each contour
+    fraction = np.linspace(0, 1, _INSIDE + 2)[1:-1]
+    last, next_ = grid.t[gone - 1, None], grid.t[gone, None]
+    return Grid(np.repeat(grid.owner[gone], _INSIDE), (last + (next_ - last) * fraction).ravel())
 
 
-def _folds(centreline: Contour, samples: Floats) -> Floats:
+def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> Grid:
     """Where the foot position is least between neighbours, if it may be less than all before."""
-    t, foot_x, rate, _ = samples
+    foot_x, rate, _ = samples
     before = np.where(np.isnan(rate[:-1]), 1.0, rate[:-1])
     after = np.where(np.isnan(rate[1:]), -1.0, rate[1:])
     reached = ~np.isnan(foot_x[:-1])
-    least = np.minimum.accumulate(np.where(reached, foot_x[:-1], np.inf))
-    lowest = foot_x[:-1] - before * (t[:-1] - t[1:])
-    turns = np.flatnonzero(reached & (before > 0) & (after < 0) & (lowest < least))
+    least = _least_so_far(grid, foot_x)[:-1]
+    lowest = foot_x[:-1] - before * (grid.t[:-1] - grid.t[1:])
+    turns = np.flatnonzero(grid.cells & reached & (before > 0) & (after < 0) & (lowest < least))
+    owner = grid.owner[turns]
+    first = grid.t[np.flatnonzero(np.append(True, ~grid.cells))][owner]
 
     def rates(at: Floats) -> Floats:
-        found = _sample(centreline, at)[2]
-        return np.where(at == t[0], 1.0, np.where(np.isnan(found), -1.0, found))
+        found = _sample(centrelines, Grid(owner, at)).rate
+        return np.where(at == first, 1.0, np.where(np.isnan(found), -1.0, found))
 
-    return zeros(rates, t[turns + 1], t[turns])
+    return Grid(owner, zeros(rates, grid.t[turns + 1], grid.t[turns]))
 
 
-def _sample(centreline: Contour, t: Floats) -> Floats:
-    """Contour parameter, foot position, its rate and excess rotation; NaN out of reach."""
-    states = equilibria(centreline, t)
+def _least_so_far(grid: Grid, foot_x: Floats) -> Floats:
+    """The least of all foot positions of a contour up to each one."""
+    values = np.where(np.isnan(foot_x), np.inf, foot_x)
+    ends = np.flatnonzero(~grid.cells) + 1
+    return np.concatenate([np.minimum.accumulate(part) for part in np.split(values, ends)])
+
+
+def _sample(centrelines: Contours, grid: Grid) -> Samples:
+    states = equilibria_at(centrelines.at(*grid))
     with np.errstate(divide="ignore", invalid="ignore"):  # where the clamp's moment vanishes
-        return np.stack([t, states.foot_x, states.foot_x_rate, states.excess])
+        return Samples(states.foot_x, states.foot_x_rate, states.excess)
 
 
-def _merged(samples: Floats, more: Floats) -> Floats:
-    both = np.hstack([samples, more])
-    return both[:, np.unique(both[0], return_index=True)[1][::-1]]
+def _more(grid: Grid, samples: Samples, new: Grid, found: Samples) -> tuple[Grid, Samples]:
+    grid, values = _merged(grid, tuple(samples), new, tuple(found))
+    return grid, Samples(*values)
+
+
+def _merged(
+    grid: Grid, values: tuple[Floats, ...], new: Grid, found: tuple[Floats, ...]
+) -> tuple[Grid, tuple[Floats, ...]]:
+    """Two grids as one, with what is known of their points; of points in both, the first's."""
+    if not new.t.size:
+        return grid, values
+    owner, t = np.append(grid.owner, new.owner), np.append(grid.t, new.t)
+    order = _order(owner, t)
+    both = zip(values, found, strict=True)
+    return Grid(owner[order], t[order]), tuple(np.append(one, other)[order] for one, other in both)
+
+
+def _order(owner: Integers, t: Floats) -> Integers:
+    """The order of a grid's points, each once; of equal ones the first."""
+    order = np.lexsort((-t, owner))
+    whose, where = owner[order], t[order]
+    again = np.append(False, (whose[1:] == whose[:-1]) & (where[1:] == where[:-1]))
+    return np.asarray(order[~again])
+
+
+def _allowed(grid: Grid, new: Grid, most: Integers) -> Grid:
+    """The new points of those contours that may have more."""
+    count = np.bincount(grid.owner, minlength=most.size)
+    more = np.bincount(new.owner, minlength=most.size)
+    among = (count + more <= most)[new.owner]
+    return Grid(new.owner[among], new.t[among])

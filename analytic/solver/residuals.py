@@ -1,14 +1,17 @@
 """How well the readings of a station satisfy their conditions, from the readings alone."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
-from analytic.problem.arrays import Floats
-from analytic.problem.beam import Beam
+from analytic.problem.arrays import Booleans, Floats
 from analytic.solver.elastica import frame, span_of_moment
-from analytic.solver.equilibria import Column
+from analytic.solver.equilibria import Column, Numbers, Units
 
 
-def residuals(columns: dict[str, Column], beam: Beam) -> dict[str, Floats]:
+def residuals(
+    columns: Mapping[str, Column | Numbers], free: Booleans, units: Units
+) -> dict[str, Floats]:
     """What the stations of a table of readings miss, by the closed form of their clamp readings.
 
     The elastica that has the clamp's force and moment, up to where its curvature vanishes, is
@@ -17,10 +20,12 @@ def residuals(columns: dict[str, Column], beam: Beam) -> dict[str, Floats]:
 
     Parameters
     ----------
-    columns : dict of array, shape (n,)
+    columns : mapping of array, shape (n,)
         Columns of `Readings.table`, of a vibrissa that bends to the right.
-    beam : Beam
-        The vibrissa.
+    free : array of bool, shape (n,)
+        Where nothing touches.
+    units : Units
+        Of the vibrissa, or of each station's.
 
     Returns
     -------
@@ -33,20 +38,18 @@ def residuals(columns: dict[str, Column], beam: Beam) -> dict[str, Floats]:
         M - F_y (xi - x0) + F_x eta. Zero where the vibrissa is free, NaN out of reach.
     """
 
-    def column(name: str, unit: float) -> Floats:
+    def column(name: str, unit: float | Floats) -> Floats:
         return np.asarray(columns[name], dtype=float) / unit
 
-    force_x, force_y = (column(name, beam.force_unit) for name in ("force_x", "force_y"))
-    moment = column("moment_z", beam.moment_unit)
+    force_x, force_y = (column(name, units.force) for name in ("force_x", "force_y"))
+    moment = column("moment_z", units.moment)
     foot_x, xi, eta, arc_length = (
-        column(name, beam.length)
+        column(name, units.length)
         for name in ("foot_x", "contact_x", "contact_y", "contact_arc_length")
     )
     alpha, tip_angle = column("contact_angle", 1.0), column("tip_angle", 1.0)
-    radius = beam.radius / beam.length
-    x, y = xi + radius * np.sin(alpha) - foot_x, eta - radius * np.cos(alpha)
+    x, y = xi + units.radius * np.sin(alpha) - foot_x, eta - units.radius * np.cos(alpha)
     extent = np.maximum(1.0, np.abs(xi))
-    free = columns["phase"] == "free"
     with np.errstate(divide="ignore", invalid="ignore"):  # free stations: no force, no contact
         force = np.hypot(force_x, force_y)
         root_f = np.sqrt(force)

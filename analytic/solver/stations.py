@@ -1,14 +1,15 @@
 """The states at given foot positions, by Newton's method on both phases' closed forms."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
-from analytic.problem.contours.contour import Contour
+from analytic.problem.contours.many import Contours
 from analytic.problem.roots import zeros
 from analytic.solver.branch import Branch
-from analytic.solver.equilibria import Equilibria, contact, equilibria, tip_rates
+from analytic.solver.equilibria import Equilibria, contact, equilibria_at, tip_rates
 
 _EPS = float(np.finfo(float).eps)
 _ITERATIONS = 25  # of Newton's method; 4 to 8 are usual, some 20 close to a fold
@@ -24,8 +25,21 @@ class _Iterate(NamedTuple):
     missed: Floats
 
 
-def solve_stations(branch: Branch, foot_x: Floats) -> Equilibria:
-    """The state at each foot position on the branch.
+class _Stations(NamedTuple):
+    """Stations of many branches, shape (n,): whose, where, and between which contour parameters."""
+
+    owner: Integers
+    foot_x: Floats
+    low: Floats
+    high: Floats
+
+    def part(self, chosen: Booleans | Integers) -> "_Stations":
+        owner, foot_x, low, high = self
+        return _Stations(owner[chosen], foot_x[chosen], low[chosen], high[chosen])
+
+
+def solve_stations(branches: Sequence[Branch], foot_x: Sequence[Floats]) -> Equilibria:
+    """The states at foot positions on branches.
 
     Newton's method starts from the branch's grid and may not leave the station's cell. What it
     leaves with a miss, or in the wrong phase, is enclosed instead: the foot position of the
@@ -33,41 +47,55 @@ def solve_stations(branch: Branch, foot_x: Floats) -> Equilibria:
 
     Parameters
     ----------
-    branch : Branch
+    branches : sequence of Branch
         From first contact to snap-off.
-    foot_x : array, shape (n,)
-        Foot positions on it [L].
+    foot_x : sequence of array
+        Foot positions on each of them [L].
 
     Returns
     -------
     Equilibria
-        As exact as rounding allows; whether that is exact enough, `residuals` says.
+        Of all, one branch after the other, as exact as rounding allows; whether that is exact
+        enough, `residuals` says.
     """
-    cells = branch.cells(foot_x)
-    low, high = branch.t[cells + 1], branch.t[cells]
-    tangent = branch.tangent[cells]
-    ahead = (branch.foot_x[cells] - foot_x) / (branch.foot_x[cells] - branch.foot_x[cells + 1])
-    t = high + ahead * (low - high)
-    excess = branch.excess[cells] + ahead * (branch.excess[cells + 1] - branch.excess[cells])
-    found = _newton(branch.centreline, foot_x, tangent, (low, high), (t, excess))
-    poor = ~(_admissible(branch.centreline, found, tangent) & (found.missed <= _EXACT))
+    centrelines = Contours([branch.centreline for branch in branches])
+    cells = [branch.cells(places) for branch, places in zip(branches, foot_x, strict=True)]
+
+    def of_cells(name: str, ahead: int) -> Floats:
+        parts = zip(branches, cells, strict=True)
+        return np.concatenate([getattr(branch, name)[cell + ahead] for branch, cell in parts])
+
+    stations = _Stations(
+        np.repeat(np.arange(len(branches)), [len(places) for places in foot_x]),
+        np.concatenate(foot_x),
+        of_cells("t", 1),
+        of_cells("t", 0),
+    )
+    tangent = of_cells("tangent", 0).astype(bool)
+    begin, end = of_cells("foot_x", 0), of_cells("foot_x", 1)
+    ahead = (begin - stations.foot_x) / (begin - end)
+    t = stations.high + ahead * (stations.low - stations.high)
+    before, behind = of_cells("excess", 0), of_cells("excess", 1)
+    excess = before + ahead * (behind - before)
+    found = _newton(centrelines, stations, tangent, (t, excess))
+    admissible = _admissible(centrelines, stations.owner, found, tangent)
+    poor = ~(admissible & (found.missed <= _EXACT))
     if poor.any():
-        bounds = low[poor], high[poor]
-        enclosed, tangent[poor] = _enclose(branch, foot_x[poor], bounds, cells[poor])
+        few = stations.part(poor)
+        enclosed, tangent[poor] = _enclose(centrelines, few, behind[poor])
         start = enclosed.t, enclosed.excess
-        refined = _newton(branch.centreline, foot_x[poor], tangent[poor], bounds, start)
-        better = _admissible(branch.centreline, refined, tangent[poor])
+        refined = _newton(centrelines, few, tangent[poor], start)
+        better = _admissible(centrelines, few.owner, refined, tangent[poor])
         better &= refined.missed < enclosed.missed
         for values, one, other in zip(found, refined, enclosed, strict=True):
             values[poor] = np.where(better, one, other)
-    return contact(branch.centreline.at(found.t), found.excess, tangent)
+    return contact(centrelines.at(stations.owner, found.t), found.excess, tangent)
 
 
 def _newton(
-    centreline: Contour,
-    foot_x: Floats,
+    centrelines: Contours,
+    stations: _Stations,
     tangent: Booleans,
-    bounds: tuple[Floats, Floats],
     start: tuple[Floats, Floats],
 ) -> _Iterate:
     """The iterate that misses least, of each station.
@@ -76,26 +104,29 @@ def _newton(
     alone the rotation would lose its digits at first contact, where the height hardly depends on
     the force.
     """
-    low, high = bounds
     t, excess = start
     best = _Iterate(t.copy(), excess.copy(), np.full_like(t, np.inf))
     step = np.full_like(t, np.inf)
+    going = np.arange(t.size)
     for _ in range(_ITERATIONS):
+        owner, foot_x, low, high = stations.part(going)
         with np.errstate(all="ignore"):  # folds and first contacts: what is not finite is no step
-            states = contact(centreline.at(t), excess, tangent)
+            states = contact(centrelines.at(owner, t), excess, tangent[going])
             too_high, too_far, extent = _misses(states, foot_x, t)
             missed = np.fmax(np.abs(too_high), np.abs(too_far)) / extent
             step_t, step_w = _steps(states, too_high, too_far)
-        less = missed <= best.missed
+        less = missed <= best.missed[going]
         for values, new in zip(best, (t, excess, missed), strict=True):
-            values[less] = new[less]
-        if (((step <= _CLOSE) & (missed <= _EXACT)) | (missed == 0)).all():
+            values[going[less]] = new[less]
+        more = ~(((step <= _CLOSE) & (missed <= _EXACT)) | (missed == 0))
+        if not more.any():
             break
         step_t = np.where(np.isfinite(step_t), step_t, 0.0)
         step_w = np.where(np.isfinite(step_w), step_w, 0.0)
-        new = np.clip(t - step_t, low, high)
-        step = np.maximum(np.abs(new - t), np.abs(step_w) / excess)
-        t, excess = new, np.maximum(excess - step_w, excess / 10)
+        new_t = np.clip(t - step_t, low, high)
+        step = np.maximum(np.abs(new_t - t), np.abs(step_w) / excess)[more]
+        excess = np.maximum(excess - step_w, excess / 10)[more]
+        t, going = new_t[more], going[more]
     return best
 
 
@@ -127,9 +158,11 @@ def _steps(states: Equilibria, too_high: Floats, too_far: Floats) -> tuple[Float
     )
 
 
-def _admissible(centreline: Contour, found: _Iterate, tangent: Booleans) -> Booleans:
+def _admissible(
+    centrelines: Contours, owner: Integers, found: _Iterate, tangent: Booleans
+) -> Booleans:
     """Whether contacts are of the phase that they should be of."""
-    point = centreline.at(found.t)
+    point = centrelines.at(owner, found.t)
     states = contact(point, found.excess, tangent)
     fits = (states.root_f > 0) & (states.span.q <= states.root_f * (1 + _EXACT))
     above = states.excess <= np.pi / 2 - np.abs(point.alpha) + _EXACT
@@ -137,23 +170,25 @@ def _admissible(centreline: Contour, found: _Iterate, tangent: Booleans) -> Bool
 
 
 def _enclose(
-    branch: Branch, foot_x: Floats, bounds: tuple[Floats, Floats], cells: Integers
+    centrelines: Contours, stations: _Stations, behind: Floats
 ) -> tuple[_Iterate, Booleans]:
-    """Stations enclosed along the contour, and whether they are in Phase B."""
-    centreline = branch.centreline
+    """Stations enclosed along the contour, and whether they are in Phase B.
+
+    `behind` is the excess rotation where each one's cell ends.
+    """
+    owner, foot_x, low, high = stations
 
     def ahead(t: Floats) -> Floats:
-        found = equilibria(centreline, t).foot_x - foot_x
+        found = equilibria_at(centrelines.at(owner, t)).foot_x - foot_x
         return np.where(np.isnan(found), 1.0, found)  # the first contact itself
 
-    low, high = bounds
     at_low, at_high = ahead(low), ahead(high)
     t = zeros(ahead, low, high)
     t = np.where(at_low >= 0, low, np.where(at_high <= 0, high, t))
-    states = equilibria(centreline, t)
+    states = equilibria_at(centrelines.at(owner, t))
     first = np.isnan(states.excess)
-    excess = np.where(first, branch.excess[cells + 1] * 1e-3, states.excess)
-    states = contact(centreline.at(t), excess, states.tangent)
+    excess = np.where(first, behind * 1e-3, states.excess)
+    states = contact(centrelines.at(owner, t), excess, states.tangent)
     too_high, too_far, extent = _misses(states, foot_x, t)
     missed = np.fmax(np.abs(too_high), np.abs(too_far)) / extent
     return _Iterate(t, excess, missed), states.tangent

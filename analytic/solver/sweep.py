@@ -1,29 +1,23 @@
 """The sweep on given foot positions: every station solved, checked and put into one table."""
 
 from dataclasses import replace
-from functools import cache, partial
-from importlib.metadata import version
+from functools import partial
 
 import numpy as np
 import pandas as pd
 
 from analytic.checks.certificate import certify
-from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS
 from analytic.problem.mirror import solve_either_way
 from analytic.problem.readings import Readings
-from analytic.solver.branch import trace
-from analytic.solver.equilibria import Column, to_columns
+from analytic.solver.equilibria import Column
 from analytic.solver.general import sweep as general
-from analytic.solver.general.residuals import SOLVED
-from analytic.solver.general.residuals import residuals as general_residuals
+from analytic.solver.general.residuals import SOLVED, residuals
 from analytic.solver.general.states import Vibrissa
-from analytic.solver.residuals import residuals
-from analytic.solver.stations import solve_stations
+from analytic.solver.plain import provenance, solve_plain
 
 _CERTIFIED = 1e-9  # L and EI/L; the integration is good to 1e-12
-_ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
 
 
 def solve_sweep(case: Case, certified: bool = False) -> Readings:
@@ -55,60 +49,22 @@ def solve_sweep(case: Case, certified: bool = False) -> Readings:
 
 
 def _solve_leftward(case: Case, certified: bool) -> Readings:
-    """Solve a sweep to the left.
-
-    Right of the first contact and left of the snap-off the vibrissa is free. Between them the foot
-    position falls along the equilibria, so that each station has one state.
-    """
-    beam = case.beam
-    columns = _free(case)
-    solve = _solve_plain if case.is_plain else _solve_general
-    checked, events = solve(case, columns)
-    provenance = {
-        **case.provenance(),
-        "engine": _engine(),
-        "events": {name: None if x is None else x * beam.length for name, x in events.items()},
-    }
-    readings = Readings(pd.DataFrame({**columns, **checked}), beam, "analytic", provenance)
+    readings = solve_plain([case])[0] if case.is_plain else _solve_general(case)
     return _with_certificate(readings) if certified else readings
 
 
-def _solve_plain(
-    case: Case, columns: dict[str, Column]
-) -> tuple[dict[str, Floats], dict[str, float | None]]:
-    """Fill in the stations that touch; what they miss, and where what happens happens [L]."""
-    beam = case.beam
-    foot_x = case.foot_x / beam.length
-    branch = trace(case.centreline, case.reach)
-    first, snap_off = branch.foot_x[0], branch.foot_x[-1]
-    touching = (foot_x < first) & (foot_x >= snap_off - _ROUNDING * max(1.0, abs(snap_off)))
-    if touching.any():
-        solved = to_columns(solve_stations(branch, foot_x[touching]), beam)
-        for name in COLUMNS[1:]:
-            columns[name][touching] = solved[name]
-    checked = residuals(columns, beam)
-    solved_on = np.maximum(*checked.values()) <= SOLVED
-    columns["status"] = np.where(solved_on, "ok", "diverged")
-    return checked, branch.events()
-
-
-def _solve_general(
-    case: Case, columns: dict[str, Column]
-) -> tuple[dict[str, Floats], dict[str, float | None]]:
-    """The same with friction, an elastic clamp or a natural curvature."""
+def _solve_general(case: Case) -> Readings:
+    """With friction, an elastic clamp, a natural curvature, or what varies along the vibrissa."""
+    columns = _free(case)
     solved = general.solve(case)
     for name in COLUMNS[1:]:
         columns[name][solved.where] = solved.columns[name]
     vibrissa = Vibrissa.of(case.beam, case.clamp_stiffness, case.friction)
-    checked = general_residuals(columns, case.beam, vibrissa)
+    checked = residuals(columns, case.beam, vibrissa)
     inexact = np.maximum(*checked.values()) > SOLVED
     columns["status"][inexact] = "diverged"
-    return checked, solved.events
-
-
-@cache
-def _engine() -> str:
-    return f"vibrissa-testbed {version('vibrissa-testbed')}"
+    table = pd.DataFrame({**columns, **checked})
+    return Readings(table, case.beam, "analytic", provenance(case, solved.events))
 
 
 def _with_certificate(readings: Readings) -> Readings:

@@ -1,11 +1,20 @@
 """Phase A: how far the tip has turned that rests on a contour point of given slope and height."""
 
 import numpy as np
+from scipy.special import ellipe, ellipk
 
 from analytic.problem.arrays import Floats
-from analytic.solver.elastica import frame, least_rotation, span, span_by_excess
+from analytic.solver.elastica import (
+    Span,
+    frame,
+    span,
+    span_by_excess,
+    span_by_excess_twice,
+    tangent_span,
+)
 
 _MAX_ITERATIONS = 60  # bisection alone would halve the bracket to round-off in 53
+_CLOSE = 1e-5  # of a step of third order, relative: the next one would change round-off only
 
 
 def tip_height(excess: Floats, alpha: Floats) -> Floats:
@@ -28,6 +37,9 @@ def tip_height(excess: Floats, alpha: Floats) -> Floats:
 def greatest_height(alpha: Floats) -> Floats:
     """Height of the tip whose excess rotation is zero: contour points above are out of reach.
 
+    For alpha >= 0 the vibrissa is straight then; for alpha < 0 its clamp carries no moment, and the
+    integrals are complete ones.
+
     Parameters
     ----------
     alpha : array, shape (n,)
@@ -38,8 +50,7 @@ def greatest_height(alpha: Floats) -> Floats:
     array, shape (n,)
         [L]
     """
-    bent = np.minimum(alpha, -1e-300)  # for alpha >= 0 the vibrissa is straight, of height 1
-    return np.where(alpha < 0, tip_height(np.zeros_like(bent), bent), 1.0)
+    return np.where(alpha < 0, np.cos(alpha) * (2 * ellipe(_m(alpha)) / ellipk(_m(alpha)) - 1), 1.0)
 
 
 def tip_excess(alpha: Floats, eta: Floats) -> Floats:
@@ -47,7 +58,7 @@ def tip_excess(alpha: Floats, eta: Floats) -> Floats:
 
     The height falls steadily as the tip turns, from `greatest_height` to tangential contact, and
     sqrt(1 - height) is nearly proportional to the rotation (0.516 u at alpha > 0, 0.5 u at
-    alpha = 0): Newton's method on it needs a few steps, and a bracket keeps it safe. Its unknown is
+    alpha = 0): Halley's method on it needs two steps, and a bracket keeps it safe. Its unknown is
     p = sqrt(sin(w/2)), in which the height is smooth even where the clamp moment vanishes.
 
     Parameters
@@ -60,36 +71,83 @@ def tip_excess(alpha: Floats, eta: Floats) -> Floats:
     array, shape (n,)
         [rad]; NaN where the point is out of reach: no vibrissa that bends one way ends there.
     """
-    sag = np.sqrt(np.maximum(1 - eta, 0.0))
-    low = np.zeros_like(alpha)
-    # A little beyond tangential contact, where nothing is singular: a root there stays inside.
-    high = np.sqrt(np.sin((np.pi / 2 - np.abs(alpha)) / 2)) * (1 + 1e-6)
-    guess = np.maximum(sag / 0.49 - least_rotation(alpha), 1e-3 * sag)
-    p = np.minimum(np.sqrt(np.sin(np.minimum(guess, 1.0) / 2)), high)
-
     excess = np.full_like(alpha, np.nan)
-    # Against an upright side (high = 0) the vibrissa is straight and carries no load.
-    active = np.flatnonzero((eta < greatest_height(alpha)) & (high > 0))
+    # Against an upright side the vibrissa is straight and carries no load.
+    top = greatest_height(alpha)
+    active = np.flatnonzero((eta < top) & (np.abs(alpha) < np.pi / 2))
+    alpha, sag = alpha[active], np.sqrt(np.maximum(1 - eta[active], 0.0))
+    p, high = _start(alpha, sag, np.sqrt(1 - top[active]))
+    low = np.zeros_like(alpha)
     for _ in range(_MAX_ITERATIONS):
         if active.size == 0:
-            break
-        old, slope_angle = p[active], alpha[active]
-        w = 2 * np.arcsin(old**2)
-        loaded = span(w, slope_angle)
-        height = frame(loaded, slope_angle).up / loaded.q
-        rates = span_by_excess(loaded, w, slope_angle)
-        fall = (height * rates.q - frame(rates, slope_angle).up) / loaded.q
-        reached = np.sqrt(np.maximum(1 - height, 0.0))
-        deviation = reached - sag[active]
-        low[active] = np.where(deviation < 0, old, low[active])
-        high[active] = np.where(deviation > 0, old, high[active])
-        new = old - deviation * reached * np.sqrt(1 - old**4) / (2 * old * fall)
-        inside = (new >= low[active]) & (new <= high[active])
-        new = np.where(inside, new, (low[active] + high[active]) / 2)
-        p[active] = new
-        # After such a step of Newton's the next would change round-off only; halving goes on.
-        done = np.abs(new - old) <= np.where(inside, 1e-9, 1e-15) * new
-        excess[active[done]] = 2 * np.arcsin(new[done] ** 2)
-        active = active[~done]
-    excess[active] = 2 * np.arcsin(p[active] ** 2)  # halved to rounding
+            return excess
+        with np.errstate(divide="ignore", invalid="ignore"):  # hardly bent: no step, but a half
+            deviation, step = _halley(p, alpha, sag)
+        low = np.where(deviation < 0, p, low)
+        high = np.where(deviation > 0, p, high)
+        new = p - step
+        inside = (new >= low) & (new <= high)
+        new = np.where(inside, new, (low + high) / 2)
+        # After a small enough step the next would change round-off only; halving goes on.
+        done = np.abs(new - p) <= np.where(inside, _CLOSE, 1e-15) * new
+        p = new
+        if done.any():
+            excess[active[done]] = 2 * np.arcsin(p[done] ** 2)
+            going = ~done
+            active, p, low, high = active[going], p[going], low[going], high[going]
+            alpha, sag = alpha[going], sag[going]
+    excess[active] = 2 * np.arcsin(p**2)  # halved to rounding
     return excess
+
+
+def _start(alpha: Floats, sag: Floats, first: Floats) -> tuple[Floats, Floats]:
+    """Where to begin, within 10 % of p, and the largest p.
+
+    The sag is taken for a quadratic function of p: from `first`, where the clamp moment vanishes,
+    with its slope there, first/(q sqrt(-sin(alpha))) for alpha < 0 and 0 else, to tangential
+    contact.
+    """
+    high = np.sqrt(np.sin((np.pi / 2 - np.abs(alpha)) / 2))
+    tangential = tangent_span(alpha)
+    last = np.sqrt(1 - frame(tangential, alpha).up / tangential.q)
+    slope = np.zeros_like(alpha)
+    bent = np.flatnonzero(alpha < 0)
+    slope[bent] = first[bent] / (2 * ellipk(_m(alpha[bent])) * np.sqrt(-np.sin(alpha[bent])))
+    square = np.maximum((last - first - slope * high) / (high * high), 0.0)
+    way = np.maximum(sag - first, 1e-300)
+    p = 2 * way / (slope + np.sqrt(slope * slope + 4 * square * way))
+    # A little beyond tangential contact, where nothing is singular: a root there stays inside.
+    return np.minimum(p, high), high * (1 + 1e-6)
+
+
+def _m(alpha: Floats) -> Floats:
+    """k^2 where the clamp moment vanishes; 0 where it never does."""
+    return np.sin(np.minimum(alpha, 0.0) / 2) ** 2
+
+
+def _halley(p: Floats, alpha: Floats, sag: Floats) -> tuple[Floats, Floats]:
+    """How much farther the tip has sunk than `sag`, as a root, and Halley's step of p."""
+    square = p * p
+    cosine = np.sqrt(1 - square * square)  # of w/2
+    w = 2 * np.arcsin(square)
+    loaded = span(w, alpha)
+    by_w = span_by_excess(loaded, w, alpha)
+    by_w_twice = span_by_excess_twice(loaded, by_w, w, alpha)
+    sine, cosine_alpha = np.sin(alpha), np.cos(alpha)
+
+    def up(s: Span) -> Floats:
+        return s.C * sine + s.S * cosine_alpha
+
+    height = up(loaded) / loaded.q
+    fall = (height * by_w.q - up(by_w)) / loaded.q
+    fall_w = (height * by_w_twice.q - 2 * fall * by_w.q - up(by_w_twice)) / loaded.q
+    reached = np.sqrt(np.maximum(1 - height, 0.0))
+    # By w, the root's slope is fall/(2 reached); w by p is 4 p/cosine.
+    slope = fall / (2 * reached)
+    curvature = (fall_w / 2 - slope * slope) / reached
+    w_p = 4 * p / cosine
+    w_pp = (4 + 8 * square * square / (cosine * cosine)) / cosine
+    slope_p, curvature_p = slope * w_p, curvature * w_p * w_p + slope * w_pp
+    deviation = reached - sag
+    newton = deviation / slope_p
+    return deviation, newton / (1 - newton * curvature_p / (2 * slope_p))

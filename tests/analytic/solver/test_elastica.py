@@ -6,7 +6,15 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from analytic.solver.elastica import least_rotation, span, span_by_alpha, span_by_excess
+from analytic.solver.elastica import (
+    least_rotation,
+    span,
+    span_by_alpha,
+    span_by_excess,
+    span_by_excess_twice,
+    span_of_moment,
+    tangent_span,
+)
 from analytic.solver.tip import greatest_height, tip_excess, tip_height
 
 ANGLES = st.floats(-1.5, 1.5)
@@ -43,6 +51,33 @@ def test_span_is_the_integral(alpha, fraction):
     np.testing.assert_allclose(found, quadrature(float(excess[0]), alpha), atol=4e-15, rtol=4e-15)
 
 
+@pytest.mark.parametrize("alpha", [-1.55, -1.2, -0.5, -1e-3, -0.0, 1e-9, 0.1, 0.6, 1.5, 1.5707])
+@pytest.mark.parametrize("fraction", [0.0, 1e-5, 0.01, 0.5, 1.0])
+def test_many_spans_at_once_are_those_of_one(alpha, fraction):
+    """Many take another way to the elliptic integrals."""
+    one = span(excess_at(alpha, fraction), np.array([alpha]))
+    many = span(np.repeat(excess_at(alpha, fraction), 1000), np.full(1000, alpha))
+    for alone, among in zip(one, many, strict=True):
+        np.testing.assert_allclose(among, np.repeat(alone, 1000), atol=2e-14, rtol=2e-15)
+
+
+@pytest.mark.parametrize("moment", [-0.7, -1e-9, 0.0, 1e-9, 0.7, 1.4, 1.9, 1.999, 2.1])
+def test_many_spans_of_a_moment_are_those_of_one(moment):
+    """Also beyond what a contact can have: readings are noisy."""
+    for alpha in (-0.9, -1e-3, 1e-3, 0.4, 1.2):
+        one = span_of_moment(np.array([moment]), np.array([alpha]))
+        many = span_of_moment(np.full(1000, moment), np.full(1000, alpha))
+        for alone, among in zip(one, many, strict=True):
+            np.testing.assert_allclose(among, np.repeat(alone, 1000), atol=2e-14, rtol=1e-14)
+
+
+@pytest.mark.parametrize("alpha", [-1.57, -1.2, -0.5, -1e-9, 0.0, 0.1, 0.6, 1.5, 1.5707])
+def test_tangential_span_is_the_integral(alpha):
+    found = [float(x[0]) for x in tangent_span(np.array([alpha]))]
+    exact = quadrature(float(excess_at(alpha, 1.0)[0]), alpha)
+    np.testing.assert_allclose(found, exact, rtol=2e-15, atol=1e-15)
+
+
 @given(ANGLES, st.floats(0.05, 0.95))
 def test_derivatives(alpha, fraction):
     assume(abs(alpha) > 1e-3)  # the excess is counted from another rotation on either side of 0
@@ -59,6 +94,30 @@ def test_derivatives(alpha, fraction):
             # Central difference: h^2 truncation, eps/h round-off.
             scale = 1 + abs(found[0])
             assert abs(found[0] - (ahead - behind)[0] / (2 * h)) < scale * (1e-6 + 1e-14 / h)
+
+
+@given(ANGLES, st.floats(0.05, 0.95))
+def test_second_derivatives(alpha, fraction):
+    assume(abs(alpha) > 1e-3)
+    w, a = excess_at(alpha, fraction), np.array([alpha])
+
+    def first(excess):
+        return span_by_excess(span(excess, a), excess, a)
+
+    second = span_by_excess_twice(span(w, a), first(w), w, a)
+    h = 1e-4 * min(float(w[0]), abs(alpha), 0.1)
+    for found, ahead, behind in zip(second, first(w + h), first(w - h), strict=True):
+        scale = 1 + abs(found[0])
+        assert abs(found[0] - (ahead - behind)[0] / (2 * h)) < scale * (1e-6 + 1e-13 / h)
+
+
+def test_tip_excess_of_many_inverts_the_height():
+    alpha = np.random.default_rng(1).uniform(-1.5, 1.5, 5000)
+    w = (np.pi / 2 - np.abs(alpha)) * np.random.default_rng(2).uniform(0, 1, 5000) ** 2
+    eta = tip_height(w, alpha)
+    inside = (eta > 0) & (eta < greatest_height(alpha) - 1e-14)
+    found = tip_excess(alpha[inside], eta[inside])
+    assert np.abs(tip_height(found, alpha[inside]) - eta[inside]).max() < 4e-14
 
 
 @given(ANGLES, st.floats(0.0, 1.0))

@@ -1,0 +1,129 @@
+"""Many contours at once: points of each in one call."""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from types import MethodType
+from typing import Any
+
+import numpy as np
+
+from analytic.problem.arrays import Floats, Integers
+from analytic.problem.contours.contour import Contour, ContourPoint
+from analytic.problem.contours.profile import Profile
+
+
+class Contours:
+    """Contours of any kinds, each with its number.
+
+    Those of one family, as catenaries of any width and height, differ in numbers alone: their
+    functions are called once, with arrays in place of the numbers. All others are called one by
+    one.
+
+    Parameters
+    ----------
+    contours : sequence of Contour
+        At least one.
+    """
+
+    def __init__(self, contours: Sequence[Contour]) -> None:
+        self.contours = tuple(contours)
+        families: dict[Any, list[int]] = {}
+        numbers: list[tuple[float, ...]] = []
+        for i, contour in enumerate(self.contours):
+            family, own = _taken_apart(contour) if isinstance(contour, Profile) else (i, ())
+            families.setdefault(family, []).append(i)
+            numbers.append(own)
+        self._members = [np.array(members) for members in families.values()]
+        self._numbers = [np.array([numbers[i] for i in m]).T for m in families.values()]
+        self._family, self._place = np.empty((2, len(self.contours)), dtype=int)
+        for family, members in enumerate(self._members):
+            self._family[members], self._place[members] = family, np.arange(len(members))
+
+    def __len__(self) -> int:
+        return len(self.contours)
+
+    def at(self, owner: Integers, t: Floats) -> ContourPoint:
+        """Points of the contours.
+
+        Parameters
+        ----------
+        owner : array of int, shape (n,)
+            The number of each point's contour, ascending.
+        t : array, shape (n,)
+            Contour parameters.
+
+        Returns
+        -------
+        ContourPoint
+            Arrays of shape (n,).
+        """
+        if len(self.contours) == 1:
+            return self.contours[0].at(t)
+        if len(self._members) == 1:
+            return self._of_family(0, owner, t)
+        found = ContourPoint(*(np.empty_like(t) for _ in ContourPoint._fields))
+        family = self._family[owner]
+        for i in range(len(self._members)):
+            which = np.flatnonzero(family == i)
+            if which.size:
+                part = self._of_family(i, owner[which], t[which])
+                for values, new in zip(found, part, strict=True):
+                    values[which] = new
+        return found
+
+    def _of_family(self, family: int, owner: Integers, t: Floats) -> ContourPoint:
+        members = self._members[family]
+        first: Contour = self.contours[members[0]]
+        if len(members) == 1:
+            return first.at(t)
+        numbers = iter(self._numbers[family][:, self._place[owner]])
+        contour: Contour = _put_together(first, numbers)
+        return contour.at(t)
+
+
+def _taken_apart(value: Any) -> tuple[Any, tuple[float, ...]]:  # noqa: ANN401
+    """What a profile, or a part of one, has in common with its family, and its own numbers."""
+    common: Any
+    parts: tuple[Any, ...]
+    match value:
+        case float() | int():
+            return float, (float(value),)
+        case tuple():
+            common, parts = "tuple", value
+        case Profile() if value.radius_of_curvature is not None:
+            common, parts = "profile", _curves(value)
+        case partial() if not value.keywords:
+            common, parts = value.func, value.args
+        case MethodType():
+            common, parts = value.__func__, (value.__self__,)
+        case _:
+            return value if callable(value) else id(value), ()
+    found = [_taken_apart(part) for part in parts]
+    return (common, *(key for key, _ in found)), tuple(x for _, own in found for x in own)
+
+
+def _put_together(value: Any, numbers: Iterator[Floats]) -> Any:  # noqa: ANN401
+    """The same with other numbers, in the order in which `_taken_apart` found them."""
+    match value:
+        case float() | int():
+            return next(numbers)
+        case tuple():
+            return tuple(_put_together(part, numbers) for part in value)
+        case Profile() if value.radius_of_curvature is not None:
+            # The parts are those of checked profiles: they are not checked again.
+            profile = object.__new__(Profile)
+            for name, part in zip(_PARTS, _curves(value), strict=True):
+                object.__setattr__(profile, name, _put_together(part, numbers))
+            return profile
+        case partial() if not value.keywords:
+            return partial(value.func, *(_put_together(part, numbers) for part in value.args))
+        case MethodType():
+            return MethodType(value.__func__, _put_together(value.__self__, numbers))
+    return value
+
+
+_PARTS = ("xi", "eta", "alpha_range", "radius_of_curvature")
+
+
+def _curves(profile: Profile) -> tuple[Any, ...]:
+    return tuple(getattr(profile, name) for name in _PARTS)

@@ -1,0 +1,105 @@
+"""Sweeps of the paper's vibrissa, many at once."""
+
+from collections.abc import Sequence
+from functools import cache
+from importlib.metadata import version
+
+import numpy as np
+
+from analytic.problem.case import Case
+from analytic.problem.columns import CLAMP_READINGS, COLUMNS, PHASES, STATUSES
+from analytic.problem.readings import Readings
+from analytic.problem.table import as_table
+from analytic.solver.branch import trace
+from analytic.solver.equilibria import Numbers, Units, to_columns
+from analytic.solver.general.residuals import SOLVED
+from analytic.solver.residuals import residuals
+from analytic.solver.stations import solve_stations
+
+_ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
+
+
+def solve_plain(cases: Sequence[Case]) -> list[Readings]:
+    """Solve sweeps to the left.
+
+    Right of the first contact and left of the snap-off the vibrissa is free. Between them the foot
+    position falls along the equilibria, so that each station has one state.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        Of the paper's vibrissa, whose foot moves to the left; at least one.
+
+    Returns
+    -------
+    list of Readings
+        As `solve_sweep` has them; what one case is does not matter to the others.
+    """
+    counts = [case.sweep.stations for case in cases]
+    whose = np.repeat(np.arange(len(cases)), counts)
+    units = np.array([Units.of(case.beam) for case in cases]).T[:, whose]
+    foot_x = np.concatenate([case.foot_x for case in cases])
+    branches = trace([case.centreline for case in cases], [case.reach for case in cases])
+    places = foot_x / Units(*units).length
+    first = np.array([branch.foot_x[0] for branch in branches])
+    last = np.array([branch.foot_x[-1] for branch in branches])
+    last -= _ROUNDING * np.maximum(1.0, np.abs(last))
+    touching = (places < first[whose]) & (places >= last[whose])
+    columns = _free(foot_x)
+    if touching.any():
+        ends = np.cumsum(counts)[:-1]
+        parts = zip(np.split(places, ends), np.split(touching, ends), strict=True)
+        states = solve_stations(branches, [here[on] for here, on in parts])
+        solved = to_columns(states, Units(*units[:, touching]))
+        for name in COLUMNS[1:]:
+            columns[name][touching] = solved[name]
+    checked = residuals(columns, ~touching, Units(*units))
+    wrong = ~(np.maximum(*checked.values()) <= SOLVED)
+    columns["status"][wrong] = STATUSES.index("diverged")
+    table = as_table({**columns, **checked})
+    found, begin = [], 0
+    for case, count, branch in zip(cases, counts, branches, strict=True):
+        own = table.iloc[begin : begin + count].reset_index(drop=True)
+        found.append(Readings(own, case.beam, "analytic", provenance(case, branch.events())))
+        begin += count
+    return found
+
+
+def provenance(case: Case, events: dict[str, float | None]) -> dict[str, object]:
+    """What the closed form records of a sweep.
+
+    Parameters
+    ----------
+    case : Case
+        The problem.
+    events : dict
+        Where what happens happens [L].
+
+    Returns
+    -------
+    dict
+        With the foot positions of the events in the case's unit.
+    """
+    length = case.beam.length
+    return {
+        **case.provenance(),
+        "engine": _engine(),
+        "events": {name: None if x is None else x * length for name, x in events.items()},
+    }
+
+
+@cache
+def _engine() -> str:
+    return f"vibrissa-testbed {version('vibrissa-testbed')}"
+
+
+def _free(foot_x: Numbers) -> dict[str, Numbers]:
+    """The readings of vibrissae that touch nothing."""
+    columns: dict[str, Numbers] = {name: np.full(foot_x.size, np.nan) for name in COLUMNS}
+    columns["foot_x"] = foot_x
+    for name in CLAMP_READINGS:
+        columns[name] = np.zeros(foot_x.size)
+    columns["phase"] = np.full(foot_x.size, PHASES.index("free"))
+    columns["tip_angle"] = np.full(foot_x.size, np.pi / 2)
+    columns["status"] = np.full(foot_x.size, STATUSES.index("ok"))
+    return columns
