@@ -64,7 +64,7 @@ def solve_sweeps(cases: Iterable[Case]) -> Iterator[Readings | Unsolved]:
     >>> from analytic import Case, Sweep, circle, solve_sweeps
     >>> cases = (Case(profile=circle(r, (0, 0.4)), sweep=Sweep(50)) for r in (0.5, 1.0, 2.0))
     >>> [f"{found.snap_off:.4f}" for found in solve_sweeps(cases)]
-    ['-0.9634', '-1.2705', '-1.9012']
+    ['-1.0268', '-1.2705', '-1.6674']
     """
     require("cases", cases, Iterable, "as [named_case('catenary'), named_case('parabola')]")
     return _solved(cases)

@@ -1,0 +1,128 @@
+"""Many sweeps at once are what each is alone."""
+
+import itertools
+import tracemalloc
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import (
+    Beam,
+    Case,
+    InputError,
+    Profile,
+    Readings,
+    Sweep,
+    Unsolved,
+    catenary,
+    circle,
+    ellipse,
+    named_case,
+    parabola,
+    polygon,
+    solve_sweep,
+    solve_sweeps,
+    through_points,
+    two_circles,
+)
+
+CORNERS = [(-1.5, 1.2), (-0.6, 0.5), (-0.1, 0.35), (0.2, 0.34), (0.8, 0.6), (1.2, 1.3)]
+STIFF = Beam(length=50.0, flexural_rigidity=2e3, radius=0.2)
+
+
+def mixed():
+    """Contours, vibrissae, stations and directions of every kind."""
+    yield named_case("catenary")
+    yield Case(STIFF, catenary(0.5, -0.8).scaled(50.0), Sweep(70))
+    yield Case(profile=catenary(0.3, -0.7), sweep=Sweep(40, direction="right"))
+    yield named_case("two-circles")
+    yield Case(profile=two_circles(1.0, 0.3, (0.1, 0.6)), sweep=Sweep(31))
+    yield Case(profile=polygon(CORNERS), sweep=Sweep(90))
+    yield named_case("rubbing")
+    yield Case(Beam(natural_curvature=-0.3), circle(1.0, (0.0, 0.4)), Sweep(20))
+    yield Case(profile=circle(1.0, (0.0, 0.4)), sweep=Sweep(50, start=2.0, stop=0.9))
+    yield Case(Beam(radius=0.0), circle(0.6, (3.0, 0.5)), Sweep(50))
+    yield Case(profile=ellipse((1.0, 0.3), (0.0, 0.5)), sweep=Sweep(60, direction="right"))
+    yield Case(profile=parabola(0.5, 0.5), sweep=Sweep(2))
+    yield named_case("tip-only")
+    yield Case(profile=through_points([(x, 0.4 + x * x / 3) for x in np.linspace(-2, 2, 15)]))
+    yield Case(
+        profile=Profile(xi=np.sin, eta=lambda alpha: 1.5 - np.cos(alpha), alpha_range=(-1.1, 1.3)),
+        sweep=Sweep(45),
+    )
+
+
+def test_mixed_cases_are_what_each_is_alone():
+    cases = list(mixed())
+    for case, found in zip(cases, solve_sweeps(cases), strict=True):
+        assert isinstance(found, Readings)
+        alone = solve_sweep(case)
+        assert found.beam == alone.beam
+        assert found.source == alone.source
+        events, expected = (dict(x.provenance["events"]) for x in (found, alone))
+        assert events.keys() == expected.keys()
+        for name, place in expected.items():
+            assert events[name] == (None if place is None else pytest.approx(place, rel=1e-12))
+        for readings in (found, alone):
+            assert readings.provenance["digest"] == case.digest
+        columns = [name for name in alone.table if not name.startswith("residual")]
+        pd.testing.assert_frame_equal(
+            # Near a fold readings change like the root of the foot position's rounding.
+            found.table[columns], alone.table[columns], rtol=1e-10, atol=1e-12 * case.beam.length,
+        )  # fmt: skip
+
+
+def test_a_case_that_fails_says_why_and_stops_no_other():
+    calls = itertools.count()
+
+    def broken(alpha):
+        if next(calls) > 200:
+            raise ArithmeticError("this contour is not known here")
+        return 1.5 - np.cos(alpha)
+
+    profile = Profile(xi=np.sin, eta=broken, alpha_range=(-1.2, 1.2))
+    sound = named_case("catenary")
+    bad = Case(profile=profile, sweep=Sweep(30))
+    calls = itertools.count(1000)
+    first, failed, other, last = solve_sweeps([sound, bad, "catenary", sound])
+    assert isinstance(first, Readings)
+    assert isinstance(last, Readings)
+    assert isinstance(failed, Unsolved)
+    assert failed.case is bad
+    assert isinstance(failed.error, ArithmeticError)
+    assert failed.reason == "this contour is not known here"
+    assert isinstance(other, Unsolved)
+    assert isinstance(other.error, InputError)
+
+
+def test_no_cases_and_no_list():
+    assert list(solve_sweeps([])) == []
+    with pytest.raises(InputError, match="cases"):
+        solve_sweeps(named_case("catenary"))
+
+
+@pytest.mark.slow
+def test_cases_are_taken_as_they_are_needed():
+    """And the memory is that of a batch, however many there are."""
+    taken = 0
+
+    def endless():
+        nonlocal taken
+        for radius in itertools.cycle(np.linspace(0.5, 2.0, 7)):
+            taken += 1
+            yield Case(profile=circle(float(radius), (0.0, 0.4)), sweep=Sweep(400))
+
+    found = solve_sweeps(endless())
+    assert taken == 0
+    tracemalloc.start()
+    try:
+        for _ in itertools.islice(found, 50):
+            pass
+        few = tracemalloc.get_traced_memory()[1]
+        for _ in itertools.islice(found, 200):
+            pass
+        assert tracemalloc.get_traced_memory()[1] < 1.3 * few
+    finally:
+        tracemalloc.stop()
+    assert taken < 350
