@@ -24,7 +24,7 @@ from analytic.problem.columns import SENSED
 from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
 from analytic.problem.table import mirrored_table
-from analytic.solver.elastica import span
+from analytic.solver.elastica import tangent_span
 
 _SAMPLES = 400  # of the noise, a station
 _AT_ONCE = 10_000  # stations whose samples are in memory, 130 MB for each number of them
@@ -198,7 +198,7 @@ def reconstruct_by_decision(readings: Readings, tolerance: float = 1e-6) -> pd.D
     _, force_x, force_y, moment = np.where(loaded, sensed, np.nan)
     alpha = np.arctan2(-force_x, force_y)
     tangent = np.abs(2 * force_y - moment**2) <= tolerance * 2 * force
-    tangential = span(np.pi / 2 - np.abs(alpha), alpha).q / np.sqrt(np.where(loaded, force, np.nan))
+    tangential = tangent_span(alpha).q / np.sqrt(np.where(loaded, force, np.nan))
     arc_length = np.where(tangent, tangential, 1.0)
     x, y = np.full_like(alpha, np.nan), np.full_like(alpha, np.nan)
     # Of a small force the tangential contact may be a thousand lengths away: that is none.

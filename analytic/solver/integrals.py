@@ -6,6 +6,7 @@ from scipy.special import ellipeinc, ellipkinc
 from analytic.problem.arrays import Floats
 
 _FEW = 150  # amplitudes; up to so many, two calls of SciPy's are faster than sixty of NumPy's
+_AT_ONCE = 8192  # amplitudes: what is computed on the way stays in the processor's cache
 _LAST = 5.0  # rad; beyond, it is the fourth quadrant, whatever a rounding of the sine says
 _SMALL = 0.8  # modulus, up to which two of Landen's steps leave less than rounding to the series
 
@@ -37,6 +38,12 @@ def elliptic_integrals(
     psi = np.arctan2(opposite, adjacent + 0.0)  # an adjacent -0 would make 0 and 0 half a turn
     if psi.size <= _FEW:
         return ellipkinc(psi, k * k), ellipeinc(psi, k * k), np.sin(psi)
+    if psi.size > _AT_ONCE:
+        every = [x.ravel() for x in np.broadcast_arrays(opposite, adjacent, k, k_)]
+        parts = (slice(i, i + _AT_ONCE) for i in range(0, psi.size, _AT_ONCE))
+        found = [elliptic_integrals(*(x[part] for x in every)) for part in parts]
+        F, E, s = (np.concatenate(x).reshape(psi.shape) for x in zip(*found, strict=True))
+        return F, E, s
     radius = np.hypot(opposite, adjacent)
     with np.errstate(invalid="ignore"):
         s, c = opposite / radius, adjacent / radius

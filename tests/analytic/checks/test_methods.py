@@ -60,12 +60,18 @@ def test_a_wrong_answer_is_found(exact, column):
 
 
 def test_a_broken_solver_cannot_hide(case, monkeypatch):
-    """Break the elliptic integral by 1e-6: the certificate marks every station in contact."""
-    from analytic.solver import elastica
+    """Break the spans' lengths by 1e-6: the certificate marks every station in contact."""
+    from analytic.solver import equilibria, tip
 
-    monkeypatch.setattr(
-        elastica, "ellipkinc", lambda phi, m, whole=elastica.ellipkinc: whole(phi, m) * (1 + 1e-6)
-    )
+    def broken(whole):
+        def longer(*given):
+            found = whole(*given)
+            return found._replace(q=found.q * (1 + 1e-6))
+
+        return longer
+
+    for module, name in ((equilibria, "span"), (equilibria, "tangent_span"), (tip, "span")):
+        monkeypatch.setattr(module, name, broken(getattr(module, name)))
     table = solve_sweep(case, certified=True).table
     touching = table["phase"] != "free"
     assert (table.loc[touching, "status"] == "diverged").all()
