@@ -11,6 +11,7 @@ from analytic.problem.arrays import Booleans, Floats
 from compare.explain.changes import SHARPER, STIFFER
 from compare.explain.convergence import convergence
 from compare.explain.suspects import Suspect, suspects
+from compare.explain.swing import without_swing
 from compare.explain.variations import shifted_inward, stretched
 from compare.judge.tolerances import Tolerances
 from compare.measure.disagreement import Occurrence, before_snap_off
@@ -26,6 +27,8 @@ PARTS = (
     "extension",
     "unexplained",
 )
+REFINED = ("stiff", "two", "four")
+"""The sweeps that differ in their segments alone, each with twice those of the one before."""
 # Roache's, for a convergence index from three or more grids: how far the limit is from the finest
 # grid, and from what the two finest alone would make of it.
 _SAFETY = 1.25
@@ -154,8 +157,15 @@ def budget(
     signatures = {name: signal(varied) - truth for name, varied in variations.items()}
     base, beam = runs["base"], exact.beam
     order = _order(run["stiff"] - run["two"], run["two"] - run["four"])
-    limit = _limit(run["stiff"], run["two"], run["four"], order)
-    from_two = run["four"] + (run["four"] - run["two"]) / (2**order - 1)
+    contact = exact.values("contact_arc_length")[kept] / beam.length
+    tangent = (exact.table["phase"] == "tangent").to_numpy()[kept] & np.isfinite(contact)
+    power = 2.0 ** (-order * np.arange(3))
+    refined, joints = [run[name] for name in REFINED], _joints(runs)
+    if joints is not None:
+        refined = without_swing(refined, joints, contact, tangent, power)
+    limit = _limit(refined, power)
+    _, middle, finest = refined
+    from_two = finest + (finest - middle) / (2**order - 1)
     hard = "sharp" if "sharp" in run else "smooth"  # but for its contacts, which are harder next
     signals = {
         "discretisation": run["stiff"] - limit,
@@ -171,7 +181,7 @@ def budget(
     signals["unexplained"] = total - np.sum(list(signals.values()), axis=0)
     rms = {name: _rms(part) for name, part in signals.items()}
     uncertainty = {
-        "discretisation": _SAFETY * (_rms(run["four"] - limit) + _rms(limit - from_two)),
+        "discretisation": _SAFETY * (_rms(finest - limit) + _rms(limit - from_two)),
         "facets": rms["unrest"],
         "softness": _SAFETY * rms["softness"] / (STIFFER - 1),
         "unrest": rms["unrest"],
@@ -217,7 +227,7 @@ def budget(
         max(names, key=lambda name: float(np.linalg.norm(rms[name]))),
         suspects(signals["unexplained"], signatures, float(np.linalg.norm(unresolved))),
         int(kept.sum()),
-        convergence(exact, [runs[name] for name in ("stiff", "two", "four")], kept),
+        convergence(exact, [runs[name] for name in REFINED], kept),
         {name: _by_reading(check) for name, check in checks.items()},
         within and not resolved,
     )
@@ -279,17 +289,22 @@ def _order(coarse: Floats, fine: Floats) -> float:
     return float(np.clip(observed, *_ORDERS))
 
 
-def _limit(coarse: Floats, middle: Floats, fine: Floats, order: float) -> Floats:
+def _joints(runs: Mapping[str, Readings]) -> list[Floats] | None:
+    """Where each refined sweep's joints are, if all of them say so [L]."""
+    recorded = [runs[name].provenance.get("joints") for name in REFINED]
+    return None if None in recorded else [np.array(joints, dtype=float) for joints in recorded]
+
+
+def _limit(refined: list[Floats], power: Floats) -> Floats:
     """What the sweeps tend to as segments are refined: Richardson's extrapolation, from all three.
 
-    As the contact passes from segment to segment each sweep's error swings about its power of h,
-    and no less fast than that falls. So a line in that power is fitted, each sweep weighed by it:
-    the limit has three quarters of the swing that the two finest sweeps alone leave it.
+    What still swings in them, as the contact passes from bead to bead, falls no faster than their
+    power of h. So a line in that power is fitted, each sweep weighed by it: the limit has three
+    quarters of the swing that the two finest sweeps alone leave it.
     """
-    power = 2.0 ** (-order * np.arange(3))
     design = np.column_stack([np.ones(3), power]) / power[:, None]
     weights = np.linalg.pinv(design)[0] / power
-    return np.asarray(np.tensordot(weights, np.stack([coarse, middle, fine]), axes=1))
+    return np.asarray(np.tensordot(weights, np.stack(refined), axes=1))
 
 
 def _sensor(base: Readings, kept: Booleans, scale: Mapping[str, float]) -> Floats:

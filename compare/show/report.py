@@ -31,7 +31,7 @@ from compare.show.verdict import absent_transitions, verdict, why, worst_reading
 FIGURES = {"geometry": geometry, "readings": readings, "phases": phase_criterion}
 """Pictures that are also written as files of their own."""
 
-_BULKY = ("contour", "events")  # of a source's provenance; they are drawn instead
+_BULKY = ("contour", "events", "joints")  # of a source's provenance; they are drawn instead
 _BEAM = ("length", "flexural_rigidity", "radius")
 _LONGEST = 200  # characters of a setting
 _OF_LARGEST = "of the reading's largest magnitude"

@@ -56,6 +56,7 @@ def run_sweep(
     about = {
         "engine": f"MuJoCo {mujoco.__version__}, vibrissa-testbed {version('vibrissa-testbed')}",
         "settings": asdict(settings),
+        "joints": walk.model.layout.joints.tolist(),
     }
     return follow(case, walk, Account(f"mujoco {settings.beam}", about, begun), advance, keep)
 

@@ -1,4 +1,4 @@
-"""Budgets of vibrissae that are curved at rest or on a clamp that turns."""
+"""Budgets of vibrissae that taper, are curved at rest, or stand on a clamp that turns."""
 
 from dataclasses import replace
 
@@ -10,18 +10,37 @@ from compare.simulate.controlled import measure_budget
 from mujoco_models import Settings
 
 
+VIBRISSAE = {
+    "cone": {"tip_radius": 0.4 * 0.005},
+    "curved away": {"natural_curvature": -0.5},
+    "curved towards": {"natural_curvature": 0.5},
+    "on a spring": {},
+}
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("natural_curvature", "clamp_stiffness"), [(-0.5, float("inf")), (0.0, 8.0)]
+    ("name", "vibrissa"),
+    [
+        ("catenary", "cone"),  # observed 7e-6; 7.4e-5 as long as its swing was left in the limit
+        ("two-circles", "cone"),  # 5e-5: beads L/4000 apart swing past a radius of half a length
+        ("catenary", "curved away"),  # 3.0e-5
+        ("parabola", "curved towards"),  # 4e-6
+        ("catenary", "on a spring"),  # 1.2e-5
+    ],
 )
-def test_it_closes(natural_curvature, clamp_stiffness):
-    case = named_case("catenary")
-    beam = replace(case.beam, natural_curvature=natural_curvature)
-    case = replace(case, beam=beam, clamp_stiffness=clamp_stiffness)
-    found, _ = measure_budget(case, Settings())
+def test_it_closes(name, vibrissa):
+    case = named_case(name)
+    beam = replace(case.beam, **VIBRISSAE[vibrissa])
+    stiffness = 8.0 if vibrissa == "on a spring" else float("inf")
+    sweep = replace(case.sweep, stations=120)
+    case = replace(case, beam=beam, clamp_stiffness=stiffness, sweep=sweep)
+    # The closed form past as many corners, a check, takes long where the vibrissa varies.
+    found, _ = measure_budget(case, Settings(contour_points=1600))
     assert found.closes
-    assert found.stations > 180  # of 200, seven of them free
-    assert found.blame == "discretisation"
+    assert found.stations > 95  # of 120, some of them free
+    assert found.blame in ("discretisation", "facets")
     assert found.order > 1.8
-    # Observed at most 4.2e-5.
-    assert max(part.rms for part in found.parts["unexplained"].values()) < UNRESOLVED
+    for part in found.parts["unexplained"].values():
+        assert part.rms < (1.2 if name == "two-circles" else 1.0) * UNRESOLVED
+        assert part.rms < part.uncertainty

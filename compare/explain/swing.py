@@ -1,0 +1,82 @@
+"""How a beam of segments errs as its contact passes from segment to segment.
+
+A joint bends for its whole cell. Of the cell that the contact is in only the part before the contact
+bends, by a moment that falls to zero there. With the load f, the distance d of the contact from the
+joint before it and the link's length h, the slope at the contact is off by f (d - h/2)^2/(2 EI): the
+integral of the moment over half a cell before the joint and the way d behind it, less the joint's
+turn f d h/EI. As the contact moves that swings between 0 and f h^2/(8 EI), once a segment, and falls
+no faster with h than the beam's error does. Sweeps with other segments swing at other places, so
+that no extrapolation from sweep to sweep takes it out. But where each of them swings is known, and
+by how much shows in their differences.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.interpolate import BSpline
+
+from analytic.problem.arrays import Booleans, Floats
+
+_DEGREE = 3
+_STATIONS = 10  # to an interval of the spline that the swing's size is
+_FEWEST = 20  # stations that it is worth taking from
+_MEAN = 1 / 12  # of (d/h - 1/2)^2, which the power of h has
+
+
+def without_swing(
+    runs: Sequence[Floats],
+    joints: Sequence[Floats],
+    contact: Floats,
+    tangent: Booleans,
+    power: Floats,
+) -> list[Floats]:
+    """Sweeps of three numbers of segments, each less what it swings by in Phase B.
+
+    Parameters
+    ----------
+    runs : sequence of array, shape (3, stations)
+        The readings.
+    joints : sequence of array, shape (n,)
+        Arc lengths of each sweep's joints, ascending [L].
+    contact : array, shape (stations,)
+        Arc length of the contact [L].
+    tangent : array of bool, shape (stations,)
+        Whether the station is in Phase B; at the tip the contact does not move along the beam.
+    power : array, shape (3,)
+        What else of a sweep's error is left from sweep to sweep.
+
+    Returns
+    -------
+    list of array, shape (3, stations)
+        As they are, where too few stations are in Phase B.
+    """
+    count = int(tangent.sum())
+    if count < _FEWEST:
+        return list(runs)
+    swings = np.stack([_swing(at, contact[tangent]) for at in joints])
+    # What neither the limit nor the power of h has part in: only the swing is left in it.
+    differences = np.cross(np.ones(3), power)
+    left = np.tensordot(differences, np.stack(runs)[:, :, tangent], axes=1)
+    basis = _basis(count)
+    size, *_ = np.linalg.lstsq((differences @ swings)[:, None] * basis, left.T)
+    found = [run.copy() for run in runs]
+    for run, swing in zip(found, swings, strict=True):
+        run[:, tangent] -= (basis @ size).T * swing
+    return found
+
+
+def _swing(joints: Floats, contact: Floats) -> Floats:
+    """(d - h/2)^2 less its mean, at each contact [L^2]."""
+    before = np.clip(np.searchsorted(joints, contact, side="right") - 1, 0, len(joints) - 1)
+    lengths = np.diff(joints)
+    h = np.append(lengths, lengths[-1])[before]  # the last link is half a one
+    d = contact - joints[before]
+    return np.asarray((d - h / 2) ** 2 - _MEAN * h**2)
+
+
+def _basis(count: int) -> Floats:
+    """Cubic splines over the stations' numbers, shape (count, splines)."""
+    ends = np.linspace(0, 1, 1 + max(1, count // _STATIONS))
+    knots = np.concatenate([np.zeros(_DEGREE), ends, np.ones(_DEGREE)])
+    places = np.linspace(0, 1, count)
+    return np.asarray(BSpline.design_matrix(places, knots, _DEGREE).toarray())
