@@ -159,7 +159,7 @@ def budget(
     order = _order(run["stiff"] - run["two"], run["two"] - run["four"])
     contact = exact.values("contact_arc_length")[kept] / beam.length
     tangent = (exact.table["phase"] == "tangent").to_numpy()[kept] & np.isfinite(contact)
-    power = 2.0 ** (-order * np.arange(3))
+    power: Floats = 0.5 ** (order * np.arange(3.0))
     refined, joints = [run[name] for name in REFINED], _joints(runs)
     if joints is not None:
         refined = without_swing(refined, joints, contact, tangent, power)

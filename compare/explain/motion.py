@@ -14,13 +14,14 @@ from compare.sense.noise import scales
 from mujoco_models.motion import Motion
 from mujoco_models.own.names import OwnModel
 
-OPTIONAL = ("undamped", "ours", "newton")
+OPTIONAL = ("undamped", "ours", "newton", "stiff")
 """Sweeps without which a budget has one part less."""
 PARTS = (
     "rate",
     "damping",
     "time step",
     "contact model",
+    "softness",
     "solver",
     "beam",
     "at rest",
@@ -28,6 +29,7 @@ PARTS = (
 )
 _SAFETY = 1.25  # Roache's, of an extrapolation from three
 _ORDERS = (0.5, 2.0)  # in the speed: of the dampers' moment one, of inertia two, of bounces less
+_STIFFER = 4  # times the contact stiffness, which half a time step stands as well
 _LEFT = 0.1  # of the disagreement; what may stay unexplained
 
 
@@ -41,9 +43,9 @@ class MotionBudget:
         `Part` by name and reading, those of `PARTS` that there are sweeps for: ``damping``, in
         proportion to the damping ratio; ``rate``, what else a slower sweep does not have; ``time
         step``, what a shorter one does not have; ``contact model``, of the user's contacts instead
-        of ours; ``solver``, of another one than Newton's, or of its iterations; ``beam``, of what
-        was measured instead of what is stated; ``at rest``, of the same model and our contacts;
-        ``unexplained``.
+        of ours; ``softness``, of ours in a user's model instead of hard ones; ``solver``, of
+        another one than Newton's, or of its iterations; ``beam``, of what was measured instead of
+        what is stated; ``at rest``, of the same model and our contacts; ``unexplained``.
     disagreement : dict
         Root mean square by reading, over the stations in contact and trusted in all sweeps.
     order : float
@@ -127,7 +129,8 @@ def slower_and_finer_of_model(
     Returns
     -------
     dict of tuple
-        By the names of `slower_and_finer`; ``ours`` where the contacts are the model's own.
+        By the names of `slower_and_finer`; ``ours`` where the contacts are the model's own, and
+        ``stiff``, as ``fine`` with our contacts four times as stiff.
     """
     quarter = replace(motion, speed=motion.speed / 4)
     found = {
@@ -138,8 +141,11 @@ def slower_and_finer_of_model(
         "undamped": (replace(model, damping=0.5), motion),
         "newton": (replace(model, solver="newton"), quarter),
     }
+    ours = replace(model, contact="ours")
     if model.contact == "own":
-        found["ours"] = (replace(model, contact="ours"), quarter)
+        found["ours"] = (ours, quarter)
+    if motion.solref is None:
+        found["stiff"] = (replace(ours, timestep=0.5, stiffness=_STIFFER), quarter)
     return found
 
 
@@ -161,8 +167,8 @@ def motion_budget(
     tolerances : Tolerances, optional
         Only its window before the snap-off is used.
     of_our_chain : bool
-        Whether ``rest`` is of our chain instead of a user's model, which has other contacts: it is
-        as uncertain as it is large.
+        Whether ``rest`` is of our chain instead of a user's model: it is as uncertain as it is
+        large. Its contacts are hard.
 
     Returns
     -------
@@ -201,6 +207,10 @@ def motion_budget(
     for name, other in (("contact model", "ours"), ("solver", "newton")):
         if other in run:
             signals[name] = run["quarter"] - run[other]
+    if "stiff" in run:  # less what half the time step does
+        softer = run.get("ours", run["quarter"]) - (run["quarter"] - run["fine"])
+        signals["softness"] = (softer - run["stiff"]) * _STIFFER / (_STIFFER - 1)
+        unsure["softness"] = _SAFETY * _rms(signals["softness"]) / (_STIFFER - 1)
     if "beam" in run:
         signals["beam"] = run["beam"] - truth
     signals["at rest"] = run["rest"] - truth

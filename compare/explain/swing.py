@@ -1,13 +1,13 @@
 """How a beam of segments errs as its contact passes from segment to segment.
 
-A joint bends for its whole cell. Of the cell that the contact is in only the part before the contact
-bends, by a moment that falls to zero there. With the load f, the distance d of the contact from the
-joint before it and the link's length h, the slope at the contact is off by f (d - h/2)^2/(2 EI): the
-integral of the moment over half a cell before the joint and the way d behind it, less the joint's
-turn f d h/EI. As the contact moves that swings between 0 and f h^2/(8 EI), once a segment, and falls
-no faster with h than the beam's error does. Sweeps with other segments swing at other places, so
-that no extrapolation from sweep to sweep takes it out. But where each of them swings is known, and
-by how much shows in their differences.
+A joint bends for its whole cell. Of the cell that the contact is in only the part before the
+contact bends, by a moment that falls to zero there. With the load f, the distance d of the contact
+from the joint before it and the link's length h, the slope at the contact is off by
+f (d - h/2)^2/(2 EI): the integral of the moment over half a cell before the joint and the way d
+behind it, less the joint's turn f d h/EI. As the contact moves that swings between 0 and
+f h^2/(8 EI), once a segment, and falls no faster with h than the beam's error does. Sweeps with
+other segments swing at other places, so that no extrapolation from sweep to sweep takes it out. But
+where each of them swings is known, and by how much shows in their differences.
 """
 
 from collections.abc import Sequence

@@ -5,8 +5,6 @@ from concurrent.futures import BrokenExecutor
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from analytic import Case, Readings, solve_sweep
 from compare.explain.motion import (
     OPTIONAL,
@@ -15,14 +13,16 @@ from compare.explain.motion import (
     slower_and_finer,
     slower_and_finer_of_model,
 )
-from compare.simulate.controlled import sweep_alone
+from compare.simulate.means import sweep_as_means
 from compare.simulate.rigidity import by_its_clamp
 from compare.simulate.workers import Workers, available_cores
 from mujoco_models.errors import DivergedError
 from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.motion import Motion
 from mujoco_models.own.names import OwnModel
-from mujoco_models.settings import CONTACT_STIFFNESSES, Settings
+from mujoco_models.settings import Settings
+
+_TRUSTED = 0.75  # of the stations; a sweep with fewer would cost the budget most of them
 
 
 def measure_motion_budget(
@@ -61,7 +61,7 @@ def measure_motion_budget(
     """
     motions = slower_and_finer(motion)
     sweeps = {name: (move_alone, case, one, settings) for name, one in motions.items()}
-    runs = _swept({**sweeps, "rest": (sweep_alone, case, at_rest)}, advance)
+    runs = _swept({**sweeps, "rest": (sweep_as_means, case, at_rest, motion.average)}, advance)
     left_out = tuple(name for name in motions if name not in runs)
     return replace(motion_budget(solve_sweep(case), runs), left_out=left_out), runs
 
@@ -106,15 +106,14 @@ def measure_model_budget(
     found = inspect_model(
         model.file, foot=model.foot, force=model.force, torque=model.torque, geoms=model.geoms
     )
-    stepped = replace(motion, timestep=found.timestep / found.period, integrator=found.integrator)
-    at_rest = replace(
-        settings,
-        segments=max(len(found.joints), 2),
-        contact_stiffness=float(np.clip(stepped.stiffness, *CONTACT_STIFFNESSES)),
-    )
+    # What is soft about the model's contacts is a part of its own.
+    at_rest = replace(settings, segments=max(len(found.joints), 2))
     of_model = slower_and_finer_of_model(model, motion)
     sweeps = {name: (move_model_alone, case, *one, settings) for name, one in of_model.items()}
-    runs = _swept({**sweeps, "rest": (sweep_alone, case, at_rest)}, advance)
+    runs = _swept({**sweeps, "rest": (sweep_as_means, case, at_rest, motion.average)}, advance)
+    no_ours = "ours" in sweeps and "ours" not in runs
+    if "stiff" in runs and (no_ours or runs["stiff"].trusted.mean() < _TRUSTED):
+        del runs["stiff"]
     if not case.beam.varies:
         runs["beam"] = solve_sweep(_as_measured(case, found))
     left_out = tuple(name for name in of_model if name not in runs)

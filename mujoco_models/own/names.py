@@ -20,8 +20,9 @@ class OwnModel:
     contact : str
         Whether contacts have the model's ``"own"`` parameters, or ``"ours"``: frictionless, and as
         stiff as `mujoco_models.Motion` says.
-    timestep, damping : float
-        What the model's time step and the vibrissa's dampers are multiplied by, in memory.
+    timestep, damping, stiffness : float
+        What the model's time step, the vibrissa's dampers and the stiffness of our contacts are
+        multiplied by, in memory.
     solver : str
         The model's ``"own"``, or ``"newton"`` with iterations and tolerance that leave nothing.
     """
@@ -34,4 +35,5 @@ class OwnModel:
     contact: ContactKind = "own"
     timestep: float = 1.0
     damping: float = 1.0
+    stiffness: float = 1.0
     solver: Literal["own", "newton"] = "own"

@@ -55,8 +55,9 @@ def run_own(
     moved = replace(
         motion, timestep=measured.timestep / measured.period, integrator=measured.integrator
     )
-    if motion.contact_stiffness is None and motion.solref is None:  # as stiff as this step allows
-        moved = replace(moved, contact_stiffness=min(max(moved.stiffness, 1e3), 1e9))
+    if motion.solref is None:  # as stiff as is stated, or as this step allows
+        stiffness = own.stiffness * moved.stiffness
+        moved = replace(moved, contact_stiffness=min(max(stiffness, 1e3), 1e9))
     moved = replace(moved, timestep=own.timestep * moved.timestep)
     held = Held(model, parts)
     held.rest()

@@ -23,6 +23,7 @@ _SMALLEST = 1e-7
 _BUCKLES, _NEAR = 0.75 * np.pi, 0.05  # rad; a curve close to another one: shorter steps stay on it
 _TRUST = 0.1  # by how much a mean rate may lie outside those at the ends, of the larger one
 _FLAT = 1e-5  # L; the same, of a rate that is next to nothing
+_FACET = 0.02  # L; facets up to that length make a contour, and no edges
 _SHORT = 1e-3  # of the curve's length: nothing hides there
 _MOST, _A_BREAK = 1000, 4  # steps tried, and for each break of the contour: tens suffice mostly
 _WITHIN = np.linspace(0, 1, 17)  # of a step, where the phase is looked at
@@ -221,8 +222,10 @@ def follow(
 def _points(curve: Curve, touch: Touch, largest: float, length: float) -> list[Point]:
     """Points of the curve between which it turns by an angle at most, from a first step on."""
     points, bend = [curve.start(touch.t, touch.excess)], np.zeros(3)
+    # Past small facets the foot turns back at every corner, and goes on.
+    slack = min(_FACET, float(np.diff(curve.breaks).max(initial=0.0)))
     for _ in range(_MOST + _A_BREAK * len(curve.breaks)):
-        if length <= _SMALLEST or _ended(points, curve.t_range):
+        if length <= _SMALLEST or _ended(points, curve.t_range, slack):
             break
         here = points[-1]
         if here.swing > _BUCKLES:
@@ -266,17 +269,21 @@ def _skips_phase(begin: Point, end: Point, length: float) -> bool:
     return bool((_cubic(_WITHIN, excess, rate, after, rate_after) < 0).any())
 
 
-def _ended(points: list[Point], reach: tuple[float, float]) -> bool:
+def _ended(points: list[Point], reach: tuple[float, float], slack: float = 0.0) -> bool:
     """Whether the vibrissa has let go, is out of reach, or cannot be after it lost its hold.
 
     It buckles from half a period on, and comes to its tip from inside the body where it is turned
-    by more than pi against the contour: that of a flexible tip would go on in windings.
+    by more than pi against the contour: that of a flexible tip would go on in windings. It has lost
+    its hold where the foot comes back, by more than `slack`.
     """
     if len(points) == 1:
         return False
     here = points[-1]
-    impossible = here.swing > np.pi or here.z[2] > np.pi
-    return here.z[1] == 0 or here.z[0] in reach or (impossible and here.rate > 0)
+    if here.z[1] == 0 or here.z[0] in reach:
+        return True
+    if not (here.swing > np.pi or here.z[2] > np.pi) or here.rate <= 0:
+        return False
+    return slack == 0 or here.foot_x > min(point.foot_x for point in points) + slack
 
 
 def _with_turns(curve: Curve, points: list[Point]) -> list[Point]:

@@ -1,13 +1,14 @@
 """The budget of a sweep in motion: planted parts are found, and what is none of them is left."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS, Readings, Sweep, named_case, solve_sweep
-from compare.explain.motion import motion_budget, slower_and_finer
-from mujoco_models import Motion
+from compare.explain.motion import motion_budget, slower_and_finer, slower_and_finer_of_model
+from mujoco_models import Motion, OwnModel
 from tests.compare.command import vibrissa
 
 CASE = replace(named_case("catenary"), sweep=Sweep(80))
@@ -71,6 +72,33 @@ def test_damping_contact_model_solver_and_beam_are_parts_of_their_own():
     # The beam was planted in its part only, and so is missing in what is left.
     for part in found.parts["unexplained"].values():
         assert part.rms == pytest.approx(4e-3 * wave, rel=0.15)
+
+
+def test_softness_of_a_model_is_a_part_of_its_own():
+    """In proportion to 1/stiffness, and a time step whose part it is not."""
+    found = runs(rate=1e-3, step=1e-3, rest=2e-3)
+    soft, step = 8e-3, 1e-3
+    planted = {
+        name: added(2e-3 + 1e-3 * share + step * of_step + soft)
+        for name, share, of_step in (
+            ("base", 1, 1), ("half", 0.5, 1), ("quarter", 0.25, 1), ("fine", 0.25, 0.5),
+            ("undamped", 1, 1),
+        )
+    }  # fmt: skip
+    planted["stiff"] = added(2e-3 + 1e-3 * 0.25 + step * 0.5 + soft / 4)
+    budget = motion_budget(EXACT, {**planted, "rest": found["rest"]}, of_our_chain=True)
+    for part in budget.parts["softness"].values():
+        assert part.rms == pytest.approx(soft * np.sqrt(0.5), rel=0.15)
+    assert all(part.rms < 1e-12 for part in budget.parts["unexplained"].values())
+
+
+def test_a_models_stiffer_contacts_are_ours():
+    model = OwnModel(Path("my.xml"))
+    found = slower_and_finer_of_model(model, MOTION)
+    stiff, motion = found["stiff"]
+    assert (stiff.contact, stiff.stiffness, stiff.timestep) == ("ours", 4, 0.5)
+    assert motion.speed == MOTION.speed / 4
+    assert "stiff" not in slower_and_finer_of_model(model, Motion(solref=(0.7, 1.0)))
 
 
 def test_what_a_motion_has_not_is_no_part():

@@ -45,9 +45,7 @@ def test_the_limit_is_found_though_all_sweeps_swing():
 
 def test_what_does_not_swing_stays():
     runs = sweeps(swings=False)
-    for run, still in zip(
-        runs, without_swing(runs, JOINTS, CONTACT, TANGENT, POWER), strict=True
-    ):
+    for run, still in zip(runs, without_swing(runs, JOINTS, CONTACT, TANGENT, POWER), strict=True):
         np.testing.assert_allclose(still, run, rtol=0, atol=1e-12)
 
 
@@ -66,6 +64,6 @@ def test_an_error_that_no_segment_makes_is_not_taken_for_swing():
 @pytest.mark.parametrize("count", [0, 19])
 def test_too_few_stations_are_left_as_they_are(count):
     runs = sweeps(swings=True)
-    few = STATIONS < count
+    few = count > STATIONS
     for run, still in zip(runs, without_swing(runs, JOINTS, CONTACT, few, POWER), strict=True):
         assert (still == run).all()
