@@ -64,9 +64,16 @@ class Curve(NamedTuple):
         Returns
         -------
         Point
-            Its direction is that of the growing force.
+            Its direction is that of the growing force. A tip that lies along the contour may go
+            either way: it is in Phase B if its excess falls from nothing.
         """
-        here = self._point(np.array([t, 0.0, excess]))
+        here = self._loaded(np.array([t, 0.0, excess]))
+        if excess == 0 and here.direction[_W] < 0:
+            here = self._loaded(np.array([t, 0.0, INSIDE]))
+        return here
+
+    def _loaded(self, z: Floats) -> Point:
+        here = self._point(z)
         return here if here.direction[_F] > 0 else _reversed(here)
 
     def advance(self, here: Point, length: float, bend: Floats) -> tuple[Point, ...]:

@@ -310,3 +310,19 @@ def test_a_short_phase_b_between_two_points_of_the_path_is_seen():
     tangent = readings.table[readings.table["phase"] == "tangent"]
     assert len(tangent) > 10
     assert 0.99 < tangent["contact_arc_length"].min() < 0.9995
+
+
+@pytest.mark.parametrize("friction", [0.1, 0.9])
+def test_an_object_that_is_widest_where_the_tip_is(friction):
+    """First contact is then along the contour, between both phases; nothing special comes of it."""
+    sweep = Sweep(20, start=0.306, stop=-0.4)
+    widest, lower = (
+        solve_sweep(Case(profile=circle(0.3, (0.0, y)), sweep=sweep, friction=friction))
+        for y in (0.7, 0.7 - 1e-9)
+    )
+    assert set(widest.table["status"]) == {"ok"}
+    for name in READ:
+        expected = lower.values(name)
+        np.testing.assert_allclose(
+            widest.values(name), expected, rtol=0, atol=1e-6 * np.abs(expected).max()
+        )
