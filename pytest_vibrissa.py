@@ -1,11 +1,15 @@
 """Fixtures for users' own tests: ``vibrissa_case``, ``vibrissa_sweep``, ``vibrissa_agreement``.
 
+And ``vibrissa_engine_sweep``, for a test that runs with every engine.
+
 The package registers this module as a pytest plugin, so every run of pytest in an environment that
 has the package imports it. It imports nothing but pytest until a fixture or option is used; and it
 is no part of a package, so that a ``compare.py`` of the user's own is in nobody's way.
 
 ``--vibrissa-case NAME|FILE`` (repeat it) or the marker ``@pytest.mark.vibrissa(NAME, ...)`` choose
 the cases that a test is run for, by default all named ones; where there are both, the marker's.
+``--vibrissa-engine NAME`` and ``@pytest.mark.vibrissa_engine(NAME, ...)`` choose the engines in the
+same way, for tests that use `vibrissa_engine_sweep`; by default all that are known.
 ``--vibrissa-report DIR`` writes the report of every comparison that `vibrissa_agreement` makes, and
 ``DIR/summary.md``.
 """
@@ -16,6 +20,7 @@ import json
 import re
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from importlib import import_module
 from importlib.util import find_spec
 from inspect import signature
@@ -34,8 +39,9 @@ if TYPE_CHECKING:
     from mujoco_models.settings import BeamKind
 
     Sweeps = dict[tuple[str, Settings | None], Readings]
+    EngineSweeps = dict[tuple[str, Settings, str], Readings]
 
-_PACKAGES = ("analytic", "mujoco_models", "compare")
+_PACKAGES = ("analytic", "mujoco_models", "engines", "compare")
 _RECORD = "vibrissa"
 _JOB = pytest.StashKey["Job"]()
 
@@ -51,6 +57,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "TOML file; repeat it (default: all named)",
     )
     group.addoption(
+        "--vibrissa-engine",
+        action="append",
+        metavar="NAME",
+        help="engine of tests that use `vibrissa_engine_sweep` and have no marker "
+        "`vibrissa_engine`; repeat it (default: all that are known)",
+    )
+    group.addoption(
         "--vibrissa-report",
         type=Path,
         metavar="DIR",
@@ -64,6 +77,15 @@ def pytest_configure(config: pytest.Config) -> None:
         "markers",
         "vibrissa(case, ...): the cases, named or TOML files, of the `vibrissa_case` fixture",
     )
+    config.addinivalue_line(
+        "markers",
+        "vibrissa_engine(name, ...): the engines of the `vibrissa_engine_sweep` fixture",
+    )
+    for name in config.getoption("--vibrissa-engine") or ():
+        try:
+            _ours("engines.found").named_engines(name)
+        except (ValueError, pytest.fail.Exception) as error:
+            raise pytest.UsageError(f"--vibrissa-engine: {error}") from None
     for name in config.getoption("--vibrissa-case") or ():
         try:
             _ours("compare.read.case").load_job(name)
@@ -76,7 +98,8 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """One test a case, unless the user's own hook has chosen the cases."""
+    """One test a case and an engine, unless the user's own hook has chosen them."""
+    _choose_engines(metafunc)
     if "vibrissa_case" not in metafunc.fixturenames:
         return
     # Without a public way to ask what is parametrized already, a user's `case` would be crossed
@@ -91,6 +114,16 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     names = (marker.args if marker else ()) or metafunc.config.getoption("--vibrissa-case")
     names = [str(name) for name in names or _ours("analytic").CASE_NAMES]
     metafunc.parametrize("vibrissa_case", names, ids=[Path(n).stem for n in names], indirect=True)
+
+
+def _choose_engines(metafunc: pytest.Metafunc) -> None:
+    chosen = {name for call in metafunc._calls for name in call.params}
+    if "vibrissa_engine" not in metafunc.fixturenames or "vibrissa_engine" in chosen:
+        return
+    marker = metafunc.definition.get_closest_marker("vibrissa_engine")
+    names = (marker.args if marker else ()) or metafunc.config.getoption("--vibrissa-engine")
+    names = list(names or [one.name for one in _ours("engines").list_engines()])
+    metafunc.parametrize("vibrissa_engine", names, indirect=True)
 
 
 @pytest.fixture
@@ -124,6 +157,50 @@ def vibrissa_sweep(vibrissa_case: Case, vibrissa_sweeps: Sweeps) -> Callable[...
     `mujoco_models.Settings`. Each sweep is made once a session.
     """
     return _sweep_of(vibrissa_case, vibrissa_sweeps)
+
+
+@pytest.fixture
+def vibrissa_engine(request: pytest.FixtureRequest) -> str:
+    """Name of the engine, one test for each that marker or option names; skipped without it."""
+    name = str(request.param)
+    known = {one.name: one for one in _ours("engines").list_engines()}
+    if name not in known:
+        pytest.fail(f"vibrissa_engine: {name!r} is none of {', '.join(known)}", pytrace=False)
+    trouble = known[name].trouble
+    if trouble is not None:
+        pytest.skip(f"engine {name}: {trouble}")
+    return name
+
+
+@pytest.fixture
+def vibrissa_engine_sweep(
+    vibrissa_engine: str, vibrissa_job: Job, vibrissa_engine_sweeps: EngineSweeps
+) -> Callable[..., Readings]:
+    """``vibrissa_engine_sweep(segments=80)`` is the sweep of `vibrissa_case` in the engine.
+
+    Words are those of `mujoco_models.Settings`, and change the settings of the case. Each sweep is
+    made once a session. A case that the engine refuses is skipped, with what it says.
+    """
+
+    def made(**settings: Any) -> Readings:  # noqa: ANN401
+        case, numerics = vibrissa_job.case, replace(vibrissa_job.settings, **settings)
+        key = case.digest, numerics, vibrissa_engine
+        if key not in vibrissa_engine_sweeps:
+            engine = _ours("engines").find_engine(vibrissa_engine)
+            try:
+                found = engine.sweep(case, numerics)
+            except _ours("analytic").InputError as error:
+                pytest.skip(f"engine {vibrissa_engine}: {error}")
+            vibrissa_engine_sweeps[key] = _ours("engines.apart").checked(found, case)
+        return vibrissa_engine_sweeps[key]
+
+    return made
+
+
+@pytest.fixture(scope="session")
+def vibrissa_engine_sweeps() -> EngineSweeps:
+    """The engines' sweeps of this session, by case, settings and engine."""
+    return {}
 
 
 @pytest.fixture
