@@ -10,5 +10,7 @@ from .simulate import inspect_model as inspect_model
 from .simulate import load_tip as load_tip
 from .simulate import simulate_model as simulate_model
 from .simulate import simulate_motion as simulate_motion
+from .simulate import simulate_space as simulate_space
 from .simulate import simulate_sweep as simulate_sweep
 from .simulate import view_sweep as view_sweep
+from .space.settings import SpatialSettings as SpatialSettings

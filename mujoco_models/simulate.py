@@ -12,10 +12,13 @@ from analytic.problem.case import Case
 from analytic.problem.errors import require
 from analytic.problem.mirror import facing, solve_either_way
 from analytic.problem.readings import Readings
+from analytic.space.problem.case import SpatialCase
+from analytic.space.problem.readings import SpatialReadings
 from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.motion import Motion
 from mujoco_models.own.names import OwnModel
 from mujoco_models.settings import Settings
+from mujoco_models.space.settings import SpatialSettings
 
 
 def simulate_sweep(
@@ -84,6 +87,55 @@ def simulate_sweep(
     return solve_either_way(
         case, lambda leftward: run_sweep(leftward, chosen, advance, keep_facing)
     )
+
+
+def simulate_space(
+    case: SpatialCase,
+    settings: SpatialSettings | None = None,
+    advance: Callable[[], None] = lambda: None,
+    keep: Callable[[SpatialReadings], None] = lambda _: None,
+) -> SpatialReadings:
+    """Sweep a case in space in MuJoCo, at rest at every station.
+
+    Parameters
+    ----------
+    case : SpatialCase
+        The problem; all that the simulation knows of it.
+    settings : SpatialSettings, optional
+        The numerics.
+    advance : callable, optional
+        Called after every station, for progress bars.
+    keep : callable, optional
+        Given the readings of all stations so far (if two or more) when the sweep ends early; see
+        `simulate_sweep`.
+
+    Returns
+    -------
+    SpatialReadings
+        In the units of the case's beam, source ``"mujoco <beam>"``, only of stable equilibria.
+        More columns: ``stability``, the least eigenvalue of the stiffness of vibrissa and contact
+        over that of the joints' springs; ``residual``, the largest moment out of balance at a joint
+        by MuJoCo's own forces [force length]; ``discrepancy``, by how much (dimensionless) the
+        clamp's sensors differ from the contacts' sum; ``penetration`` [length]. ``status`` is
+        ``"unsettled"`` where the vibrissa does not come to rest, and ``"slipped off"``, without
+        readings, from where no stable equilibrium is close by any more to where the straight
+        vibrissa would be clear of the body. ``provenance["events"]`` lists what happens where, as
+        `analytic.space.solve_space` does.
+
+    Raises
+    ------
+    InputError
+        If the case's beam has no radius, the installed MuJoCo lacks the beam, or the body has too
+        many vertices.
+    DivergedError
+        If the simulation is not a number any more; it names the station.
+    """
+    from mujoco_models.space.sweep import run_space
+
+    chosen = SpatialSettings() if settings is None else settings
+    require("case", case, SpatialCase, "as SpatialCase(body=..., path=...)")
+    require("settings", chosen, SpatialSettings, "as SpatialSettings(segments=40)")
+    return run_space(case, chosen, advance, keep)
 
 
 def simulate_motion(

@@ -1,17 +1,21 @@
 """The command ``space``: a sweep past a body in space, and the body from its clamp."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from compare.commands.options import AGREES, DISAGREES, out_folder
+from compare.commands.options import AGREES, DISAGREES, Segments, out_folder
 from compare.commands.output import output_folder
+from compare.commands.waiting import waiting
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from analytic.space import SpatialCase, SpatialReadings
+    from compare.spatial.comparison import SpatialComparison
+    from mujoco_models import SpatialSettings
 
 
 def space(
@@ -35,15 +39,29 @@ def space(
     certified: Annotated[
         bool, typer.Option("--certified", help="Check each station by integration from the clamp.")
     ] = False,
+    engine: Annotated[
+        str | None,
+        typer.Option(
+            metavar="mujoco",
+            help="Sweep in this engine too, compare, and reconstruct from its readings.",
+            show_default=False,
+        ),
+    ] = None,
+    segments: Segments = None,
+    with_budget: Annotated[
+        bool, typer.Option("--budget", help="Split the engine's disagreement into parts too.")
+    ] = False,
 ) -> int:
     """Sweep past a body in space in closed form, and find the body from the clamp.
 
     Writes the readings, the contacts found as a table and as a point cloud with normals, and a
-    picture.
+    picture; with an engine also the comparison and a report.
     """
-    from compare.read.space import load_space
+    from compare.read.space import load_space_job
 
-    found = load_space(case)
+    found, settings = load_space_job(case)
+    _check_engine(engine, readings, segments, with_budget)
+    agrees = True
     with output_folder(out or Path("results") / found.name) as folder:
         from analytic.problem.files import write_whole
         from analytic.space import (
@@ -55,7 +73,6 @@ def space(
             write_ply,
         )
         from compare.commands import terminal
-        from compare.commands.waiting import waiting
         from compare.show.figures.space import sweep_in_space
         from compare.show.page import save_figure
 
@@ -64,6 +81,11 @@ def space(
                 swept = solve_space(found, certified)
             terminal.print_line(_solved(swept))
             terminal.print_written(swept.write(folder / "analytic.parquet"))
+            if engine is not None:
+                if segments is not None:
+                    settings = replace(settings, segments=segments)
+                compared = _compared(found, settings, swept, folder, with_budget)
+                swept, agrees = compared.candidate, compared.agrees
         else:
             swept = SpatialReadings.read(readings, found.beam, found.path.tangent)
         with waiting("reconstructing"):
@@ -79,10 +101,60 @@ def space(
             picture = sweep_in_space(swept, points, found.body)
             written = save_figure(picture, folder / "space.png")
         terminal.print_written(written)
-    wrong = complaint is not None
+    wrong = complaint is not None or not agrees
     if "status" in swept.table:
         wrong |= bool((swept.table["status"] == "diverged").any())
     return DISAGREES if wrong else AGREES
+
+
+def _check_engine(
+    engine: str | None, readings: Path | None, segments: int | None, with_budget: bool
+) -> None:
+    from analytic import InputError
+
+    if engine is not None and engine != "mujoco":
+        raise InputError("--engine", repr(engine), "mujoco in space", "the others are planar")
+    if engine is not None and readings is not None:
+        raise InputError("--readings", str(readings), "not beside --engine", "leave one out")
+    if engine is None and (segments is not None or with_budget):
+        option = "--budget" if with_budget else "--segments"
+        raise InputError(option, "given", "with --engine mujoco only", "add --engine mujoco")
+
+
+def _compared(
+    case: "SpatialCase",
+    settings: "SpatialSettings",
+    exact: "SpatialReadings",
+    folder: Path,
+    with_budget: bool,
+) -> "SpatialComparison":
+    """MuJoCo's sweep, the comparison, its parts if asked for, and the report."""
+    from compare.commands import terminal
+    from compare.show.spatial import write_spatial_report
+    from compare.spatial.comparison import compare_space
+    from compare.spatial.parts import split
+    from mujoco_models import simulate_space
+
+    def sweep(chosen: "SpatialSettings") -> "SpatialReadings":
+        with terminal.progress("stations", case.path.stations) as advance:
+            return simulate_space(case, chosen, advance, keep)
+
+    def keep(part: "SpatialReadings") -> None:
+        terminal.print_written(part.write(folder / f"mujoco-{settings.beam}.parquet"))
+
+    candidate = sweep(settings)
+    terminal.print_line(_solved(candidate))
+    terminal.print_written(candidate.write(folder / f"mujoco-{settings.beam}.parquet"))
+    comparison = compare_space(exact, candidate)
+    parts = split(exact, candidate, settings, sweep) if with_budget else None
+    with waiting("drawing"):
+        written = write_spatial_report(comparison, case.body, folder, parts)
+    for line in comparison.lines():
+        terminal.print_line(line)
+    if parts is not None:
+        terminal.print_line(parts.line())
+    terminal.print_written(written)
+    return comparison
 
 
 def _solved(readings: "SpatialReadings") -> str:

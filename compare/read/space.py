@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import BeforeValidator, Field, ValidationError
 
@@ -24,6 +24,7 @@ from compare.read.profiles import Drawn
 from compare.read.quantities import FileName, Length, Several, Table
 from compare.read.tables import BeamTable
 from compare.read.toml import TomlFile
+from mujoco_models.space.settings import SpatialSettings
 
 _Three = BeforeValidator(Several("x, y, z", "numbers"))
 Place = Annotated[tuple[Length, Length, Length], Field(strict=False), _Three]
@@ -142,6 +143,8 @@ class SpaceFile(Table):
         The physics.
     profile : table, optional
         The contour of a prism, as in the plane.
+    mujoco : table, optional
+        The numerics of MuJoCo's sweep.
     """
 
     name: FileName | None = None
@@ -152,6 +155,7 @@ class SpaceFile(Table):
     ]
     profile: Annotated[Drawn, Field(discriminator="kind")] | None = None
     path: PathTable
+    mujoco: SpatialSettings = SpatialSettings()
 
     def case(self, folder: Path, name: str) -> SpatialCase:
         """The whole problem.
@@ -190,6 +194,13 @@ class SpaceFile(Table):
         )
 
 
+class SpaceJob(NamedTuple):
+    """What a case file of a sweep in space asks for."""
+
+    case: SpatialCase
+    settings: SpatialSettings
+
+
 def load_space(path: str | Path) -> SpatialCase:
     """The case in space from a TOML file.
 
@@ -201,6 +212,27 @@ def load_space(path: str | Path) -> SpatialCase:
     Returns
     -------
     SpatialCase
+        See `load_space_job`.
+
+    Raises
+    ------
+    InputError
+        As there.
+    """
+    return load_space_job(path).case
+
+
+def load_space_job(path: str | Path) -> SpaceJob:
+    """The case in space from a TOML file, and MuJoCo's settings.
+
+    Parameters
+    ----------
+    path : str or Path
+        Named ``*.toml``.
+
+    Returns
+    -------
+    SpaceJob
         With defaults for what the file leaves out.
 
     Raises
@@ -231,4 +263,5 @@ def load_space(path: str | Path) -> SpatialCase:
         raise complaint(error, SpaceFile, file.place) from error
     given: dict[str, Any] = dict(file.tables)
     check_units(found, given, file.place)
-    return found.case(path.parent, found.name or name_of(path))
+    case = found.case(path.parent, found.name or name_of(path))
+    return SpaceJob(case, found.mujoco)

@@ -26,6 +26,7 @@ from compare.show.style import (
     SMALL,
     label,
 )
+from compare.spatial.comparison import SpatialComparison, way
 
 _SHAPES = 24  # drawn of a sweep
 _DEPTH = 0.5  # of the scene, at least, over its longest side
@@ -71,6 +72,51 @@ def sweep_in_space(readings: SpatialReadings, found: pd.DataFrame, body: Body) -
     handles.append(Line2D([], [], color=GREY, linestyle="--", label="way of the foot"))
     figure.legend(
         handles=handles, loc="outside lower center", ncols=5, fontsize=SMALL, frameon=False
+    )
+    return figure
+
+
+def both_in_space(comparison: SpatialComparison) -> Figure:
+    """Draw the six components of both sweeps over the way of the foot, and their differences.
+
+    Parameters
+    ----------
+    comparison : SpatialComparison
+        Of two sweeps.
+
+    Returns
+    -------
+    Figure
+        Force on the left, moment on the right, differences below.
+    """
+    figure = Figure(figsize=(PAGE_WIDTH, 0.6 * PAGE_WIDTH), layout="constrained")
+    grid = figure.subplots(2, 2, sharex=True, height_ratios=(2, 1))
+    one, other = comparison.reference, comparison.candidate
+    beam = one.beam
+    travel = way(one) / beam.length
+    for column, (names, unit, title) in enumerate(
+        (
+            (FORCE, beam.force_unit, "$F$ / ($EI/L^2$)"),
+            (MOMENT, beam.moment_unit, "$M$ / ($EI/L$)"),
+        )
+    ):
+        above, below = grid[:, column]
+        for name, colour in zip(names, _COLOURS, strict=True):
+            exact, found = (r.values(name) / unit for r in (one, other))
+            exact[~one.trusted], found[~other.trusted] = np.nan, np.nan
+            above.plot(travel, exact, color=colour, linewidth=1, label=name[-1])
+            above.plot(travel, found, color=colour, marker=".", markersize=3, linestyle="")
+            off = np.where(comparison.compared, found - exact, np.nan)
+            below.plot(travel, off, color=colour, marker=".", markersize=2.5, linewidth=0.8)
+        above.set_ylabel(title)
+        above.legend(fontsize=SMALL, frameon=False, ncols=3)
+        below.set_ylabel("difference")
+        below.set_xlabel("way of the foot / $L$")
+        below.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2))
+        for ax in (above, below):
+            ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
+    figure.suptitle(
+        label(f"lines: {one.source}; dots: {other.source}"), x=0.01, ha="left", fontsize=NORMAL
     )
     return figure
 

@@ -1,0 +1,1 @@
+"""Two sweeps in space set against each other: measured, judged and split into causes."""

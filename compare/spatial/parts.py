@@ -1,0 +1,108 @@
+"""What the disagreement of a sweep in space is made of, by changing one thing at a time."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.space import SpatialReadings
+from analytic.space.problem.readings import FORCE, MOMENT
+from mujoco_models.space.settings import SpatialSettings
+
+_ORDER = 2  # of the chain in 1/N
+_STIFFER = 10.0
+
+
+class Parts(NamedTuple):
+    """The parts of a disagreement; each a root mean square over the stations that all sweeps share.
+
+    Relative to the largest component of force and of moment; of the two the larger one.
+    """
+
+    whole: float
+    """Of the disagreement itself."""
+    discretisation: float
+    """What the limit of many segments does not have, by twice as many and order two."""
+    softness: float
+    """What a rigid contact does not have, by ten times the stiffness."""
+    unexplained: float
+    """What is left when these are subtracted, station by station."""
+    stations: int
+    """How many all sweeps share."""
+
+    def line(self) -> str:
+        """All parts, for a terminal.
+
+        Returns
+        -------
+        str
+            One line.
+        """
+        return (
+            f"of {self.whole:.1e} rms: discretisation {self.discretisation:.1e}, softness "
+            f"{self.softness:.1e}, unexplained {self.unexplained:.1e} ({self.stations} stations)"
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``budget.json`` holds.
+
+        Returns
+        -------
+        dict
+            By part.
+        """
+        return self._asdict()
+
+
+def split(
+    exact: SpatialReadings,
+    base: SpatialReadings,
+    settings: SpatialSettings,
+    sweep: Callable[[SpatialSettings], SpatialReadings],
+) -> Parts:
+    """Split the disagreement of a MuJoCo sweep.
+
+    Parameters
+    ----------
+    exact, base : SpatialReadings
+        The closed form's, and MuJoCo's with `settings`.
+    settings : SpatialSettings
+        Of the sweep.
+    sweep : callable
+        Maps settings to readings.
+
+    Returns
+    -------
+    Parts
+        Root mean squares.
+    """
+    finer = sweep(replace(settings, segments=2 * settings.segments))
+    stiffness = min(_STIFFER * settings.contact_stiffness, 1e9)
+    stiffer = sweep(replace(settings, contact_stiffness=stiffness))
+    shared = np.logical_and.reduce([r.touching for r in (exact, base, finer, stiffer)])
+    values = {
+        name: _scaled(exact, readings, shared)
+        for name, readings in (("exact", exact), ("base", base), ("n", finer), ("k", stiffer))
+    }
+    whole = values["base"] - values["exact"]
+    coarse = (values["base"] - values["n"]) * 2**_ORDER / (2**_ORDER - 1)
+    share = settings.contact_stiffness / stiffness
+    soft = (values["base"] - values["k"]) / (1 - share) if share < 1 else np.zeros_like(whole)
+    rest = whole - coarse - soft
+    return Parts(_worst(whole), _worst(coarse), _worst(soft), _worst(rest), int(shared.sum()))
+
+
+def _scaled(exact: SpatialReadings, readings: SpatialReadings, shared: Floats) -> Floats:
+    columns = []
+    for names in (FORCE, MOMENT):
+        scale = np.abs(exact.values(*names)[exact.touching]).max(initial=1e-300)
+        columns.append(readings.values(*names)[shared] / scale)
+    return np.hstack(columns)
+
+
+def _worst(signal: Floats) -> float:
+    if not len(signal):
+        return float("nan")
+    return float(np.sqrt((signal**2).mean(axis=0)).max())

@@ -1,0 +1,1 @@
+"""The sweep in space in MuJoCo, at rest at every station."""

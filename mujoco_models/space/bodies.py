@@ -1,0 +1,240 @@
+"""The bodies of a sweep in space as MuJoCo's geoms: smooth primitives, and meshes as they are."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple, TypeAlias
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.problem.errors import InputError
+from analytic.space.problem.bodies.body import Body
+from analytic.space.problem.bodies.ellipsoid import Ellipsoid
+from analytic.space.problem.bodies.polyhedron import Polyhedron
+from analytic.space.problem.bodies.prism import Cylinder, Prism
+from analytic.space.problem.bodies.support import SmoothBody
+
+GEOM, OUTLINE = "body", "outline"
+_MARGIN = 1.5  # L beyond the way of the foot: how far endless bodies go on
+_MOST_VERTICES = 50_000  # the hull of a round body takes MuJoCo half a second then
+_BLUR = 2e-6  # rad: of 200 random points of an ellipsoid 1 by 0.7 by 1.6 the worst
+_SHARPEST, _FLATTEST = 1e-4, 1e3  # L, radii of curvature of a contour that a cylinder follows
+_HALF_LENGTH = 50.0  # radii; the caps must be farther away than the centre
+_DENSE = 4001  # parameters at which a contour is looked at for what is within reach
+
+
+class Circle(NamedTuple):
+    """A cylinder that osculates a prism along one of its lines; lengths in L."""
+
+    centre: Floats
+    """A point of its axis, shape (3,)."""
+    radius: float
+
+
+Osculating: TypeAlias = Callable[[Floats, Floats], Circle]
+
+
+@dataclass(frozen=True)
+class Shape:
+    """What MuJoCo has for a body.
+
+    Attributes
+    ----------
+    label : str
+        What provenance says of it.
+    faceted : bool
+        Whether it consists of flat faces.
+    difference : float
+        The displacement by which the turning of MuJoCo's normals is measured [L]: as small as their
+        precision allows.
+    blur : float
+        Error of MuJoCo's normals [rad]: what a force leaves out of balance, and Newton's method
+        cannot remove.
+    osculating : callable, optional
+        Of a prism: maps a normal and a point near by to the cylinder that has the contour's circle
+        of curvature there. MuJoCo's cylinder follows the contact; where the rest of the body is, a
+        mesh says.
+    inscribed : float
+        How far that mesh may be off the contour [L].
+    """
+
+    label: str
+    faceted: bool
+    difference: float
+    blur: float = 0.0
+    osculating: Osculating | None = None
+    inscribed: float = 0.0
+
+
+def add_body(
+    spec: mujoco.MjSpec, body: Body, centre: Floats, reach: float, contour_points: int
+) -> Shape:
+    """Add a body to the world.
+
+    Parameters
+    ----------
+    spec : mujoco.MjSpec
+        Changed in place.
+    body : Body
+        In L.
+    centre : array, shape (3,)
+        Of the way of the foot [L].
+    reach : float
+        How far from there the vibrissa gets [L].
+    contour_points : int
+        Points of a prism's polygon.
+
+    Returns
+    -------
+    Shape
+        What it is.
+
+    Raises
+    ------
+    InputError
+        If a mesh has too many vertices for MuJoCo, or the body is of a kind that it has not.
+    """
+    reach = reach + _MARGIN
+    if isinstance(body, Ellipsoid):
+        return _ellipsoid(spec, body)
+    if isinstance(body, Cylinder):
+        middle = body.through + ((centre - body.through) @ body.axis) * body.axis
+        _add(spec, mujoco.mjtGeom.mjGEOM_CYLINDER, middle, body.axis, [body.radius, reach, 0])
+        return Shape("MuJoCo's cylinder", False, 1e-4)
+    if isinstance(body, Polyhedron):
+        _add_mesh(spec, body.vertices, body.label)
+        return Shape(f"mesh of {len(body.vertices)} vertices", True, 1e-6)
+    if isinstance(body, Prism):
+        return _prism(spec, body, centre, reach, contour_points)
+    if isinstance(body, SmoothBody):
+        normals = _spread(contour_points)
+        points = np.array([body.nearest(centre + 1e3 * n, 1.0).point for n in normals])
+        _add_mesh(spec, points, body.label)
+        return Shape(f"mesh of {len(points)} points of its surface", True, 1e-6)
+    raise InputError(
+        "body",
+        type(body).__name__,
+        "a sphere, ellipsoid, cylinder, prism, mesh or SmoothBody for MuJoCo",
+        "give its points as a polyhedron",
+    )
+
+
+def _prism(
+    spec: mujoco.MjSpec, body: Prism, centre: Floats, reach: float, contour_points: int
+) -> Shape:
+    """A mesh, and for the contact, if the contour has no corners, a cylinder that follows it."""
+    line, alpha = _within_reach(body, centre, reach, contour_points)
+    points = _extruded(body, line, centre, reach)
+    grid = body.contour.at(body.contour.parameter(np.linspace(*alpha, _DENSE)))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        radius = grid.stretch / grid.turning
+    if not ((radius > _SHARPEST) & (radius < _FLATTEST)).all():
+        _add_mesh(spec, points, body.label)
+        return Shape(f"prism of a polygon of {len(line)} corners", True, 1e-6)
+    _add_mesh(spec, points, body.label, OUTLINE)
+    _add(spec, mujoco.mjtGeom.mjGEOM_CYLINDER, centre, body.frame[2], [1.0, _HALF_LENGTH, 0.0])
+
+    def osculating(normal: Floats, near: Floats) -> Circle:
+        slope = np.arctan2(normal @ body.frame[0], -(normal @ body.frame[1]))
+        slope = np.clip(slope, *alpha)
+        point = body.contour.at(body.contour.parameter(np.array([slope])))
+        size = float(point.stretch[0] / point.turning[0])
+        x = float(point.xi[0]) - size * np.sin(slope)
+        y = float(point.eta[0]) + size * np.cos(slope)
+        along = float((near - body.origin) @ body.frame[2])
+        return Circle(body.origin + np.array([x, y, along]) @ body.frame, size)
+
+    label = "MuJoCo's cylinder, with the contour's circle of curvature where the contact is"
+    sagitta = float(np.hypot(*np.diff(line, axis=0).T).max()) ** 2 / (8 * float(radius.min()))
+    return Shape(label, False, 1e-5, osculating=osculating, inscribed=sagitta)
+
+
+def _ellipsoid(spec: mujoco.MjSpec, body: Ellipsoid) -> Shape:
+    if np.ptp(body.semi_axes) == 0:
+        _add(spec, mujoco.mjtGeom.mjGEOM_SPHERE, body.centre, None, [body.semi_axes[0], 0, 0])
+        return Shape("MuJoCo's sphere", False, 1e-5)
+    geom = _add(spec, mujoco.mjtGeom.mjGEOM_ELLIPSOID, body.centre, None, body.semi_axes)
+    turn = np.zeros(4)
+    mujoco.mju_mat2Quat(turn, np.ascontiguousarray(body.frame.T).ravel())
+    geom.quat = turn
+    # MuJoCo searches for the nearest point until its distance is good to rounding.
+    return Shape("MuJoCo's ellipsoid", False, 1e-3, _BLUR)
+
+
+def _add(
+    spec: mujoco.MjSpec,
+    kind: mujoco.mjtGeom,
+    place: Floats,
+    axis: Floats | None,
+    size: Floats | list[float],
+) -> mujoco.MjsGeom:
+    geom = spec.worldbody.add_geom(
+        name=GEOM, type=kind, pos=place, size=size, contype=1, conaffinity=0, condim=1
+    )
+    if axis is not None:
+        turn = np.zeros(4)
+        mujoco.mju_quatZ2Vec(turn, axis)
+        geom.quat = turn
+    return geom
+
+
+def _add_mesh(spec: mujoco.MjSpec, vertices: Floats, label: str, name: str = GEOM) -> None:
+    from scipy.spatial import ConvexHull
+
+    if len(vertices) > _MOST_VERTICES:
+        raise InputError(
+            f"body ({label})",
+            f"of {len(vertices)} vertices",
+            f"of at most {_MOST_VERTICES:,} for MuJoCo",
+            "simplify it (tolerance)",
+        )
+    hull = ConvexHull(vertices)
+    faces = hull.simplices.copy()
+    corners = vertices[faces]
+    inward = (
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        * hull.equations[:, :3]
+    ).sum(axis=1) < 0
+    faces[inward] = faces[inward][:, ::-1]
+    mesh = spec.add_mesh(name=name)
+    mesh.uservert, mesh.userface = vertices.ravel(), faces.astype(np.int32).ravel()
+    mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
+    spec.worldbody.add_geom(
+        name=name,
+        type=mujoco.mjtGeom.mjGEOM_MESH,
+        meshname=name,
+        contype=1 if name == GEOM else 0,
+        conaffinity=0,
+        condim=1,
+    )
+
+
+def _within_reach(
+    body: Prism, centre: Floats, reach: float, points: int
+) -> tuple[Floats, tuple[float, float]]:
+    """A polygon inscribed in the part of a prism's contour within reach, and its slope angles."""
+    x, y, _ = body.frame @ (centre - body.origin)
+    t = np.linspace(*body.contour.t_range, _DENSE)
+    there = body.contour.at(t)
+    near = np.flatnonzero(np.hypot(there.xi - x, there.eta - y) < reach)
+    first, last = max(near[0] - 1, 0), min(near[-1] + 1, len(t) - 1)
+    line = body.contour.outline(float(t[first]), float(t[last]), points)
+    return line, (float(there.alpha[first]), float(there.alpha[last]))
+
+
+def _extruded(body: Prism, line: Floats, centre: Floats, reach: float) -> Floats:
+    """Its sides drawn up from the ends of its contour."""
+    _, y, along = body.frame @ (centre - body.origin)
+    top = np.full(2, max(line[:, 1].max(), y) + reach)
+    line = np.concatenate([line, np.column_stack([line[[0, -1], 0], top])])
+    both = [np.column_stack([line, np.full(len(line), along + side)]) for side in (-reach, reach)]
+    return np.asarray(body.origin + np.concatenate(both) @ body.frame)
+
+
+def _spread(count: int) -> Floats:
+    """Unit vectors evenly over the sphere, on a spiral."""
+    height = 1 - 2 * (np.arange(count) + 0.5) / count
+    angle = np.pi * (1 + np.sqrt(5)) * np.arange(count)
+    ring = np.sqrt(1 - height**2)
+    return np.stack([ring * np.cos(angle), height, ring * np.sin(angle)], axis=1)

@@ -1,0 +1,377 @@
+"""The compiled beam and body: what MuJoCo says of a configuration at rest in space."""
+
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.problem.errors import InputError
+from mujoco_models.beams.links import link_name
+from mujoco_models.beams.protocol import FOOT
+from mujoco_models.errors import DivergedError
+from mujoco_models.model.spec import add_options
+from mujoco_models.space.beams import SpaceBeam
+from mujoco_models.space.bodies import GEOM, OUTLINE, Shape
+
+_IMPEDANCE = 0.9  # MuJoCo's d; with the stiffness set below it cancels out of the law at rest
+_CCD_ITERATIONS = 500  # of MuJoCo's search for the nearest point of an ellipsoid: 35 leave 1e-5
+_THINNEST = 1e-4  # L; MuJoCo's least radius of a link's capsule
+_FOLLOWED, _SAME_NORMAL = 20, 1e-13  # rounds in which a cylinder finds the circle of curvature
+_FAR = 10.0  # L; beyond, MuJoCo need not say how far
+
+
+class Touch(NamedTuple):
+    """What MuJoCo says of the bead at some place of the vibrissa; lengths in L."""
+
+    centre: Floats
+    """Of the bead, shape (3,)."""
+    normal: Floats
+    """The body's, outward, shape (3,)."""
+    distance: float
+    """Between the two surfaces; negative if they overlap."""
+
+
+class Clamped(NamedTuple):
+    """The clamp's action on the vibrissa at the foot, in the world's frame."""
+
+    force: Floats
+    """Shape (3,) [EI/L^2]."""
+    moment: Floats
+    """Shape (3,) [EI/L]."""
+    discrepancy: float
+    """By how much that differs from what holds the contacts' forces."""
+
+
+class SpaceModel:
+    """MuJoCo's model and state; everything physical comes from it.
+
+    The vibrissa touches with one bead, a sphere on its axis, which slides along the link that
+    carries it to where that is nearest to the body.
+
+    Parameters
+    ----------
+    beam : SpaceBeam
+        Which beam.
+    spec : mujoco.MjSpec
+        Of the beam, with the body in it.
+    shape : Shape
+        What MuJoCo has for the body.
+    tangent : array, shape (3,)
+        Of the vibrissa at its clamp.
+    radius : float
+        Of the vibrissa [L].
+    contact_stiffness : float
+        Force over penetration [EI/L^3].
+    """
+
+    def __init__(
+        self,
+        beam: SpaceBeam,
+        spec: mujoco.MjSpec,
+        shape: Shape,
+        tangent: Floats,
+        radius: float,
+        contact_stiffness: float,
+    ) -> None:
+        self.beam, self.layout = beam, beam.layout
+        self.shape, self.radius, self.contact_stiffness = shape, radius, contact_stiffness
+        self.tangent = tangent
+        self.ends = np.append(self.layout.joints[1:], 1.0)
+        """Arc length of each link's end."""
+        self.model = _compiled(_assembled(spec, len(self.ends), tangent, radius))
+        self.data = mujoco.MjData(self.model)
+        model = self.model
+        self.evaluations = 0
+        self._foot, self._body = model.body(FOOT).id, model.geom(GEOM).id
+        follows = shape.osculating is not None
+        self._outline = model.geom(OUTLINE).id if follows else self._body
+        self._site = model.site("clamp").id
+        numbers = range(len(self.ends))
+        self._links = np.array([model.body(link_name(i)).id for i in numbers])
+        self._beads = np.array([model.geom(f"bead{i}").id for i in numbers])
+        self._sides = np.array([model.geom(f"side{i}").id for i in numbers])
+        self._ends = np.zeros(6)
+        self.joint_of = np.repeat(np.arange(len(self.ends)), model.nv // len(self.ends))
+        """Number of the joint that each velocity belongs to."""
+        self.shared = model.jnt_type[0] == mujoco.mjtJoint.mjJNT_BALL
+        """Whether the velocities of a joint turn about axes that it carries along."""
+        self._first = np.unique(model.jnt_bodyid, return_index=True)[1]
+        weight = model.body_invweight0[self._links, 0]
+        k = contact_stiffness * (1 - _IMPEDANCE) * weight
+        model.geom_solref[self._beads] = np.column_stack([-k, -2 * np.sqrt(k)])
+        model.geom_solimp[self._beads] = [_IMPEDANCE, _IMPEDANCE, 1e-3, 0.5, 2]
+        self.straight = model.qpos0.copy()
+
+    def place(self, foot: Floats, configuration: Floats) -> None:
+        """Put the vibrissa there, and let MuJoCo see where its links are and how its springs pull.
+
+        Parameters
+        ----------
+        foot : array, shape (3,)
+            Position of the foot [L].
+        configuration : array, shape (nq,)
+            MuJoCo's coordinates.
+        """
+        model, data = self.model, self.data
+        model.body_pos[self._foot] = foot
+        data.qpos[:], data.qvel[:] = configuration, 0
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        if model.nflex:
+            mujoco.mj_flex(model, data)
+        mujoco.mj_passive(model, data)
+        self.evaluations += 1
+
+    @property
+    def springs(self) -> Floats:
+        """MuJoCo's elastic moments, shape (nv,) [EI/L]."""
+        return np.asarray(self.data.qfrc_passive)
+
+    @property
+    def axes(self) -> Floats:
+        """What MuJoCo's velocities turn about, in the world's frame, shape (nv, 3)."""
+        return np.asarray(self.data.cdof[:, :3])
+
+    @property
+    def joints(self) -> Floats:
+        """Where the joints are, shape (n_joints, 3) [L]."""
+        return np.asarray(self.data.xanchor[self._first])
+
+    def direction(self, link: int) -> Floats:
+        """Of a link's axis, towards the tip, shape (3,)."""
+        return np.asarray(self.data.xmat[self._links[link]].reshape(3, 3)[:, 1])
+
+    def touch(self, link: int, s: float) -> Touch:
+        """MuJoCo's nearest point of the body to a bead on a link.
+
+        Parameters
+        ----------
+        link : int
+            Number of the link.
+        s : float
+            Arc length of the bead, on that link [L].
+
+        Returns
+        -------
+        Touch
+            Place, normal and distance.
+        """
+        start = self.data.xpos[self._links[link]]
+        centre = start + (s - self.layout.joints[link]) * self.direction(link)
+        normal, distance = self._nearest(link, centre)
+        if self.shape.osculating is not None:
+            for _ in range(_FOLLOWED):
+                before = normal
+                self._follow(normal, centre)
+                normal, distance = self._nearest(link, centre)
+                if np.abs(normal - before).max() < _SAME_NORMAL:
+                    break
+        return Touch(centre, normal, distance)
+
+    def _follow(self, normal: Floats, centre: Floats) -> None:
+        """Put MuJoCo's cylinder where it has the prism's circle of curvature."""
+        assert self.shape.osculating is not None
+        circle = self.shape.osculating(normal, centre)
+        model, body = self.model, self._body
+        length = circle.radius * model.geom_size[body, 1] / model.geom_size[body, 0]
+        model.geom_size[body, :2] = circle.radius, length
+        model.geom_rbound[body] = np.hypot(circle.radius, length)
+        model.geom_pos[body] = self.data.geom_xpos[body] = circle.centre
+
+    def turning(self, link: int, touch: Touch, step: float) -> Floats:
+        """How MuJoCo's normal turns as the bead's centre moves, by central differences.
+
+        Parameters
+        ----------
+        link : int
+            The link that carries the bead.
+        touch : Touch
+            Where it is.
+        step : float
+            The displacement [L].
+
+        Returns
+        -------
+        array, shape (3, 3)
+            Symmetric, no eigenvalue below 0: the body is convex [1/L].
+        """
+        n = touch.normal
+        one = np.cross(n, np.eye(3)[np.argmin(np.abs(n))])
+        one /= np.linalg.norm(one)
+        sides = np.stack([one, np.cross(n, one)])
+        rates = [
+            (
+                self._nearest(link, touch.centre + step * side)[0]
+                - self._nearest(link, touch.centre - step * side)[0]
+            )
+            / (2 * step)
+            for side in sides
+        ]
+        found = sides @ np.array(rates).T
+        values, ways = np.linalg.eigh((found + found.T) / 2)
+        ways = ways.T @ sides
+        return np.asarray(ways.T @ np.diag(np.maximum(values, 0.0)) @ ways)
+
+    def _nearest(self, link: int, centre: Floats) -> tuple[Floats, float]:
+        bead = self._beads[link]
+        self.data.geom_xpos[bead] = centre
+        distance = mujoco.mj_geomDistance(self.model, self.data, bead, self._body, _FAR, self._ends)
+        away = centre - self._ends[3:]
+        outward = 1.0 if distance > -self.radius else -1.0  # the centre itself may be inside
+        return outward * away / np.linalg.norm(away), float(distance)
+
+    def distance_of_link(self, link: int) -> tuple[float, float]:
+        """How far a link is from the body, and where on it that is.
+
+        Parameters
+        ----------
+        link : int
+            Its number.
+
+        Returns
+        -------
+        distance : float
+            Between the surfaces, negative if they overlap [L].
+        arc_length : float
+            Of the nearest place, on the link [L].
+        """
+        side = self._sides[link]
+        distance = mujoco.mj_geomDistance(
+            self.model, self.data, side, self._outline, _FAR, self._ends
+        )
+        apart = self._ends[:3] - self.data.xpos[self._links[link]]
+        low, high = self.layout.joints[link], self.ends[link]
+        s = low + float(np.clip(apart @ self.direction(link), 0, high - low))
+        return float(distance) + float(self.model.geom_size[side, 0]) - self.radius, s
+
+    def nearest_link(self) -> tuple[float, int, float]:
+        """The link nearest to the body.
+
+        A link that is d away has none nearer than d less a link's length beside it, so that most
+        need not be asked for.
+
+        Returns
+        -------
+        distance : float
+            Between the surfaces [L].
+        link : int
+            Its number.
+        arc_length : float
+            Of its nearest place [L].
+        """
+        best, found, at = np.inf, len(self.ends) - 1, 1.0
+        link = len(self.ends) - 1
+        longest = float(self.layout.lengths.max())
+        while link >= 0:
+            distance, s = self.distance_of_link(link)
+            if distance < best:
+                best, found, at = distance, link, s
+            link -= max(1, int((distance - max(best, 0.0)) / longest))
+        return best, found, at
+
+    def blocks(self) -> Floats:
+        """Second derivative of each joint's energy, shape (n_joints, d, d) [EI/L]."""
+        return self.beam.blocks(self.data.qpos)
+
+    def rest(self, link: int | None, s: float) -> float:
+        """Let MuJoCo evaluate all its forces on the configuration, with a bead in its place.
+
+        Parameters
+        ----------
+        link : int or None
+            The link whose bead may touch; None if none does.
+        s : float
+            Where it is [L].
+
+        Returns
+        -------
+        float
+            The largest moment of springs and contact that is out of balance at a joint [EI/L].
+
+        Raises
+        ------
+        DivergedError
+            If a moment is not finite.
+        """
+        model, data = self.model, self.data
+        model.geom_conaffinity[self._beads] = 0
+        if link is not None:
+            bead = self._beads[link]
+            model.geom_conaffinity[bead] = 1
+            model.geom_pos[bead, 1] = s - self.layout.joints[link]
+        mujoco.mj_forward(model, data)
+        found = data.qfrc_passive + data.qfrc_constraint
+        if not np.isfinite(found).all():
+            raise DivergedError("MuJoCo's moments at the joints are not finite")
+        return float(np.abs(found).max())
+
+    def clamp(self) -> Clamped:
+        """MuJoCo's sensors at the clamp, of what `rest` evaluated.
+
+        Returns
+        -------
+        Clamped
+            Force and moment, and how far they are from the contacts' sum.
+        """
+        turn = self.data.site_xmat[self._site].reshape(3, 3)
+        force, moment = (turn @ part for part in self.data.sensordata.reshape(2, 3))
+        held = np.zeros((2, 3))
+        wrench = np.zeros(6)
+        foot = self.data.xpos[self._foot]
+        for i in range(self.data.ncon):
+            mujoco.mj_contactForce(self.model, self.data, i, wrench)
+            contact = self.data.contact[i]
+            push = wrench[:3] @ contact.frame.reshape(3, 3)
+            push *= 1.0 if contact.geom[1] != self._body else -1.0
+            held += [push, np.cross(contact.pos - foot, push)]
+        miss = np.abs(np.stack([force, moment]) + held).max()
+        return Clamped(force, moment, float(miss))
+
+
+def _assembled(spec: mujoco.MjSpec, links: int, tangent: Floats, radius: float) -> mujoco.MjSpec:
+    """With a bead on each link, the clamp's sensors, and the foot along the clamp's tangent."""
+    add_options(spec)
+    spec.option.ccd_iterations = _CCD_ITERATIONS
+    foot = spec.body(FOOT)
+    foot.quat = _to(tangent)
+    for i in range(links):
+        body = spec.body(link_name(i))
+        (side,) = (g for g in body.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE)
+        side.name = f"side{i}"
+        body.add_geom(
+            name=f"bead{i}",
+            type=mujoco.mjtGeom.mjGEOM_SPHERE,
+            pos=[0, 1e-3, 0],  # at the origin MuJoCo takes it that it never leaves it
+            size=[radius, 0, 0],
+            contype=0,
+            conaffinity=1,  # MuJoCo leaves out bodies that had none when it compiled them
+            condim=1,
+            density=0,
+            priority=1,
+        )
+    foot.add_site(name="clamp")
+    for kind in (mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE):
+        spec.add_sensor(type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="clamp")
+    return spec
+
+
+def _to(tangent: Floats) -> Floats:
+    """The shortest turn from y to a direction, as a quaternion."""
+    axis = np.cross([0.0, 1.0, 0.0], tangent)
+    if np.linalg.norm(axis) < 1e-12:
+        return np.array([1.0, 0, 0, 0] if tangent[1] > 0 else [0.0, 1, 0, 0])
+    turn = np.array([1 + tangent[1], *axis])
+    return np.asarray(turn / np.linalg.norm(turn))
+
+
+def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    try:
+        return spec.compile()
+    except (ValueError, mujoco.FatalError) as error:
+        raise InputError(
+            "MuJoCo's model",
+            f"impossible ({' '.join(str(error).split())[:150]})",
+            "of a vibrissa and a body that are neither too thin nor too small for MuJoCo",
+            "give a larger radius or body: some 1e-4 L is the least",
+        ) from error

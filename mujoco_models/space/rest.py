@@ -1,0 +1,438 @@
+"""A vibrissa at rest in space: Newton's method on MuJoCo's own balance, and stability.
+
+The vibrissa touches in one place, a bead on its axis at the arc length s. Let d be the distance of
+the bead from the body and f the force; unknown are the joints' turns q, f and, unless the bead is
+at the tip or at a joint that protrudes, s:
+
+    springs(q) = f d_q,    d = -f/k,    d_s = 0.
+
+The last line says that the bead is the point of its link nearest to the body, so that the rigid
+link touches tangentially. Eliminating f and s leaves the second derivative of the energy of the
+vibrissa and its elastic contact; where that is positive the equilibrium is stable.
+"""
+
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+from scipy.linalg import eigh
+from scipy.linalg.lapack import dgesv, dpotrf, dpotrs
+
+from analytic.problem.arrays import Floats
+from mujoco_models.space.model import SpaceModel, Touch
+
+# With the turning of one place alone it is quick past facets, or not at all.
+_ITERATIONS, _QUICK = 40, 12
+_SHARE = 0.3  # of the tolerance; the rest is for MuJoCo's own rounding
+# Past facets Newton's method takes the turning of normals over a width that shrinks where it gets
+# no nearer, and steps in proportion: else it jumps to and fro over an edge that holds the vibrissa.
+_WIDEST = 0.02  # L
+_NARROWER, _WIDER, _BETTER = 0.4, 1.7, 0.95
+_OF_WIDTH, _SHORTEST = 4.0, 4e-6  # L
+_LARGEST_TURN = 0.3  # rad, of a link in one step
+_OUTWARD = 1e-12  # cosine; rounding of what is tangential
+_SAME = 1e-13  # L
+_FLATTEST = 1e-9  # 1/L, curvature given to a flat face along the vibrissa
+_NEAR = (
+    1e-3  # L off the body, beyond which a bead stays where it is on its link, or goes on sliding
+)
+_ROUNDING = 4e-15  # L, of a distance
+_OVERLOOKED = 1e-8  # L; as deep as another link may be
+_SWITCHES = 6  # to another link that is deeper
+_POWER_STEPS = 8
+_NUDGE = 1e-4  # rad, of the joint that turns most, where a descent begins
+_INERTIA = 1.0  # of a descent's first step, in units of the stiffness
+_GENTLE = 1e-2  # rad, of a joint in a step of a descent
+_DESCENT = 300  # steps
+_UNLOADED = 20  # steps in a row without a force, and the vibrissa is free
+_LANDED = 0.02  # L, of the contact: Newton's method that leads farther left the way down
+_NEARLY = 1e-3  # EI/L, of balance, where Newton's method is tried
+
+
+class State(NamedTuple):
+    """A configuration, and the contact that Newton's method has for it; lengths in L."""
+
+    configuration: Floats
+    """MuJoCo's coordinates, shape (nq,)."""
+    link: int
+    """The link that carries the bead."""
+    s: float
+    """Arc length of the bead [L]."""
+    force: float
+    """Of the contact [EI/L^2]."""
+    sliding: bool
+    """Whether the bead is where its link is tangential, or at the tip or a joint that protrudes."""
+
+
+class Settled(NamedTuple):
+    """A state at rest."""
+
+    state: State
+    touch: Touch
+    turning: Floats
+    """How the body's normal turns there, shape (3, 3) [1/L]."""
+    stability: float
+    """Least eigenvalue of the stiffness over that of the joints' springs; positive if stable."""
+    softest: Floats
+    """The turns that are resisted least, shape (nv,)."""
+
+
+class Linearised(NamedTuple):
+    """The equations of balance and their derivatives at a state; lengths in L."""
+
+    touch: Touch
+    turning: Floats
+    push: Floats
+    """d_q, shape (nv,)."""
+    moved: Floats
+    """How the bead moves with the turns, shape (nv, 3) [L]."""
+    slope: float
+    """d_s."""
+    rolling: Floats
+    """d_qs, shape (nv,)."""
+    along: float
+    """d_ss."""
+    stiffness: Floats
+    """Second derivative of the Lagrangian, shape (nv, nv)."""
+    springs: Floats
+
+
+class Rest:
+    """Newton's method on a model.
+
+    Parameters
+    ----------
+    model : SpaceModel
+        MuJoCo's.
+    tolerance : float
+        The largest moment that may be out of balance [EI/L].
+    """
+
+    def __init__(self, model: SpaceModel, tolerance: float) -> None:
+        self._model, self._tolerance = model, tolerance
+        self._k = model.contact_stiffness
+
+    def settle(
+        self, start: State, begin: Floats, foot: Floats, wide: float = 0.0
+    ) -> Settled | None:
+        """The equilibrium to which Newton's method leads.
+
+        Its first step is one along the branch: of the linearised equations at the start. A tip is
+        first tried as if the face that it touches went on without end: on an edge it is not stable
+        but for the smallest force.
+
+        Parameters
+        ----------
+        start : State
+            Where it begins.
+        begin, foot : array, shape (3,)
+            Where the foot was at `start`, and where it is now [L].
+        wide : float
+            Width over which facets are taken for a smooth surface at first; that of the foot's step
+            if that is more [L].
+
+        Returns
+        -------
+        Settled or None
+            None if it leads nowhere, or to where nothing presses.
+        """
+        if not self._model.shape.faceted:
+            return self._settle(start, begin, foot, self._model.shape.difference)
+        found = self._settle(
+            start, begin, foot, self._model.shape.difference if start.sliding else 0
+        )
+        if found is not None and found.stability > 0:
+            return found
+        far = max(float(np.linalg.norm(foot - begin)), wide, self._model.shape.difference)
+        return self._settle(start, begin, foot, min(far, _WIDEST))
+
+    def _settle(self, start: State, begin: Floats, foot: Floats, width: float) -> Settled | None:
+        model = self._model
+        state = self._along(start, begin, foot - begin, width)
+        for _ in range(_SWITCHES):
+            found = self._converge(state, foot, width)
+            if found is None or found.force <= 0:
+                return None
+            state, system = self._look(found, foot, model.shape.difference)
+            depth, link, s = model.nearest_link()
+            if depth >= system.touch.distance - model.shape.inscribed - _OVERLOOKED:
+                return self._settled(state, system)
+            state = state._replace(link=link, s=s, force=0.0, sliding=False)
+        return None
+
+    def descend(self, start: Settled, foot: Floats, far: float) -> Settled | None:
+        """Where the vibrissa goes from a state that has ceased to be stable.
+
+        Down the energy of its springs and its contact: each step is one of Newton's method with as
+        much inertia as makes the stiffness positive and the step gentle.
+
+        Parameters
+        ----------
+        start : Settled
+            The last stable state.
+        foot : array, shape (3,)
+            Position of the foot, a little beyond [L].
+        far : float
+            How far the contact may get [L].
+
+        Returns
+        -------
+        Settled or None
+            Where it comes to rest; None if it loses its contact, or the contact gets farther than
+            `far`. If it was still on its way after the last step, `stability` is not a number.
+        """
+        model, state = self._model, start.state
+        push = _NUDGE / np.abs(start.softest).max()
+        configuration = state.configuration.copy()
+        mujoco.mj_integratePos(model.model, configuration, push * start.softest, 1.0)
+        state, inertia, unloaded = state._replace(configuration=configuration), _INERTIA, 0
+        for _ in range(_DESCENT):
+            state, system = self._look(state, foot, model.shape.difference)
+            if np.linalg.norm(system.touch.centre - start.touch.centre) > far:
+                return None
+            depth, link, s = model.nearest_link()
+            if depth < system.touch.distance - model.shape.inscribed - _OVERLOOKED:
+                state = state._replace(link=link, s=s, sliding=False)
+                state, system = self._look(state, foot, model.shape.difference)
+            if self._is_held(state, system):
+                found = self.settle(state, foot, foot)
+                near = (
+                    found is not None
+                    and np.linalg.norm(found.touch.centre - system.touch.centre) < _LANDED
+                )
+                if found is not None and near and found.stability > 0:
+                    return found
+            whole, springs = self._whole(state, system)
+            while dpotrf(whole + inertia * np.diag(springs), lower=1)[1]:
+                inertia *= 2.0  # or it would go up to the saddle
+            after = self._step(state, system, inertia * springs)
+            if after is None:
+                return start._replace(stability=np.nan)
+            turn = self._turn(state, after)
+            unloaded = unloaded + 1 if after.force <= 0 else 0
+            if unloaded > _UNLOADED:
+                return None
+            state = after._replace(force=max(after.force, 0.0))
+            inertia *= float(np.clip(turn / _GENTLE, 0.5, 2.0))
+        return start._replace(stability=np.nan)
+
+    def _is_held(self, state: State, system: Linearised) -> bool:
+        """Whether the state is nearly in balance."""
+        out_of_balance = np.abs(system.springs + state.force * system.push).max()
+        return bool(out_of_balance < _NEARLY and abs(system.touch.distance) < _NEAR)
+
+    def _turn(self, before: State, after: State) -> float:
+        """The largest turn of a joint [rad]."""
+        turns = np.zeros(self._model.model.nv)
+        mujoco.mj_differentiatePos(
+            self._model.model, turns, 1.0, before.configuration, after.configuration
+        )
+        return float(np.abs(turns).max())
+
+    def _converge(self, state: State, foot: Floats, width: float) -> State | None:
+        model = self._model
+        smooth = width <= model.shape.difference
+        trusted = np.inf if smooth else _OF_WIDTH * width
+        least = np.inf
+        for _ in range(_QUICK if smooth and model.shape.faceted else _ITERATIONS):
+            state, system = self._look(state, foot, width)
+            out_of_balance = np.abs(system.springs + state.force * system.push).max()
+            missed = self._k * abs(system.touch.distance + state.force / self._k)
+            skewed = abs(system.slope) * state.force if state.sliding else 0.0
+            if not np.isfinite(out_of_balance + missed + skewed):
+                return None
+            allowed = _SHARE * self._tolerance + model.shape.blur * state.force
+            if (
+                max(out_of_balance, skewed) < allowed + _ROUNDING * self._k
+                and missed < allowed + (_ROUNDING + model.shape.blur**2) * self._k
+            ):
+                return state
+            step = self._step(state, system, longest=trusted)
+            if step is None:
+                return None
+            state = step
+            if trusted < np.inf:
+                better = max(out_of_balance, skewed) < _BETTER * least
+                least = max(out_of_balance, skewed)
+                trusted = max((_WIDER if better else _NARROWER) * trusted, _SHORTEST)
+                width = max(trusted / _OF_WIDTH, model.shape.difference)
+        return None
+
+    def _along(self, state: State, begin: Floats, by: Floats, width: float) -> State:
+        """The first step, as the foot moves, by the equations at the start."""
+        model = self._model
+        model.place(begin, state.configuration)
+        touch = model.touch(state.link, state.s)
+        slope = float(touch.normal @ model.direction(state.link))
+        system = self.linearised(state, touch, slope, width)
+        turned = system.turning @ by
+        moved = system._replace(
+            touch=touch._replace(distance=touch.distance + float(touch.normal @ by)),
+            springs=system.springs + state.force * (system.moved @ turned),
+            slope=slope + float(turned @ model.direction(state.link)),
+        )
+        return self._step(state, moved) or state
+
+    def _look(self, state: State, foot: Floats, width: float) -> tuple[State, Linearised]:
+        """The system at a state, whose bead is first put on the right link."""
+        model = self._model
+        model.place(foot, state.configuration)
+        state = self._inward(state)
+        touch = model.touch(state.link, state.s)
+        slope = float(touch.normal @ model.direction(state.link))
+        if abs(touch.distance + state.force / self._k) < _NEAR and state.force > 0:
+            state = self._slid_or_held(state, touch, slope)
+            slope = float(touch.normal @ model.direction(state.link))
+        return state, self.linearised(state, touch, slope, width)
+
+    def _slid_or_held(self, state: State, touch: Touch, slope: float) -> State:
+        """Whether the bead slides: not at the tip, nor at a joint that protrudes."""
+        model = self._model
+        if state.s - model.layout.joints[0] < _SAME:
+            return state._replace(sliding=False)
+        if model.ends[state.link] - state.s > _SAME or slope > _OUTWARD:
+            return state._replace(sliding=True)
+        if state.link == len(model.ends) - 1:
+            return state._replace(sliding=False)
+        beyond = float(touch.normal @ model.direction(state.link + 1))
+        if beyond > -_OUTWARD:
+            return state._replace(sliding=False)
+        return state._replace(link=state.link + 1, sliding=True)
+
+    def _inward(self, state: State) -> State:
+        """A joint is the end of the link before it."""
+        if state.link > 0 and state.s - self._model.layout.joints[state.link] < _SAME:
+            return state._replace(link=state.link - 1, s=float(self._model.ends[state.link - 1]))
+        return state
+
+    def linearised(self, state: State, touch: Touch, slope: float, width: float) -> Linearised:
+        """The equations of balance at a state in which the model has been placed.
+
+        Parameters
+        ----------
+        state : State
+            Configuration, bead and force.
+        touch : Touch
+            Of the bead.
+        slope : float
+            Cosine between normal and link.
+        width : float
+            Displacement over which the normals' turning is measured [L]; 0 takes none.
+
+        Returns
+        -------
+        Linearised
+            First and second derivatives.
+        """
+        model, force, n = self._model, state.force, touch.normal
+        turning = model.turning(state.link, touch, width) if width else np.zeros((3, 3))
+        carried = model.joint_of <= state.link
+        axes = model.axes * carried[:, None]
+        lever = (touch.centre - model.joints)[model.joint_of]
+        moved = np.cross(axes, lever)
+        swung = np.cross(n, axes)
+        # n . (a_i x (a_k x r)) for joints i before k; of one joint's, the symmetric part.
+        both = swung @ moved.T
+        same = model.joint_of[:, None] == model.joint_of[None]
+        if model.shared:
+            both = np.where(same, (both + both.T) / 2, both)
+        bent = np.triu(both) + np.triu(both, 1).T
+        bent += moved @ turning @ moved.T
+        tangent = model.direction(state.link)
+        rolling = moved @ turning @ tangent + swung @ tangent
+        stiffness = -force * bent
+        size = len(model.joint_of) // len(model.ends)
+        blocks = stiffness.reshape(len(model.ends), size, len(model.ends), size)
+        index = np.arange(len(model.ends))
+        blocks[index, :, index, :] += model.blocks()
+        return Linearised(
+            touch,
+            turning,
+            moved @ n,
+            moved,
+            slope,
+            rolling,
+            float(tangent @ turning @ tangent),
+            stiffness,
+            model.springs.copy(),
+        )
+
+    def _step(
+        self,
+        state: State,
+        system: Linearised,
+        inertia: Floats | None = None,
+        longest: float = np.inf,
+    ) -> State | None:
+        """One step of Newton's method; with inertia a shorter one, downhill."""
+        model, force = self._model, state.force
+        count = len(system.push)
+        size = count + 1 + state.sliding
+        matrix, right = np.zeros((size, size)), np.zeros(size)
+        matrix[:count, :count] = system.stiffness
+        if inertia is not None:
+            matrix[:count, :count] += np.diag(inertia)
+        matrix[:count, count] = matrix[count, :count] = -system.push
+        matrix[count, count] = -1 / self._k
+        right[:count] = system.springs + force * system.push
+        right[count] = system.touch.distance + force / self._k
+        if state.sliding:
+            matrix[:count, -1] = matrix[-1, :count] = -force * system.rolling
+            matrix[count, -1] = matrix[-1, count] = -system.slope
+            matrix[-1, -1] = -force * max(system.along, _FLATTEST)
+            right[-1] = force * system.slope
+        *_, found, failed = dgesv(matrix, right)
+        if failed or not np.isfinite(found).all():
+            return None
+        turns = found[:count]
+        share = min(1.0, _LARGEST_TURN / max(3 * float(np.abs(turns).max()), 1e-300))
+        if model.shape.faceted and longest < np.inf:
+            by = turns @ system.moved
+            by = by - (by @ system.touch.normal) * system.touch.normal
+            if state.sliding:
+                by = by + found[-1] * model.direction(state.link)
+            share = min(share, longest / max(float(np.linalg.norm(by)), 1e-300))
+        configuration = state.configuration.copy()
+        mujoco.mj_integratePos(model.model, configuration, share * turns, 1.0)
+        link, s = state.link, state.s
+        if state.sliding:
+            link, s = self._slid(link, s, share * float(found[-1]))
+        return State(configuration, link, s, force + share * float(found[count]), state.sliding)
+
+    def _slid(self, link: int, s: float, by: float) -> tuple[int, float]:
+        """No farther than the next joint."""
+        model = self._model
+        if s + by >= model.ends[link]:
+            return link, float(model.ends[link])
+        low = float(model.layout.joints[link])
+        if s + by > low:
+            return link, s + by
+        return (link - 1, low) if link > 0 else (link, low)
+
+    def _settled(self, state: State, system: Linearised) -> Settled:
+        stability, softest = self._stability(state, system)
+        return Settled(state, system.touch, system.turning, stability, softest)
+
+    def _whole(self, state: State, system: Linearised) -> tuple[Floats, Floats]:
+        """The energy's second derivative, shape (nv, nv), and that of the springs, shape (nv,)."""
+        whole = system.stiffness + self._k * np.outer(system.push, system.push)
+        if state.sliding:
+            share = state.force / max(system.along, _FLATTEST)
+            whole = whole + share * np.outer(system.rolling, system.rolling)
+        return whole, np.concatenate([np.diag(block) for block in self._model.blocks()])
+
+    def _stability(self, state: State, system: Linearised) -> tuple[float, Floats]:
+        """The least eigenvalue of the energy's second derivative over the springs', its vector."""
+        whole, springs = self._whole(state, system)
+        scale = 1 / np.sqrt(springs)
+        whole = whole * scale[:, None] * scale
+        factor, failed = dpotrf(whole, lower=1)
+        if failed:
+            values, vectors = eigh(whole, subset_by_index=(0, 0))
+            return float(values[0]), scale * vectors[:, 0]
+        vector = scale.copy()
+        for _ in range(_POWER_STEPS):
+            vector = vector / np.linalg.norm(vector)
+            vector, _ = dpotrs(factor, vector, lower=1)
+        size = float(np.linalg.norm(vector))
+        return 1 / size, scale * vector / size

@@ -1,0 +1,191 @@
+"""MuJoCo in space against the closed form, and its stiffness against its own moments."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+import trimesh
+
+from analytic import Beam, InputError, catenary
+from analytic.space import (
+    FootPath,
+    SpatialCase,
+    convex_mesh,
+    cylinder,
+    ellipsoid,
+    prism,
+    reconstruct_space,
+    solve_space,
+    sphere,
+)
+from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT
+from mujoco_models import SpatialSettings, simulate_space
+from mujoco_models.space.rest import Rest, State
+from mujoco_models.space.sweep import compiled
+
+BALL = sphere(1.0, (0.0, 1.4, 0.0))
+CASES = {
+    "sphere": (BALL, [[1.3, 0.3], [-1.5, 0.2]], (0, 1, 0)),
+    "leaning": (BALL, [[1.3, 0.02], [-1.5, 0.05]], (0.2, 1, 0.1)),
+    "ellipsoid": (ellipsoid((1, 0.7, 1.6), (0, 1.1, 0)), [[1.5, 0.3], [-1.5, -0.1]], (0.1, 1, 0)),
+    "cylinder": (cylinder(0.3, (0, 0.8, 0), (0.2, 0.1, 1)), [[1.0, 0.0], [-1.0, 0.5]], (0, 1, 0)),
+    "prism": (prism(catenary(0.5, -0.8), (0.2, 0.1, 1)), [[2.5, 0.0], [-1.0, 0.5]], (0, 1, 0)),
+}
+
+
+def case_of(name, stations=30, beam=None):
+    body, points, tangent = CASES[name]
+    path = FootPath(points, tangent=tangent, stations=stations)
+    return SpatialCase(beam or Beam(), body=body, path=path)
+
+
+def worst_rms(reference, candidate):
+    """Of the six components, over the largest of force or of moment."""
+    both = reference.touching & candidate.touching
+    found = []
+    for names in (FORCE, MOMENT):
+        exact, other = (r.values(*names)[both] for r in (reference, candidate))
+        found.append(np.sqrt(((other - exact) ** 2).mean(axis=0)).max() / np.abs(exact).max())
+    return max(found)
+
+
+def left(readings):
+    """Where the vibrissa slips off."""
+    return [e["travel"] for e in readings.provenance["events"] if e["kind"] == "slip-off"]
+
+
+@pytest.mark.parametrize(
+    ("beam", "joints"), [("chain", "ball"), ("chain", "universal"), ("rod", "universal")]
+)
+def test_the_stiffness_is_the_derivative_of_mujocos_own_moments(beam, joints):
+    if beam == "rod" and mujoco.__version__ < "4":
+        pytest.skip("MuJoCo 3 has no elastic one-dimensional flex")
+    model = compiled(case_of("sphere"), SpatialSettings(beam=beam, joints=joints, segments=12))
+    rest, random = Rest(model, 1e-8), np.random.default_rng(0)
+    size, foot, force = model.model.nv, np.array([0.6, 0.0, 0.25]), 3.0
+    bent = model.straight.copy()
+    mujoco.mj_integratePos(model.model, bent, 0.05 * random.normal(size=size), 1.0)
+
+    def system(configuration):
+        model.place(foot, configuration)
+        tip = len(model.ends) - 1
+        state = State(configuration, tip, 0.98, force, True)
+        return rest.linearised(state, model.touch(tip, 0.98), 0.0, 1e-5)
+
+    step, columns = 1e-5, []
+    for i in range(size):
+        sides = []
+        for sign in (1, -1):
+            moved = bent.copy()
+            mujoco.mj_integratePos(model.model, moved, sign * step * np.eye(size)[i], 1.0)
+            found = system(moved)
+            sides.append(-found.springs - force * found.push)
+        columns.append((sides[0] - sides[1]) / (2 * step))
+    ours, differences = system(bent).stiffness, np.array(columns)
+    # Moments about a ball's own axes turn with it: only the symmetric part is the energy's.
+    differences = (differences + differences.T) / 2
+    assert np.abs(ours - differences).max() < 1e-7 * np.abs(ours).max()
+
+
+@pytest.mark.parametrize("name", ["sphere", pytest.param("leaning", marks=pytest.mark.slow)])
+def test_smooth_bodies_agree_with_the_closed_form(name):
+    case = case_of(name)
+    exact, found = solve_space(case), simulate_space(case, SpatialSettings(segments=20))
+    assert (found.table["status"] == "ok").all()
+    assert found.table["residual"].max() < 1e-8 * (1 + np.nanmax(np.abs(exact.values(*FORCE))))
+    assert found.table["discrepancy"].max() < 1e-8
+    assert (found.touching == exact.touching).all()
+    assert worst_rms(exact, found) < 1e-3
+    assert (found.table["phase"] == exact.table["phase"]).mean() > 0.96
+    on = exact.touching
+    apart = np.linalg.norm(
+        (found.values(*CONTACT_POINT) - exact.values(*CONTACT_POINT))[on], axis=1
+    )
+    assert apart.max() < 2e-3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", list(CASES))
+def test_forty_segments_are_within_3e_3_of_the_closed_form(name):
+    case = case_of(name, 60)
+    exact, found = solve_space(case), simulate_space(case)
+    assert (found.table["status"] != "unsettled").all()
+    assert worst_rms(exact, found) < 1e-3
+    for ours, theirs in zip(left(found), left(exact), strict=True):
+        assert ours == pytest.approx(theirs, abs=5e-3)
+    points = reconstruct_space(found)[list(CONTACT_POINT)].to_numpy()
+    both = exact.touching & found.touching
+    apart = np.linalg.norm((points - exact.values(*CONTACT_POINT))[both], axis=1)
+    assert np.sqrt((apart**2).mean()) < 2e-3
+
+
+@pytest.mark.slow
+def test_the_chain_is_of_second_order():
+    case = case_of("sphere", 40)
+    exact = solve_space(case)
+    errors = [
+        worst_rms(exact, simulate_space(case, SpatialSettings(segments=n))) for n in (10, 20, 40)
+    ]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert (np.abs(orders - 2) < 0.5).all(), (errors, orders)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["sphere", "ellipsoid"])
+def test_where_it_slips_off_across_the_middle(name):
+    """On the axis of a sphere the vibrissa is a pendulum on its head; it drops to either side."""
+    body, points, tangent = CASES[name]
+    middle = [[x, 0.0] for x, _ in points]
+    case = SpatialCase(body=body, path=FootPath(middle, tangent=tangent, stations=40))
+    exact, found = solve_space(case), simulate_space(case)
+    assert len(left(exact)) == 1
+    assert left(found)[0] == pytest.approx(left(exact)[0], abs=5e-3)
+
+
+@pytest.mark.slow
+def test_balls_and_universal_joints_agree_and_so_does_the_rod():
+    case = case_of("sphere", 40)
+    ball, universal = (
+        simulate_space(case, SpatialSettings(joints=joints)) for joints in ("ball", "universal")
+    )
+    assert worst_rms(ball, universal) < 3e-4
+    if mujoco.__version__ >= "4":
+        rod = simulate_space(case, SpatialSettings(beam="rod", joints="universal"))
+        assert worst_rms(solve_space(case), rod) < 1e-3
+
+
+@pytest.mark.slow
+def test_a_wrong_rigidity_is_found():
+    case = case_of("sphere", 40)
+    soft = simulate_space(replace(case, beam=Beam(flexural_rigidity=0.98)))
+    assert worst_rms(solve_space(case), soft) > 5e-3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply"])
+def test_meshes_from_files(suffix, tmp_path):
+    mesh = trimesh.creation.icosphere(3, 1.0)
+    mesh.apply_translation((0, 1.4, 0))
+    mesh.export(tmp_path / f"ball.{suffix}")
+    body = convex_mesh(tmp_path / f"ball.{suffix}")
+    path = FootPath([[1.3, 0.3], [0.55, 0.25]], stations=30)  # tip and side, over several edges
+    case = SpatialCase(body=body, path=path)
+    exact, found = solve_space(case), simulate_space(case)
+    assert (found.touching & exact.touching).sum() > 8
+    assert (found.table["status"] != "unsettled").all()
+    assert worst_rms(exact, found) < 3e-3
+
+
+def test_settings_that_cannot_be_are_refused_in_one_line():
+    for wrong, says in (
+        ({"joints": "hinge"}, "ball, universal"),
+        ({"segments": 1}, "between 2 and 400"),
+        ({"beam": "rod"}, "cannot resist twisting"),
+        ({"beam": "cable"}, "chain, rod"),
+    ):
+        with pytest.raises(InputError, match=says) as refused:
+            SpatialSettings(**wrong)
+        assert "\n" not in str(refused.value)
+    with pytest.raises(InputError, match="cannot collide a line"):
+        simulate_space(case_of("sphere", beam=Beam(radius=0.0)))
