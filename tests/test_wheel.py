@@ -58,7 +58,7 @@ COMMANDS = {
     "analytic": (0, "analytic mine.toml --out a --certified"),
     "simulate": (0, "simulate mine.toml --out a"),
     "compare": (1, "compare a/analytic.parquet a/mujoco-chain.parquet"),
-    "space": (0, "space space.toml --out space"),
+    "space": (0, "space space.toml --out space --engine mujoco"),
     "side-by-side": (1, "side-by-side a/analytic.parquet a/mujoco-chain.parquet --out side"),
     "reconstruct": (0, "reconstruct a/analytic.parquet --out a"),
     "calibrate": (0, "calibrate mine.toml a/analytic.parquet --fit clamp_stiffness --out a"),

@@ -139,7 +139,18 @@ class SpaceModel:
         return np.asarray(self.data.xanchor[self._first])
 
     def direction(self, link: int) -> Floats:
-        """Of a link's axis, towards the tip, shape (3,)."""
+        """Of a link's axis.
+
+        Parameters
+        ----------
+        link : int
+            Its number.
+
+        Returns
+        -------
+        array, shape (3,)
+            Unit vector towards the tip.
+        """
         return np.asarray(self.data.xmat[self._links[link]].reshape(3, 3)[:, 1])
 
     def touch(self, link: int, s: float) -> Touch:

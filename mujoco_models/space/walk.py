@@ -25,7 +25,13 @@ _TURN_OF_SIDE = 0.1  # the same where the vibrissa runs over edges, with normals
 # are halved there.
 _LEAP, _LEAST_LEAP = 5.0, 0.02  # of the step; L
 _LANDING = 0.12  # L, of the contact: what comes to rest farther away depends on its motion
-_HOPS = (2e-3, 5e-3, 2e-2)  # L: widths over which facets are smooth when the next one is looked for
+_HOPS = (
+    0.0,
+    2e-3,
+    5e-3,
+    2e-2,
+)  # L: widths over which facets are smooth when the next one is looked for
+_GIVEN_UP = 3  # unsettled stations in a row: from then on all are, until the vibrissa comes clear
 _LOOSE = 1e-3  # EI/L^2; a contact that ends with less has been released
 
 
@@ -72,6 +78,7 @@ class Walk:
         self._at = 0.0
         self._held: Settled | None = None
         self._lost = False
+        self._failures = 0
         self.events: list[Event] = []
 
     def go_to(self, target: float) -> Station:
@@ -87,11 +94,17 @@ class Walk:
         Station
             What it comes to.
         """
+        if self._failures == _GIVEN_UP:
+            if self._gap(target) <= 0:
+                self._at = target
+                return Station("unsettled", None)
+            self._held, self._failures, self._at = None, 0, self._clear(self._at, target)
         settled = True
         while self._at < target and settled:
             settled = self._follow(target) if self._held is not None else self._seek(target)
         if self._held is None:
             return Station("slipped off" if self._lost else "ok", None)
+        self._failures = 0 if settled else self._failures + 1
         if not settled:
             return Station("unsettled", None)
         return Station("ok", self._held)
@@ -227,7 +240,7 @@ class Walk:
             self.events.append(Event("release" if released else "slip-off", self._at))
             self._held, self._lost, self._at = None, gap <= 0, goal
             return True
-        for wide in _HOPS if self._model.shape.faceted else ():
+        for wide in _HOPS if self._model.shape.faceted else _HOPS[:1]:
             found = self._rest.settle(held.state, self._foot(self._at), self._foot(goal), wide)
             if found is not None and found.stability > 0 and _apart(found, held) < _LANDING:
                 self.events.append(Event("hop", self._at))
