@@ -39,6 +39,9 @@ class Numerics:
         A link that turns farther than this from one state at rest to the next has left the branch
         [rad]. Too large, and a jump to another branch passes for a step; too small, and every
         step of the foot is halved. From 0.1 to 0.7 nothing changes.
+    left_turn : float
+        Newton's method on its way from there is followed no further than this [rad]: it hardly ever
+        comes back.
     largest_shift : float
         A contact whose slope angle jumps by more than this from one state at rest to the next has
         left the branch [rad]. A corner that passes from bead to bead turns the force by up to 0.7.
@@ -96,6 +99,7 @@ class Numerics:
     ahead: int = 4
     margin: int = 2
     branch_turn: float = 0.35
+    left_turn: float = 0.7
     largest_shift: float = 1.0
     facet_shift: float = 0.1
     same_facet: float = 1e-3

@@ -24,6 +24,7 @@ def relax(
     tolerance: float,
     numerics: Numerics,
     *,
+    leave: State | None = None,
     held: bool = False,
 ) -> State:
     """Bring the beam to rest with its foot at `foot_x`, from `start`.
@@ -40,6 +41,8 @@ def relax(
         Largest moment out of balance at rest [EI/L].
     numerics : Numerics
         Constants of the way there.
+    leave : State, optional
+        The last state on the branch: what has turned too far from it is followed no further.
     held : bool
         Whether beads stay where they are, also where they should slide.
 
@@ -82,8 +85,10 @@ def relax(
             slope = float(slopes.mean()) if slopes.size else None
             return replace(state, settled=True, stance=stance(model, contacts), slope=slope)
         state = newton.step(state, contacts)
+        if leave is not None and turned(state.angles, leave.angles) > numerics.left_turn:
+            break
         if not around(model, state.forces, numerics.margin) <= lookout.watched:
-            lookout.watch(lookout.watched | around(model, state.forces, numerics.ahead))
+            lookout.watch(lookout.watched | graded(model, state.forces, numerics.ahead))
     model.imbalance(foot_x, best.angles)  # leaves the readings with the state that is returned
     return replace(best, stance=stance(model, model.contacts()))
 
@@ -149,6 +154,36 @@ def around(model: Balance, loaded: dict[int, float], reach: int) -> frozenset[in
     return frozenset(
         i for bead in loaded for i in range(max(0, bead - reach), min(count, bead + reach + 1))
     )
+
+
+def graded(model: Balance, loaded: dict[int, float], reach: int) -> frozenset[int]:
+    """Those `around` the loaded beads, and ever fewer ones farther out.
+
+    A load that has to pass over hundreds of beads is then in a few steps where it belongs.
+
+    Parameters
+    ----------
+    model : Balance
+        Whose beads they are.
+    loaded : dict
+        Contact force by bead [EI/L^2].
+    reach : int
+        How many on either side are without a gap.
+
+    Returns
+    -------
+    frozenset of int
+        Their numbers.
+    """
+    near = around(model, loaded, reach)
+    if not loaded or len(model.obstacle.corners):
+        return near
+    count = len(model.layout.beads)
+    first, last = min(loaded), max(loaded)
+    out = 2 ** np.arange(count.bit_length())
+    out = out[out > reach]
+    far = np.concatenate([first - out, last + out])
+    return near | frozenset(far[(far >= 0) & (far < count)].tolist())
 
 
 def one_bead_a_link(model: Balance) -> frozenset[int]:

@@ -98,24 +98,27 @@ class Walk(Generic[Model]):
 
     def _advance(self, target: float, limit: int) -> str | None:
         """Go to `target`; why not, if that is not possible."""
-        step = target - self._foot_x
-        while True:
-            trial = target if abs(step) >= abs(target - self._foot_x) else self._foot_x + step
+        wall: float | None = None  # the nearest place at which no neighbour was found
+        step, failed = target - self._foot_x, False
+        while self._foot_x != target:
+            if self.model.evaluations > limit:
+                return f"not at rest after {self._budget} evaluations"
+            end = target if wall is None else wall
+            trial = end if abs(step) >= abs(end - self._foot_x) else self._foot_x + step
             state = self._near_rest(trial)
             if self._follows(state):
                 self._accept(trial, state)
-                step *= 2
+                # Short of a wall, half of the way at first: beyond a fold there is nothing.
+                step = step / 2 if failed else 2 * step
+                failed, wall = False, None if trial == wall else wall
             elif abs(trial - self._foot_x) > self._numerics.smallest_step:
-                step = (trial - self._foot_x) / 2
+                step, wall, failed = (trial - self._foot_x) / 2, trial, True
             else:
                 trouble = self._decide((self._foot_x + trial) / 2, target)
                 if trouble is not None:
                     return trouble
-                step = target - self._foot_x
-            if self._foot_x == target:
-                return None
-            if self.model.evaluations > limit:
-                return f"not at rest after {self._budget} evaluations"
+                step, wall = target - self._foot_x, None
+        return None
 
     def _decide(self, where: float, target: float) -> str | None:
         """Go on a little where no neighbour was found: held, or let go; else say what is wrong."""
@@ -151,7 +154,7 @@ class Walk(Generic[Model]):
         """From the last state on; what stops a short step, a descent decides."""
         short = abs(foot_x - self._foot_x) < self._numerics.confirm_step
         go = self._relax if short else self._thoroughly
-        state = go(foot_x, self._guess(foot_x))
+        state = go(foot_x, self._guess(foot_x), leave=self._state)
         if not self._leaves_its_facet(state):
             return state
         # It may have jumped there in a long step, while it is at rest on its own facet, too.
@@ -168,19 +171,20 @@ class Walk(Generic[Model]):
             return False
         return state.slope is None or abs(state.slope - last) > self._numerics.same_facet
 
-    def _relax(self, foot_x: float, start: State) -> State:
+    def _relax(self, foot_x: float, start: State, leave: State | None = None) -> State:
+        """At rest, if Newton's method gets there; it stops where it is sure to leave a state."""
         model, numerics = self.model, self._numerics
-        state = relax(model, foot_x, start, self._tolerance, numerics)
+        state = relax(model, foot_x, start, self._tolerance, numerics, leave=leave)
         short = abs(foot_x - self._foot_x) < numerics.confirm_step
         if state.settled or not short or not model.hold_beads():
             return state
         # A bead that slides past a joint may not come to rest; one that stays leans a little.
-        return relax(model, foot_x, start, self._tolerance, numerics, held=True)
+        return relax(model, foot_x, start, self._tolerance, numerics, leave=leave, held=True)
 
-    def _thoroughly(self, foot_x: float, start: State) -> State:
+    def _thoroughly(self, foot_x: float, start: State, leave: State | None = None) -> State:
         """At rest, if Newton's method gets there, or a descent, or Newton's with differences."""
         model, numerics = self.model, self._numerics
-        state = self._relax(foot_x, start)
+        state = self._relax(foot_x, start, leave)
         flicker = numerics.flicker * (1 + self._state.load)
         if not state.settled and state.imbalance < flicker:
             near = descend(model, foot_x, state, numerics, numerics.flicker_steps)
