@@ -11,7 +11,7 @@ import numpy as np
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from mujoco_models.model.model import BeamModel
-from mujoco_models.obstacles.protocol import GEOM_PREFIX
+from mujoco_models.obstacles.protocol import GEOM
 from mujoco_models.settings import Settings
 from mujoco_models.sweep.sweep import set_out
 
@@ -54,7 +54,7 @@ def show(case: Case, settings: Settings) -> None:
         for target in foot_x:
             with viewer.lock():
                 walk.go_to(float(target))
-                stage.dress()
+            stage.dress(viewer)
             if not viewer.is_running():
                 return
             viewer.sync()
@@ -64,14 +64,12 @@ def show(case: Case, settings: Settings) -> None:
 
 
 class _Stage:
-    """What is seen of the model: one of the obstacle's many meshes, and the links."""
+    """What is seen of the model: the obstacle, and the links."""
 
     def __init__(self, beam: BeamModel, height: float) -> None:
-        self._beam = beam
         model = beam.model
-        self._obstacle = np.array(
-            [model.geom(f"{GEOM_PREFIX}{i}").id for i in range(beam.obstacle.geoms)]
-        )
+        self._mesh = int(model.geom_dataid[model.geom(GEOM).id])
+        model.geom_rgba[model.geom(GEOM).id] = _BODY
         model.geom_rgba[model.geom_type == mujoco.mjtGeom.mjGEOM_SPHERE] = _HIDDEN
         links = model.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE
         model.geom_rgba[links] = _VIBRISSA
@@ -80,18 +78,16 @@ class _Stage:
         model.vis.scale.forcewidth = 0.02 / model.stat.meansize
         model.vis.headlight.ambient[:] = 0.4
         model.vis.global_.fovy = height  # a length: the camera has no perspective
-        self.dress()
 
     def light(self, options: mujoco.MjvOption) -> None:
         """Show the meshes' hulls, which is what collides, and the contact forces."""
         options.flags[mujoco.mjtVisFlag.mjVIS_CONVEXHULL] = True
         options.flags[mujoco.mjtVisFlag.mjVIS_CONTACTFORCE] = True
 
-    def dress(self) -> None:
-        """Show the geom that takes part in collisions, and no other."""
-        model = self._beam.model
-        collides = model.geom_contype[self._obstacle] != 0
-        model.geom_rgba[self._obstacle] = np.where(collides[:, None], _BODY, _HIDDEN)
+    def dress(self, viewer: mujoco.viewer.Handle) -> None:
+        """Show the mesh as it is now: its vertices follow the contact."""
+        if self._mesh >= 0:
+            viewer.update_mesh(self._mesh)
 
 
 def _aim(camera: mujoco.MjvCamera, model: mujoco.MjModel, centre: float, behind: bool) -> None:

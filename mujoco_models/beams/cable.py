@@ -122,12 +122,12 @@ class Cable(Balls):
             return "B_first"
         return "B_last" if link == len(self.layout.joints) - 1 else f"B_{segment}"
 
-    def mount(self, spec: mujoco.MjSpec, link: int, s: float) -> tuple[mujoco.MjsBody, Floats]:
+    def mount(self, spec: mujoco.MjSpec, link: int, s: Floats) -> tuple[mujoco.MjsBody, Floats]:
         """The segment itself, whose chord is along its own x axis."""
         across, along = self.layout.within(link, s)
         if link < self._turning:
-            along -= self._vertices[0]
-        return spec.body(self._name(link)), np.array([along, -across, 0])
+            along = along - self._vertices[0]
+        return spec.body(self._name(link)), np.column_stack([along, -across, np.zeros(len(s))])
 
     def stiffness(self, angles: Floats) -> Floats:
         """EI/h, and the clamp's."""

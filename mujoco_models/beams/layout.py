@@ -167,23 +167,23 @@ class Layout:
             before, heading = self.base[link - 1], float(self.headings[link - 1])
         return turned(self.base[link] - before, -heading), self.headings[link] - heading
 
-    def within(self, link: int, s: float) -> Floats:
-        """Where an arc length is in the frame of its link.
+    def within(self, link: int, s: Floats) -> Floats:
+        """Where arc lengths are in the frame of their link.
 
         Parameters
         ----------
         link : int
             Number of the link.
-        s : float
-            Arc length [L].
+        s : array, shape (n,)
+            Arc lengths [L].
 
         Returns
         -------
-        array, shape (2,)
+        array, shape (2, n)
             Across and along the chord [L].
         """
-        there = self.vibrissa.at(np.asarray(s)) - self.base[link]
-        return turned(there, -float(self.headings[link]))
+        there = self.vibrissa.at(s) - self.base[link]
+        return turned(there.T, -float(self.headings[link]))
 
 
 def turned(vector: Floats, angle: float) -> Floats:

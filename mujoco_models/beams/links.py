@@ -42,9 +42,9 @@ class HingedLinks:
             _add_capsule(body, np.array([0, layout.chords[i]]), radius * thickness[i])
         return spec
 
-    def mount(self, spec: mujoco.MjSpec, link: int, s: float) -> tuple[mujoco.MjsBody, Floats]:
+    def mount(self, spec: mujoco.MjSpec, link: int, s: Floats) -> tuple[mujoco.MjsBody, Floats]:
         """The link itself, whose chord is along its own y axis."""
-        return spec.body(link_name(link)), np.array([*self.layout.within(link, s), 0])
+        return spec.body(link_name(link)), np.pad(self.layout.within(link, s).T, ((0, 0), (0, 1)))
 
     def place(self, data: mujoco.MjData, angles: Floats) -> None:
         """The joint angles are MuJoCo's own coordinates."""

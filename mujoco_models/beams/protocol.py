@@ -37,8 +37,8 @@ class Beam(Protocol):
             Not yet compiled.
         """
 
-    def mount(self, spec: mujoco.MjSpec, link: int, s: float) -> tuple[mujoco.MjsBody, Floats]:
-        """The body that moves with a link, and where on it an arc length is.
+    def mount(self, spec: mujoco.MjSpec, link: int, s: Floats) -> tuple[mujoco.MjsBody, Floats]:
+        """The body that moves with a link, and where on it arc lengths are.
 
         Parameters
         ----------
@@ -46,14 +46,14 @@ class Beam(Protocol):
             Made by `spec`.
         link : int
             Number of the link.
-        s : float
-            Arc length [L].
+        s : array, shape (n,)
+            Arc lengths [L].
 
         Returns
         -------
         body : mujoco.MjsBody
             The link's.
-        position : array, shape (3,)
+        position : array, shape (n, 3)
             In the body's frame [L].
         """
 

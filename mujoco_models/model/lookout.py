@@ -7,7 +7,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from mujoco_models.model.contacts import Contacts
-from mujoco_models.obstacles.protocol import GEOM_PREFIX, Obstacle
+from mujoco_models.obstacles.protocol import GEOM, Obstacle
 
 _NEAR = 1e-6  # L; beads that are nearer to the obstacle must be watched at rest
 _OVERLOOKED = 1e-6  # L; how deep an unloaded bead may be in the obstacle, or a depth be off
@@ -65,7 +65,7 @@ class MujocoScene:
     ) -> None:
         self._model, self._data, self._beads, self._obstacle = model, data, beads, obstacle
         self.radii = model.geom_size[beads, 0].copy()
-        self._geoms = np.array([model.geom(f"{GEOM_PREFIX}{i}").id for i in range(obstacle.geoms)])
+        self._geom = model.geom(GEOM).id
 
     def positions(self) -> Floats:
         """As MuJoCo has them."""
@@ -73,7 +73,7 @@ class MujocoScene:
 
     def show(self, window: int) -> None:
         """By the obstacle itself."""
-        self._obstacle.show(self._model, self._geoms, window)
+        self._obstacle.show(self._model, self._geom, window)
 
     def collide(self, beads: frozenset[int]) -> None:
         """By their masks."""
@@ -246,7 +246,7 @@ class Lookout:
         if off.max() < _OVERLOOKED:
             return False
         for other in (self.window - 1, self.window + 1):
-            if 0 <= other < self._obstacle.geoms and self._obstacle.is_inside(other, found[:, 1]):
+            if 0 <= other < self._obstacle.windows and self._obstacle.is_inside(other, found[:, 1]):
                 self.use_window(other)
                 break
         return True

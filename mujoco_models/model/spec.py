@@ -35,19 +35,21 @@ def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
     obstacle.add_to(spec)
     layout = beam.layout
     radii = radius * layout.vibrissa.thickness(layout.beads)
-    for s, link, size in zip(layout.beads, layout.links.tolist(), radii, strict=True):
-        body, place = beam.mount(spec, link, float(s))
-        body.add_geom(
-            type=mujoco.mjtGeom.mjGEOM_SPHERE,
-            pos=place,
-            size=[size, 0, 0],
-            contype=0,
-            conaffinity=1,
-            condim=1,
-            density=0,
-            gap=CONTACT_GAP,
-            priority=1,
-        )
+    for link in range(len(layout.joints)):
+        own = layout.links == link
+        body, places = beam.mount(spec, link, layout.beads[own])
+        for place, size in zip(places, radii[own], strict=True):
+            body.add_geom(
+                type=mujoco.mjtGeom.mjGEOM_SPHERE,
+                pos=place,
+                size=[size, 0, 0],
+                contype=0,
+                conaffinity=1,
+                condim=1,
+                density=0,
+                gap=CONTACT_GAP,
+                priority=1,
+            )
     if len(obstacle.corners):
         obstacle.corners.add_to(spec)
         _let_links_collide(beam, spec)
@@ -59,8 +61,8 @@ def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
 
 def _let_links_collide(beam: Beam, spec: mujoco.MjSpec) -> None:
     """With the edges of the obstacle's corners."""
-    for link, start in enumerate(beam.layout.joints.tolist()):
-        body, _ = beam.mount(spec, link, start)
+    for link in range(len(beam.layout.joints)):
+        body, _ = beam.mount(spec, link, beam.layout.joints[:1])
         (capsule,) = (g for g in body.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE)
         capsule.name, capsule.conaffinity = f"{SIDE_PREFIX}{link}", LINKS
         capsule.condim, capsule.priority, capsule.gap = 1, 1, CONTACT_GAP

@@ -7,7 +7,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
-from mujoco_models.obstacles.protocol import GEOM_PREFIX, TOP, Obstacle
+from mujoco_models.obstacles.protocol import GEOM, TOP, Obstacle
 
 # Corners +x, -x, +y, -y, +z, -z; every face has one of each pair, counterclockwise from outside.
 _OCTAHEDRON = (
@@ -123,13 +123,19 @@ class Faceted(Obstacle):
 
     def clearance(self, point: Floats) -> tuple[float, float]:
         """From the nearest edge of the lower side, or of the roof over it; the facet's number."""
-        edge = np.roll(self.outline, -1, axis=0) - self.outline
-        offset = point - self.outline
+        x, last = self.vertices[:, 0], len(self.facet_angles) - 1
+        below = min(max(int(np.searchsorted(x, point[0])) - 1, 0), last)
+        bound = np.hypot(*(point - self.vertices[below]))  # nothing farther away matters
+        first = min(max(int(np.searchsorted(x, point[0] - bound)) - 1, 0), last)
+        end = max(int(np.searchsorted(x, point[0] + bound, "right")), first + 1)
+        edges = np.append(np.arange(first, min(end, last + 1)), [last + 1, last + 2])
+        begin = self.outline[edges]
+        edge, offset = np.take(self.outline, edges + 1, axis=0, mode="wrap") - begin, point - begin
         along = np.clip((edge * offset).sum(axis=1) / (edge**2).sum(axis=1), 0, 1)
         distance = np.hypot(*(offset - along[:, None] * edge).T)
         nearest = int(np.argmin(distance))
         inside = (edge[:, 0] * offset[:, 1] > edge[:, 1] * offset[:, 0]).all()
-        facet = min(nearest, len(self.facet_angles) - 1)
+        facet = min(int(edges[nearest]), last)
         return float(-distance[nearest] if inside else distance[nearest]), float(facet)
 
     def is_cut(self, polyline: Floats) -> bool:
@@ -144,11 +150,6 @@ class Faceted(Obstacle):
         enters = np.where((begin < 0) & (end > 0), crossing, 0.0).max(axis=1)
         leaves = np.where((begin > 0) & (end < 0), crossing, 1.0).min(axis=1)
         return bool(((enters < leaves) & ~outside).any())
-
-    def show(self, model: mujoco.MjModel, geoms: Integers, window: int) -> None:
-        """Let the window's mesh collide."""
-        model.geom_contype[geoms] = 0
-        model.geom_contype[geoms[window]] = 1
 
     @cached_property
     def outline(self) -> Floats:
@@ -186,9 +187,7 @@ def touchable(case: Case) -> tuple[float, float]:
     return (-TOP if low < -upright else float(low), TOP if high > upright else float(high))
 
 
-def add_hull(
-    spec: mujoco.MjSpec, number: int, vertices: Floats, inner: Floats, size: float
-) -> None:
+def add_hull(spec: mujoco.MjSpec, vertices: Floats, inner: Floats, size: float) -> None:
     """Add the hull of points to the world body.
 
     MuJoCo stores vertices in single precision relative to the centroid of the *faces*, while
@@ -201,8 +200,6 @@ def add_hull(
     ----------
     spec : mujoco.MjSpec
         Changed in place.
-    number : int
-        Of the geom.
     vertices : array, shape (n, 3)
         The points [L].
     inner : array, shape (3,)
@@ -212,7 +209,7 @@ def add_hull(
     """
     speck = inner + size * np.kron(np.diag([1, 2, 3]), [[1], [-1]])
     faces = len(vertices) + np.array(_OCTAHEDRON, dtype=np.int32)
-    mesh = spec.add_mesh(name=f"{GEOM_PREFIX}{number}")
+    mesh = spec.add_mesh(name=GEOM)
     mesh.uservert, mesh.userface = np.concatenate([vertices, speck]).ravel(), faces.ravel()
     spec.worldbody.add_geom(
         name=mesh.name,

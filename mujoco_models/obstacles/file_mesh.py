@@ -45,7 +45,7 @@ class FileMesh(Faceted):
         sides are so tilted that its section is not what the vibrissa touches.
     """
 
-    geoms = 1
+    windows = 1
 
     def __init__(self, case: Case, solid: ConvexMesh, corner_radius: float) -> None:
         if len(solid.vertices) > _MOST_VERTICES:
@@ -100,7 +100,7 @@ class FileMesh(Faceted):
         inner = vertices.mean(axis=0)
         planes = ConvexHull(vertices).equations
         depth = -float((planes[:, :3] @ inner + planes[:, 3]).max())
-        add_hull(spec, 0, vertices, inner, _SPECK * depth / 3)
+        add_hull(spec, vertices, inner, _SPECK * depth / 3)
 
     @cached_property
     def corners(self) -> Corners:
@@ -129,6 +129,9 @@ class FileMesh(Faceted):
             found = np.flatnonzero(np.asarray(distance) < _SAME_PLACE)
             edges[found] = np.stack([begin, end], axis=1)[np.asarray(nearest)[found]]
         return edges
+
+    def show(self, model: mujoco.MjModel, geom: int, window: int) -> None:
+        """There is only one."""
 
     def place(self, slope: Floats) -> Floats:
         """The slope angles themselves: it is as true in one place as in any other."""

@@ -15,7 +15,7 @@ from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from mujoco_models.obstacles.prism import Prism
-from mujoco_models.obstacles.protocol import GEOM_PREFIX, Obstacle
+from mujoco_models.obstacles.protocol import GEOM, Obstacle
 
 # rad, between neighbouring circles. A contact is off its circle's point of osculation by no more,
 # and the contour from the circle by the cube of that; where curvature jumps, by the square.
@@ -42,11 +42,11 @@ class Primitive(Obstacle):
     """
 
     faceted = False
-    geoms = 1
 
     def __init__(self, circles: _Circles, outline: Prism) -> None:
         self._circles = circles
         self._outline = outline
+        self.windows = len(circles.slope)
 
     @classmethod
     def of(cls, case: Case) -> "Primitive":
@@ -101,7 +101,7 @@ class Primitive(Obstacle):
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """One geom; not at the origin, or MuJoCo takes it that it never leaves it."""
         spec.worldbody.add_geom(
-            name=f"{GEOM_PREFIX}0",
+            name=GEOM,
             type=mujoco.mjtGeom.mjGEOM_CYLINDER,
             pos=[1, 1, 0],
             size=[1, _HALF_LENGTH, 0],
@@ -110,9 +110,8 @@ class Primitive(Obstacle):
             condim=1,
         )
 
-    def show(self, model: mujoco.MjModel, geoms: Integers, window: int) -> None:
+    def show(self, model: mujoco.MjModel, geom: int, window: int) -> None:
         """Put the cylinder where the window's circle is."""
-        (geom,) = geoms
         radius = self._circles.radius[window]
         model.geom_size[geom, :2] = radius * np.array([1, _HALF_LENGTH])
         model.geom_rbound[geom] = radius * np.hypot(1, _HALF_LENGTH)

@@ -1,10 +1,10 @@
 """The object as a convex mesh, extruded along z from points of its contour.
 
 MuJoCo's search for the nearest point of a mesh climbs from vertex to vertex, so its cost grows with
-the mesh. The obstacle is therefore given as many meshes of one and the same polygon, each with all
-of its vertices near one place (its window) and ever fewer farther away; only the mesh whose window
-holds the contact takes part in collisions. A subset of the vertices of a convex polygon spans a
-polygon inside it, so a mesh can only be too small, and only where nothing touches.
+the mesh. The obstacle is therefore a mesh of the polygon with all of its vertices near one place
+(its window) and ever fewer farther away, whose vertices are written anew as the window follows the
+contact. A subset of the vertices of a convex polygon spans a polygon inside it, so the mesh can
+only be too small, and only where nothing touches.
 """
 
 import math
@@ -17,19 +17,14 @@ from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.contours.polygon import Polygon
 from mujoco_models.obstacles.corners import Corners, upright
-from mujoco_models.obstacles.faceted import Faceted, add_hull, touchable
+from mujoco_models.obstacles.faceted import Faceted, touchable
+from mujoco_models.obstacles.window import HALF_DEPTH, add_room, write_prism
 from mujoco_models.settings import Settings
 
 _FINE = 32  # vertices at full resolution on either side of a window's centre, at least
 _SPAN = 4.0  # radii of the vibrissa that they span, at least: a link may rest on several beads
 _GRADED = 8  # vertices a level farther out; the spacing doubles from level to level
 _BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
-# L, of the extrusion: more than the vibrissa's length, so that it cannot leave over the prism's
-# ends, and much more than a penetration, or depths come out wrong.
-_HALF_DEPTH = 1.5
-_SPECK = 1e-4  # L
-_SPECK_REACH = 3.5  # of its smallest half axis; a little more than its longest one
-_INWARD = (1e-2, 3e-2, 1e-1, 3e-1, 1.0)  # of the way to the middle
 
 
 class Prism(Faceted):
@@ -117,8 +112,8 @@ class Prism(Faceted):
         return float((np.minimum(length[1:], length[:-1]) * turn).max()) / 8
 
     @property
-    def geoms(self) -> int:  # type: ignore[override]
-        """One a window."""
+    def windows(self) -> int:  # type: ignore[override]
+        """As many as there are centres."""
         return len(self._centres)
 
     @cached_property
@@ -126,7 +121,7 @@ class Prism(Faceted):
         """Those of a polygon; one that is inscribed in a smooth contour has none of its own."""
         if not self._exact:
             return Corners.none()
-        edges = upright(self.vertices, _HALF_DEPTH)
+        edges = upright(self.vertices, HALF_DEPTH)
         return Corners.of(self.vertices, edges, self._corner_radius)
 
     def place(self, slope: Floats) -> Floats:
@@ -154,38 +149,24 @@ class Prism(Faceted):
         array, shape (n, 3)
             Positions [L].
         """
-        polygon = self._polygon(window)
-        ends = [np.insert(polygon, 2, z, axis=1) for z in (-_HALF_DEPTH, _HALF_DEPTH)]
+        polygon = self._polygon(int(self._centres[window]))
+        ends = [np.insert(polygon, 2, z, axis=1) for z in (-HALF_DEPTH, HALF_DEPTH)]
         return np.concatenate(ends)
 
-    def _polygon(self, window: int) -> Floats:
-        centre = int(self._centres[window])
-        return np.vstack([self.vertices[self._kept(centre)], self.outline[-1]])
+    def _polygon(self, centre: int) -> Floats:
+        """A window's vertices, from its centre on: there MuJoCo's search for the nearest begins."""
+        kept = self._kept(centre)
+        polygon = np.vstack([self._gridded[kept], self.outline[-1]])
+        return np.roll(polygon, -int(np.searchsorted(kept, centre)), axis=0)
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
-        """Add one mesh a window."""
-        for i, centre in enumerate(self._centres.tolist()):
-            polygon = self._polygon(i)
-            inner, depth = self._inside(self.vertices[centre], polygon)
-            size = min(_SPECK, depth / _SPECK_REACH)
-            add_hull(spec, i, self.hull(i), np.append(inner, 0), size)
+        """One mesh with room for any window; what it is, `show` says."""
+        add_room(spec, 2 * self._count)
 
-    def _inside(self, here: Floats, polygon: Floats) -> tuple[Floats, float]:
-        """A place near a vertex, and how deep it is in a window's polygon.
-
-        It is deep enough for the speck of a hull, which must not stick out, if there is such a
-        place in the polygon.
-        """
-        middles = (self.vertices, self.outline, polygon)  # a flat underside has only the roof above
-        deepest = here, 0.0
-        for share in _INWARD:
-            for middle in middles:
-                inner = here + share * (middle.mean(axis=0) - here)
-                depth = _depth(inner, polygon)
-                if depth >= _SPECK_REACH * _SPECK:
-                    return inner, depth
-                deepest = max(deepest, (inner, depth), key=lambda found: found[1])
-        return deepest
+    def show(self, model: mujoco.MjModel, geom: int, window: int) -> None:
+        """Let the mesh be the window's."""
+        centre = int(self._centres[window])
+        write_prism(model, geom, self._polygon(centre), self._gridded[centre])
 
     @cached_property
     def _centres(self) -> Integers:
@@ -193,22 +174,38 @@ class Prism(Faceted):
         n = len(self.vertices)
         return np.append(np.arange(0, n - 1, self._fine), n - 1)
 
+    @cached_property
+    def _gridded(self) -> Floats:
+        """The vertices on a grid so coarse that single precision does not round them in a window.
+
+        Or else neighbouring windows would have facets that are not quite parallel, and a state at
+        rest would depend on the way to it.
+        """
+        inner = self.vertices[1:-1] if len(self.vertices) > _FINE else self.vertices
+        steps = min(self._fine, len(inner) - 1)
+        reach = np.abs(inner[steps:] - inner[: len(inner) - steps]).max()
+        grid = 2.0 ** (math.ceil(math.log2(reach)) - 24)
+        return np.asarray(np.round(self.vertices / grid) * grid)
+
+    @property
+    def _count(self) -> int:
+        """Vertices of a window's polygon."""
+        return min(len(self.vertices), len(self._offsets) + 2) + 1
+
+    @cached_property
+    def _offsets(self) -> Integers:
+        """Which vertices a window keeps of a long polygon, counted from its centre."""
+        fine, n = self._fine, len(self.vertices)
+        levels = math.ceil(math.log2(1 + n / _GRADED))
+        out = fine + np.cumsum(np.repeat(2 ** np.arange(1, levels + 1), _GRADED))
+        return np.concatenate([-out[::-1], np.arange(-fine, fine + 1), out])
+
     def _kept(self, centre: int) -> Integers:
-        n = len(self.vertices)
-        kept = {0, n - 1, *range(max(0, centre - self._fine), min(n, centre + self._fine + 1))}
-        for side in (-1, 1):
-            at, stride = centre + side * self._fine, 2
-            while 0 <= at < n:
-                level = at + side * stride * np.arange(1, _GRADED + 1)
-                kept.update(int(j) for j in level if 0 <= j < n)
-                at, stride = int(level[-1]), 2 * stride
-        return np.array(sorted(kept))
-
-
-def _depth(point: Floats, polygon: Floats) -> float:
-    """How deep a point is in a convex polygon, shape (n, 2), counterclockwise; < 0 outside."""
-    edge = np.roll(polygon, -1, axis=0) - polygon
-    offset = point - polygon
-    return float(
-        ((edge[:, 0] * offset[:, 1] - edge[:, 1] * offset[:, 0]) / np.hypot(*edge.T)).min()
-    )
+        """Those within the polygon, its ends, and the next ones until there are enough."""
+        n, count = len(self.vertices), self._count - 1
+        kept = centre + self._offsets
+        kept = np.union1d(kept[(kept > 0) & (kept < n - 1)], [0, n - 1])
+        near = np.arange(max(0, centre - count), min(n, centre + count + 1))
+        spare = np.setdiff1d(near, kept, assume_unique=True)
+        nearest = np.argsort(np.abs(spare - centre), kind="stable")[: count - len(kept)]
+        return np.sort(np.append(kept, spare[nearest]))

@@ -8,21 +8,21 @@ import numpy as np
 from analytic.problem.arrays import Floats, Integers
 from mujoco_models.obstacles.corners import Corners
 
-GEOM_PREFIX = "obstacle"
+GEOM = "obstacle0"  # hardly a name in a user's own model
 TOP = 0.75 * np.pi  # rad; the lower side ends at pi/2, but a bead may touch a little above that
 
 
 class Obstacle(ABC):
     """The object in MuJoCo, convex, swept past from below; dimensionless, L = 1.
 
-    It is one geom or several that stand for one another, named `GEOM_PREFIX` and their number. What
-    MuJoCo sees of it is best near one place of the contour, its window, which follows the contact.
+    It is one geom, named `GEOM`. What MuJoCo sees of it is best near one place of the contour, its
+    window, which follows the contact.
     """
 
     faceted: bool
     """Whether the normal turns in jumps, so that a curvature does not say where it turns."""
-    geoms: int
-    """How many geoms there are."""
+    windows: int
+    """How many windows there are."""
     upright: bool = False
     """Whether `clearance` is the very distance that MuJoCo's contacts should have."""
 
@@ -48,7 +48,7 @@ class Obstacle(ABC):
 
     @abstractmethod
     def add_to(self, spec: mujoco.MjSpec) -> None:
-        """Add the geoms to the world body.
+        """Add the geom to the world body.
 
         Parameters
         ----------
@@ -57,15 +57,15 @@ class Obstacle(ABC):
         """
 
     @abstractmethod
-    def show(self, model: mujoco.MjModel, geoms: Integers, window: int) -> None:
+    def show(self, model: mujoco.MjModel, geom: int, window: int) -> None:
         """Let what is best for `window`, and nothing else, take part in collisions.
 
         Parameters
         ----------
         model : mujoco.MjModel
             Changed in place.
-        geoms : array of int, shape (geoms,)
-            Their numbers in the model.
+        geom : int
+            Its number in the model.
         window : int
             Which window.
         """

@@ -19,7 +19,7 @@ from mujoco_models.model.contacts import NOWHERE
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.faceted import add_hull
 from mujoco_models.obstacles.prism import Prism
-from mujoco_models.obstacles.protocol import GEOM_PREFIX
+from mujoco_models.obstacles.protocol import GEOM
 from mujoco_models.own.drive import drive_to
 from mujoco_models.own.names import OwnModel
 from mujoco_models.stepping.stiffness import stiffen, weights_in_last_step
@@ -86,7 +86,7 @@ class OwnModelInMotion:
         self._foot = self._parts.foot
         place, turn = self._pose(held.data)
         self._clamp = turn.T @ (held.clamp - place)
-        self._object = self.model.geom(f"{GEOM_PREFIX}0").id
+        self._object = self.model.geom(GEOM).id
         # The object is one more geom of the world, and the world's come first.
         self._geoms = frozenset(g + (g >= self._object) for g in self._parts.geoms)
         self._drive = drive_to(self.model, self._foot, -self._axes[0])
@@ -112,8 +112,8 @@ class OwnModelInMotion:
         inner = np.append((polygon[len(polygon) // 2] + polygon.mean(axis=0)) / 2, 0.0)
         ends = [np.insert(polygon, 2, z, axis=1) for z in (-_HALF_DEPTH, _HALF_DEPTH)]
         points = self._in_world(np.concatenate(ends))
-        add_hull(spec, 0, points, self._in_world(inner[None])[0], _SPECK * length)
-        geom = spec.geom(f"{GEOM_PREFIX}0")
+        add_hull(spec, points, self._in_world(inner[None])[0], _SPECK * length)
+        geom = spec.geom(GEOM)
         geom.conaffinity, geom.priority = 1, -1  # the vibrissa's own contact parameters count
         try:
             return spec.compile()

@@ -54,7 +54,7 @@ def load_tip(
     layout = beam.layout
     spec = beam.spec(Beam().radius)
     add_options(spec)
-    body, place = beam.mount(spec, len(layout.joints) - 1, 1.0)
+    body, (place,) = beam.mount(spec, len(layout.joints) - 1, np.ones(1))
     body.add_site(name=_TIP, pos=place)
     spec.worldbody.add_site(name="world")
     actuator = spec.add_actuator(

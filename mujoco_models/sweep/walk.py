@@ -100,9 +100,7 @@ class Walk(Generic[Model]):
         """Go to `target`; why not, if that is not possible."""
         wall: float | None = None  # the nearest place at which no neighbour was found
         step, failed = target - self._foot_x, False
-        while self._foot_x != target:
-            if self.model.evaluations > limit:
-                return f"not at rest after {self._budget} evaluations"
+        while True:
             end = target if wall is None else wall
             trial = end if abs(step) >= abs(end - self._foot_x) else self._foot_x + step
             state = self._near_rest(trial)
@@ -118,7 +116,10 @@ class Walk(Generic[Model]):
                 if trouble is not None:
                     return trouble
                 step, wall = target - self._foot_x, None
-        return None
+            if self._foot_x == target:
+                return None
+            if self.model.evaluations > limit:
+                return f"not at rest after {self._budget} evaluations"
 
     def _decide(self, where: float, target: float) -> str | None:
         """Go on a little where no neighbour was found: held, or let go; else say what is wrong."""

@@ -1,0 +1,111 @@
+"""The mesh of a prism, written into a compiled model.
+
+MuJoCo's compiler looks for the hull of every mesh that collides, which takes longer than a sweep
+where there are many. The hull of a prism is known. So the compiler is given a mesh of as many
+vertices, in a sphere, which needs as much room as any hull of so many, and what it found is
+replaced by the prism's.
+"""
+
+import mujoco
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from analytic.problem.arrays import Floats, Integers
+from mujoco_models.obstacles.protocol import GEOM
+
+# L, of the extrusion: more than the vibrissa's length, so that it cannot leave over the prism's
+# ends, and much more than a penetration, or depths come out wrong.
+HALF_DEPTH = 1.5
+_LEAST = 12  # vertices: with fewer, a hull of triangles would need less room than `_graph`
+_GOLDEN = np.pi * (3 - np.sqrt(5))
+
+
+def add_room(spec: mujoco.MjSpec, count: int) -> None:
+    """Add a geom with a mesh of `count` vertices to the world body.
+
+    Parameters
+    ----------
+    spec : mujoco.MjSpec
+        Changed in place.
+    count : int
+        How many, at least.
+    """
+    number = np.arange(max(count, _LEAST))
+    height = 1 - (2 * number + 1) / len(number)
+    across = np.sqrt(1 - height**2)
+    vertices = np.column_stack(
+        [across * np.cos(_GOLDEN * number), across * np.sin(_GOLDEN * number), height]
+    )
+    hull = ConvexHull(vertices)
+    begin, second, third = vertices[hull.simplices].transpose(1, 0, 2)
+    inward = (np.cross(second - begin, third - begin) * begin).sum(axis=1) < 0
+    faces = np.where(inward[:, None], hull.simplices[:, ::-1], hull.simplices)
+    mesh = spec.add_mesh(name=GEOM)
+    mesh.uservert, mesh.userface = vertices.ravel(), faces.ravel()
+    spec.worldbody.add_geom(
+        name=mesh.name,
+        type=mujoco.mjtGeom.mjGEOM_MESH,
+        meshname=mesh.name,
+        pos=[1, 1, 0],  # not at the origin, or MuJoCo takes it that it never leaves it
+        contype=1,
+        conaffinity=0,
+        condim=1,
+    )
+
+
+def write_prism(model: mujoco.MjModel, geom: int, polygon: Floats, origin: Floats) -> None:
+    """Let the geom be an upright prism, on either side of the plane of the sweep.
+
+    Parameters
+    ----------
+    model : mujoco.MjModel
+        Changed in place.
+    geom : int
+        One of `add_room`.
+    polygon : array, shape (n, 2)
+        The vertices of a convex polygon, counterclockwise: half as many as there is room for [L].
+    origin : array, shape (2,)
+        Near the contact: single precision is that of distances from there [L].
+    """
+    mesh, count = model.geom_dataid[geom], len(polygon)
+    begin = model.mesh_vertadr[mesh]
+    ends = model.mesh_vert[begin : begin + 2 * count].reshape(2, count, 3)
+    ends[:, :, :2] = polygon - origin
+    ends[0, :, 2], ends[1, :, 2] = -HALF_DEPTH, HALF_DEPTH
+    model.geom_pos[geom] = [*origin, 0.0]
+    model.geom_quat[geom] = [1, 0, 0, 0]
+    model.geom_rbound[geom] = np.hypot(np.hypot(*(polygon - origin).T).max(), HALF_DEPTH)
+    graph = _graph(count)
+    begin = model.mesh_graphadr[mesh]
+    model.mesh_graph[begin : begin + len(graph)] = graph
+
+
+def _graph(count: int) -> Integers:
+    """What MuJoCo wants to know of the hull of a prism over `count` vertices.
+
+    Numbers of vertices and faces; where the list of each vertex's neighbours begins; the vertices'
+    numbers in the mesh; those lists, each with -1 at its end; and the faces. MuJoCo climbs from
+    neighbour to neighbour: it has some that are far away, too, for speed.
+    """
+    this = np.arange(count)
+    far = int(np.sqrt(count))
+    ring = [np.roll(this, shift) for shift in (1, -1, far, -far)]
+    lower = np.column_stack([*ring, this + count, np.full(count, -1)])
+    upper = np.column_stack([*(part + count for part in ring), this, np.full(count, -1)])
+    after = np.roll(this, -1)
+    fan = this[:1].repeat(count - 2), this[1:-1], this[2:]
+    faces = [
+        [this, after, this + count],
+        [after, after + count, this + count],
+        [fan[0], fan[2], fan[1]],
+        [corner + count for corner in fan],
+    ]
+    return np.concatenate(
+        [
+            [2 * count, 4 * count - 4],
+            6 * np.arange(2 * count),
+            np.arange(2 * count),
+            np.concatenate([lower, upper]).ravel(),
+            np.concatenate([np.transpose(part) for part in faces]).ravel(),
+        ]
+    )
