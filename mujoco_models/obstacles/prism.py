@@ -24,6 +24,7 @@ from mujoco_models.settings import Settings
 _FINE = 32  # vertices at full resolution on either side of a window's centre, at least
 _SPAN = 4.0  # radii of the vibrissa that they span, at least: a link may rest on several beads
 _GRADED = 8  # vertices a level farther out; the spacing doubles from level to level
+_ALIKE = 2.0**-5  # L; windows agree on facets that are nearer than this to both centres
 _BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
 
 
@@ -181,10 +182,14 @@ class Prism(Faceted):
         Or else neighbouring windows would have facets that are not quite parallel, and a state at
         rest would depend on the way to it.
         """
-        inner = self.vertices[1:-1] if len(self.vertices) > _FINE else self.vertices
-        steps = min(self._fine, len(inner) - 1)
-        reach = np.abs(inner[steps:] - inner[: len(inner) - steps]).max()
-        grid = 2.0 ** (math.ceil(math.log2(reach)) - 24)
+        length = np.hypot(*np.diff(self.vertices, axis=0).T)
+        if not self._exact:
+            length[[0, -1]] = length[[1, -2]]  # those beyond reach are longer, and never touched
+        s, number = np.insert(np.cumsum(length), 0, 0.0), np.arange(len(self.vertices))
+        ahead = s[np.minimum(number + self._fine, number[-1])] - s
+        behind = s - s[np.maximum(number - self._fine, 0)]
+        reach = np.minimum(np.maximum(ahead, behind), _ALIKE)
+        grid = 2.0 ** (np.ceil(np.log2(reach)) - 24)[:, None]
         return np.asarray(np.round(self.vertices / grid) * grid)
 
     @property

@@ -221,5 +221,5 @@ def test_mujocos_depths_are_those_of_the_polygon(body, points):
             data.qpos[:2] += (radius - depth) * normal
             mujoco.mj_forward(model, data)
             exact = prism.clearance(data.qpos[:2])[0] - radius
-            # Single precision over the size of a window: 2e-8 on the needle, else less.
-            assert data.contact.dist.min() == pytest.approx(exact, abs=5e-8)
+            # Single precision over the size of a window: 5e-8 on the needle, else less.
+            assert data.contact.dist.min() == pytest.approx(exact, abs=1e-7)
