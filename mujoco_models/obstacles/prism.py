@@ -24,7 +24,8 @@ from mujoco_models.settings import Settings
 _FINE = 32  # vertices at full resolution on either side of a window's centre, at least
 _SPAN = 4.0  # radii of the vibrissa that they span, at least: a link may rest on several beads
 _GRADED = 8  # vertices a level farther out; the spacing doubles from level to level
-_ALIKE = 2.0**-5  # L; windows agree on facets that are nearer than this to both centres
+_OF_TURN = 0.01  # of a facet's turn from the last one; so much may its vertices' rounding turn it
+_FINEST = 1e-12  # L
 _BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
 
 
@@ -167,7 +168,8 @@ class Prism(Faceted):
     def show(self, model: mujoco.MjModel, geom: int, window: int) -> None:
         """Let the mesh be the window's."""
         centre = int(self._centres[window])
-        write_prism(model, geom, self._polygon(centre), self._gridded[centre])
+        near = min(max(centre, 1), len(self.vertices) - 2)  # not at an end, far beyond reach
+        write_prism(model, geom, self._polygon(centre), self._gridded[near])
 
     @cached_property
     def _centres(self) -> Integers:
@@ -180,7 +182,7 @@ class Prism(Faceted):
         """The vertices on a grid so coarse that single precision does not round them in a window.
 
         Or else neighbouring windows would have facets that are not quite parallel, and a state at
-        rest would depend on the way to it.
+        rest would depend on the way to it. No grid is so coarse that it shows beside the facets.
         """
         length = np.hypot(*np.diff(self.vertices, axis=0).T)
         if not self._exact:
@@ -188,8 +190,11 @@ class Prism(Faceted):
         s, number = np.insert(np.cumsum(length), 0, 0.0), np.arange(len(self.vertices))
         ahead = s[np.minimum(number + self._fine, number[-1])] - s
         behind = s - s[np.maximum(number - self._fine, 0)]
-        reach = np.minimum(np.maximum(ahead, behind), _ALIKE)
-        grid = 2.0 ** (np.ceil(np.log2(reach)) - 24)[:, None]
+        exact = np.maximum(ahead, behind) * 2.0**-24
+        turn = np.pad(np.diff(self.facet_angles), 1, mode="edge" if len(length) > 1 else "constant")
+        shorter = np.minimum(np.append(length, length[-1]), np.insert(length, 0, length[0]))
+        shows = np.maximum(_OF_TURN * turn * shorter, _FINEST)
+        grid = 2.0 ** np.ceil(np.log2(np.minimum(exact, shows)))[:, None]
         return np.asarray(np.round(self.vertices / grid) * grid)
 
     @property
