@@ -98,19 +98,21 @@ class Walk(Generic[Model]):
 
     def _advance(self, target: float, limit: int) -> str | None:
         """Go to `target`; why not, if that is not possible."""
-        wall: float | None = None  # the nearest place at which no neighbour was found
-        step, failed = target - self._foot_x, False
+        wall: float | None = None  # the nearest place at which it let go
+        step, let_go = target - self._foot_x, False
         while True:
             end = target if wall is None else wall
             trial = end if abs(step) >= abs(end - self._foot_x) else self._foot_x + step
             state = self._near_rest(trial)
             if self._follows(state):
                 self._accept(trial, state)
-                # Short of a wall, half of the way at first: beyond a fold there is nothing.
-                step = step / 2 if failed else 2 * step
-                failed, wall = False, None if trial == wall else wall
+                # Short of a fold half of the way at first: beyond it there is nothing.
+                step = step / 2 if let_go else 2 * step
+                let_go, wall = False, None if trial == wall else wall
             elif abs(trial - self._foot_x) > self._numerics.smallest_step:
-                step, wall, failed = (trial - self._foot_x) / 2, trial, True
+                step = (trial - self._foot_x) / 2
+                let_go = state.stance is not self._state.stance
+                wall = trial if let_go else None
             else:
                 trouble = self._decide((self._foot_x + trial) / 2, target)
                 if trouble is not None:
