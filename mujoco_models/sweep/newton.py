@@ -85,6 +85,10 @@ class Newton:
         across = (lever[:, :, 0] * normal[:, :1] + lever[:, :, 1] * normal[:, 1:]) * carried
         force = self._forces(state, contacts)
         loaded = force > 0
+        levers = along.copy()
+        if slides.any():
+            # Beads that slide stay about the point of tangency: all come nearer as it does.
+            along[slides] = along[np.where(slides, distance, np.inf).argmin()]
 
         stiffness = np.diag((1 + inertia) * model.stiffness(state.angles))
         # The lever of a force turns with every joint below the outer one of two ...
@@ -105,6 +109,7 @@ class Newton:
         held, slack = along[loaded], (distance + force / model.contact_stiffness)[loaded]
         stiffness += numerics.stiffening * held.T @ held
         gradient = -model.elastic_moments() + numerics.stiffening * held.T @ slack
+        gradient += (along - levers).T @ np.maximum(-model.contact_stiffness * distance, 0)
         factor = _cholesky(stiffness, float(count))
         solved, _ = dpotrs(factor, np.column_stack([-gradient, along.T]), lower=1)
         free, compliance = solved[:, 0], solved[:, 1:]
