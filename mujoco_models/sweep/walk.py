@@ -98,7 +98,7 @@ class Walk(Generic[Model]):
 
     def _advance(self, target: float, limit: int) -> str | None:
         """Go to `target`; why not, if that is not possible."""
-        wall: float | None = None  # the nearest place at which it let go
+        wall: float | None = None  # the nearest place at which it let go, or failed short of that
         step, let_go = target - self._foot_x, False
         while True:
             end = target if wall is None else wall
@@ -111,7 +111,7 @@ class Walk(Generic[Model]):
                 let_go, wall = False, None if trial == wall else wall
             elif abs(trial - self._foot_x) > self._numerics.smallest_step:
                 step = (trial - self._foot_x) / 2
-                let_go = state.stance is not self._state.stance
+                let_go = wall is not None or state.stance is not self._state.stance
                 wall = trial if let_go else None
             else:
                 trouble = self._decide((self._foot_x + trial) / 2, target)
