@@ -10,7 +10,7 @@ import warp
 
 from analytic.problem.arrays import Floats
 from mujoco_models.model.model import BeamModel
-from mujoco_models.obstacles.protocol import GEOM_PREFIX
+from mujoco_models.obstacles.protocol import GEOM
 
 warp.config.log_level = warp.LOG_ERROR  # not a line for each kernel that is compiled
 _CONTACTS, _ROWS = 256, 256  # that Warp has room for; the beads that are near are fewer
@@ -85,7 +85,7 @@ def _for_warp(model: BeamModel) -> mujoco.MjModel:
     """
     compiled = copy(model.model)
     compiled.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_MIDPHASE)
-    cylinder = compiled.geom(f"{GEOM_PREFIX}0").id
+    cylinder = compiled.geom(GEOM).id
     radius, half_length = compiled.geom_size[cylinder, :2]
     compiled.geom_aabb[cylinder] = [0, 0, 0, radius, radius, half_length]
     return compiled

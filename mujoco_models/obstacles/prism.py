@@ -139,7 +139,7 @@ class Prism(Faceted):
         return bool((np.abs(places - self._centres[window]) <= self._fine - 2).all())
 
     def hull(self, window: int) -> Floats:
-        """The points of a window's convex mesh, the two ends of the extrusion one after the other.
+        """The points of a window in double precision, one end of the extrusion after the other.
 
         Parameters
         ----------
@@ -151,7 +151,8 @@ class Prism(Faceted):
         array, shape (n, 3)
             Positions [L].
         """
-        polygon = self._polygon(int(self._centres[window]))
+        kept = self._kept(int(self._centres[window]))
+        polygon = np.vstack([self.vertices[kept], self.outline[-1]])
         ends = [np.insert(polygon, 2, z, axis=1) for z in (-HALF_DEPTH, HALF_DEPTH)]
         return np.concatenate(ends)
 
