@@ -2,13 +2,21 @@
 
 import sys
 
-from tests.bench import analytic_speed, exudyn_speed, mujoco_speed, plain_stepping, study_speed
+from tests.bench import (
+    analytic_speed,
+    engines_speed,
+    exudyn_speed,
+    mujoco_speed,
+    plain_stepping,
+    study_speed,
+)
 
 PARTS = {
     "analytic": analytic_speed.main,
     "mujoco": mujoco_speed.main,
     "stepping": plain_stepping.main,
     "exudyn": exudyn_speed.main,
+    "engines": engines_speed.main,
     "study": study_speed.main,
 }
 

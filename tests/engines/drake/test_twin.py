@@ -46,7 +46,7 @@ def test_the_twin_equals_mujoco_on_a_smooth_obstacle(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("segments", [20, 40, 80])
+@pytest.mark.parametrize("segments", [10, 20, 40, 80])
 @pytest.mark.parametrize("name", ["catenary", "parabola", "two-circles", "tip-only"])
 def test_so_it_does_with_links_of_any_size(name, segments):
     readings, snap_off = apart(short(name, 30), replace(SMOOTH, segments=segments))
