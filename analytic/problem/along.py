@@ -18,12 +18,16 @@ from analytic.problem.errors import InputError
 _DEGREE = 24
 _TAIL = 3  # coefficients, of a series that is exact they are rounding
 _EXACT = 1e-13  # of a piece's largest value; the solution is good to 1e-10
+_JOINED = 1e-6  # of the largest value; pieces that differ by more from one for both stay apart
 _LEAST = 1e-2  # of the largest value of all; less counts as that
 _HALVINGS = 44  # then a piece is 1e-13 L wide, and what is in it is a jump
 _FIRST = 8  # pieces of a function that are looked at; nothing narrower is seen for sure
 _MOST_PIECES = 200
 _MOST_LOOKS = 20_000  # at an interval of a function
 _NARROW = 1e-12  # of the length
+_NOTHING = 1e-15  # of the largest value; the series of what vanishes somewhere has its rounding
+_LOOKS = 4097  # places at which a function is compared with its series
+_ALIKE = 1e-9  # of the largest value
 _ROUNDING = 4 * float(np.finfo(float).eps)
 _NODES = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, _DEGREE))
@@ -181,22 +185,26 @@ class Along:
         return Along(self.ends, tuple(series))
 
     def first_not_positive(self) -> float | None:
-        """Where the quantity is first zero or negative.
+        """Where the quantity is first zero, but for rounding, or negative.
 
         Returns
         -------
         float or None
             Arc length [length]; None if it is positive throughout.
         """
+        nothing = _NOTHING * float(np.abs(self._coefficients).sum(axis=0).max())
+        vanishes = None
         for piece, middle, half in zip(self.series, self._middle, self._half, strict=True):
             roots = chebyshev.chebroots(piece) if len(piece) > 1 else np.empty(0)
             real = roots.real[(abs(roots.imag) < 1e-12) & (abs(roots.real) <= 1)]
             at = np.sort(np.concatenate([[-1.0], real, [1.0]]))
-            values = chebyshev.chebval(np.append(at, (at[1:] + at[:-1]) / 2), piece)
-            low = np.append(at, (at[1:] + at[:-1]) / 2)[values <= 0]
-            if low.size:
-                return float(middle + half * low.min())
-        return None
+            at = np.append(at, (at[1:] + at[:-1]) / 2)
+            values = chebyshev.chebval(at, piece)
+            if (values <= 0).any():
+                return float(middle + half * at[values <= 0].min())
+            if vanishes is None and (values <= nothing).any():
+                vanishes = float(middle + half * at[np.argmin(values)])
+        return vanishes
 
     @cached_property
     def _inner(self) -> Floats:
@@ -291,7 +299,12 @@ def _sampled(name: str, function: Callable[[Floats], Floats], length: float) -> 
             # The halves that led to a kink are one smooth piece.
             while pieces and _NARROW * length < ends[-1] - ends[-2]:
                 joined, smooth = series_on(ends[-2], end)
-                if not smooth:
+                parts = ((ends[-2], ends[-1], pieces[-1]), (begin, end, found))
+                # A jump next to an end lies beyond the outermost node: the parts have seen it.
+                if not smooth or not all(
+                    np.abs(at - there).max() <= _JOINED * largest
+                    for at, there in (_both(joined, (ends[-2], end), part) for part in parts)
+                ):
                     break
                 found = joined
                 del ends[-1], pieces[-1]
@@ -305,7 +318,28 @@ def _sampled(name: str, function: Callable[[Floats], Floats], length: float) -> 
             "or give pairs (arc length, value)",
         )
     ends[-1] = length
-    return Along(tuple(ends), tuple(_trimmed(piece) for piece in pieces))
+    whole = Along(tuple(ends), tuple(_trimmed(piece) for piece in pieces))
+    places = np.linspace(0, length, _LOOKS)
+    off = np.abs(_values(name, function, places) - whole(places)) > _ALIKE * largest
+    off &= np.abs(places[:, None] - ends).min(axis=1) > _NARROW * length  # of a jump, either side
+    if off.any():
+        raise InputError(
+            name,
+            f"a function with a narrow dent at s = {places[np.argmax(off)]:g}",
+            "smooth but for a few kinks and jumps",
+            "give pairs (arc length, value), or drop what is too narrow to matter",
+        )
+    return whole
+
+
+def _both(
+    joined: Floats, ends: tuple[float, float], part: tuple[float, float, Floats]
+) -> tuple[Floats, Floats]:
+    """Two series at the nodes of a part: that of the whole between two ends, and the part's own."""
+    begin, end, own = part
+    nodes = (begin + end) / 2 + (end - begin) / 2 * _NODES
+    x = (2 * nodes - ends[0] - ends[1]) / (ends[1] - ends[0])
+    return chebyshev.chebval(x, joined), chebyshev.chebval(_NODES, own)
 
 
 def _values(name: str, function: Callable[[Floats], Floats], s: Floats) -> Floats:

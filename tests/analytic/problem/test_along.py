@@ -121,3 +121,24 @@ def test_bad_input_is_one_line(make, says):
     with pytest.raises(InputError) as error:
         make()
     assert says in str(error.value) and "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("place", [0.3, 0.4, 0.777])
+def test_a_jump_is_where_the_function_has_it(place):
+    """To 1e-9 L; next to the end of a longer piece the nodes of that do not see it."""
+    found = Beam(flexural_rigidity=lambda s: 1 - 0.5 * (s > place))
+    near = place + np.array([-1e-3, -1e-5, -1e-7, -1e-9, 1e-9, 1e-7, 1e-5, 1e-3])
+    np.testing.assert_array_equal(found.rigidity_at(near), [1.0] * 4 + [0.5] * 4)
+
+
+@pytest.mark.parametrize(
+    ("function", "said"),
+    [
+        (lambda s: 1 - s, "at s = 1: must be positive"),
+        (lambda s: 1 - s**8, "at s = 1: must be positive"),
+        (lambda s: np.where(np.abs(s - 0.4) < 1e-3, 0.0, 1.0), "a narrow dent at s = 0.399"),
+    ],
+)
+def test_a_rigidity_that_vanishes_at_the_tip_or_in_a_dent_is_refused(function, said):
+    with pytest.raises(InputError, match=said):
+        Beam(flexural_rigidity=function)
