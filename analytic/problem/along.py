@@ -339,7 +339,8 @@ def _both(
     begin, end, own = part
     nodes = (begin + end) / 2 + (end - begin) / 2 * _NODES
     x = (2 * nodes - ends[0] - ends[1]) / (ends[1] - ends[0])
-    return chebyshev.chebval(x, joined), chebyshev.chebval(_NODES, own)
+    at, there = chebyshev.chebval(x, joined), chebyshev.chebval(_NODES, own)
+    return np.asarray(at, dtype=float), np.asarray(there, dtype=float)
 
 
 def _values(name: str, function: Callable[[Floats], Floats], s: Floats) -> Floats:
