@@ -42,6 +42,7 @@ from .solver.contact_length import surplus as surplus
 from .solver.events import Event as Event
 from .solver.events import Events as Events
 from .solver.events import find_events as find_events
+from .solver.events import find_many_events as find_many_events
 from .solver.friction import with_friction as with_friction
 from .solver.reversal import stiction_limits as stiction_limits
 from .solver.reversal import turn_back as turn_back

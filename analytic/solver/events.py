@@ -4,12 +4,13 @@ Will, Steigenberger and Behn, section 4.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.columns import COLUMNS, PHASES, STATUSES
 from analytic.problem.contours.contour import Contour
@@ -18,14 +19,14 @@ from analytic.problem.errors import require
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
 from analytic.problem.roots import zeros
-from analytic.problem.support import check_support, is_plain
-from analytic.solver.branch import trace
+from analytic.problem.support import check_support, is_plain, require_plain
+from analytic.solver.branch import Branch, trace
 from analytic.solver.contact_length import surplus_and_rate
 from analytic.solver.equilibria import (
     Column,
     Equilibria,
     Units,
-    equilibria,
+    equilibria_at,
     tangent_contact,
     to_columns,
 )
@@ -119,26 +120,90 @@ def find_events(
     if not is_plain(beam, clamp_stiffness, friction):
         vibrissa = Vibrissa.of(beam, clamp_stiffness, friction)
         return _general_events(centreline, reach, vibrissa, beam)
-    (branch,) = trace([centreline], [reach])
-    touch = _first_touch(centreline, branch.first_contact, beam)
+    return _plain_events([centreline], [reach], [beam])[0]
 
-    def event(t: float) -> Event:
-        return _event(equilibria(centreline, np.array([t])), beam)
 
+def find_many_events(profiles: Sequence[Contour], beams: Sequence[Beam]) -> list[Events]:
+    """The events of many sweeps of the paper's vibrissa, as `find_events` has them one by one.
+
+    Parameters
+    ----------
+    profiles : sequence of Contour
+        The bodies' contours, each in the unit of length of its vibrissa.
+    beams : sequence of Beam
+        As many vibrissae, straight and uniform.
+
+    Returns
+    -------
+    list of Events
+        In their order.
+
+    Raises
+    ------
+    InputError
+        If one vibrissa cannot reach its contour, is curved at rest or not uniform.
+    """
+    for profile, beam in zip(profiles, beams, strict=True):
+        require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
+        require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
+        require_plain("the events of many", beam)
+    if not beams:
+        return []
+    centrelines = [
+        profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
+        for profile, beam in zip(profiles, beams, strict=True)
+    ]
+    return _plain_events(centrelines, [contact_range(one) for one in centrelines], beams)
+
+
+_PLACES = ("phase_b_start", "phase_b_end", "out_of_plane", "snap_off")
+
+
+def _plain_events(
+    centrelines: Sequence[Contour], reaches: Sequence[tuple[float, float]], beams: Sequence[Beam]
+) -> list[Events]:
+    many, branches = Contours(centrelines), trace(centrelines, reaches)
+    places = [
+        (i, name, t)
+        for i, branch in enumerate(branches)
+        for name, t in zip(_PLACES, _contacts(branch), strict=True)
+        if t is not None
+    ]
+    owner = np.array([i for i, _, _ in places])
+    at = equilibria_at(many.at(owner, np.array([t for _, _, t in places])))
+    rows = _rows(at, [beams[i] for i in owner])
+    found: list[dict[str, Event]] = [{} for _ in branches]
+    for (i, name, _), event in zip(places, rows, strict=True):
+        found[i][name] = event
+    everyone = np.arange(len(many))
+    lowest = many.at(everyone, _contact_length_minima(many, reaches))
+    minima = _rows(tangent_contact(lowest), beams)
+    every = zip(centrelines, branches, beams, found, minima, strict=True)
+    events = []
+    for centreline, branch, beam, known, minimum in every:
+        touch = _first_touch(centreline, branch.first_contact, beam)
+        there = minimum.contact_arc_length < beam.length
+        events.append(
+            Events(
+                touch,
+                touch if branch.tangent[0] else known.get("phase_b_start"),
+                known.get("phase_b_end"),
+                minimum if there else _imaginary(minimum),
+                known.get("out_of_plane"),
+                known["snap_off"],
+            )
+        )
+    return events
+
+
+def _contacts(branch: Branch) -> tuple[float | None, ...]:
+    """Contour parameters of the `_PLACES`, but of the first contact, should Phase B start there."""
     changes, starts_in_b = branch.phase_changes, bool(branch.tangent[0])
     into_b, out_of_b = changes[int(starts_in_b) :: 2], changes[int(not starts_in_b) :: 2]
-    starts = touch if starts_in_b else (event(into_b[0]) if into_b.size else None)
-    ends = None if branch.tangent[-1] or not out_of_b.size else event(out_of_b[-1])
-    lowest = _contact_length_minimum(centreline, reach)
-    minimum = _event(tangent_contact(centreline.at(np.array([lowest]))), beam)
-    return Events(
-        touch,
-        starts,
-        ends,
-        minimum if minimum.contact_arc_length < beam.length else _imaginary(minimum),
-        None if branch.sideways_limit is None else event(branch.sideways_limit[0]),
-        event(branch.snap_off),
-    )
+    start = None if starts_in_b or not into_b.size else float(into_b[0])
+    end = None if branch.tangent[-1] or not out_of_b.size else float(out_of_b[-1])
+    limit = branch.sideways_limit
+    return start, end, None if limit is None else limit[0], branch.snap_off
 
 
 def _general_events(
@@ -173,23 +238,32 @@ def _general_events(
     return Events(first, start, end, minimum, None, snap_off)
 
 
-def _contact_length_minimum(centreline: Contour, reach: tuple[float, float]) -> float:
-    """Contour parameter at which the s1 of eq. 21 is least."""
-    last, first = (np.array([end]) for end in reach)
-    _, grid = along(Contours([centreline]), first, last)
-    value, rate = surplus_and_rate(centreline.at(grid))
-    dips = np.flatnonzero((rate[:-1] > 0) & (rate[1:] < 0))
-    extrema = zeros(lambda t: surplus_and_rate(centreline.at(t))[1], grid[dips + 1], grid[dips])
-    places = np.append(grid, extrema)
-    lowest = np.append(value, surplus_and_rate(centreline.at(extrema))[0])
-    return float(places[np.argmin(lowest)])
+def _contact_length_minima(many: Contours, reaches: Sequence[tuple[float, float]]) -> Floats:
+    """Contour parameters at which the s1 of eq. 21 is least."""
+    last, first = np.array(reaches).T
+    grid = along(many, first, last)
+    value, rate = surplus_and_rate(many.at(*grid))
+    dips = np.flatnonzero(grid.cells & (rate[:-1] > 0) & (rate[1:] < 0))
+    owner = grid.owner[dips]
+    extrema = zeros(
+        lambda t: surplus_and_rate(many.at(owner, t))[1], grid.t[dips + 1], grid.t[dips]
+    )
+    owners, places = np.append(grid.owner, owner), np.append(grid.t, extrema)
+    lowest = np.append(value, surplus_and_rate(many.at(owner, extrema))[0])
+    order = np.lexsort((lowest, owners))
+    return np.asarray(places[order[np.unique(owners[order], return_index=True)[1]]])
 
 
-def _event(state: Equilibria, beam: Beam) -> Event:
-    columns: dict[str, Any] = {**to_columns(state, Units.of(beam))}
-    columns["phase"] = np.array(PHASES)[columns["phase"]]
-    columns["status"] = np.array(STATUSES)[columns["status"]]
-    return _only(columns)
+def _rows(states: Equilibria, beams: Sequence[Beam]) -> list[Event]:
+    """The contacts as rows of the readings' table, each in the units of its beam."""
+    numbers = to_columns(states, Units(*np.array([Units.of(beam) for beam in beams]).T))
+    columns: dict[str, Any] = {
+        **numbers,
+        "phase": np.array(PHASES)[numbers["phase"]],
+        "status": np.array(STATUSES)[numbers["status"]],
+    }
+    rows = zip(*(values.tolist() for values in columns.values()), strict=True)
+    return [Event(**dict(zip(columns, row, strict=True))) for row in rows]
 
 
 def _only(columns: Mapping[str, Column]) -> Event:

@@ -48,9 +48,9 @@ def solve_sweeps(cases: Iterable[Case]) -> Iterator[Readings | Unsolved]:
     cases : iterable of Case
         The problems.
 
-    Yields
-    ------
-    Readings or Unsolved
+    Returns
+    -------
+    iterator of Readings or Unsolved
         One a case, in their order. A case that fails is an `Unsolved` that says why; the others are
         solved all the same.
 

@@ -59,7 +59,7 @@ def study(
     from compare.study.keep.store import Store
     from compare.study.work.crews import dask_crew, local_crew
     from compare.study.work.execute import carry_out
-    from compare.study.work.perform import Recipe
+    from compare.study.work.recipe import Recipe
 
     folder = out or Path("results") / plan.study.name
     crew = local_crew(cores) if scheduler is None else dask_crew(scheduler)

@@ -12,7 +12,8 @@ from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan, PlannedRun
 from compare.study.work.crews import local_crew
 from compare.study.work.execute import carry_out
-from compare.study.work.perform import Recipe, Result
+from compare.study.work.perform import Result
+from compare.study.work.recipe import Recipe
 from tests.compare.study.studies import EVENTS_ONLY, vibrissa
 
 

@@ -10,7 +10,8 @@ from analytic import InputError, named_case
 from compare.read.case import load_job
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
-from compare.study.work.perform import Recipe, perform
+from compare.study.work.perform import perform
+from compare.study.work.recipe import Recipe
 from engines import find_engine, list_engines, sweep_apart
 from engines.known import named_engines
 from mujoco_models import Settings

@@ -7,7 +7,7 @@ from typing import Any
 from analytic import InputError
 from compare.simulate.workers import Workers
 from compare.study.work.execute import Crew
-from compare.study.work.perform import perform, perform_alone
+from compare.study.work.perform import perform, perform_alone, perform_together
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -30,7 +30,13 @@ def local_crew(workers: int) -> Crew:
     """
     os.environ |= dict.fromkeys(_THREADS, "1")  # read by the libraries when they are imported
     preload = ("compare.study.work.perform",)
-    return Crew(lambda: Workers(workers, preload), perform_alone, 2 * workers + 1, _unexpected)
+    return Crew(
+        lambda: Workers(workers, preload),
+        perform_alone,
+        2 * workers + 1,
+        _unexpected,
+        perform_together,
+    )
 
 
 def dask_crew(address: str) -> Crew:
@@ -84,6 +90,7 @@ def dask_crew(address: str) -> Crew:
         perform_alone if single else perform,
         4 * sum(threads.values()),
         failure,
+        perform_together if single else None,
     )
 
 

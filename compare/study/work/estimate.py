@@ -3,7 +3,8 @@
 from statistics import mean
 
 from compare.study.grid.plan import Plan
-from compare.study.work.perform import Recipe, perform
+from compare.study.work.perform import perform
+from compare.study.work.recipe import Recipe
 
 _PROBES = 3  # runs that are done to see how long one takes
 _BYTES_A_ROW = 250  # in a Parquet part of thousands of rows

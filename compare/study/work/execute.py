@@ -1,15 +1,19 @@
 """Runs done by any executor, a few ahead of those that are collected."""
 
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import dataclass
+from itertools import islice
 from time import perf_counter
 from typing import TypeAlias
 
 from compare.study.grid.plan import PlannedRun
-from compare.study.work.perform import Recipe, Result, lost
+from compare.study.work.perform import Result, lost
+from compare.study.work.recipe import Recipe
 
 Perform: TypeAlias = Callable[[Recipe, PlannedRun], Result]
+Together: TypeAlias = Callable[[Recipe, Sequence[PlannedRun]], list[Result]]
+_BATCH = 32  # runs in closed form: a tenth of a second of work, and lost if its worker dies
 
 
 @dataclass(frozen=True)
@@ -26,12 +30,15 @@ class Crew:
         How many runs are handed out at once. Memory is that of so many.
     failure : callable
         What to make of an exception that is not the run's own: the row's reason, or it raises.
+    together : callable, optional
+        What a worker does with some runs in closed form at once; one by one if not given.
     """
 
     hire: Callable[[], Executor]
     perform: Perform
     ahead: int
     failure: Callable[[BaseException], str]
+    together: Together | None = None
 
 
 def carry_out(runs: Iterable[PlannedRun], recipe: Recipe, crew: Crew) -> Generator[Result]:
@@ -64,20 +71,22 @@ def carry_out(runs: Iterable[PlannedRun], recipe: Recipe, crew: Crew) -> Generat
     """
     waiting = iter(runs)
     executor = crew.hire()
-    under_way: dict[Future[Result], PlannedRun] = {}
+    under_way: dict[Future[list[Result]], tuple[PlannedRun, ...]] = {}
+    batch = 1 if recipe.simulate or crew.together is None else _BATCH
+    task = _Task(crew.perform, crew.together if batch > 1 else None)
     try:
         while True:
             suspects: list[PlannedRun] = []
             try:
-                while len(under_way) < crew.ahead and (run := next(waiting, None)) is not None:
-                    suspects = [run]
-                    under_way[executor.submit(crew.perform, recipe, run)] = run
+                while len(under_way) < crew.ahead and (runs := tuple(islice(waiting, batch))):
+                    suspects = [*runs]
+                    under_way[executor.submit(task, recipe, runs)] = runs
                     suspects = []
                 if not under_way:
                     return
                 yield from _collect(under_way, crew)
             except BrokenExecutor:
-                suspects += under_way.values()
+                suspects += [run for runs in under_way.values() for run in runs]
                 under_way.clear()
                 executor.shutdown()
                 for run in suspects:
@@ -89,20 +98,36 @@ def carry_out(runs: Iterable[PlannedRun], recipe: Recipe, crew: Crew) -> Generat
         executor.shutdown(wait=False)
 
 
-def _collect(under_way: dict[Future[Result], PlannedRun], crew: Crew) -> Iterator[Result]:
+@dataclass(frozen=True)
+class _Task:
+    """What is sent to a worker: runs at once, or the only one."""
+
+    perform: Perform
+    together: Together | None
+
+    def __call__(self, recipe: Recipe, runs: tuple[PlannedRun, ...]) -> list[Result]:
+        if self.together is not None:
+            return self.together(recipe, runs)
+        return [self.perform(recipe, run) for run in runs]
+
+
+def _collect(
+    under_way: dict[Future[list[Result]], tuple[PlannedRun, ...]], crew: Crew
+) -> Iterator[Result]:
     """The results that are there, at least one; they leave `under_way`."""
     finished, _ = wait(under_way, return_when=FIRST_COMPLETED)
     broken: BrokenExecutor | None = None
     for future in finished:
         try:
-            result = future.result()
+            results = future.result()
         except BrokenExecutor as error:
             broken = error  # but others may have finished before
             continue
         except BaseException as error:
-            result = lost(under_way[future], "failed", crew.failure(error))
+            reason = crew.failure(error)
+            results = [lost(run, "failed", reason) for run in under_way[future]]
         del under_way[future]
-        yield result
+        yield from results
     if broken is not None:
         raise broken
 

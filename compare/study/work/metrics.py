@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from analytic import CLAMP_READINGS, Direction, Readings, find_events
+from analytic import CLAMP_READINGS, Direction, Events, Readings, find_events
 from compare.comparison import compare
 from compare.measure.methods import contacts_by
 from compare.read.tables import Physics
@@ -43,13 +43,38 @@ COLUMNS: Mapping[Record, Mapping[str, str]] = {
 """Columns of a row by what is recorded, with their Arrow types; see `events` and the others."""
 
 
-def events(physics: Physics, direction: Direction = "left") -> dict[str, float | bool | None]:
+def find(physics: Physics, direction: Direction = "left") -> Events:
     """Find the events of the sweep in closed form.
 
     Parameters
     ----------
     physics : Physics
         The vibrissa, how it is held and rubs, and the object.
+    direction : {"left", "right"}
+        Where the foot moves to.
+
+    Returns
+    -------
+    Events
+        Of a sweep to the left; of the mirrored problem if the foot moves to the right.
+    """
+    beam, profile, clamp_stiffness, friction = physics
+    if direction == "right":
+        beam, profile = beam.mirrored(), profile.mirrored()
+    return find_events(profile, beam, clamp_stiffness=clamp_stiffness, friction=friction)
+
+
+def events(
+    found: Events, length: float, direction: Direction = "left"
+) -> dict[str, float | bool | None]:
+    """Say where the events of a sweep are.
+
+    Parameters
+    ----------
+    found : Events
+        As `find` has them.
+    length : float
+        Of the vibrissa.
     direction : {"left", "right"}
         Where the foot moves to.
 
@@ -62,17 +87,13 @@ def events(physics: Physics, direction: Direction = "left") -> dict[str, float |
         positions [length], None where there is no such event, or the vibrissa would touch in a
         second place.
     """
-    beam, profile, clamp_stiffness, friction = physics
-    if direction == "right":
-        beam, profile = beam.mirrored(), profile.mirrored()
-    found = find_events(profile, beam, clamp_stiffness=clamp_stiffness, friction=friction)
     way = -1 if direction == "right" else 1
     places = {name: getattr(found, name) for name in _EVENTS}
     places = {n: x if x is not None and x.status == "ok" else None for n, x in places.items()}
     minimum = found.contact_length_minimum.contact_arc_length
     return {
         "phase_b_exists": places["phase_b_start"] is not None,
-        "contact_length_minimum": float(minimum) / beam.length,
+        "contact_length_minimum": float(minimum) / length,
         **{
             f"event_{name}": None if event is None else way * float(event.foot_x)
             for name, event in places.items()

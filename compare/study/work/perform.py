@@ -4,7 +4,7 @@ import os
 import platform
 import signal
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
@@ -18,8 +18,10 @@ from analytic import InputError, Readings, solve_sweep
 from compare.judge.tolerances import Tolerances
 from compare.study.grid.axes import Value
 from compare.study.grid.plan import PlannedRun
-from compare.study.grid.study import RECORDS, Record, Study, case_file
+from compare.study.grid.study import RECORDS, Study, case_file
 from compare.study.work import metrics
+from compare.study.work.recipe import Recipe
+from compare.study.work.together import Known, known_of
 from engines.apart import checked
 from mujoco_models import DivergedError
 
@@ -45,33 +47,6 @@ RECORDED = {
     **_ABOUT,
 }
 """Arrow types of all columns that a row may have besides its parameters."""
-
-
-@dataclass(frozen=True)
-class Recipe:
-    """What all runs of a study have in common; small, it travels with every run."""
-
-    base: dict[str, Any]
-    simulate: bool
-    record: tuple[Record, ...]
-    keep_readings: bool
-    timeout: float
-
-    @classmethod
-    def of(cls, study: Study) -> "Recipe":
-        """Take from a study what its runs have in common.
-
-        Parameters
-        ----------
-        study : Study
-            The study.
-
-        Returns
-        -------
-        Recipe
-            Of each of its runs.
-        """
-        return cls(study.base, bool(study.beams), study.record, study.keep_readings, study.timeout)
 
 
 @dataclass(frozen=True)
@@ -125,11 +100,40 @@ def perform(recipe: Recipe, run: PlannedRun) -> Result:
     Result
         Its row, and its readings if they are to be kept.
     """
-    begin = time.perf_counter()
+    return _performed(recipe, run, Known())
+
+
+def perform_together(recipe: Recipe, runs: Sequence[PlannedRun]) -> list[Result]:
+    """Do runs in closed form, what they have in common at once.
+
+    A process that does nothing else is asked for: one that hangs is ended, and all of its runs are
+    to be done one by one, by `perform_alone`.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        What all runs have in common; it simulates nothing.
+    runs : sequence of PlannedRun
+        Which ones.
+
+    Returns
+    -------
+    list of Result
+        In their order; the rows are those of `perform`.
+    """
+    with _end_of_process(1.1 * recipe.timeout + 1):
+        begin = time.perf_counter()
+        known = known_of(recipe, [run.parameters for run in runs])
+        share = (time.perf_counter() - begin) / len(runs)
+        return [_performed(recipe, run, one, share) for run, one in zip(runs, known, strict=True)]
+
+
+def _performed(recipe: Recipe, run: PlannedRun, known: Known, spent: float = 0.0) -> Result:
+    begin = time.perf_counter() - spent
     row: Row = {"run": run.id, "outcome": "done", "reason": "", **run.parameters, **_system()}
     readings: dict[str, Readings] = {}
     try:
-        row |= _measure(recipe, run.parameters, readings)
+        row |= _measure(recipe, run.parameters, readings, known)
     except _TimeIsUp:
         row |= {"outcome": "timeout", "reason": f"not finished after {recipe.timeout:g} s"}
     except InputError as error:
@@ -183,15 +187,19 @@ def lost(run: PlannedRun, outcome: Outcome, reason: str) -> Result:
     return Result({"run": run.id, "outcome": outcome, "reason": reason, **run.parameters})
 
 
-def _measure(recipe: Recipe, parameters: dict[str, Value], readings: dict[str, Readings]) -> Row:
-    file, noise, estimator = case_file({**recipe.base, **parameters})
+def _measure(
+    recipe: Recipe, parameters: dict[str, Value], readings: dict[str, Readings], known: Known
+) -> Row:
+    file, noise, estimator = known.file or case_file({**recipe.base, **parameters})
     row: Row = {"seed": noise.seed}
     if "events" in recipe.record:
-        row |= metrics.events(file.physics(Path()), file.sweep.direction)
-    if set(recipe.record) == {"events"} and not recipe.simulate:
+        physics, direction = file.physics(Path()), file.sweep.direction
+        events = known.events or metrics.find(physics, direction)
+        row |= metrics.events(events, physics.beam.length, direction)
+    if recipe.events_only:
         return row
     case = file.case(Path(), "run")
-    reference = solve_sweep(case)
+    reference = known.reference or solve_sweep(case)
     simulated = reference
     if recipe.simulate:
         from engines import find_engine  # engines are imported only where they are used

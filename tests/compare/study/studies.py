@@ -10,7 +10,7 @@ import pytest
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
 from compare.study.keep.reading import read_rows
-from compare.study.work.perform import Recipe
+from compare.study.work.recipe import Recipe
 
 EVENTS_ONLY = """
 [study]

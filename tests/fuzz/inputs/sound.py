@@ -10,7 +10,8 @@ from compare import compare
 from compare.show.report import write_report
 from compare.study import Plan, load_study
 from compare.study.keep.store import Store
-from compare.study.work.perform import Recipe, perform
+from compare.study.work.perform import perform
+from compare.study.work.recipe import Recipe
 
 STATIONS = 40
 PROFILES = (

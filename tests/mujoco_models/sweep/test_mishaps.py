@@ -11,7 +11,8 @@ from analytic import Case, InputError, Readings, Sweep, circle, mesh_section
 from compare.commands.main import main
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
-from compare.study.work.perform import Recipe, perform
+from compare.study.work.perform import perform
+from compare.study.work.recipe import Recipe
 from mujoco_models import DivergedError, Settings, simulate_sweep
 
 CASE = Case(profile=circle(1.0, lowest=(0.0, 0.4)), sweep=Sweep(stations=20))

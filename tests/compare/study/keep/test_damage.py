@@ -14,7 +14,8 @@ from compare.study.keep.journal import list_journals
 from compare.study.keep.parts import list_parts
 from compare.study.keep.reading import read_plan, read_rows
 from compare.study.keep.store import PLAN_FILE, Store
-from compare.study.work.perform import Recipe, perform
+from compare.study.work.perform import perform
+from compare.study.work.recipe import Recipe
 from tests.compare.study.studies import EVENTS_ONLY, planned
 
 

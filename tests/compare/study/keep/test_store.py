@@ -13,7 +13,8 @@ from compare.study.keep import journal
 from compare.study.keep.parts import list_parts
 from compare.study.keep.reading import read_rows
 from compare.study.keep.store import Store
-from compare.study.work.perform import Recipe, Result, perform
+from compare.study.work.perform import Result, perform
+from compare.study.work.recipe import Recipe
 from tests.compare.study.studies import EVENTS_ONLY
 
 

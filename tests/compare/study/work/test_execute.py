@@ -10,7 +10,8 @@ import pytest
 
 from compare.study.work.crews import local_crew
 from compare.study.work.execute import Crew, carry_out
-from compare.study.work.perform import Recipe, Result, perform, perform_alone
+from compare.study.work.perform import Result, perform, perform_alone
+from compare.study.work.recipe import Recipe
 from tests.compare.study.studies import EVENTS_ONLY
 
 

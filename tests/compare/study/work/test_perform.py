@@ -19,7 +19,8 @@ from analytic import (
 from compare import compare
 from compare.study.grid.sensor import SensorNoise
 from compare.study.work import perform as running
-from compare.study.work.perform import Recipe, perform
+from compare.study.work.perform import perform
+from compare.study.work.recipe import Recipe
 from mujoco_models import Settings, simulate_sweep
 from tests.compare.study.studies import ONE_SIMULATION, only
 

@@ -1,0 +1,109 @@
+"""What is computed of many runs in closed form at once, before each of them is done."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from analytic import Beam, Contour, Events, Readings, find_many_events, solve_sweeps
+from analytic.problem.support import is_plain
+from compare.read.tables import CaseFile
+from compare.study.grid.axes import Value
+from compare.study.grid.estimator import Estimator
+from compare.study.grid.sensor import SensorNoise
+from compare.study.grid.study import case_file
+from compare.study.work.recipe import Recipe
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known of a run; what is None, the run finds itself, with its error if there is one.
+
+    Attributes
+    ----------
+    file : tuple or None
+        Its case, noise and method, as `case_file` reads them.
+    events : Events or None
+        Of its sweep, of the mirrored one if the foot moves to the right.
+    reference : Readings or None
+        The closed form's sweep.
+    """
+
+    file: tuple[CaseFile, SensorNoise, Estimator] | None = None
+    events: Events | None = None
+    reference: Readings | None = None
+
+
+def known_of(recipe: Recipe, parameters: Sequence[dict[str, Value]]) -> list[Known]:
+    """Read the cases of runs, and find the events of all and solve the sweeps of all at once.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        What the runs have in common; it simulates nothing.
+    parameters : sequence of dict
+        Of each run.
+
+    Returns
+    -------
+    list of Known
+        One a run. Where anything goes wrong there is nothing: the run does it again and says why.
+    """
+    known = [_read(recipe, one) for one in parameters]
+    if "events" in recipe.record:
+        known = _with_events(known)
+    if not recipe.events_only:
+        known = _with_sweeps(known)
+    return known
+
+
+def _read(recipe: Recipe, parameters: dict[str, Value]) -> Known:
+    try:
+        return Known(case_file({**recipe.base, **parameters}))
+    except Exception:  # the run will say
+        return Known()
+
+
+def _with_events(known: list[Known]) -> list[Known]:
+    which: list[int] = []
+    profiles: list[Contour] = []
+    beams: list[Beam] = []
+    for i, one in enumerate(known):
+        if one.file is None:
+            continue
+        try:
+            beam, profile, stiffness, friction = one.file[0].physics(Path())
+            if is_plain(beam, stiffness, friction):
+                mirrored = one.file[0].sweep.direction == "right"
+                profiles.append(profile.mirrored() if mirrored else profile)
+                beams.append(beam)
+                which.append(i)
+        except Exception:  # the run will say
+            continue
+    found_of = dict(zip(which, _events(profiles, beams), strict=True))
+    return [replace(one, events=found_of.get(i)) for i, one in enumerate(known)]
+
+
+def _events(profiles: list[Contour], beams: list[Beam]) -> list[Events | None]:
+    """The events of all; if one of them fails, of either half, down to the one that does."""
+    try:
+        return [*find_many_events(profiles, beams)]
+    except Exception:  # the run will say
+        half = len(beams) // 2
+        if half == 0:
+            return [None]
+        return _events(profiles[:half], beams[:half]) + _events(profiles[half:], beams[half:])
+
+
+def _with_sweeps(known: list[Known]) -> list[Known]:
+    cases = {}
+    for i, one in enumerate(known):
+        if one.file is not None:
+            try:
+                cases[i] = one.file[0].case(Path(), "run")
+            except Exception:  # the run will say
+                continue
+    solved = dict(zip(cases, solve_sweeps(cases.values()), strict=True))
+    return [
+        replace(one, reference=found) if isinstance(found := solved.get(i), Readings) else one
+        for i, one in enumerate(known)
+    ]
