@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.columns import COLUMNS, CONTACT, PHASES, SENSED, STATUSES
@@ -15,6 +16,9 @@ _ODD = (  # change sign in a mirror, averaged or not
     *("force_x_raw", "moment_z_raw"),
 )
 _TEXT_FIX = "fix the cell, or leave it empty where nothing was measured"
+
+WORDS = {"phase": PHASES, "status": STATUSES}
+"""The columns of words, with what may stand in them."""
 
 Place = Callable[[int], str]
 """Where a row of a table stands, in words: ``"line 17 of rig.csv"``."""
@@ -121,7 +125,7 @@ def checked_table(table: pd.DataFrame, source: str, place: Place = row_number) -
             numbers = as_numbers(column, name, place)
             if column.dtype != float:
                 changed[name] = numbers
-    for name, allowed in (("phase", PHASES), ("status", STATUSES)):
+    for name, allowed in WORDS.items():
         if name in table:
             _check_words(table[name], name, allowed, place)
     if not isinstance(table.index, pd.RangeIndex):
@@ -143,13 +147,30 @@ def as_table(columns: Mapping[str, Floats | Integers]) -> pd.DataFrame:
     pandas.DataFrame
         n rows.
     """
-    words = {"phase": PHASES, "status": STATUSES}
     return pd.DataFrame(
         {
-            name: pd.Series(words[name]).array.take(values.astype(int)) if name in words else values
+            name: in_words(name, values.astype(np.intp)) if name in WORDS else values
             for name, values in columns.items()
         }
     )
+
+
+def in_words(name: str, numbers: NDArray[np.intp]) -> "pd.Series[str]":
+    """A column of words from their numbers.
+
+    Parameters
+    ----------
+    name : str
+        One of `WORDS`.
+    numbers : array of int, shape (n,)
+        Of the words in `PHASES` or `STATUSES`.
+
+    Returns
+    -------
+    pandas.Series
+        n texts.
+    """
+    return pd.Series(pd.Series(WORDS[name]).array.take(numbers))
 
 
 def mirrored_table(table: pd.DataFrame) -> pd.DataFrame:

@@ -6,11 +6,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
+from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
+from analytic.problem.columns import COLUMNS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError, require
 from analytic.problem.support import check_support, is_plain
-from analytic.problem.table import as_table
+from analytic.problem.table import WORDS, in_words
 from analytic.solver.equilibria import Units, equilibria, to_columns
 from analytic.solver.general.clearance import is_clear
 from analytic.solver.general.columns import to_columns as general_columns
@@ -81,13 +83,27 @@ def solve_contact(
     centreline = profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
     t = centreline.parameter(angles)
     if is_plain(beam, clamp_stiffness, friction):
-        parts = [
-            to_columns(equilibria(centreline, t[first : first + _AT_ONCE]), Units.of(beam))
-            for first in range(0, max(len(t), 1), _AT_ONCE)
-        ]
-        return as_table({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+        return _plain(centreline, t, Units.of(beam))
     vibrissa = Vibrissa.of(beam, clamp_stiffness, friction)
     found = contacts(centreline, t, vibrissa)
     again = np.isfinite(found.excess) & ~is_clear(centreline, found)
     columns = general_columns(found, again, beam)
     return pd.DataFrame(without_inexact(columns, beam, vibrissa))
+
+
+def _plain(centreline: Contour, t: Floats, units: Units) -> pd.DataFrame:
+    """The paper's vibrissa, some contacts at a time, each column written where it stays."""
+    names = [name for name in COLUMNS if name not in WORDS]
+    numbers = np.empty((len(names), t.size))
+    words = {name: np.empty(t.size, dtype=np.intp) for name in WORDS}
+    for first in range(0, t.size, _AT_ONCE):
+        part = slice(first, first + _AT_ONCE)
+        found = to_columns(equilibria(centreline, t[part]), units)
+        for values, name in zip(numbers, names, strict=True):
+            values[part] = found[name]
+        for name in WORDS:
+            words[name][part] = found[name]
+    table = pd.DataFrame(numbers.T, columns=names, copy=False)
+    for name in WORDS:
+        table.insert(COLUMNS.index(name), name, in_words(name, words[name]))
+    return table

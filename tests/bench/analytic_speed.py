@@ -1,17 +1,39 @@
 """The closed forms against the paper's shooting and collocation, and their memory."""
 
+import time
 import tracemalloc
+from collections.abc import Iterator
 
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from analytic import Beam, Case, catenary, find_events, named_case, solve_contact, solve_sweep
+from analytic import (
+    Beam,
+    Case,
+    Readings,
+    catenary,
+    circle,
+    find_events,
+    named_case,
+    solve_contact,
+    solve_sweep,
+    solve_sweeps,
+)
 from analytic.checks import boundary_value_problem, tip_angle_by_shooting
 from tests.bench.timing import seconds
 
 THIN = Beam(radius=0.0)
 COUNT = 100_000
+
+
+def _varied(count: int) -> Iterator[Case]:
+    """Vibrissae past catenaries and circles, none like another."""
+    numbers = np.random.default_rng(0)
+    for i in range(count):
+        even = catenary(numbers.uniform(0.3, 0.8), -0.8)
+        odd = circle(numbers.uniform(0.7, 2.0), (0.0, 0.4))
+        yield Case(Beam(radius=numbers.uniform(1e-3, 1e-2)), odd if i % 2 else even)
 
 
 def main(quick: bool) -> None:
@@ -50,6 +72,20 @@ def main(quick: bool) -> None:
     case = named_case("catenary")
     sweep = seconds(lambda: solve_sweep(case))
     console.print(f"200-station sweep, its events located on the way: {1e3 * sweep:.1f} ms")
+    some = 64 if quick else 10_000
+    begin, last = time.process_time(), 0.0
+    tracemalloc.start()
+    for done, found in enumerate(solve_sweeps(_varied(some)), 1):
+        assert isinstance(found, Readings), found
+        if done == some // 10:
+            last = tracemalloc.get_traced_memory()[1]
+            tracemalloc.stop()
+            begin = time.process_time()
+    taken = (time.process_time() - begin) / (some - some // 10)
+    console.print(
+        f"{some:,} such sweeps by solve_sweeps, their cases made on the way: "
+        f"{1e3 * taken:.1f} ms each on one core, {last / 1e6:.0f} MB at the most"
+    )
     real = Case(Beam(natural_curvature=-0.3), profile, clamp_stiffness=8.0, friction=0.2)
     rate = many / seconds(
         lambda: solve_contact(profile, tangent, real.beam, clamp_stiffness=8.0, friction=0.2)
