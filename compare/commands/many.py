@@ -75,12 +75,16 @@ def swept(job: Job, folder: Path) -> Sequence[Outcome]:
             "take [motion] and [model] out of the case",
         )  # fmt: skip
     with terminal.progress("engines", len(job.engines)) as advance:
-        found = sweep_many(job.case, job.settings, job.engines, job.timeout, advance)
+
+        def keep(one: Outcome) -> None:
+            if one.readings is not None:
+                one.readings.write(folder / f"{one.engine}.parquet")
+            advance()
+
+        found = sweep_many(job.case, job.settings, job.engines, job.timeout, keep)
     for one in found:
         if one.readings is None:
             terminal.print_line(f"{one.engine}: {one.trouble}")
-        else:
-            one.readings.write(folder / f"{one.engine}.parquet")
     if all(one.readings is None for one in found):
         raise InputError(
             "engine", ", ".join(job.engines), "one that sweeps the case",

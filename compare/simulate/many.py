@@ -12,7 +12,7 @@ def sweep_many(
     settings: Settings,
     names: Sequence[str],
     timeout: float = TIMEOUT,
-    advance: Callable[[], None] = lambda: None,
+    done: Callable[[Outcome], None] = lambda _: None,
 ) -> list[Outcome]:
     """Sweep a case with each of several engines.
 
@@ -28,8 +28,9 @@ def sweep_many(
         Of the engines.
     timeout : float
         The longest that each may take [s].
-    advance : callable
-        Called after each of them.
+    done : callable
+        Called with each outcome as soon as it is there, so that nothing is lost if a later engine
+        is interrupted.
 
     Returns
     -------
@@ -39,5 +40,5 @@ def sweep_many(
     found = []
     for name in names:
         found.append(sweep_apart(name, case, settings, timeout))
-        advance()
+        done(found[-1])
     return found

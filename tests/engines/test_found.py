@@ -8,6 +8,7 @@ import pytest
 
 from analytic import InputError, named_case
 from compare.read.case import load_job
+from compare.simulate import many
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
 from compare.study.work.perform import perform
@@ -148,6 +149,22 @@ def test_where_none_gives_readings_there_is_one_line(odd_engines, tmp_path):
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert "RuntimeError: no luck" in done.stderr
+
+
+@pytest.mark.slow
+def test_an_interrupt_keeps_the_engines_that_are_done(odd_engines, tmp_path, monkeypatch):
+    real = many.sweep_apart
+
+    def interrupted(name, *rest):
+        if name == "hangs":
+            raise KeyboardInterrupt
+        return real(name, *rest)
+
+    monkeypatch.setattr(many, "sweep_apart", interrupted)
+    command = ("run", "tip-only", "--segments", 5, "--stations", 20, "--out", "out")
+    done = vibrissa(*command, "--engine", "mujoco,hangs", cwd=tmp_path)
+    assert done.returncode != 0
+    assert (tmp_path / "out" / "mujoco.parquet").exists()
 
 
 def test_the_command_lists_them(odd_engines, tmp_path):
