@@ -83,7 +83,7 @@ def pytest_configure(config: pytest.Config) -> None:
     )
     for name in config.getoption("--vibrissa-engine") or ():
         try:
-            _ours("engines.found").named_engines(name)
+            _ours("engines.known").named_engines(name)
         except (ValueError, pytest.fail.Exception) as error:
             raise pytest.UsageError(f"--vibrissa-engine: {error}") from None
     for name in config.getoption("--vibrissa-case") or ():
