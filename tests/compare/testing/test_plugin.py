@@ -7,22 +7,9 @@ from pathlib import Path
 
 import pytest
 
-# What a run inside this process imports first is forgotten after it, and not all modules bear that.
-import compare.read.case
-import compare.testing.gates
-import compare.testing.summary  # noqa: F401
-from analytic import named_case, solve_sweep  # noqa: F401
-from mujoco_models import simulate_sweep  # noqa: F401
-
 pytest_plugins = ["pytester"]
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-
-
-@pytest.fixture(autouse=True)
-def without_hypothesis(monkeypatch):
-    """Its plugin would be compiled anew in every run, for a second each."""
-    monkeypatch.setenv("PYTEST_ADDOPTS", "-p no:hypothesispytest")
 
 
 @pytest.mark.slow
