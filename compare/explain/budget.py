@@ -163,7 +163,7 @@ def budget(
     refined, joints = [run[name] for name in REFINED], _joints(runs)
     if joints is not None:
         refined = without_swing(refined, joints, contact, tangent, power)
-    limit = _limit(refined, power)
+    limit, doubt = _limit(refined, power)
     _, middle, finest = refined
     from_two = finest + (finest - middle) / (2**order - 1)
     hard = "sharp" if "sharp" in run else "smooth"  # but for its contacts, which are harder next
@@ -181,7 +181,9 @@ def budget(
     signals["unexplained"] = total - np.sum(list(signals.values()), axis=0)
     rms = {name: _rms(part) for name, part in signals.items()}
     uncertainty = {
-        "discretisation": _SAFETY * (_rms(finest - limit) + _rms(limit - from_two)),
+        "discretisation": np.hypot(
+            _SAFETY * (_rms(finest - limit) + _rms(limit - from_two)), doubt
+        ),
         "facets": rms["unrest"],
         "softness": _SAFETY * rms["softness"] / (STIFFER - 1),
         "unrest": rms["unrest"],
@@ -295,16 +297,22 @@ def _joints(runs: Mapping[str, Readings]) -> list[Floats] | None:
     return None if None in recorded else [np.array(joints, dtype=float) for joints in recorded]
 
 
-def _limit(refined: list[Floats], power: Floats) -> Floats:
-    """What the sweeps tend to as segments are refined: Richardson's extrapolation, from all three.
+def _limit(refined: list[Floats], power: Floats) -> tuple[Floats, Floats]:
+    """What the sweeps tend to as segments are refined, and how unsure the three of them leave that.
 
-    What still swings in them, as the contact passes from bead to bead, falls no faster than their
-    power of h. So a line in that power is fitted, each sweep weighed by it: the limit has three
-    quarters of the swing that the two finest sweeps alone leave it.
+    Richardson's extrapolation, from all three. What still swings in them, as the contact passes
+    from bead to bead, falls no faster than their power of h. So a line in that power is fitted,
+    each sweep weighed by it: the limit has three quarters of the swing that the two finest sweeps
+    alone leave it. One combination of three sweeps holds neither the limit nor the power. What is
+    left in it are their own errors, which the limit has its part of.
     """
     design = np.column_stack([np.ones(3), power]) / power[:, None]
     weights = np.linalg.pinv(design)[0] / power
-    return np.asarray(np.tensordot(weights, np.stack(refined), axes=1))
+    apart = np.cross(np.ones(3), power)
+    stacked = np.stack(refined)
+    errors = _rms(np.tensordot(apart, stacked, axes=1)) / np.linalg.norm(apart * power)
+    limit = np.tensordot(weights, stacked, axes=1)
+    return np.asarray(limit), np.asarray(errors * np.linalg.norm(weights * power))
 
 
 def _sensor(base: Readings, kept: Booleans, scale: Mapping[str, float]) -> Floats:
