@@ -1,5 +1,6 @@
 """Sweeps that many tests look at, made once a process."""
 
+import signal
 from functools import cache
 
 import pytest
@@ -8,6 +9,14 @@ from analytic import CASE_NAMES, Case, Readings, named_case, solve_sweep
 from mujoco_models import Settings, simulate_sweep
 
 collect_ignore = ["examples"]  # for users; run as they would by compare/testing/test_plugin.py
+
+
+@pytest.fixture(autouse=True, scope="session")
+def nothing_is_ignored():
+    """A shell in the background ignores interrupts, and so would commands that tests start."""
+    for way in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(way) is signal.SIG_IGN:
+            signal.signal(way, signal.default_int_handler)
 
 
 @cache

@@ -10,6 +10,7 @@ from analytic.problem.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS
 
 _HALF_PERIOD = 0.5  # T1
+_APART = 0.01  # of a station's way; without contact there, the mean is off by about so much
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,8 @@ class Record:
         self._pending: dict[str, Any] | None = None
         self._sum = np.zeros(3)
         self._losses = 0
+        self._apart = 0.0  # L; without contact, once there was one
+        self._held = False  # at the station itself
 
     @property
     def first(self) -> float:
@@ -109,6 +112,7 @@ class Record:
         """
         share = (before.foot_x - self._stations[len(self.rows)]) / (before.foot_x - after.foot_x)
         raw = before.clamp + share * (after.clamp - before.clamp)
+        self._held = before.touches and after.touches
         self._pending = {
             "time": before.time + share * (after.time - before.time),
             **{f"{name}_raw": float(x) for name, x in zip(CLAMP_READINGS, raw, strict=True)},
@@ -130,6 +134,7 @@ class Record:
         """
         if before.touches != after.touches:
             self._losses += before.touches
+        apart = self.first_touch is not None and not (before.touches and after.touches)
         self._follow(after)
         if self.complete:
             return False
@@ -139,6 +144,7 @@ class Record:
         if right > left:
             middle = (before.foot_x - (right + left) / 2) / (before.foot_x - after.foot_x)
             self._sum += (before.clamp + middle * (after.clamp - before.clamp)) * (right - left)
+            self._apart += apart * (right - left)
         if self._pending is None or after.foot_x > end:
             return False
         self._close()
@@ -180,7 +186,8 @@ class Record:
         mean = self._sum / (2 * self._half) if self._half > 0 else np.array(raw)
         row |= dict(zip(CLAMP_READINGS, mean.tolist(), strict=True))
         row["contact_losses"] = self._losses
-        if row["status"] == "ok" and self._losses > 1:
+        apart = self._held and self._apart > _APART * 2 * self._half
+        if row["status"] == "ok" and (apart or self._losses > 1):
             row["status"] = "chattering"
         self.rows.append(row)
-        self._pending, self._sum, self._losses = None, np.zeros(3), 0
+        self._pending, self._sum, self._losses, self._apart = None, np.zeros(3), 0, 0.0

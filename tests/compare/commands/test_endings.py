@@ -32,19 +32,6 @@ main()
 PIPES = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
 
 
-@pytest.fixture(autouse=True)
-def nothing_is_ignored():
-    """A shell in the background ignores SIGINT, and so would the commands that are started here."""
-    before = {
-        way: signal.signal(way, signal.default_int_handler)
-        for way in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-        if signal.getsignal(way) is signal.SIG_IGN
-    }
-    yield
-    for way, handler in before.items():
-        signal.signal(way, handler)
-
-
 def alive(process):
     try:
         return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"

@@ -60,6 +60,17 @@ def test_lost_contacts_are_counted_at_the_station_where_they_are_lost():
     assert record.rows[1]["contact_losses"] == pytest.approx(chatters.sum() / 2, abs=1)
 
 
+def test_one_bounce_spoils_the_mean_of_its_station():
+    """Contact is lost once: for 8 % of the second station's way, and the third's last two steps."""
+    stations = np.array([1.0, 0.5, 0.0, -0.5])
+    record = Record(stations, 1.0)
+    x = np.linspace(record.first + 0.01, -1, 2001)
+    away = ((x < 0.36) & (x > 0.32)) | ((x < -0.2475) & (x > -0.2495))
+    driven(record, x, np.zeros((2001, 3)), ~away)
+    assert [row["contact_losses"] for row in record.rows] == [0, 1, 1, 0]
+    assert [row["status"] for row in record.rows] == ["ok", "chattering", "ok", "ok"]
+
+
 def test_the_last_contact_that_is_lost_is_the_snap_off():
     record = Record(np.array([0.5, 0.0]), 0.0)
     x = np.linspace(0.6, -0.1, 71)
