@@ -170,7 +170,7 @@ def simulate_motion(
         ``kinetic_share``, the kinetic energy seen from the foot over kinetic and elastic energy;
         ``contact_losses``, how often the contact was lost since the station before, and
         ``penetration`` [length]. A station is ``"chattering"`` if the contact was lost more than
-        once or for 1 % of its way, and ``"lost"`` if nothing touches there but does later.
+        once or for 5 % of its way, and ``"lost"`` if nothing touches there but does later.
         ``provenance["events"]["snap_off"]`` is where the last contact was lost.
 
     Raises

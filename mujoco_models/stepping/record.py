@@ -10,7 +10,7 @@ from analytic.problem.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS
 
 _HALF_PERIOD = 0.5  # T1
-_APART = 0.01  # of a station's way; without contact there, the mean is off by about so much
+_APART = 0.05  # of a station's way; without contact there, the mean is off by about so much
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from compare.show.style import PHASE_LETTERS
 
 _MEANINGS = {
     "touches again": ": another part of the vibrissa would lie in the object, no readings",
-    "chattering": ": the contact was lost more than once, or for 1 % of a station's way",
+    "chattering": ": the contact was lost more than once, or for 5 % of a station's way",
     "lost": ": no contact, between stations with one",
     "sticks": ": the contact would slide back, which friction prevents as the foot moves on; the "
     "readings are those of one that slides on",
