@@ -14,6 +14,8 @@ from analytic.solver.equilibria import Equilibria, contact, equilibria_at, tip_r
 _EPS = float(np.finfo(float).eps)
 _ITERATIONS = 25  # of Newton's method; 4 to 8 are usual, some 20 close to a fold
 _CLOSE = 1e-9  # of a step, relative; the next one would change rounding only
+_MOST_TURNED = np.pi / 2  # rad of excess; from there the end would point back at the clamp
+_FINEST = 4 * _EPS  # of the misses: another step would only try other roundings
 _EXACT = 64 * _EPS  # of the misses, in units of the extent: some roundings of the closed forms
 
 
@@ -118,14 +120,15 @@ def _newton(
         less = missed <= best.missed[going]
         for values, new in zip(best, (t, excess, missed), strict=True):
             values[going[less]] = new[less]
-        more = ~(((step <= _CLOSE) & (missed <= _EXACT)) | (missed == 0))
+        enough = (missed <= _FINEST) | (~less & (missed <= _EXACT))
+        more = ~((enough & (step <= _CLOSE)) | (missed == 0))
         if not more.any():
             break
         step_t = np.where(np.isfinite(step_t), step_t, 0.0)
         step_w = np.where(np.isfinite(step_w), step_w, 0.0)
         new_t = np.clip(t - step_t, low, high)
         step = np.maximum(np.abs(new_t - t), np.abs(step_w) / excess)[more]
-        excess = np.maximum(excess - step_w, excess / 10)[more]
+        excess = np.clip(excess - step_w, excess / 10, _MOST_TURNED)[more]
         t, going = new_t[more], going[more]
     return best
 

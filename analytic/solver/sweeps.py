@@ -4,14 +4,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from analytic.problem.case import Case
-from analytic.problem.errors import InputError, require
+from analytic.problem.errors import require
 from analytic.problem.mirror import facing
 from analytic.problem.readings import Readings
 from analytic.solver.plain import solve_plain
 from analytic.solver.sweep import solve_sweep
 
 _AT_ONCE = 16_384  # stations: their intermediate results stay in the processor's cache
-_FAILURES = (InputError, ArithmeticError, ValueError, TypeError)
 
 
 @dataclass(frozen=True)
@@ -87,12 +86,12 @@ def _batch(cases: list[Case]) -> Iterator[Readings | Unsolved]:
     try:
         leftward = [_leftward(cases[i]) for i in plain]
         found = dict(zip(plain, solve_plain(leftward) if plain else [], strict=True))
-    except _FAILURES:  # one by one, to see which it is
+    except Exception:  # a contour's functions may raise anything; one by one, to see whose do
         found = {}
     for i, case in enumerate(cases):
         try:
             yield facing(case, found[i]) if i in found else solve_sweep(case)
-        except _FAILURES as error:
+        except Exception as error:
             yield Unsolved(case, error)
 
 

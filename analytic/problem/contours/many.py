@@ -88,11 +88,11 @@ def _taken_apart(value: Any) -> tuple[Any, tuple[float, ...]]:  # noqa: ANN401
     match value:
         case float() | int():
             return float, (float(value),)
-        case tuple():
+        case tuple() if type(value) is tuple:  # a named one has more than its parts
             common, parts = "tuple", value
         case Profile() if value.radius_of_curvature is not None:
             common, parts = "profile", _curves(value)
-        case partial() if not value.keywords:
+        case partial() if _takes_arrays(value):
             common, parts = value.func, value.args
         case MethodType():
             common, parts = value.__func__, (value.__self__,)
@@ -107,7 +107,7 @@ def _put_together(value: Any, numbers: Iterator[Floats]) -> Any:  # noqa: ANN401
     match value:
         case float() | int():
             return next(numbers)
-        case tuple():
+        case tuple() if type(value) is tuple:
             return tuple(_put_together(part, numbers) for part in value)
         case Profile() if value.radius_of_curvature is not None:
             # The parts are those of checked profiles: they are not checked again.
@@ -115,13 +115,19 @@ def _put_together(value: Any, numbers: Iterator[Floats]) -> Any:  # noqa: ANN401
             for name, part in zip(_PARTS, _curves(value), strict=True):
                 object.__setattr__(profile, name, _put_together(part, numbers))
             return profile
-        case partial() if not value.keywords:
+        case partial() if _takes_arrays(value):
             return partial(value.func, *(_put_together(part, numbers) for part in value.args))
         case MethodType():
             return MethodType(value.__func__, _put_together(value.__self__, numbers))
     return value
 
 
+def _takes_arrays(function: partial[Any]) -> bool:
+    """Whether arrays may stand for its numbers: of our own functions we know, of others not."""
+    return not function.keywords and getattr(function.func, "__module__", None) in _FAMILIES
+
+
+_FAMILIES = tuple(f"{__package__}.{name}" for name in ("families", "profile"))
 _PARTS = ("xi", "eta", "alpha_range", "radius_of_curvature")
 
 

@@ -2,6 +2,7 @@
 
 import itertools
 import tracemalloc
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -16,6 +17,7 @@ from analytic import (
     Sweep,
     Unsolved,
     catenary,
+    certify,
     circle,
     ellipse,
     named_case,
@@ -26,9 +28,18 @@ from analytic import (
     through_points,
     two_circles,
 )
+from tests.fuzz.contours import KINDS, any_case
 
 CORNERS = [(-1.5, 1.2), (-0.6, 0.5), (-0.1, 0.35), (0.2, 0.34), (0.8, 0.6), (1.2, 1.3)]
 STIFF = Beam(length=50.0, flexural_rigidity=2e3, radius=0.2)
+
+
+def own_xi(radius, alpha):
+    return np.dot(radius, np.sin(alpha))
+
+
+def own_eta(radius, alpha):
+    return 0.4 + np.dot(radius, 1 - np.cos(alpha))
 
 
 def mixed():
@@ -46,7 +57,12 @@ def mixed():
     yield Case(profile=ellipse((1.0, 0.3), (0.0, 0.5)), sweep=Sweep(60, direction="right"))
     yield Case(profile=parabola(0.5, 0.5), sweep=Sweep(2))
     yield named_case("tip-only")
-    yield Case(profile=through_points([(x, 0.4 + x * x / 3) for x in np.linspace(-2, 2, 15)]))
+    for low in (0.4, 0.3):
+        points = [(x, low + x * x / 3) for x in np.linspace(-2, 2, 15)]
+        yield Case(profile=through_points(points))
+    for radius in (0.9, 1.3):  # a user's own family, which takes one number at a time
+        xi, eta = partial(own_xi, radius), partial(own_eta, radius)
+        yield Case(profile=Profile(xi=xi, eta=eta, alpha_range=(-1.1, 1.3)), sweep=Sweep(30))
     yield Case(
         profile=Profile(xi=np.sin, eta=lambda alpha: 1.5 - np.cos(alpha), alpha_range=(-1.1, 1.3)),
         sweep=Sweep(45),
@@ -73,12 +89,13 @@ def test_mixed_cases_are_what_each_is_alone():
         )  # fmt: skip
 
 
-def test_a_case_that_fails_says_why_and_stops_no_other():
+@pytest.mark.parametrize("error", [ArithmeticError, AttributeError, RuntimeWarning])
+def test_a_case_that_fails_says_why_and_stops_no_other(error):
     calls = itertools.count()
 
     def broken(alpha):
         if next(calls) > 200:
-            raise ArithmeticError("this contour is not known here")
+            raise error("this contour is not known here")
         return 1.5 - np.cos(alpha)
 
     profile = Profile(xi=np.sin, eta=broken, alpha_range=(-1.2, 1.2))
@@ -90,7 +107,7 @@ def test_a_case_that_fails_says_why_and_stops_no_other():
     assert isinstance(last, Readings)
     assert isinstance(failed, Unsolved)
     assert failed.case is bad
-    assert isinstance(failed.error, ArithmeticError)
+    assert isinstance(failed.error, error)
     assert failed.reason == "this contour is not known here"
     assert isinstance(other, Unsolved)
     assert isinstance(other.error, InputError)
@@ -126,3 +143,20 @@ def test_cases_are_taken_as_they_are_needed():
     finally:
         tracemalloc.stop()
     assert taken < 350
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_needle_is_solved_without_leaving_the_range():
+    """A span's end that has turned by more than half a turn is no span, though it may fit."""
+    case = Case(Beam(radius=0.0), ellipse((10.0, 0.003), (0.3, 0.8)), Sweep(800))
+    found = solve_sweep(case)
+    assert (found.table["status"] == "ok").all()
+    touching = found.table["phase"] != "free"
+    assert certify(found)[touching].max(axis=None) < 1e-11
+
+
+def test_nearly_straight_sides_are_solved_to_their_roundings():
+    """Where a rounding of the slope angle moves the contact by 1e-13 L, Newton's steps go on."""
+    rng = np.random.default_rng([list(KINDS).index("nearly polygon"), 51_000_000_000_187])
+    found = solve_sweep(any_case("nearly polygon", rng))
+    assert (found.table["status"] == "ok").all()
