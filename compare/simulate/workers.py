@@ -5,7 +5,7 @@ import signal
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from contextlib import contextmanager, suppress
-from multiprocessing import get_all_start_methods, get_context
+from multiprocessing import current_process, get_all_start_methods, get_context
 from multiprocessing.connection import Connection
 from threading import Thread
 from types import TracebackType
@@ -50,6 +50,9 @@ class Workers(ProcessPoolExecutor):
     """
 
     def __init__(self, count: int, preload: tuple[str, ...] = ()) -> None:
+        if getattr(current_process(), "_inheriting", False):
+            # A worker reads its leader's script first, and that would start workers without end.
+            raise SystemExit(1)
         server = preload and "forkserver" in get_all_start_methods()
         context = get_context("forkserver" if server else "spawn")
         if server:
@@ -64,7 +67,8 @@ class Workers(ProcessPoolExecutor):
             reason = " ".join(str(error).split()) or type(error).__name__
             raise InputError(
                 "workers", count, "processes that can be started here",
-                f"the first one did not start ({reason}): free memory or processes",
+                f"the first one did not start ({reason}): put what a script calls below"
+                ' `if __name__ == "__main__":`, or free memory or processes',
             ) from error  # fmt: skip
         except BaseException:
             self.shutdown(wait=False, cancel_futures=True)

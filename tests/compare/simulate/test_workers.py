@@ -71,5 +71,16 @@ def test_workers_that_cannot_start_are_one_line(monkeypatch):
     assert "\n" not in str(caught.value)
 
 
+def test_a_script_without_a_guard_is_told_so(tmp_path):
+    """Once: its workers read the script too, and would start workers of their own."""
+    script = tmp_path / "study.py"
+    script.write_text("from compare.simulate.workers import Workers\nWorkers(2)\n")
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 1
+    assert done.stderr.count("must be processes") == 1
+    assert 'below `if __name__ == "__main__":`' in done.stderr.splitlines()[-1]
+    assert "bootstrapping" not in done.stderr
+
+
 def test_there_is_a_core():
     assert 1 <= available_cores() <= os.cpu_count()
