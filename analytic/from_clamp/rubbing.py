@@ -6,14 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.from_clamp.contact import Held, dimensionless
-from analytic.from_clamp.general import Clamped
 from analytic.from_clamp.noise import checked_noise, largest, reading_noise
 from analytic.from_clamp.phases import judge_phases
+from analytic.from_clamp.varying import Marched
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
-from analytic.problem.support import require_uniform
 
 _FEWEST = 5  # stations of Phase B: fewer do not show how much they scatter
 _ROUNDS = 4  # of phases by the coefficient and the coefficient by the phases
@@ -57,7 +56,9 @@ def estimate_friction(
         sin(theta) + M/f (kappa_0 - M/2) + (1 - r kappa_0) x + r^2 f x^2/2 = 0,
 
     theta the slope angle of the clamp's end from the force's: the energy of the pendulum whose
-    moment at the contact is r f x. Which stations are of Phase B is judged by the contact's arc
+    moment at the contact is r f x. One that varies along its length is marched along from the clamp
+    to where the moment is no more than the couple of the friction assumed, and shows there how far
+    it leans from the force. Which stations are of Phase B is judged by the contact's arc
     length first, and with the coefficient that follows by both conditions.
 
     Parameters
@@ -78,11 +79,9 @@ def estimate_friction(
     Raises
     ------
     InputError
-        If fewer than five stations are of Phase B, the noise is no such mapping, or the vibrissa
-        varies along its length.
+        If fewer than five stations are of Phase B, or the noise is no such mapping.
     """
     require("readings", readings, Readings, "as Readings(table, beam)")
-    require_uniform("the friction from the clamp", readings.beam)
     spread = _spread(readings, noise)
     coefficient, found = 0.0, FrictionFound(0.0, np.inf, 0)
     for number in range(_ROUNDS):
@@ -144,7 +143,9 @@ def _beside(variance: Floats) -> Floats:
 
 def _sine(held: Held, sensed: Floats) -> Floats:
     """Sine of the friction angle, if the station is of Phase B."""
-    clamped = Clamped.of(held.way * sensed[1], sensed[2], held.way * sensed[3], held.vibrissa)
+    clamped = held.clamped(sensed)
+    if isinstance(clamped, Marched):
+        return np.asarray(np.sin(held.vibrissa.lean - np.arcsin(clamped.sine_at_contact())))
     natural, radius = held.vibrissa.natural_curvature, held.vibrissa.radius
     force, moment = clamped.force, clamped.moment
     with np.errstate(divide="ignore", invalid="ignore"):

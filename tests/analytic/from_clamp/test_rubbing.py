@@ -22,10 +22,12 @@ from analytic import (
 )
 
 
-def swept(friction, natural=0.0, stiffness=np.inf, radius=0.005, direction="left", stations=200):
+def swept(
+    friction, natural=0.0, stiffness=np.inf, radius=0.005, direction="left", stations=200, tip=None
+):
     return solve_sweep(
         Case(
-            Beam(radius=radius, natural_curvature=natural),
+            Beam(radius=radius, natural_curvature=natural, tip_radius=tip),
             circle(1.0, lowest=(0, 0.4)),
             Sweep(stations, direction=direction),
             clamp_stiffness=stiffness,
@@ -53,11 +55,24 @@ def test_exact_readings_show_it_exactly(friction, natural, stiffness, radius, di
     assert found.stations > 20 and found.uncertainty < 1e-3
 
 
+@pytest.mark.parametrize(
+    ("friction", "tip", "natural", "stiffness", "direction"),
+    [(0.3, 0.4, 0.0, np.inf, "left"), (0.2, 0.1, 0.4, 6.0, "right")],
+)
+def test_a_cone_shows_it_too(friction, tip, natural, stiffness, direction):
+    """What is wrong with the friction assumed moves the contact by the radius times that."""
+    readings = swept(friction, natural, stiffness, 0.01, direction, 30, 0.01 * tip)
+    found = estimate_friction(readings.with_friction(0.0))
+    assert found.coefficient == pytest.approx(friction, abs=1e-11)  # observed 3e-12
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("level", [1e-3, 1e-2, 3e-2])
-def test_uncertainty_covers_the_error(level):
+@pytest.mark.parametrize(
+    ("level", "tip"), [(1e-3, None), (1e-2, None), (3e-2, None), (1e-2, 0.002)]
+)
+def test_uncertainty_covers_the_error(level, tip):
     """95 % of 100 noisy sweeps, so +-2.2 %."""
-    exact = swept(0.3, stations=100).with_friction(0.0)
+    exact = swept(0.3, stations=100, tip=tip).with_friction(0.0)
     noise, rng = relative_noise(exact, level), np.random.default_rng(1)
     covered = 0
     for _ in range(100):
