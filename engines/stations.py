@@ -114,8 +114,9 @@ def sweep_stations(
     -------
     Readings
         In the units of the case's beam, with a column ``residual``. Snap-off is where even the
-        smallest step leaves the branch, if the state changed ever faster on the way there, as at a
-        fold; if it did not, that station and all after it are unsettled, and no snap-off is known.
+        smallest step leaves the branch, if it ends free, or if the state changed ever faster on the
+        way there, as at a fold; if neither, that station and all after it are unsettled, and no
+        snap-off is known.
 
     Raises
     ------
@@ -194,7 +195,7 @@ class _Way:
             elif abs(trial - self.foot_x) > _SMALLEST:
                 step = (trial - self.foot_x) / 2
             else:
-                self._end(trial)
+                self._end(trial, row)
                 return
 
     def _follows(self, row: Row) -> bool:
@@ -209,9 +210,10 @@ class _Way:
             return near
         return near and abs(row.contact_angle - last.contact_angle) < _SHIFT
 
-    def _end(self, trial: float) -> None:
-        """The branch ends here: in a fold, or because the solver failed."""
-        if self._last.load >= _HELD and self._folds(trial):
+    def _end(self, trial: float, row: Row | None) -> None:
+        """The branch ends here: it let go, in a fold, or the solver failed."""
+        let_go = row is not None and row.phase == "free"
+        if self._last.load >= _HELD and (let_go or self._folds(trial)):
             self.snap_off = (self.foot_x + trial) / 2
         else:
             self._lost = "the solver found no neighbour of the last state at rest, and no fold"

@@ -1,10 +1,13 @@
-"""Exudyn's planar ANCF cable, clamped upright at the origin, and a circle that it touches.
+"""Exudyn's planar ANCF cable, clamped upright at the origin, held at one point of it.
 
-Cubic elements in Exudyn's static solver, its own frictionless contact of cable and circle, by
-penalty. The foot stays and the circle moves, which is the same. Dimensionless: L = EI = 1.
+Cubic elements in Exudyn's static solver. What holds the cable is a joint of Exudyn's at a point in
+space: a revolute joint at the cable's tip, or a sliding joint, through which the cable slips
+without friction, so that the joint's force is normal to the cable. The foot stays and the point
+moves, which is the same. Dimensionless: L = EI = 1.
 """
 
 from itertools import pairwise
+from typing import NamedTuple
 
 import exudyn
 import numpy as np
@@ -13,23 +16,60 @@ from exudyn import itemInterface as item  # noqa: N813  # the library's own name
 from analytic.problem.arrays import Floats
 
 AXIAL_STIFFNESS = 1e6  # EI/L^2; a load of 10 stretches the cable by 1e-5
-CONTACT_SEGMENTS = 8  # straight pieces of an element that the circle feels
-_AWAY = (9.0, 0.0)  # L
+_SLIPPED = 1e-9  # L; a joint that slipped no farther in a solution is where its force acts
+_NO_FORCE = 1e-12  # EI/L^2; one that has no direction
+_REPEATS = 20  # three are usual
+_FORCE = exudyn.OutputVariableType.Force
+_COORDINATES = exudyn.OutputVariableType.Coordinates
+_START = exudyn.ConfigurationType.Initial
+_NOW = exudyn.ConfigurationType.Current
+
+
+class LostError(Exception):
+    """Exudyn's solver found no cable at rest."""
+
+
+class Held(NamedTuple):
+    """What the cable is held by.
+
+    Attributes
+    ----------
+    slides : bool
+        By the sliding joint, otherwise at its tip.
+    arc_length : float
+        Where along the cable [L].
+    point : array, shape (2,)
+        Where in space, seen from the foot [L].
+    along : array, shape (2,)
+        Unit vector at right angles to the force there: the sliding cable's tangent.
+    """
+
+    slides: bool
+    arc_length: float
+    point: Floats
+    along: Floats
 
 
 class Cable:
-    """A cable of `elements` elements, and a circle.
+    """A cable of `elements` elements, and a point where it is held.
 
     Parameters
     ----------
     elements : int
         How many.
-    penalty : float
-        Force over penetration of each piece that touches [EI/L^3].
+
+    Attributes
+    ----------
+    held : Held
+        What it is held by.
+    beyond : bool
+        Whether it has slipped out of the sliding joint.
     """
 
-    def __init__(self, elements: int, penalty: float) -> None:
+    def __init__(self, elements: int) -> None:
         exudyn.config.printToConsole = False  # a step that fails is halved
+        self.held = Held(False, 1.0, np.array([0.0, 1.0]), np.array([0.0, 1.0]))
+        self.beyond = False
         self._container = exudyn.SystemContainer()
         self._system = mbs = self._container.AddSystem()
         self._length = 1 / elements
@@ -37,11 +77,8 @@ class Cable:
             mbs.AddNode(item.NodePoint2DSlope1(referenceCoordinates=[0, i / elements, 0, 1]))
             for i in range(elements + 1)
         ]
-        self._circle = mbs.AddObject(item.ObjectGround(referencePosition=[*_AWAY, 0]))
-        circle = mbs.AddMarker(item.MarkerBodyRigid(bodyNumber=self._circle))
-        self._contacts = []
-        for ends in pairwise(self._nodes):
-            cable = mbs.AddObject(
+        cables = [
+            mbs.AddObject(
                 item.ObjectANCFCable2D(
                     length=self._length,
                     massPerLength=1,  # irrelevant at rest
@@ -50,23 +87,30 @@ class Cable:
                     nodeNumbers=list(ends),
                 )
             )
-            shape = mbs.AddMarker(
-                item.MarkerBodyCable2DShape(bodyNumber=cable, numberOfSegments=CONTACT_SEGMENTS)
+            for ends in pairwise(self._nodes)
+        ]
+        self._point = mbs.AddObject(item.ObjectGround(referencePosition=[0, 1, 0]))
+        self._at_point = mbs.AddMarker(item.MarkerBodyRigid(bodyNumber=self._point))
+        self._spans = [
+            mbs.AddMarker(item.MarkerBodyCable2DCoordinates(bodyNumber=i)) for i in cables
+        ]
+        self._sliding = mbs.AddObject(
+            item.ObjectJointSliding2D(  # the first object with multipliers: fx, fy and the slip
+                markerNumbers=[self._at_point, self._spans[-1]],
+                slidingMarkerNumbers=self._spans,
+                slidingMarkerOffsets=(self._length * np.arange(elements)).tolist(),
+                nodeNumber=mbs.AddNode(
+                    item.NodeGenericData(
+                        initialCoordinates=[elements - 1, 1.0], numberOfDataCoordinates=2
+                    )
+                ),
+                activeConnector=False,
             )
-            gaps = mbs.AddNode(
-                item.NodeGenericData(
-                    initialCoordinates=[1.0] * CONTACT_SEGMENTS,
-                    numberOfDataCoordinates=CONTACT_SEGMENTS,
-                )
-            )
-            contact = item.ObjectContactCircleCable2D(
-                markerNumbers=[circle, shape],
-                nodeNumber=gaps,
-                numberOfContactSegments=CONTACT_SEGMENTS,
-                contactStiffness=penalty,
-                circleRadius=1.0,
-            )
-            self._contacts.append(mbs.AddObject(contact))
+        )
+        tip = mbs.AddMarker(item.MarkerNodePosition(nodeNumber=self._nodes[-1]))
+        self._revolute = mbs.AddObject(
+            item.ObjectJointRevolute2D(markerNumbers=[self._at_point, tip])
+        )
         ground = mbs.AddNode(item.NodePointGround())
         fixed = mbs.AddMarker(item.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
         # x, y, and the slope vector's x: its virtual work is that of a moment about -z.
@@ -86,54 +130,111 @@ class Cable:
         mbs.Assemble()
         self._settings = _settings()
 
-    def state(self) -> list[Floats]:
-        """What the solver starts from: coordinates, multipliers and open or closed contacts.
+    def state(self) -> tuple[Held, list[Floats]]:
+        """How it is held, and its shape.
 
         Returns
         -------
-        list of array, any shape
-            For `go_back`.
+        held : Held
+            What by.
+        solver : list of array
+            Exudyn's coordinates and multipliers; both for `go_back`.
         """
-        return [np.array(part) for part in self._system.systemData.GetSystemState()]
+        return self.held, [np.array(part) for part in self._system.systemData.GetSystemState()]
 
-    def go_back(self, state: list[Floats]) -> None:
+    def go_back(self, state: tuple[Held, list[Floats]]) -> None:
         """Start from there.
 
         Parameters
         ----------
-        state : list of array, any shape
+        state : tuple
             Of `state`.
         """
-        self._system.systemData.SetSystemState(
-            state, configuration=exudyn.ConfigurationType.Initial
-        )
+        held, solver = state
+        self._system.systemData.SetSystemState(solver, configuration=_START)
+        self._hold(held)
 
-    def solve(self, centre: Floats, radius: float) -> Floats | None:
-        """Bring the cable to rest.
+    def hold_tip(self) -> None:
+        """Be held at the tip."""
+        self._hold(self.held._replace(slides=False, arc_length=1.0))
+
+    def let_slide(self, arc_length: float, point: Floats) -> None:
+        """Be held by the sliding joint.
 
         Parameters
         ----------
-        centre : array, shape (2,)
-            Of the circle, seen from the foot [L].
-        radius : float
-            Of it; the cable is a line [L].
+        arc_length : float
+            Where the cable is in it [L].
+        point : array, shape (2,)
+            Where in space that is, seen from the foot [L].
+        """
+        self._hold(self.held._replace(slides=True, arc_length=arc_length, point=point))
+
+    def _hold(self, held: Held) -> None:
+        self.held, self.beyond = held, False
+        self._system.SetObjectParameter(self._revolute, "activeConnector", not held.slides)
+        self._system.SetObjectParameter(self._sliding, "activeConnector", held.slides)
+
+    def solve(self, point: Floats) -> Floats:
+        """Bring the cable to rest.
+
+        Exudyn's sliding joint lets its force act where the cable was in it when the solution began,
+        and a second time by how far it has slipped since. So the solution is repeated from there
+        until it slips no more.
+
+        Parameters
+        ----------
+        point : array, shape (2,)
+            Where it is held, seen from the foot [L].
 
         Returns
         -------
-        array, shape (3,), or None
-            force_x, force_y and moment_z of the clamp; None if it does not come to rest.
+        array, shape (3,)
+            force_x, force_y and moment_z of the clamp.
+
+        Raises
+        ------
+        LostError
+            If it does not come to rest.
         """
         mbs = self._system
-        mbs.SetObjectParameter(self._circle, "referencePosition", [*centre.tolist(), 0.0])
-        for contact in self._contacts:
-            mbs.SetObjectParameter(contact, "circleRadius", radius)
+        mbs.SetObjectParameter(self._point, "referencePosition", [*point.tolist(), 0.0])
+        guess = float((point - self.held.point) @ self.held.along)
+        slips, share = self._solve_once(guess), 1.0
+        for _ in range(_REPEATS):
+            if abs(slips) < _SLIPPED or self.beyond:
+                break
+            step = slips / share
+            before, slips = slips, self._solve_once(step)
+            share = float(np.clip((before - slips) / step, 0.5, 2.0))  # by secants
+        else:
+            raise LostError
+        x, y, slope = (float(np.ravel(mbs.GetObjectOutput(i, _FORCE))[0]) for i in self._clamp)
+        along = np.array([y, -x]) / max(np.hypot(x, y), _NO_FORCE)
+        self.held = self.held._replace(point=point, along=along)
+        return np.array([x, y, -slope])
+
+    def _solve_once(self, slipped: float) -> float:
+        """By how far the cable slips in its joint, from where it would be if it slipped so far."""
+        mbs, held = self._system, self.held
+        if held.slides:
+            s = float(np.clip(held.arc_length + slipped, 0.0, 1.0))
+            element = min(int(s / self._length), len(self._spans) - 1)
+            span = [self._at_point, self._spans[element]]
+            mbs.SetObjectParameter(self._sliding, "markerNumbers", span)
+            mbs.AssembleLTGLists()  # or its force stays with the coordinates of the element before
+            for when in (_START, _NOW):
+                mbs.systemData.SetDataCoordinates([element, s], when)
+            self.held = held._replace(arc_length=s)
         try:
             mbs.SolveStatic(self._settings, updateInitialValues=True)
-        except exudyn.SolverError:
-            return None
-        force = exudyn.OutputVariableType.Force
-        x, y, slope = (float(np.ravel(mbs.GetObjectOutput(i, force))[0]) for i in self._clamp)
-        return np.array([x, y, -slope])
+        except exudyn.SolverError as error:
+            raise LostError from error
+        if not held.slides:
+            return 0.0
+        on = float(mbs.systemData.GetAECoordinates()[2])
+        self.beyond = s == 1 and on > 0
+        return on
 
     def ends(self) -> tuple[Floats, Floats]:
         """Positions and tangents of the nodes, of the state that `solve` found.
@@ -148,9 +249,6 @@ class Cable:
         rest[:, 1], rest[:, 3] = self._length * np.arange(len(self._nodes)), 1.0
         both = coordinates + rest
         return both[:, :2], both[:, 2:]
-
-
-_COORDINATES = exudyn.OutputVariableType.Coordinates
 
 
 def _settings() -> exudyn.SimulationSettings:

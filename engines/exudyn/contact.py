@@ -1,26 +1,34 @@
-"""The cable past any smooth convex contour: a circle that follows the contact until it stays.
+"""The cable past any convex contour, smooth or with corners: a joint that moves along it.
 
-Exudyn's cable touches circles. Where it touches, a circle of curvature of the line that its axis
-feels, the contour moved out by the vibrissa's radius, has the contour's point, normal and
-curvature. Where that is comes from the contact's own state: the clamp's force is along the normal,
-so it shows how far from the circle's point the contact is; the circle is placed there and the cable
-solved again, until it stays. Where the contour is straight the circle is so large that it is flat.
+The cable is held at a point of the line that its axis feels, the contour moved out by the
+vibrissa's radius: by its tip, or by a joint through which it slides. The object does not rub, so
+the joint is moved along that line until its force has no part along it. A polygon's line is made
+of edges, on which the normal stays and the point moves, and of arcs about the corners, on which
+the normal turns; on both, and on a smooth contour, that part of the force is a continuous function
+of the place, with a root to be found.
+
+Which root, is said by the energy E(t) of a cable that is held at t, whose derivative is that force.
+A tip goes downhill, and stays where E is least. A cable that lies alongside must be outside of the
+object everywhere, so it is held at the one place that keeps all of it outside: where E is largest.
+A tip that finds no place to stay has let go.
 """
 
 import numpy as np
+from scipy.optimize import brentq
 
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
-from engines.exudyn.cable import Cable
+from engines.exudyn.cable import Cable, LostError
 from engines.stations import Row
 
-_FLAT = 100.0  # L; a circle as large as this is flat
-_SAME = 1e-9  # rad; the circle stays
-_TRIES = 40  # three are usual
-_FREE = 1e-9  # EI/L^2; the load of what does not touch
+_STILL = 1e-8  # EI/L^2; the force along the contour that is none
+_CLOSE = 1e-10  # L, or rad about a corner; how well a root is known
+_PROBE, _LONGEST = 1e-5, 0.02  # L, or rad; the steps in which a root is looked for
+_SHORT = 1e-3  # L; a step of the foot in which a vibrissa can be seen to let go
+_TURNS = 4  # changes between tip and side at a station
+_ALONG = 1e-9  # cosine; a tip that lies alongside
 _POINTS = 400  # of the contour, whose tangents show whether the cable has gone into the object
-_INSIDE = 1e-4  # L; ten times the depth of a contact, and of a turn of the contour between these
-_POKES = -0.05  # cosine; a tip that pokes at right angles is on neither side
+_INSIDE = 1e-4  # L; ten times a turn of the contour between these
 
 
 class Contact:
@@ -32,120 +40,169 @@ class Contact:
         Of a sweep to the left.
     elements : int
         Of the cable.
-    penalty : float
-        Force over penetration [EI/L^3].
     """
 
-    def __init__(self, case: Case, elements: int, penalty: float) -> None:
-        self._cable = Cable(elements, penalty)
-        self._line = case.centreline
-        last, first = case.reach
-        self._range = last, first
-        self._radius = case.radius
-        self._t = first
-        self._found = self._t, self._cable.state()
-        self._state = self._found[1]
-        self._marks = np.linspace(last, first, _POINTS)
-        marks = self._line.at(self._marks)
-        self._points = np.column_stack([marks.xi, marks.eta])
-        self._normals = np.column_stack([np.sin(marks.alpha), -np.cos(marks.alpha)])
-        self._lowest = self._points[np.argmin(self._points[:, 1])]
-        self._touches = self._found_touches = False
+    def __init__(self, case: Case, elements: int) -> None:
+        self._cable = Cable(elements)
+        self._line, self._radius = case.centreline, case.radius
+        self._last, self._first = case.reach
+        self._breaks = self._line.breaks()
+        ends = self._line.at(np.array([self._last, self._first]))
+        self._far, self._near = ends.xi.tolist()  # between them an upright cable is in the object
+        if ends.eta[1] < 1 - _CLOSE:
+            self._cable.let_slide(float(ends.eta[1]), np.array([0.0, ends.eta[1]]))
+        self._t, self._state, self._has_let_go = self._first, self._cable.state(), False
+        self._found = self._t, self._state, self._has_let_go
+        self._foot_x = self._accepted_at = np.inf
+        self._normals, self._heights = self._tangents()
+
+    def _tangents(self) -> tuple[Floats, Floats]:
+        """Lines that have the object on one side, one on every edge: normals, and how far out."""
+        last, first = self._last, self._first
+        marks = np.concatenate([[last], self._breaks, [first]])
+        middles = (marks[1:] + marks[:-1]) / 2
+        middles = middles[(middles > last) & (middles < first)]
+        on = self._line.at(np.concatenate([np.linspace(last, first, _POINTS), middles]))
+        normals = np.column_stack([np.sin(on.alpha), -np.cos(on.alpha)])
+        return normals, on.xi * normals[:, 0] + on.eta * normals[:, 1]
 
     def at(self, foot_x: float) -> Row | None:
-        """By circle after circle."""
+        """By moving the joint from where it was."""
+        way, self._foot_x = self._accepted_at - foot_x, foot_x
+        if foot_x >= self._near or self._has_let_go:
+            self._found = self._t, self._state, self._has_let_go
+            return Row()
         self._cable.go_back(self._state)
-        t = self._t if self._touches else self._ahead(foot_x)
-        for _ in range(_TRIES):
-            point = self._line.at(np.array(t))
-            alpha, stretch = float(point.alpha), float(point.stretch)
-            radius = min(_FLAT, stretch / max(float(point.turning), stretch / _FLAT))
-            inward = np.array([-np.sin(alpha), np.cos(alpha)])
-            centre = np.array([point.xi - foot_x, point.eta]) + radius * inward
-            clamp = self._cable.solve(centre, radius)
-            if clamp is None:
-                return None
-            self._found_touches = bool(np.hypot(clamp[0], clamp[1]) > _FREE)
-            if not self._found_touches:
-                self._found = t, self._cable.state()
-                return Row(tip_angle=self._tip_angle()) if self._is_ahead(foot_x) else None
-            turned = float(np.arctan2(-clamp[0], clamp[1])) - alpha
-            if abs(turned) < _SAME * max(1.0, radius):
-                return None if self._is_inside(foot_x) else self._row(foot_x, t, clamp, centre)
-            t = float(np.clip(self._moved(t, radius * turned / stretch), *self._range))
-        return None
+        try:
+            t = self._settle(self._t)
+        except LostError:
+            return None
+        if t is None:
+            # Not in a long step, in which it may have been touched and let go of unseen.
+            self._found = self._last, self._state, True
+            return Row() if way < _SHORT and foot_x <= self._far else None
+        return None if self._is_inside() else self._row(t)
 
     def accept(self) -> None:
-        """Go on from the circle and the cable of the last station."""
-        self._t, self._state = self._found
-        self._touches = self._found_touches
+        """Go on from the joint and the cable of the last station."""
+        self._t, self._state, self._has_let_go = self._found
+        self._accepted_at = self._foot_x
 
-    def _moved(self, t: float, by: float) -> float:
-        """Along the contour, but not past a place where it is not smooth: there is one more try."""
-        breaks = self._line.breaks()
-        ahead = breaks[(breaks - t) * np.sign(by) > 1e-12]
-        stop = ahead[np.argmin(np.abs(ahead - t))] if len(ahead) else t + by
-        beyond = float(stop + np.sign(by) * 1e-9)
-        return beyond if abs(by) > abs(beyond - t) else t + by
+    def _settle(self, t: float) -> float | None:
+        """Where it is held at rest, by the tip or by the side; None if nowhere."""
+        cable = self._cable
+        for _ in range(_TURNS):
+            found = self._root(t)
+            if found is None:
+                return None
+            t = found
+            if cable.held.slides and cable.beyond:
+                cable.hold_tip()
+            elif not cable.held.slides and self._lies_alongside(t):
+                cable.let_slide(1.0, cable.held.point)
+            else:
+                return t if self._pushes(t) else None
+        raise LostError  # neither of the two
 
-    def _ahead(self, foot_x: float) -> float:
-        """Where the contour is nearest to the free, upright cable."""
-        x, y = self._points.T
-        distance = np.hypot(x - foot_x, np.maximum(y - 1, 0))
-        return float(self._marks[np.argmin(distance)])
+    def _root(self, t: float) -> float | None:
+        """The next place where the joint stays; tip and side go there in their own direction.
 
-    def _is_inside(self, foot_x: float) -> bool:
-        """Whether a part of the cable is in the object: the circle is not all of it."""
+        By secants. Just before a fold a second root, where the tip would not stay, is near the
+        first; secants come to that from its own side, and do not step over both.
+        """
+        towards = 1 if self._cable.held.slides else -1
+        here, slope = self._along(t), None
+        while abs(here) > _STILL:
+            way = towards if here > 0 else -towards
+            ahead = self._ahead(t, way * self._step(t, way * here, slope))
+            if ahead == t:
+                return None  # the end of the contour
+            there = self._along(ahead)
+            if there * here <= 0:
+                return self._between({t: here, ahead: there})
+            slope = (there - here) / (ahead - t)
+            if ahead in self._breaks and not self._cable.held.slides:
+                slope = None
+            t, here = ahead, there
+        return t
+
+    def _between(self, ends: dict[float, float]) -> float:
+        """The root between two places, with the cable held there."""
+
+        def along(t: float) -> float:
+            force = ends[t] if t in ends else self._along(t)
+            return 0.0 if abs(force) < _STILL else force
+
+        begin, end = ends
+        root = float(brentq(along, begin, end, xtol=_CLOSE))
+        self._along(root)
+        return root
+
+    def _step(self, t: float, here: float, slope: float | None) -> float:
+        """How far to go downhill: to where the secant says that it ends."""
+        unit = 1 / max(1.0, float(self._line.at(np.array(t)).stretch))
+        if slope is None:
+            return _PROBE * unit
+        rest = -here / slope if slope else np.inf
+        return float(np.clip(rest, _CLOSE, _LONGEST * unit)) if rest > 0 else _LONGEST * unit
+
+    def _ahead(self, t: float, step: float) -> float:
+        """A step along the contour; that of a tip ends where the contour is not smooth."""
+        to = t + step
+        if not self._cable.held.slides:
+            between = self._breaks[(self._breaks - t) * (self._breaks - to) < 0]
+            if len(between):
+                to = float(between[np.argmin(np.abs(between - t))])
+        return float(np.clip(to, self._last, self._first))
+
+    def _along(self, t: float) -> float:
+        """The part of the object's force along the contour, if the cable is held there."""
+        point = self._line.at(np.array(t))
+        place = np.array([float(point.xi) - self._foot_x, float(point.eta)])
+        self._clamp = self._cable.solve(place)
+        along = np.array([np.cos(point.alpha), np.sin(point.alpha)])
+        return float(-self._clamp[:2] @ along)
+
+    def _outward(self, t: float) -> Floats:
+        alpha = float(self._line.at(np.array(t)).alpha)
+        return np.array([np.sin(alpha), -np.cos(alpha)])
+
+    def _pushes(self, t: float) -> bool:
+        """Whether the object pushes: an object does not pull."""
+        return float(self._clamp[:2] @ self._outward(t)) <= 0
+
+    def _lies_alongside(self, t: float) -> bool:
+        """Whether a cable that is held at its tip comes out of the object."""
+        _, tangents = self._cable.ends()
+        return float(tangents[-1] @ self._outward(t)) > _ALONG
+
+    def _is_inside(self) -> bool:
+        """Whether a part of the cable is in the object."""
         positions, tangents = self._cable.ends()
         # Middles of the cubic elements, by their ends.
         step = (tangents[:-1] - tangents[1:]) / (8 * (len(positions) - 1))
         middles = (positions[:-1] + positions[1:]) / 2 + step
-        points = np.vstack([positions, middles]) + np.array([foot_x, 0.0])
-        offset = points @ self._normals.T - (self._points * self._normals).sum(axis=1)
-        return bool((offset.max(axis=1) < -_INSIDE).any())
+        points = np.vstack([positions, middles]) + np.array([self._foot_x, 0.0])
+        outside = points @ self._normals.T - self._heights
+        return bool((outside.max(axis=1) < -_INSIDE).any())
 
-    def _is_ahead(self, foot_x: float) -> bool:
-        """Whether a free cable has the object on its left, or over it."""
-        x, y = self._lowest
-        return not self._is_inside(foot_x) and (foot_x > x or y > 1)
-
-    def _tip_angle(self) -> float:
+    def _row(self, t: float) -> Row:
+        self._found = t, self._cable.state(), False
+        point, outward, clamp = self._line.at(np.array(t)), self._outward(t), self._clamp
+        axis = np.array([float(point.xi), float(point.eta)])
+        x, y = axis - self._radius * outward
+        along = np.array([-outward[1], outward[0]])
+        arm = (axis[0] - self._foot_x) * clamp[1] - axis[1] * clamp[0]
         _, tangents = self._cable.ends()
-        return float(np.arctan2(tangents[-1, 1], tangents[-1, 0]))
-
-    def _row(self, foot_x: float, t: float, clamp: Floats, centre: Floats) -> Row | None:
-        point = self._line.at(np.array(t))
-        alpha = float(point.alpha)
-        axis = np.array([point.xi - foot_x, point.eta])
-        normal = np.array([np.sin(alpha), -np.cos(alpha)])
-        positions, tangents = self._cable.ends()
-        # The perpendicular from the circle's centre would fall beyond the tip.
-        beyond = float((centre - positions[-1]) @ tangents[-1]) > 0
-        s = 1.0 if beyond else self._arc_length(axis, positions, tangents)
-        tangent = tangents[min(int(s * (len(tangents) - 1)), len(tangents) - 1)]
-        if normal @ [tangent[1], -tangent[0]] < _POKES * np.hypot(*tangent):
-            return None  # with its other side: the object was let through
-        self._found = t, self._cable.state()
-        x, y = axis - self._radius * normal
-        along = np.array([normal[1], -normal[0]])
-        arm = axis[0] * clamp[1] - axis[1] * clamp[0]
-        unbalanced = max(abs(float(clamp[:2] @ along)), abs(float(clamp[2]) - arm))
         return Row(
             float(clamp[0]),
             float(clamp[1]),
             float(clamp[2]),
-            tip_angle=self._tip_angle(),
-            phase="tip" if beyond else "tangent",
-            contact_angle=alpha,
-            contact_arc_length=s,
-            contact_x=float(x) + foot_x,
+            tip_angle=float(np.arctan2(tangents[-1, 1], tangents[-1, 0])),
+            phase="tangent" if self._cable.held.slides else "tip",
+            contact_angle=float(point.alpha),
+            contact_arc_length=self._cable.held.arc_length,
+            contact_x=float(x),
             contact_y=float(y),
-            residual=unbalanced,
+            residual=max(abs(float(clamp[:2] @ along)), abs(float(clamp[2]) - arm)),
         )
-
-    def _arc_length(self, axis: Floats, positions: Floats, tangents: Floats) -> float:
-        """Where along the cable that place is: the foot of its perpendicular on an element."""
-        along = ((axis - positions) * tangents).sum(axis=1)
-        element = int(np.clip(np.searchsorted(-along, 0.0) - 1, 0, len(along) - 2))
-        share = along[element] / (along[element] - along[element + 1])
-        return float((element + share) / (len(along) - 1))
