@@ -13,9 +13,10 @@ SolverKind: TypeAlias = Literal["newton", "cg", "pgs"]
 ConeKind: TypeAlias = Literal["pyramidal", "elliptic"]
 INTEGRATORS, SOLVERS, CONES = map(get_args, (IntegratorKind, SolverKind, ConeKind))
 
-# A stiffness [EI/L^3] times the squared time step [T1]. Measured on the catenary at 0.1 L/T1, with
-# N of 20 to 80: 1 and 4 leave 1 to 4 of 60 stations chattering, and the same errors; 16 up to 4e-2.
-# Integrators that are explicit in the contact diverge at 4, whatever the armature.
+# A stiffness [EI/L^3] times the squared time step [T1]. Measured on the catenary at 0.1 L/T1, steps
+# of 0.005 to 0.04 T1 and N of 20 and 40: 1 and 4 leave at most 2 of 60 stations chattering, 16 as
+# many and three times the error. N = 80 on a mesh takes 1: 3e-3 instead of 8e-3. Integrators that
+# are explicit in the contact diverge at 4, whatever the armature.
 _STIFFNESS, _STIFFNESS_EXPLICIT = 4.0, 1.0
 
 
@@ -43,11 +44,10 @@ class Motion:
         stiffness times `timestep` squared. Explicit integrators need about 1; it slows all but the
         slow vibrations of the beam.
     contact_stiffness : float, optional
-        Force over penetration of a contact at rest [EI/L^3], critically damped. If it is not given,
-        4/`timestep`^2: with chains of 20 to 40 segments that is about the stiffest contact that
-        does not chatter at 0.1 L/T1, at steps from 0.005 to 0.04 T1; slower sweeps take more.
-        A stated one holds at every link; without, ``"discrete"`` makes the tip's up to 8 times
-        harder. Integrators other than ``"discrete"`` diverge there; for them it is a quarter of
+        Force over penetration of a contact at rest, at every link [EI/L^3]; critically damped. If
+        it is not given, 4/`timestep`^2: with chains of 20 to 40 segments that is about the stiffest
+        contact that does not chatter at 0.1 L/T1, at steps from 0.005 to 0.04 T1; slower sweeps
+        take more. Integrators other than ``"discrete"`` diverge there; for them it is a quarter of
         that, and chatters.
     solref : tuple of float, optional
         MuJoCo's time constant [T1] and damping ratio of a contact, in the place of a stiffness.

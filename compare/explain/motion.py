@@ -27,8 +27,11 @@ PARTS = (
     "at rest",
     "unexplained",
 )
+THREE_SPEEDS = ("quarter", "half", "base", "double", "fourfold")
+"""The three sweeps of a budget that differ in speed are next to each other here, slowest first."""
 _SAFETY = 1.25  # Roache's, of an extrapolation from three
 _ORDERS = (0.5, 2.0)  # in the speed: of the dampers' moment one, of inertia two, of bounces less
+_SLOW = 0.02  # L/T1; a quarter of it takes minutes, and says no more of the limit
 _STIFFER = 4  # times the contact stiffness, which half a time step stands as well
 _LEFT = 0.1  # of the disagreement; what may stay unexplained
 
@@ -49,7 +52,7 @@ class MotionBudget:
     disagreement : dict
         Root mean square by reading, over the stations in contact and trusted in all sweeps.
     order : float
-        Observed order in the speed, halved twice.
+        Observed order in the speed, halved or doubled twice.
     closes : bool
         Whether what is unexplained lies within the uncertainty of the parts, or is less than a
         tenth of the disagreement.
@@ -91,27 +94,32 @@ def slower_and_finer(motion: Motion) -> dict[str, Motion]:
     Returns
     -------
     dict of Motion
-        ``half`` and ``quarter`` of its speed; ``fine``, a quarter of its speed and half of its time
-        step, with contacts of the same stiffness; ``undamped``, half of its damping; ``ours`` and
-        ``newton``, a quarter of its speed with our contacts or Newton's method, if it has others.
+        ``half`` and ``quarter`` of its speed, or ``double`` and ``fourfold`` of one below 0.02
+        L/T1; at the last of these speeds ``fine``, with half of the time step and contacts of the
+        same stiffness, and ``ours`` and ``newton``, with our contacts or Newton's method, if it has
+        others; ``undamped``, half of its damping.
     """
     same = motion
     if motion.solref is None:
         same = replace(motion, contact_stiffness=motion.stiffness)
-    quarter = replace(same, speed=motion.speed / 4)
-    found = {
-        "base": same,
-        "half": replace(same, speed=motion.speed / 2),
-        "quarter": quarter,
-        "fine": replace(quarter, timestep=motion.timestep / 2),
-    }
+    found = {name: replace(same, speed=v) for name, v in _speeds(motion).items()}
+    *_, last = found.values()
+    found["fine"] = replace(last, timestep=motion.timestep / 2)
     if motion.damping_ratio > 0:
         found["undamped"] = replace(same, damping_ratio=motion.damping_ratio / 2)
     if motion.solref is not None:
-        found["ours"] = replace(quarter, solref=None, solimp=Motion.solimp)
+        found["ours"] = replace(last, solref=None, solimp=Motion.solimp)
     if motion.solver != "newton":
-        found["newton"] = replace(quarter, solver="newton")
+        found["newton"] = replace(last, solver="newton")
     return found
+
+
+def _speeds(motion: Motion) -> dict[str, float]:
+    """Three of them, the one in question first [L/T1]."""
+    v = motion.speed
+    if v < _SLOW:
+        return {"base": v, "double": 2 * v, "fourfold": 4 * v}
+    return {"base": v, "half": v / 2, "quarter": v / 4}
 
 
 def slower_and_finer_of_model(
@@ -132,20 +140,16 @@ def slower_and_finer_of_model(
         By the names of `slower_and_finer`; ``ours`` where the contacts are the model's own, and
         ``stiff``, as ``fine`` with our contacts four times as stiff.
     """
-    quarter = replace(motion, speed=motion.speed / 4)
-    found = {
-        "base": (model, motion),
-        "half": (model, replace(motion, speed=motion.speed / 2)),
-        "quarter": (model, quarter),
-        "fine": (replace(model, timestep=0.5), quarter),
-        "undamped": (replace(model, damping=0.5), motion),
-        "newton": (replace(model, solver="newton"), quarter),
-    }
+    found = {name: (model, replace(motion, speed=v)) for name, v in _speeds(motion).items()}
+    *_, (_, last) = found.values()
+    found["fine"] = replace(model, timestep=0.5), last
+    found["undamped"] = replace(model, damping=0.5), motion
+    found["newton"] = replace(model, solver="newton"), last
     ours = replace(model, contact="ours")
     if model.contact == "own":
-        found["ours"] = (ours, quarter)
+        found["ours"] = ours, last
     if motion.solref is None:
-        found["stiff"] = (replace(ours, timestep=0.5, stiffness=_STIFFER), quarter)
+        found["stiff"] = replace(ours, timestep=0.5, stiffness=_STIFFER), last
     return found
 
 
@@ -191,24 +195,26 @@ def motion_budget(
         return np.stack([readings.values(name)[kept] / scale[name] for name in CLAMP_READINGS])
 
     truth, run = signal(exact), {name: signal(readings) for name, readings in runs.items()}
-    coarse, fine = run["base"] - run["half"], run["half"] - run["quarter"]
+    slow, middle, fast = (run[name] for name in THREE_SPEEDS if name in run)
+    last = run["quarter" if "quarter" in run else "fourfold"]
+    coarse, fine = fast - middle, middle - slow
     with np.errstate(divide="ignore", invalid="ignore"):
         observed = np.log2(np.linalg.norm(coarse) / np.linalg.norm(fine))
     order = float(np.clip(np.nan_to_num(observed, nan=1.0), *_ORDERS))
-    limit = run["quarter"] - fine / (2**order - 1)
+    limit = slow - fine / (2**order - 1)
     signals = {"rate": run["base"] - limit}
-    unsure = {"rate": _SAFETY * _rms(run["quarter"] - limit)}
+    unsure = {"rate": _SAFETY * _rms(slow - limit)}
     if "undamped" in run:
         # As much again as was measured is extrapolated, and as uncertain.
         signals["damping"] = 2 * (run["base"] - run["undamped"])
         signals["rate"] -= signals["damping"]
         unsure["damping"] = _rms(run["base"] - run["undamped"])
-    signals["time step"] = 2 * (run["quarter"] - run["fine"])  # of first order, as its contacts are
+    signals["time step"] = 2 * (last - run["fine"])  # of first order, as its contacts are
     for name, other in (("contact model", "ours"), ("solver", "newton")):
         if other in run:
-            signals[name] = run["quarter"] - run[other]
+            signals[name] = last - run[other]
     if "stiff" in run:  # less what half the time step does
-        softer = run.get("ours", run["quarter"]) - (run["quarter"] - run["fine"])
+        softer = run.get("ours", last) - (last - run["fine"])
         signals["softness"] = (softer - run["stiff"]) * _STIFFER / (_STIFFER - 1)
         unsure["softness"] = _SAFETY * _rms(signals["softness"]) / (_STIFFER - 1)
     if "beam" in run:

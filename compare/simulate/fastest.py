@@ -9,6 +9,7 @@ import numpy as np
 
 from analytic import InputError, Readings
 from compare.explain.budget import common_stations
+from compare.explain.motion import THREE_SPEEDS
 from compare.judge.tolerances import Tolerances
 from compare.sense.noise import scales
 from mujoco_models.errors import DivergedError
@@ -84,7 +85,7 @@ def find_fastest(
     InputError
         If no speed reaches the target.
     """
-    swept = {_speed(runs[name]): runs[name] for name in ("base", "half", "quarter")}
+    swept = {_speed(runs[name]): runs[name] for name in THREE_SPEEDS if name in runs}
     error = {speed: _error(exact, readings) for speed, readings in swept.items()}
     at_rest = _rms(exact, runs["rest"])
     slowest, quickest = _SPEEDS

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from analytic import Beam
+from compare.simulate.links import order_in_links
 from compare.simulate.remarks import Remark, remarks
 from compare.simulate.rigidity import as_intended, clamp_stiffness, elastica_error
 from mujoco_models import OwnModel, inspect_model
@@ -70,6 +71,11 @@ class Inspection:
         error = elastica_error(found)
         if np.isfinite(error):
             yield "large bending", f"tip within {error:.1e} L of the exact cantilever"
+        order = order_in_links(found)
+        if order is not None:
+            with_its_own = f"{order.order:.1f}: tip off by {order.error:.1e} L with its joints' EI"
+            twice = f"{order.error_of_twice:.1e} L with {2 * order.links:.0f} links laid out alike"
+            yield "order in its links", f"{with_its_own}, by {twice}"
         stiffness = clamp_stiffness(found)
         yield (
             "clamp",
@@ -91,12 +97,14 @@ class Inspection:
             JSON can hold it.
         """
         error, stiffness = elastica_error(self.found), clamp_stiffness(self.found)
+        order = order_in_links(self.found)
         return {
             "sound": self.sound,
             "remarks": [asdict(remark) for remark in self.remarks],
             "flexural_rigidity": as_intended(self.found),
             "clamp_stiffness": stiffness if np.isfinite(stiffness) else None,
             "elastica_error": error if np.isfinite(error) else None,
+            "order_in_links": None if order is None else asdict(order),
             "measured": self.found.to_dict(),
         }
 

@@ -1,13 +1,71 @@
 """What can move the foot of a user's model."""
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+
 import mujoco
 import numpy as np
 
+from analytic.problem.arrays import Floats
+
+_ALONG = 0.999  # cosine; a slide that is turned by 2.5 degrees goes elsewhere
 _FOLLOWS = int(mujoco.mjtBias.mjBIAS_AFFINE)  # of a position or velocity actuator
+_FREE, _SLIDE = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_SLIDE)
 
 
-def drive_of(model: mujoco.MjModel, foot: int) -> str | None:
-    """What can move a body, in words.
+@dataclass(frozen=True)
+class Mover:
+    """A mocap body, or a slide joint with or without an actuator.
+
+    Attributes
+    ----------
+    mocap : int or None
+        The mocap body.
+    joint : int or None
+        The slide, or the free joint that is welded to the mocap body.
+    actuator : int or None
+        Of the slide.
+    """
+
+    mocap: int | None = None
+    joint: int | None = None
+    actuator: int | None = None
+
+
+def mover_of(model: mujoco.MjModel, foot: int, left: Floats) -> Mover | None:
+    """What can move a body along the sweep.
+
+    Parameters
+    ----------
+    model : mujoco.MjModel
+        The user's.
+    foot : int
+        The body.
+    left : array, shape (3,)
+        The direction of the sweep in the world.
+
+    Returns
+    -------
+    Mover or None
+        The innermost one; None if nothing can, or if a free joint lets it fall.
+    """
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    for body in holders(model, foot):
+        if model.body_mocapid[body] >= 0:
+            return Mover(mocap=body)
+        for joint in _joints(model, body):
+            if model.jnt_type[joint] == _FREE:
+                weld = _welded_to(model, body)
+                return None if weld is None else Mover(mocap=weld, joint=joint)
+            along = abs(float(data.xaxis[joint] @ left))
+            if model.jnt_type[joint] == _SLIDE and along > _ALONG:
+                return Mover(joint=joint, actuator=_actuator_of(model, joint))
+    return None
+
+
+def slides(model: mujoco.MjModel, foot: int) -> Iterator[int]:
+    """Slide joints that carry a body, the innermost first.
 
     Parameters
     ----------
@@ -16,47 +74,87 @@ def drive_of(model: mujoco.MjModel, foot: int) -> str | None:
     foot : int
         The body.
 
+    Yields
+    ------
+    int
+        A joint.
+    """
+    for body in holders(model, foot):
+        yield from (j for j in _joints(model, body) if model.jnt_type[j] == _SLIDE)
+
+
+def holders(model: mujoco.MjModel, body: int) -> Iterator[int]:
+    """A body and all that hold it, but for the world.
+
+    Parameters
+    ----------
+    model : mujoco.MjModel
+        The user's.
+    body : int
+        The innermost one.
+
+    Yields
+    ------
+    int
+        A body.
+    """
+    while body > 0:
+        yield body
+        body = int(model.body_parentid[body])
+
+
+def drive_of(model: mujoco.MjModel, foot: int, left: Floats) -> str | None:
+    """What can move a body along the sweep, in words.
+
+    Parameters
+    ----------
+    model : mujoco.MjModel
+        The user's.
+    foot : int
+        The body.
+    left : array, shape (3,)
+        The direction of the sweep in the world.
+
     Returns
     -------
     str or None
         As ``"mocap body 'hand'"``; None if nothing can.
     """
-    body = foot
-    while body > 0:
-        if model.body_mocapid[body] >= 0:
-            return f"mocap body {_name(model, mujoco.mjtObj.mjOBJ_BODY, body)!r}"
-        first = model.body_jntadr[body]
-        for joint in range(first, first + model.body_jntnum[body]):
-            found = _by_joint(model, joint)
-            if found is not None:
-                return found
-        body = int(model.body_parentid[body])
+    mover = mover_of(model, foot, left)
+    if mover is None:
+        return None
+    joint = None if mover.joint is None else _name(model, mujoco.mjtObj.mjOBJ_JOINT, mover.joint)
+    if mover.mocap is not None:
+        hand = f"mocap body {_name(model, mujoco.mjtObj.mjOBJ_BODY, mover.mocap)!r}"
+        return hand if joint is None else f"free joint {joint!r} on {hand}, by a weld"
+    if mover.actuator is None:
+        return f"slide {joint!r} without an actuator"
+    actuator = _name(model, mujoco.mjtObj.mjOBJ_ACTUATOR, mover.actuator)
+    how = "" if model.actuator_biastype[mover.actuator] == _FOLLOWS else ", which is a force"
+    return f"slide {joint!r} with actuator {actuator!r}{how}"
+
+
+def _joints(model: mujoco.MjModel, body: int) -> range:
+    first = int(model.body_jntadr[body])
+    return range(first, first + int(model.body_jntnum[body]))
+
+
+def _welded_to(model: mujoco.MjModel, body: int) -> int | None:
+    """The mocap body that a weld ties a free one to."""
+    welds = np.flatnonzero(model.eq_type == int(mujoco.mjtEq.mjEQ_WELD))
+    for pair in zip(model.eq_obj1id[welds], model.eq_obj2id[welds], strict=True):
+        for one, other in (pair, pair[::-1]):
+            if one == body and model.body_mocapid[other] >= 0:
+                return int(other)
     return None
 
 
-def _by_joint(model: mujoco.MjModel, joint: int) -> str | None:
-    name = _name(model, mujoco.mjtObj.mjOBJ_JOINT, joint)
-    kind = model.jnt_type[joint]
-    if kind == int(mujoco.mjtJoint.mjJNT_FREE):
-        body = int(model.jnt_bodyid[joint])
-        welds = np.flatnonzero(model.eq_type == int(mujoco.mjtEq.mjEQ_WELD))
-        for other in (*model.eq_obj1id[welds], *model.eq_obj2id[welds]):
-            if other != body and model.body_mocapid[other] >= 0:
-                weld = _name(model, mujoco.mjtObj.mjOBJ_BODY, int(other))
-                return f"free joint {name!r} on mocap body {weld!r}, by a weld"
-        return f"free joint {name!r}"
-    if kind != int(mujoco.mjtJoint.mjJNT_SLIDE):
-        return None
+def _actuator_of(model: mujoco.MjModel, joint: int) -> int | None:
     for i in range(model.nu):
-        if (
-            model.actuator_trntype[i] == int(mujoco.mjtTrn.mjTRN_JOINT)
-            and model.actuator_trnid[i, 0] == joint
-        ):
-            actuator = _name(model, mujoco.mjtObj.mjOBJ_ACTUATOR, i)
-            follows = model.actuator_biastype[i] == _FOLLOWS
-            how = "" if follows else ", which is a force"
-            return f"slide {name!r} with actuator {actuator!r}{how}"
-    return f"slide {name!r} without an actuator"
+        at_joint = model.actuator_trntype[i] == int(mujoco.mjtTrn.mjTRN_JOINT)
+        if at_joint and model.actuator_trnid[i, 0] == joint:
+            return i
+    return None
 
 
 def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:

@@ -8,14 +8,17 @@ import numpy as np
 from scipy.linalg import eigh
 
 from analytic.problem.arrays import Floats
-from mujoco_models.inspect.drive import drive_of
+from mujoco_models.inspect.drive import drive_of, slides
 from mujoco_models.inspect.held import Held
 from mujoco_models.inspect.load import load
 from mujoco_models.inspect.measured import Geom, Joint, MeasuredBeam, Sensed
 from mujoco_models.inspect.parts import Names, Parts, axis_of, find, radius_of
+from mujoco_models.inspect.probe import Probe, probe_of
 from mujoco_models.motion import IntegratorKind
 
 _LOADS = (0.01, 0.5, 1.0, 2.0, 5.0, 10.0)  # EI/L^2; up to a tip turned by 82 degrees
+_ACROSS = 0.05  # cosine, and what a cosine lacks of one
+_WORLD = 0.999999  # cosine; along an axis of the world
 _SMALL = 1e-4  # EI/L^2 and EI/L: sensors are probed in the linear range
 
 
@@ -40,10 +43,10 @@ def inspect_model(path: Path, names: Names) -> MeasuredBeam:
         If the model, a name of it or the vibrissa cannot be used.
     """
     model = load(path)
-    return measure(model, find(model, names))
+    return measure(model, find(model, names), path)
 
 
-def measure(model: mujoco.MjModel, parts: Parts) -> MeasuredBeam:
+def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     """Measure the vibrissa of a model.
 
     All of it is MuJoCo's: the foot is held, loads are put on the tip, and Newton's method finds the
@@ -56,6 +59,8 @@ def measure(model: mujoco.MjModel, parts: Parts) -> MeasuredBeam:
         The user's.
     parts : Parts
         What of it is the vibrissa.
+    path : Path
+        Of its file.
 
     Returns
     -------
@@ -85,14 +90,15 @@ def measure(model: mujoco.MjModel, parts: Parts) -> MeasuredBeam:
     joints = _joints(held, s[:-1], np.diff(links, prepend=0.0), nodes, axes)
     sensors = [_sensed(held, number, axes, tip_rigidity, length) for number in
                (parts.force, parts.torque)]  # fmt: skip
+    probe = probe_of(path, radius_of(model, parts.geoms[-1]))
     loads, bent = _bent(held, axes, tip_rigidity / length**2)
     return MeasuredBeam(
         model=_model_name(model),
         foot=_name(model, mujoco.mjtObj.mjOBJ_BODY, parts.foot),
-        drive=drive_of(model, parts.foot),
+        drive=drive_of(model, parts.foot, -axes[0]),
         length=length,
         joints=joints,
-        geoms=_geoms(model, held, nodes[0], axes[1]),
+        geoms=_geoms(model, held, nodes[0], axes, probe),
         tip_rigidity=tip_rigidity,
         loads=loads,
         bent=bent,
@@ -144,11 +150,25 @@ def sweep_axes(held: Held) -> Floats:
     planar = len(hinges) == len(held.dofs) and all(
         np.linalg.norm(np.cross(hinges[0], axis)) < 1e-6 for axis in hinges
     )
-    z = hinges[0] if planar else _across(y)
+    z = hinges[0] if planar else _normal(held, np.reshape(hinges, (-1, 3)), y)
     z = _aside(z[None], y)[0]
     z = z / np.linalg.norm(z)
     z = z if z[int(np.argmax(np.abs(z)))] > 0 else -z
     return np.array([np.cross(y, z), y, z])
+
+
+def _normal(held: Held, hinges: Floats, y: Floats) -> Floats:
+    """Of the plane of the sweep where its hinges leave it open: by a slide, a hinge, a sensor."""
+    for joint in slides(held.model, held.parts.foot):
+        way = held.data.xaxis[joint]
+        if abs(way @ y) < _ACROSS:
+            return np.asarray(np.cross(way, y))
+    usual = _across(y)
+    found = hinges[np.abs(hinges @ y) < _ACROSS] if len(hinges) else hinges
+    if not len(found) and np.abs(y).max() < _WORLD:
+        sites = (held.site(s)[1].T for s in (held.parts.force, held.parts.torque) if s is not None)
+        found = next((site for site in sites if np.abs(site @ y).max() > 1 - _ACROSS), found)
+    return np.asarray(found[int(np.argmax(np.abs(found @ usual)))]) if len(found) else usual
 
 
 def _across(y: Floats) -> Floats:
@@ -168,7 +188,10 @@ def _joints(
     ways = np.diff(nodes, axis=0)[1:]
     slopes = np.arctan2(-ways @ axes[0], ways @ axes[1])
     angles = np.diff(np.unwrap(slopes), prepend=0.0)
-    names = [_name(held.model, mujoco.mjtObj.mjOBJ_BODY, body) for body in held.parts.chain]
+    names = [
+        _name(held.model, mujoco.mjtObj.mjOBJ_BODY, body) or f"body {body}"
+        for body in held.parts.chain
+    ]
     return tuple(
         Joint(name, float(at), float(cell), float(c), float(angle))
         for name, at, cell, c, angle in zip(
@@ -234,13 +257,15 @@ def _sensed(
     return Sensed(name, turned, offset, offset if is_force else arm - seen)
 
 
-def _geoms(model: mujoco.MjModel, held: Held, clamp: Floats, y: Floats) -> tuple[Geom, ...]:
+def _geoms(
+    model: mujoco.MjModel, held: Held, clamp: Floats, axes: Floats, probe: Probe | None
+) -> tuple[Geom, ...]:
     found = []
     for number in held.parts.geoms:
         body = int(model.geom_bodyid[number])
         turn = held.data.xmat[body].reshape(3, 3)
         ends = held.data.xpos[body] + axis_of(model, number) @ turn.T
-        start, end = sorted(((ends - clamp) @ y).tolist())
+        start, end = sorted(((ends - clamp) @ axes[1]).tolist())
         time_constant, ratio = model.geom_solref[number]
         impedance = min(float(model.geom_solimp[number, 0]), 0.9999)
         weight = float(model.body_invweight0[body, 0])  # 0 if it cannot move
@@ -250,10 +275,12 @@ def _geoms(model: mujoco.MjModel, held: Held, clamp: Floats, y: Floats) -> tuple
             stiffness = 1 / (max(time_constant, 2 * model.opt.timestep) * ratio) ** 2
         else:
             stiffness, time_constant = -time_constant, np.nan
+        if weight and probe is not None:
+            radius = radius_of(model, number)
+            weight = probe.weight(number, ends.mean(axis=0), axes[0], radius) or weight
         found.append(
             Geom(
-                _name(model, mujoco.mjtObj.mjOBJ_GEOM, number)
-                or _name(model, mujoco.mjtObj.mjOBJ_BODY, body),
+                _name_of_geom(model, number),
                 start,
                 end,
                 radius_of(model, number),
@@ -266,17 +293,20 @@ def _geoms(model: mujoco.MjModel, held: Held, clamp: Floats, y: Floats) -> tuple
     return tuple(found)
 
 
+def _name_of_geom(model: mujoco.MjModel, number: int) -> str:
+    """Its own, its body's, or its number."""
+    body = int(model.geom_bodyid[number])
+    own = _name(model, mujoco.mjtObj.mjOBJ_GEOM, number)
+    return own or _name(model, mujoco.mjtObj.mjOBJ_BODY, body) or f"geom {number}"
+
+
 def _self_contacts(model: mujoco.MjModel, parts: Parts) -> tuple[str, ...]:
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     found = []
     for contact in data.contact:
         if contact.dist < 0 and not {*parts.geoms}.isdisjoint(contact.geom.tolist()):
-            names = [
-                _name(model, mujoco.mjtObj.mjOBJ_GEOM, g)
-                or _name(model, mujoco.mjtObj.mjOBJ_BODY, int(model.geom_bodyid[g]))
-                for g in contact.geom.tolist()
-            ]
+            names = [_name_of_geom(model, g) for g in contact.geom.tolist()]
             found.append(" and ".join(names))
     return tuple(dict.fromkeys(found))
 

@@ -38,7 +38,7 @@ class Joint:
     Attributes
     ----------
     name : str
-        The body's.
+        The body's, or as ``"body 3"``.
     s : float
         Its arc length from the clamp [length].
     cell : float
@@ -68,7 +68,7 @@ class Geom:
     Attributes
     ----------
     name : str
-        Its own, or its body's.
+        Its own, its body's, or as ``"geom 3"``.
     start, end : float
         Arc lengths of its axis [length].
     radius : float

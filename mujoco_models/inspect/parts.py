@@ -18,6 +18,7 @@ _FEWEST = 3  # joints of a vibrissa; what has fewer is an arm
 _BENDS = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_BALL))
 _SLENDER = (int(mujoco.mjtGeom.mjGEOM_CAPSULE), int(mujoco.mjtGeom.mjGEOM_CYLINDER))
 _SPHERE = int(mujoco.mjtGeom.mjGEOM_SPHERE)
+_GOES_ON = 0.8  # cosine; links of a vibrissa are bent by less
 _ALIGNED = 1e-3  # rad and lengths of a link; a geom of the foot that goes on as the vibrissa does
 
 
@@ -96,6 +97,7 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
         bodies = set(model.geom_bodyid[asked].tolist())
         chains = [chain for chain in chains if bodies.intersection(chain)]
     if not chains:
+        _refuse_a_flex(model)
         raise InputError(
             "model",
             "without a vibrissa" + ("" if names == Names() else " where the names say"),
@@ -130,6 +132,17 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
     return Parts(holders[-1], chain, tuple(geoms), *sensors)
 
 
+def _refuse_a_flex(model: mujoco.MjModel) -> None:
+    """Raise InputError where the vibrissa is one: its vertices have no hinges to be measured."""
+    for flex in np.flatnonzero(np.asarray(model.flex_dim) == 1):
+        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_FLEX, int(flex))
+        raise InputError(
+            f"flex {name!r}", "of dimension 1, on vertices that slide",
+            "a row of links on hinges or balls, which is what is measured",
+            "fix its vertices to such links; `vibrissa run CASE --beam rod` sweeps a flex of ours",
+        )  # fmt: skip
+
+
 def axis_of(model: mujoco.MjModel, geom: int) -> Floats:
     """The axis of a geom in the frame of its body.
 
@@ -151,12 +164,29 @@ def axis_of(model: mujoco.MjModel, geom: int) -> Floats:
         half[2] = model.geom_size[geom, 1]
     elif kind != _SPHERE:
         box = model.geom_aabb[geom]
-        centre, longest = box[:3], int(np.argmax(box[3:]))
-        half[longest] = box[3 + longest]
+        centre, axis = box[:3], _axis_of_box(model, geom)
+        half[axis] = box[3 + axis]
     ends = np.array([centre - half, centre + half])
+    return np.asarray(model.geom_pos[geom] + ends @ _turn(model.geom_quat[geom]).T)
+
+
+def _axis_of_box(model: mujoco.MjModel, geom: int) -> int:
+    """Which of its axes is along the vibrissa: the last link may be thicker than it is long."""
+    body = model.geom_bodyid[geom]
+    longest = int(np.argmax(model.geom_aabb[geom, 3:]))
+    way = model.body_pos[body]
+    if model.body_jntnum[body] == 0 or not np.linalg.norm(way) > 0:
+        return longest
+    # A link goes on as it comes from its parent, but for how it is bent.
+    turn = _turn(model.body_quat[body]) @ _turn(model.geom_quat[geom])
+    along = np.abs(way @ turn) / np.linalg.norm(way)
+    return int(np.argmax(along)) if along.max() > _GOES_ON else longest
+
+
+def _turn(quaternion: Floats) -> Floats:
     turn = np.zeros(9)
-    mujoco.mju_quat2Mat(turn, model.geom_quat[geom])
-    return np.asarray(model.geom_pos[geom] + ends @ turn.reshape(3, 3).T)
+    mujoco.mju_quat2Mat(turn, quaternion)
+    return turn.reshape(3, 3)
 
 
 def radius_of(model: mujoco.MjModel, geom: int) -> float:
@@ -227,9 +257,7 @@ def _along(model: mujoco.MjModel, foot: int, chain: Chain) -> list[int]:
     length = float(np.linalg.norm(way))
     if length == 0:
         return found
-    turn = np.zeros(9)
-    mujoco.mju_quat2Mat(turn, model.body_quat[chain[0]])
-    direction = turn.reshape(3, 3) @ way / length
+    direction = _turn(model.body_quat[chain[0]]) @ way / length
     origin = model.body_pos[chain[0]]
     rigid = []
     for geom in np.flatnonzero(model.geom_bodyid == foot).tolist():

@@ -7,8 +7,8 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
+from mujoco_models.inspect.drive import holders, mover_of
 
-_ALONG = 0.999  # cosine; a slide that is turned by 2.5 degrees goes elsewhere
 _AFFINE = int(mujoco.mjtBias.mjBIAS_AFFINE)
 
 
@@ -90,48 +90,30 @@ def drive_to(model: mujoco.MjModel, foot: int, left: Floats) -> Drive:
     InputError
         If nothing moves it along the sweep.
     """
+    mover = mover_of(model, foot, left)
+    if mover is None:
+        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, foot)
+        free = int(mujoco.mjtJoint.mjJNT_FREE)
+        if free in [model.jnt_type[model.body_jntadr[b]] for b in holders(model, foot)
+                    if model.body_jntnum[b]]:  # fmt: skip
+            raise InputError("foot", repr(name), "held", "it is free: weld it to a mocap body")
+        raise InputError(
+            "foot", repr(name),
+            "one that can be moved across the vibrissa, in the plane of its hinges",
+            "make it a mocap body, or give it a slide joint along "
+            f"{np.array2string(np.abs(left), precision=3)}",
+        )  # fmt: skip
+    if mover.mocap is not None:
+        return Mocap(mover.mocap, model, left)
+    assert mover.joint is not None
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    body = foot
-    while body > 0:
-        if model.body_mocapid[body] >= 0:
-            return Mocap(body, model, left)
-        first = int(model.body_jntadr[body])
-        for joint in range(first, first + int(model.body_jntnum[body])):
-            if model.jnt_type[joint] == int(mujoco.mjtJoint.mjJNT_FREE):
-                return _by_weld(model, body, left)
-            if model.jnt_type[joint] == int(mujoco.mjtJoint.mjJNT_SLIDE):
-                sense = float(data.xaxis[joint] @ left)
-                if abs(sense) > _ALONG:
-                    return _along(model, joint, float(np.sign(sense)))
-        body = int(model.body_parentid[body])
-    name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, foot)
-    raise InputError(
-        "foot", repr(name), "one that can be moved across the vibrissa, in the plane of its hinges",
-        "make it a mocap body, or give it a slide joint along "
-        f"{np.array2string(np.abs(left), precision=3)}",
-    )  # fmt: skip
-
-
-def _along(model: mujoco.MjModel, joint: int, sense: float) -> Drive:
-    for i in range(model.nu):
-        at_joint = model.actuator_trntype[i] == int(mujoco.mjtTrn.mjTRN_JOINT)
-        if not (at_joint and model.actuator_trnid[i, 0] == joint):
-            continue
-        if model.actuator_biastype[i] != _AFFINE:
-            name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_ACTUATOR, i)
-            raise InputError(
-                "actuator", repr(name), "of position or velocity", "a force keeps no speed"
-            )
-        return Actuated(i, joint, model, sense)
-    return Slide(joint, model, sense)
-
-
-def _by_weld(model: mujoco.MjModel, body: int, left: Floats) -> Drive:
-    welds = np.flatnonzero(model.eq_type == int(mujoco.mjtEq.mjEQ_WELD))
-    for pair in zip(model.eq_obj1id[welds], model.eq_obj2id[welds], strict=True):
-        for one, other in (pair, pair[::-1]):
-            if one == body and model.body_mocapid[other] >= 0:
-                return Mocap(int(other), model, left)
-    name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, body)
-    raise InputError("foot", repr(name), "held", "it is free: weld it to a mocap body")
+    sense = float(np.sign(data.xaxis[mover.joint] @ left))
+    if mover.actuator is None:
+        return Slide(mover.joint, model, sense)
+    if model.actuator_biastype[mover.actuator] != _AFFINE:
+        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_ACTUATOR, mover.actuator)
+        raise InputError(
+            "actuator", repr(name), "of position or velocity", "a force keeps no speed"
+        )
+    return Actuated(mover.actuator, mover.joint, model, sense)

@@ -16,13 +16,13 @@ from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.inspect.parts import radius_of
 from mujoco_models.model.clamp import Clamp
 from mujoco_models.model.contacts import NOWHERE
+from mujoco_models.model.stiffness import stiffen, weights_in_last_step
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.faceted import add_hull
 from mujoco_models.obstacles.prism import Prism
 from mujoco_models.obstacles.protocol import GEOM
 from mujoco_models.own.drive import drive_to
 from mujoco_models.own.names import OwnModel
-from mujoco_models.stepping.stiffness import stiffen, weights_in_last_step
 
 _HALF_DEPTH = 1.5  # L; as of all prisms
 _SPECK = 1e-4  # L

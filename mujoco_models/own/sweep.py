@@ -50,7 +50,7 @@ def run_own(
     """
     model = load(own.file)
     parts = find(model, Names(own.foot, own.force, own.torque, own.geoms))
-    measured = measure(model, parts)
+    measured = measure(model, parts, own.file)
     _check(case, parts, measured)
     moved = replace(
         motion, timestep=measured.timestep / measured.period, integrator=measured.integrator

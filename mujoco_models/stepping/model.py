@@ -13,10 +13,10 @@ from mujoco_models.model.clamp import Clamp, by_sensors
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.model.lookout import Lookout, MujocoScene
 from mujoco_models.model.spec import assemble
+from mujoco_models.model.stiffness import stiffen, weights_in_last_step
 from mujoco_models.model.surface import Surface
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.protocol import Obstacle
-from mujoco_models.stepping.stiffness import stiffen, weights_in_last_step
 
 # (beta L)^4 = 12.36 of the first free vibration of a cantilever gives the mass per length with
 # which it takes the time 1: mass = EI (beta L)^4 (T1/2 pi)^2/L^4.
@@ -89,8 +89,7 @@ class MovingModel:
         self._surface = Surface.of(self.model, links, obstacle.corners, radius)
         self._motion = motion
         self._set_contacts(motion)
-        stated = motion.contact_stiffness is not None
-        self._follows_inertia = stated and motion.integrator == "discrete"
+        self._follows_inertia = motion.solref is None and motion.integrator == "discrete"
         self.time = 0.0
         scene = MujocoScene(self.model, self.data, self._surface.beads, obstacle)
         self._lookout = Lookout(scene, obstacle, radius)

@@ -147,7 +147,7 @@ def print_motion_budget(found: MotionBudget, case: str) -> None:
     console().print(table)
     closes = "closes" if found.closes else "does not close"
     print_line(f"The budget {closes}; {found.blame} dominates, over {found.stations} stations.")
-    print_line(f"Observed order in the speed, halved twice: {found.order:.2f}.")
+    print_line(f"Observed order in the speed, of three speeds: {found.order:.2f}.")
     if found.left_out:
         print_line(f"Diverged, and left out: {', '.join(found.left_out)}.")
 

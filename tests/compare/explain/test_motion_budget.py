@@ -14,6 +14,7 @@ from tests.compare.command import vibrissa
 CASE = replace(named_case("catenary"), sweep=Sweep(80))
 EXACT = solve_sweep(CASE)
 MOTION = Motion(speed=0.08, timestep=0.02)
+SLOW = Motion(speed=0.004)
 
 
 def added(share):
@@ -34,9 +35,9 @@ def runs(
         name: added(
             rest
             + motionless
-            + rate * (m.speed / MOTION.speed) ** order
-            + step * m.timestep / MOTION.timestep
-            + damping * m.damping_ratio / of.damping_ratio * m.speed / MOTION.speed
+            + rate * (m.speed / of.speed) ** order
+            + step * m.timestep / of.timestep
+            + damping * m.damping_ratio / of.damping_ratio * m.speed / of.speed
             + contact * (m.solref is not None)
             + solver * (m.solver != "newton")
         )
@@ -45,12 +46,15 @@ def runs(
     return {**found, "rest": added(rest)}
 
 
+@pytest.mark.parametrize("motion", [MOTION, SLOW])
 @pytest.mark.parametrize("order", [1.0, 2.0])
-def test_planted_parts_are_found(order):
-    found = motion_budget(EXACT, runs(rate=0.02, order=order, step=1e-3, rest=3e-3))
+def test_planted_parts_are_found(order, motion):
+    planted = runs(rate=0.02, order=order, step=1e-3, rest=3e-3, of=motion)
+    found = motion_budget(EXACT, planted)
     assert found.order == pytest.approx(order, abs=1e-6)
     assert found.closes
-    assert found.blame == "rate"
+    # Extrapolated from faster sweeps, the rate is as uncertain as it is large.
+    assert found.blame == ("rate" if motion is MOTION else "at rest")
     wave = np.sqrt(0.5)
     for name, size in (("rate", 0.02), ("time step", 1e-3), ("at rest", 3e-3)):
         for part in found.parts[name].values():
@@ -112,12 +116,26 @@ def test_what_all_motions_share_stays_unexplained():
     assert found.blame == "unexplained"
 
 
+def test_a_slow_motion_has_faster_neighbours():
+    """Slower ones would take seven times as long; the limit lies on the other side of the base."""
+    motions = slower_and_finer(SLOW)
+    assert {"half", "quarter"}.isdisjoint(motions)
+    assert motions["double"].speed == 2 * SLOW.speed
+    assert motions["fine"].speed == motions["fourfold"].speed == 4 * SLOW.speed
+    assert motions["undamped"].speed == SLOW.speed
+    faster = motion_budget(EXACT, runs(rate=0.02, of=SLOW))
+    slower = motion_budget(EXACT, runs(rate=0.02))
+    for name, part in faster.parts["rate"].items():
+        # Extrapolated over as much as it is itself, and not over a quarter of it.
+        assert part.uncertainty == pytest.approx(4 * slower.parts["rate"][name].uncertainty)
+
+
 def test_the_contacts_are_the_same_in_all_of_them():
     motions = slower_and_finer(MOTION)
     assert {m.stiffness for m in motions.values()} == {MOTION.stiffness}
     assert motions["fine"].timestep == MOTION.timestep / 2
     assert motions["quarter"].speed == MOTION.speed / 4
-    stock = slower_and_finer(Motion(solref=(0.7, 1.0)))
+    stock = slower_and_finer(Motion(speed=0.08, solref=(0.7, 1.0)))
     assert {m.solref for name, m in stock.items() if name != "ours"} == {(0.7, 1.0)}
     assert stock["ours"].solref is None
     assert stock["ours"].speed == stock["quarter"].speed

@@ -65,6 +65,58 @@ def test_a_foot_on_a_slide_is_held_all_the_same(tmp_path):
     np.testing.assert_allclose(found.force.axes, np.eye(3), atol=1e-6)
 
 
+@pytest.mark.parametrize(
+    "foot",
+    [
+        Chain(foot=""),
+        Chain(foot="", inside_foot="<freejoint/>"),
+        Chain(foot="", inside_foot='<joint type="slide" axis="0 0 1"/>'),  # along its hinges
+        Chain(foot="", inside_foot='<joint type="slide" axis="0 1 0"/>'),  # along itself
+    ],
+)
+def test_what_cannot_move_the_foot_across_is_no_drive(tmp_path, foot):
+    assert measured(tmp_path, foot).drive is None
+
+
+def test_a_free_foot_on_a_hand_is_driven_by_the_hand(tmp_path):
+    held = Chain(foot="", inside_foot="<freejoint/>", beside='<body name="hand" mocap="true"/>')
+    path = held.write(tmp_path)
+    weld = '<equality><weld body1="hand" body2="whisker-foot"/></equality></mujoco>'
+    path.write_text(path.read_text().replace("</mujoco>", weld))
+    assert inspect_model(path).drive == "free joint '' on mocap body 'hand', by a weld"
+
+
+def test_a_last_link_may_be_thicker_than_it_is_long(tmp_path):
+    """A box of 0.0125 L, 0.04 L thick: its longest side is across the vibrissa."""
+    path = Chain(links=40, radius=0.02, tip='type="box"').write(tmp_path)
+    # The first geom touches the second, which is no matter here.
+    found = inspect_model(path)
+    assert found.length == pytest.approx(1.0)
+    assert found.natural_curvature == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "joint", ['type="ball"', 'axis="1 0 0" name="first{}"/><joint axis="0 0 1"']
+)
+def test_where_hinges_leave_the_plane_open_it_is_the_slides_or_the_sensors(tmp_path, joint):
+    """An oblique vibrissa whose links turn both ways: no sensor of it is turned."""
+    path = Chain(foot='mocap="true" euler="0.3 0.5 0.7"', links=8).write(tmp_path)
+    text, count = path.read_text(), 0
+    while '<joint axis="0 0 1"' in text:
+        text = text.replace('<joint axis="0 0 1"', f"<joint  {joint.format(count)}", 1)
+        count += 1
+        text = text.replace('/><joint axis="0 0 1"', '  stiffness="8"/><joint  axis="0 0 1"')
+    path.write_text(text)
+    found = inspect_model(path)
+    for sensor in (found.force, found.torque):
+        assert np.sort(np.abs(sensor.axes), axis=None)[-3:] == pytest.approx([1, 1, 1], abs=1e-5)
+    rail = text.replace('mocap="true"', "").replace(
+        '<site name="clamp"', '<joint name="rail" type="slide" axis="0.6 0 0.8"/><site name="clamp"'
+    )
+    path.write_text(rail)
+    assert inspect_model(path).drive == "slide 'rail' without an actuator"
+
+
 def test_the_files_of_a_model_are_left_alone(tmp_path):
     path = Chain().write(tmp_path)
     before = path.read_bytes(), path.stat().st_mtime_ns
@@ -148,6 +200,18 @@ def test_the_name_of_the_foot_chooses_between_two(tmp_path):
     found = measured(tmp_path, both, foot="whisker-foot")
     assert found.foot == "whisker-foot"
     assert measured(tmp_path, both, geoms="other-*").foot == "other-foot"
+
+
+@pytest.mark.skipif("rod" not in available_beams(), reason="flexes bend since MuJoCo 4")
+def test_a_flex_is_refused_by_its_name(tmp_path):
+    (tmp_path / "flex.xml").write_text(
+        '<mujoco><worldbody><flexcomp name="hair" type="grid" count="9 1 1" spacing=".1 .1 .1" '
+        'dim="1" radius="0.01" mass="0.1"><elasticity young="1e6" damping="1"/></flexcomp>'
+        "</worldbody></mujoco>"
+    )
+    with pytest.raises(InputError, match=r"flex 'hair' = of dimension 1.*--beam rod") as caught:
+        inspect_model(tmp_path / "flex.xml")
+    assert "\n" not in str(caught.value)
 
 
 def test_what_is_no_model(tmp_path):

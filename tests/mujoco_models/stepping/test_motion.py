@@ -115,6 +115,17 @@ def test_the_default_contact_is_as_stiff_as_the_step_allows():
         Motion(contact_stiffness=1e5, solref=(0.1, 1.0))
 
 
+@pytest.mark.parametrize("stated", [None, 1e4])
+def test_a_contact_yields_as_much_as_its_stiffness_says(stated):
+    """At the tip, where there is one; a constant solref makes it 14 times harder here."""
+    motion = Motion(speed=0.2, timestep=0.02, contact_stiffness=stated)
+    moved = simulate_motion(replace(CASE, sweep=Sweep(30)), motion, SMOOTH)
+    tip = moved.trusted & (moved.table["phase"] == "tip").to_numpy()
+    force = np.hypot(moved.values("force_x_raw"), moved.values("force_y_raw"))[tip]
+    assert tip.sum() > 5
+    assert np.median(force / moved.values("penetration")[tip]) == pytest.approx(1e4, rel=0.1)
+
+
 @pytest.mark.slow
 def test_a_mean_over_the_way_is_that_of_the_sweep_at_rest():
     """The readings of ten segments have kinks between stations, over which a mean is no value.

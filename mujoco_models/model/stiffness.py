@@ -38,8 +38,8 @@ def weights_in_last_step(
     """What MuJoCo took a unit of force to accelerate contacts by in a step of ``discrete``.
 
     This integrator counts the springs and dampers of a step as inertia, so that with the same
-    solref a contact is harder by as much: up to 8 times at the tip, which is light, and hardly at
-    all elsewhere. The inertia changes slowly, with the vibrissa's shape.
+    solref a contact is harder by as much: 4 to 27 times at the tip, which is light, and about twice
+    elsewhere. The inertia changes slowly, with the vibrissa's shape.
 
     Parameters
     ----------

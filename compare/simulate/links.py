@@ -1,0 +1,149 @@
+"""The order of a measured chain in its number of links, by chains of the same layout."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from compare.measure.cantilever import tip_of
+from compare.simulate.rigidity import as_intended, is_curved, smooth_rigidity, tapers
+from mujoco_models.inspect.measured import MeasuredBeam
+
+_FEWEST = 4  # joints: two of them are ends, and the others have to be alike
+_ALIKE = 1e-3  # relative; of the lengths of links that are one length
+_ITERATIONS = 100
+_LONGEST_TURN = 0.2  # rad, of a joint in an iteration
+_AT_REST = 1e-12  # rad
+
+
+@dataclass(frozen=True)
+class Order:
+    """What more links of the same layout would give.
+
+    Attributes
+    ----------
+    links : float
+        Number of them: the length over that of a link.
+    first : float
+        Where it first bends, in links from the clamp: 0.5 is of second order.
+    order : float
+        In the number of links: of the tip's distance from the exact cantilever's.
+    error : float
+        Of the measured one: the largest distance of the tip from that of the exact cantilever with
+        the EI that its joints stand for, of all loads [L].
+    error_of_twice : float
+        Of a chain of the same layout with twice as many links [L].
+    """
+
+    links: float
+    first: float
+    order: float
+    error: float
+    error_of_twice: float
+
+
+def order_in_links(found: MeasuredBeam) -> Order | None:
+    """How fast a chain that is refined as it is laid out tends to the exact cantilever.
+
+    Its layout is where the first and the last joint are within their links, and how much softer
+    or stiffer than the others they are.
+
+    Parameters
+    ----------
+    found : MeasuredBeam
+        With its joints, and its tip under loads.
+
+    Returns
+    -------
+    Order or None
+        None where it has no order that could be told: links of unequal length, a taper, a curve.
+    """
+    s = np.array([joint.s for joint in found.joints]) / found.length
+    if len(s) < _FEWEST or tapers(found) or is_curved(found):
+        return None
+    gaps = np.diff(s)
+    link = float(gaps.mean())
+    if np.ptp(gaps) > _ALIKE * link:
+        return None
+    rigidity = as_intended(found)
+    loads = found.loads * found.length**2 / rigidity
+    exact = tip_of(loads)
+    own = [joint.compliance for joint in found.joints]
+    meant = link * found.length / smooth_rigidity(found)
+    # Relative to a whole link's: a hinge at the clamp may be twice as stiff, or not.
+    softer = own[0] / meant[0], own[-1] / meant[-1]
+    ends = s[0] / link, (1 - s[-1]) / link
+
+    def refined(parts: int) -> tuple[float, float]:
+        """Number of links, and how far the tip is off the exact one."""
+        count = round(parts / link - sum(ends)) + 1
+        links = sum(ends) + count - 1
+        compliances = np.full(count, 1 / links)
+        compliances[[0, -1]] *= softer
+        tips = tips_of_chain((ends[0] + np.arange(count)) / links, compliances, loads)
+        return links, _farthest(tips - exact)
+
+    (twice, middle), (fourfold, fine) = map(refined, (2, 4))
+    return Order(
+        links=1 / link,
+        first=float(ends[0]),
+        order=math.log(middle / fine) / math.log(fourfold / twice),
+        error=_farthest(found.bent / found.length - exact),
+        error_of_twice=middle,
+    )
+
+
+def _farthest(off: Floats) -> float:
+    return float(np.linalg.norm(off, axis=1).max())
+
+
+def tips_of_chain(places: Floats, compliances: Floats, loads: Floats) -> Floats:
+    """Where the tip of a chain of rigid links is under a force across its unloaded axis.
+
+    Parameters
+    ----------
+    places : array, shape (n,)
+        Arc lengths of its joints [L].
+    compliances : array, shape (n,)
+        Turn over moment of each [L/EI].
+    loads : array, shape (m,)
+        P L^2/EI, in increasing order: each state is found from the last one.
+
+    Returns
+    -------
+    array, shape (m, 2)
+        Displacement along the load, and along the axis towards the clamp [L].
+
+    Raises
+    ------
+    ArithmeticError
+        If Newton's method does not converge.
+    """
+    lengths = np.diff(places, append=1.0)
+    turns = np.zeros(len(places))
+    tips = []
+    for load in np.asarray(loads, dtype=float).tolist():
+        turns = _at_rest(lengths, compliances, load, turns)
+        slopes = np.cumsum(turns)
+        along = places[0] + lengths @ np.cos(slopes)
+        tips.append([lengths @ np.sin(slopes), 1 - along])
+    return np.array(tips)
+
+
+def _at_rest(lengths: Floats, compliances: Floats, load: float, turns: Floats) -> Floats:
+    """Turns of the joints, by Newton's method; a joint's moment is the load times its lever."""
+    n = np.arange(len(turns))
+    outer = np.maximum(n[:, None], n)
+    for _ in range(_ITERATIONS):
+        slopes = np.cumsum(turns)
+        levers = np.cumsum((lengths * np.cos(slopes))[::-1])[::-1]
+        asides = np.cumsum((lengths * np.sin(slopes))[::-1])[::-1]
+        off = load * compliances * levers - turns
+        if np.abs(off).max() < _AT_REST:
+            return turns
+        # A joint's lever falls with a turn by what the links beyond both are aside.
+        slope = np.eye(len(turns)) + load * compliances[:, None] * asides[outer]
+        step = np.linalg.solve(slope, off)
+        turns = turns + step * min(1.0, _LONGEST_TURN / np.abs(step).max())
+    raise ArithmeticError(f"a chain of {len(turns)} links does not come to rest")

@@ -1,0 +1,87 @@
+"""How stiff the contacts of a user's model are, where MuJoCo's step is implicit in them.
+
+An explicit integrator takes a body's inverse mass, which the model states. ``discrete`` counts the
+springs and dampers of a step as inertia, the contact's own, too, so that the same solref is up to
+ten times harder: a small ball touches each geom for one step, and what MuJoCo took is read off.
+"""
+
+from pathlib import Path
+
+import mujoco
+
+from analytic.problem.arrays import Floats
+from mujoco_models.model.stiffness import weights_in_last_step
+
+_NAME = "vibrissa-probe"
+_SIZE = 0.5  # of a geom's radius: it touches no neighbour
+_DEPTH = 1e-3  # of a geom's radius
+
+
+class Probe:
+    """A model with a ball that can touch it.
+
+    Parameters
+    ----------
+    model : mujoco.MjModel
+        With the ball as its last body and geom.
+    """
+
+    def __init__(self, model: mujoco.MjModel) -> None:
+        self._model = model
+        self._ball = model.geom(_NAME).id
+
+    def weight(self, geom: int, place: Floats, across: Floats, radius: float) -> float | None:
+        """The acceleration by a unit of force that MuJoCo takes for a contact of a geom.
+
+        Parameters
+        ----------
+        geom : int
+            Which one.
+        place, across : array, shape (3,)
+            On its axis, and the direction in which the ball is from there; in the world frame.
+        radius : float
+            Of the geom there.
+
+        Returns
+        -------
+        float or None
+            As of `mujoco_models.model.stiffness.stiffen`; None if they do not touch.
+        """
+        data = mujoco.MjData(self._model)
+        size = self._model.geom_size[self._ball, 0]
+        data.mocap_pos[-1] = place + (radius * (1 - _DEPTH) + size) * across
+        mujoco.mj_step(self._model, data)
+        friction = max(self._model.geom_friction[[geom, self._ball], 0])
+        frictionless = max(self._model.geom_condim[[geom, self._ball]]) == 1
+        pairs, weights = weights_in_last_step(self._model, data, 0 if frictionless else friction)
+        mine = (pairs == geom).any(axis=1) & (pairs == self._ball).any(axis=1)
+        return float(weights[mine][0]) if mine.any() else None
+
+
+def probe_of(path: Path, radius: float) -> Probe | None:
+    """A model with a ball, in memory, if it is stepped by ``discrete``.
+
+    Parameters
+    ----------
+    path : Path
+        Of the user's model.
+    radius : float
+        Of its geoms, about.
+
+    Returns
+    -------
+    Probe or None
+        None for other integrators, whose contacts are as stiff as their body's mass says.
+    """
+    spec = mujoco.MjSpec.from_file(str(path))
+    if spec.option.integrator != mujoco.mjtIntegrator.mjINT_DISCRETE:
+        return None
+    ball = spec.worldbody.add_body(name=_NAME, mocap=True)
+    ball.add_geom(
+        name=_NAME, type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[_SIZE * radius, 0, 0],
+        contype=1, conaffinity=1, condim=1, priority=-1,
+    )  # fmt: skip
+    try:
+        return Probe(spec.compile())
+    except (ValueError, mujoco.FatalError):
+        return None

@@ -1,0 +1,50 @@
+"""What more links of the same layout would give: held against models that have them."""
+
+import numpy as np
+import pytest
+
+from compare.measure.cantilever import tip_of
+from compare.simulate.links import order_in_links, tips_of_chain
+from mujoco_models import inspect_model, shipped_models
+from tests.mujoco_models.inspect.chains import Chain
+
+
+def order(tmp_path, **kinds):
+    return order_in_links(inspect_model(Chain(**kinds).write(tmp_path)))
+
+
+@pytest.mark.parametrize(
+    ("layout", "expected"),
+    [
+        ({"first": "centre"}, 2.0),  # the midpoint rule
+        ({"first": "start"}, 1.0),  # a whole cell's compliance at the clamp
+        ({"first": "end"}, 1.0),  # a whole cell that is rigid
+        ({"first": "start", "stiffer": {1: 2.0}}, 2.0),  # the trapezoidal rule
+    ],
+)
+def test_the_order_is_that_of_models_with_twice_as_many_links(tmp_path, layout, expected):
+    found = order(tmp_path, links=10, **layout)
+    twice = order(tmp_path, links=20, **layout)
+    assert found.order == pytest.approx(expected, abs=0.03)
+    # MuJoCo's own chain of 20, against what that of 10 said of it.
+    assert twice.error == pytest.approx(found.error_of_twice, rel=2e-3)
+    assert np.log2(found.error / twice.error) == pytest.approx(expected, abs=0.05)
+
+
+def test_fine_chains_tend_to_the_exact_cantilever():
+    loads = np.array([0.01, 1.0, 10.0])
+    places = (np.arange(400) + 0.5) / 400
+    np.testing.assert_allclose(
+        tips_of_chain(places, np.full(400, 1 / 400), loads), tip_of(loads), atol=3e-6
+    )
+
+
+def test_one_joint_that_is_off_is_no_matter_of_the_order(tmp_path):
+    found = order(tmp_path, links=20, stiffer={7: 1.2})
+    assert found.order == pytest.approx(2.0, abs=0.03)
+    assert found.error > 10 * found.error_of_twice
+
+
+def test_where_no_order_can_be_told_there_is_none(tmp_path):
+    assert order(tmp_path, curvature=0.4) is None
+    assert order_in_links(inspect_model(shipped_models()["tapered-whisker"])) is None
