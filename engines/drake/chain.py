@@ -161,7 +161,12 @@ class DrakeChain:
         moments = self._elastic + self._touch.moments(context, self._contacts)[self._order]
         if not np.isfinite(moments).all():
             raise DivergedError("Drake's moments at the joints are not finite")
-        return np.asarray(moments)
+        self._moments: Floats = np.asarray(moments)
+        return self._moments
+
+    def relieved(self) -> Floats:
+        """As they are: nothing accelerates."""
+        return self._moments
 
     def _read_places(self) -> None:
         """Where Drake has joints and beads."""

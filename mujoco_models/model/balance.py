@@ -48,6 +48,15 @@ class Balance(Protocol):
             If one is not finite.
         """
 
+    def relieved(self) -> Floats:
+        """Moment out of balance at each joint, but for what rounding of depths makes of it.
+
+        Returns
+        -------
+        array, shape (n_joints,)
+            Moments of the state last evaluated [EI/L].
+        """
+
     def stiffness(self, angles: Floats) -> Floats:
         """Derivative of each joint's elastic moment by its angle.
 

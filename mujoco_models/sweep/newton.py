@@ -1,21 +1,22 @@
 """One step of Newton's method on MuJoCo's own balance of moments.
 
 Each step minimises the quadratic model of the energy, with the contacts' unilateral constraints
-linearised; its stiffness includes what turning levers and turning normals contribute.
+linearised; its stiffness includes what turning levers and turning normals contribute. Unknown are
+the turns of the links, not of the joints between them, which makes a step linear in the segments.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg.lapack import dpotrf, dpotrs
+from scipy.linalg.lapack import dposv
 from scipy.optimize import nnls
 
-from analytic.problem.arrays import Floats
-from mujoco_models.errors import DivergedError
+from analytic.problem.arrays import Booleans, Floats
 from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.sweep.numerics import Numerics
-from mujoco_models.sweep.state import State, turned
+from mujoco_models.sweep.state import State
+from mujoco_models.sweep.stiffness import Stiffness
 
 
 class Touch(NamedTuple):
@@ -74,54 +75,69 @@ class Newton:
         model, numerics = self._model, self._numerics
         contacts = contacts.nearest(numerics.at_once)
         curvature = self._curvature(contacts)
-        layout = model.layout
-        count = len(layout.joints)
-        normal, distance = contacts.normal, contacts.distance
+        along, across = levers(contacts, model.joint_positions())
+        distance, force = contacts.distance, self._forces(state, contacts)
         slides = model.slides(contacts)
-        on_side = contacts.on_side | slides
-        lever = contacts.point[:, None] - model.joint_positions()
-        carried = np.arange(count) <= contacts.link[:, None]
-        along = (lever[:, :, 0] * normal[:, 1:] - lever[:, :, 1] * normal[:, :1]) * carried
-        across = (lever[:, :, 0] * normal[:, :1] + lever[:, :, 1] * normal[:, 1:]) * carried
-        force = self._forces(state, contacts)
-        loaded = force > 0
-        levers = along.copy()
+        comes = along
         if slides.any():
             # Beads that slide stay about the point of tangency: all come nearer as it does.
-            along[slides] = along[np.where(slides, distance, np.inf).argmin()]
-
-        stiffness = np.diag((1 + inertia) * model.stiffness(state.angles))
-        # The lever of a force turns with every joint below the outer one of two ...
-        outer = np.maximum.outer(np.arange(count), np.arange(count))
-        at_bead = np.where(on_side, 0.0, force)
-        stiffness += (at_bead @ across)[outer]
-        # ... and the normal turns as the bead slides along the contour.
-        stiffness -= (at_bead * curvature * across.T) @ across
-        # A corner stays where it is and the normal turns with the link: the inner joint counts.
-        # So it does where beads slide, about the contour's centre of curvature.
-        centre = across.copy()
-        centre[slides] -= 1 / model.contact_curvature(contacts.slope[slides])[:, None]
-        for i in np.flatnonzero(on_side & loaded):
-            n = contacts.link[i] + 1
-            stiffness[:n, :n] -= force[i] * centre[i, np.minimum.outer(np.arange(n), np.arange(n))]
+            comes = along.copy()
+            comes[slides] = along[np.where(slides, distance, np.inf).argmin()]
 
         # Loaded contacts convexify the model; their slack is zero at rest, and so is the effect.
-        held, slack = along[loaded], (distance + force / model.contact_stiffness)[loaded]
-        stiffness += numerics.stiffening * held.T @ held
-        gradient = -model.elastic_moments() + numerics.stiffening * held.T @ slack
-        gradient += (along - levers).T @ np.maximum(-model.contact_stiffness * distance, 0)
-        factor = _cholesky(stiffness, float(count))
-        solved, _ = dpotrs(factor, np.column_stack([-gradient, along.T]), lower=1)
-        free, compliance = solved[:, 0], solved[:, 1:]
+        loaded = force > 0
+        held, slack = comes[loaded], (distance + force / model.contact_stiffness)[loaded]
+        moments = of_links(model.elastic_moments()) - numerics.stiffening * slack @ held
+        if slides.any():
+            moments -= np.maximum(-model.contact_stiffness * distance, 0) @ (comes - along)
+        springs = (1 + inertia) * model.stiffness(state.angles)
+        stiffness = self._stiffness(springs, contacts, force, curvature, across, held)
+        solved = stiffness.solve(np.concatenate([moments[None], comes]))
+        free, compliance = solved[0], solved[1:]
         softness = np.eye(len(force)) / model.contact_stiffness
-        forces = _unilateral(along @ compliance + softness, distance + along @ free)
-        step = free + compliance @ forces
-        turn = turned(step, np.zeros(count))
+        forces = _unilateral(comes @ compliance.T + softness, distance + comes @ free, loaded)
+        step = free + forces @ compliance
+        shorter = min(1.0, numerics.largest_turn / max(float(np.abs(step).max()), 1e-300))
+        step[1:] -= step[:-1].copy()
         return State(
-            state.angles + step * min(1.0, numerics.largest_turn / max(turn, 1e-300)),
+            state.angles + shorter * step,
             {int(i): float(f) for i, f in zip(contacts.touch, forces, strict=True) if f > 0},
             state.imbalance,
         )
+
+    def _stiffness(
+        self,
+        springs: Floats,
+        contacts: Contacts,
+        force: Floats,
+        curvature: Floats,
+        across: Floats,
+        held: Floats,
+    ) -> Stiffness:
+        """That of the springs, of turning levers and normals, and of what is held in contact."""
+        slides = self._model.slides(contacts)
+        on_side = contacts.on_side | slides
+        # The lever of a force turns with each link ...
+        links = force @ across
+        # ... and the normal turns as a bead slides along the contour.
+        turns = -force * curvature
+        turning = ~on_side & (turns != 0)
+        directions = [held, across[turning]]
+        weights = [np.full(len(held), self._numerics.stiffening), turns[turning]]
+        # A corner stays where it is and the normal turns with its link; so it does where beads
+        # slide, about the contour's centre of curvature.
+        for i in np.flatnonzero(on_side & (force > 0)):
+            own, couple = int(contacts.link[i]), -force[i] * across[i]
+            links[own] += 2 * couple[own]
+            if slides[i]:
+                links[own] += force[i] / self._model.contact_curvature(contacts.slope[[i]])[0]
+            couple[own:] = 0.0
+            if size := float(np.linalg.norm(couple)):
+                link = np.zeros(len(couple))
+                link[own] = size
+                directions += [couple + link, couple - link]
+                weights.append(np.array([0.5, -0.5]) / size)
+        return Stiffness(springs, links, np.vstack(directions), np.concatenate(weights))
 
     def _forces(self, state: State, contacts: Contacts) -> Floats:
         """The forces of `state` at these contacts, shape (n,) [EI/L^2].
@@ -170,30 +186,75 @@ class Newton:
         }
         for i, (bead, touch) in enumerate(now.items()):
             before = self._last.get(bead)
-            if before is not None:
-                turn = touch.normal_angle - before.normal_angle
-                slid = float(np.hypot(*(touch.position - before.position)))
+            if before is None:
+                continue
+            turn = touch.normal_angle - before.normal_angle
+            slid = float(np.hypot(*(touch.position - before.position)))
+            if slid > 0:  # or another window shows the same place
                 same = abs(turn) < self._numerics.same_normal
                 found[i] = 0.0 if same else abs(turn) / slid
         self._last = now
         return found
 
 
-def _cholesky(stiffness: Floats, scale: float) -> Floats:
-    """Factor of the stiffness, or of the least shifted one that is positive definite."""
-    if not np.isfinite(stiffness).all():
-        raise DivergedError("the stiffness is not finite")
-    shift = 0.0
-    while True:
-        factor, info = dpotrf(stiffness + shift * np.eye(len(stiffness)), lower=1)
-        if info == 0:
-            return np.asarray(factor)
-        shift = max(2 * shift, 0.02 * scale)
+def levers(contacts: Contacts, joints: Floats) -> tuple[Floats, Floats]:
+    """How the contacts' points move as each link turns alone.
+
+    Parameters
+    ----------
+    contacts : Contacts
+        n of them.
+    joints : array, shape (n_links, 2)
+        Where the links begin [L].
+
+    Returns
+    -------
+    along, across : array, shape (n, n_links)
+        Along the normals, and along the contour, negative if that is the way of its slope [L/rad].
+    """
+    chord = np.zeros_like(joints)
+    chord[:-1] = joints[1:] - joints[:-1]
+    carried = np.arange(len(joints)) < contacts.link[:, None]
+    turned = np.column_stack([contacts.normal[:, 1], -contacts.normal[:, 0]])
+    own = contacts.point - joints[contacts.link]
+    found = []
+    for direction in (turned, contacts.normal):
+        lever = direction @ chord.T * carried
+        lever[np.arange(len(own)), contacts.link] = (direction * own).sum(axis=1)
+        found.append(lever)
+    return found[0], found[1]
 
 
-def _unilateral(compliance: Floats, gap: Floats) -> Floats:
+def of_links(moments: Floats) -> Floats:
+    """Generalised forces of the links' own angles, from those of the joints between them.
+
+    Parameters
+    ----------
+    moments : array, shape (n,)
+        Moments at the joints [EI/L].
+
+    Returns
+    -------
+    array, shape (n,)
+        What turns each link alone [EI/L].
+    """
+    found = moments.copy()
+    found[:-1] -= moments[1:]
+    return found
+
+
+def _unilateral(compliance: Floats, gap: Floats, guess: Booleans) -> Floats:
     """Contact forces f >= 0 that minimise f.compliance.f/2 + gap.f, shape (n,)."""
-    if len(gap) == 0:
-        return np.zeros(0)
+    force = np.zeros(len(gap))
+    if guess.any():
+        _, force[guess], failed = dposv(compliance[np.ix_(guess, guess)], -gap[guess])
+        if (
+            not failed
+            and force.min() >= 0
+            and (compliance @ force + gap)[~guess].min(initial=0.0) >= 0
+        ):
+            return force
+    elif gap.min(initial=0.0) >= 0:
+        return force
     root = np.linalg.cholesky(compliance)
     return np.asarray(nnls(root.T, -np.linalg.solve(root, gap))[0])

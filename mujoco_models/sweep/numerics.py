@@ -21,6 +21,9 @@ class Numerics:
         the branch 1.9e-3 L before the catenary's fold, and descents take it there, in three times
         the time; at 10 stations run out of their budget. From 1e2 to 1e6 the snap-off moves by less
         than 7e-5 L.
+    nearly : float
+        Tolerances out of balance below which rounding of depths may be what is left, if another
+        Newton step has not helped: MuJoCo is asked for accelerations only then.
     largest_turn : float
         Of any link in one Newton step [rad]. At 1 the solver jumps to another state at rest, 1.8e-3
         away, which is "ok" by itself; from 0.1 to 0.5 nothing changes.
@@ -93,6 +96,7 @@ class Numerics:
 
     iterations: int = 25
     stiffening: float = 1e3
+    nearly: float = 1e3
     largest_turn: float = 0.3
     at_once: int = 200
     same_normal: float = 1e-9

@@ -57,15 +57,19 @@ def relax(
     lookout.watch(around(model, state.forces, numerics.ahead) or one_bead_a_link(model))
     if start.slope is not None:
         lookout.face(start.slope)
+    nearly, residual = numerics.nearly * tolerance, np.inf
     for _ in range(numerics.iterations):
-        residual = float(np.abs(model.imbalance(foot_x, state.angles)).max())
+        before, residual = residual, _largest(model.imbalance(foot_x, state.angles))
         contacts = model.contacts()
         if not held and model.slide_beads(contacts):
-            residual = float(np.abs(model.imbalance(foot_x, state.angles)).max())
+            residual = _largest(model.imbalance(foot_x, state.angles))
             contacts = model.contacts()
-        state = replace(state, imbalance=residual)
+        if tolerance <= residual < nearly and before < nearly:
+            state = replace(state, imbalance=_largest(model.relieved()))
+        else:
+            state = replace(state, imbalance=residual)
         best = min(best, state, key=lambda s: s.imbalance)
-        if residual < tolerance:
+        if state.imbalance < tolerance:
             if contacts.passed or lookout.is_crossed(model.joint_positions()):
                 break  # a corner has gone through a link
             slopes = contacts.slope[contacts.loaded]
@@ -90,7 +94,12 @@ def relax(
         if not around(model, state.forces, numerics.margin) <= lookout.watched:
             lookout.watch(lookout.watched | graded(model, state.forces, numerics.ahead))
     model.imbalance(foot_x, best.angles)  # leaves the readings with the state that is returned
-    return replace(best, stance=stance(model, model.contacts()))
+    imbalance = min(best.imbalance, _largest(model.relieved()))
+    return replace(best, imbalance=imbalance, stance=stance(model, model.contacts()))
+
+
+def _largest(moments: Floats) -> float:
+    return float(np.abs(moments).max())
 
 
 def refine(model: Balance, foot_x: float, start: State, numerics: Numerics) -> State:

@@ -83,6 +83,7 @@ def sideways(model: BeamModel) -> Sideways:
         turn = np.zeros(count)
         turn[axis] = _TURN
         model.turn(rest, turn)
+        model.relieved()  # a contact is lifted by the square of a turn, times its stiffness
         joints[:, column] = -model.moments()[axes] / _TURN
     model.turn(rest, np.zeros(count))
     joints = (joints + joints.T) / 2

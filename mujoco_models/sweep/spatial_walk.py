@@ -77,6 +77,7 @@ class SpatialWalk(Walk[BeamModel]):
 
     def row(self) -> dict[str, Any]:
         """The readings, how far the beam is out of the plane, and how stiffly it is held there."""
+        self.model.relieved()
         row = super().row()
         row["residual"] = float(np.abs(self.model.moments()).max())
         if row["status"] == "ok" and row["residual"] > self._tolerance:
@@ -149,6 +150,7 @@ class SpatialWalk(Walk[BeamModel]):
         angles = model.beam.angles(model.data)
         self._foot_x, self._before, self._held = target, None, None
         if model.out_of_plane() > _IN_PLANE:
+            model.relieved()
             imbalance = float(np.abs(model.moments()).max())
             self._state = State(angles, {}, imbalance, imbalance < self._tolerance)
             self._departure = departure

@@ -42,14 +42,14 @@ def vibrissa(tmp_path, monkeypatch, capsys):
 @pytest.fixture
 def not_a_number(monkeypatch):
     """MuJoCo's springs give NaN from the 60th evaluation on."""
-    sound, count = mujoco.mj_forward, iter(range(10**9))
+    sound, count = mujoco.mj_invConstraint, iter(range(10**9))
 
     def broken(model, data):
         sound(model, data)
         if next(count) >= 60:
             data.qfrc_passive[2] = np.nan
 
-    monkeypatch.setattr(mujoco, "mj_forward", broken)
+    monkeypatch.setattr(mujoco, "mj_invConstraint", broken)
 
 
 def interrupted_after(stations):
@@ -108,13 +108,13 @@ def test_a_motion_that_explodes_is_an_error(monkeypatch, tmp_path):
 
 def test_contacts_that_mujoco_leaves_out_are_an_error(vibrissa, monkeypatch):
     """MuJoCo only warns when its arena is full."""
-    sound = mujoco.mj_forward
+    sound = mujoco.mj_invConstraint
 
     def full(model, data):
         sound(model, data)
         data.warning[mujoco.mjtWarning.mjWARN_CONTACTFULL].number += data.ncon > 0
 
-    monkeypatch.setattr(mujoco, "mj_forward", full)
+    monkeypatch.setattr(mujoco, "mj_invConstraint", full)
     code, errors = vibrissa("simulate", "parabola", "--stations", "20", "--out", ".")
     assert code == BAD_INPUT
     assert "out of memory" in errors[-1]

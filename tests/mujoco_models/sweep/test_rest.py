@@ -56,6 +56,7 @@ def test_readings_do_not_depend_on(quantity, factor, usual, monkeypatch):
 
 VARIED = {
     "stiffening": (3e2, 1e5),
+    "nearly": (1e2, 1e4),
     "largest_turn": (0.1, 0.5),
     "smallest_step": (1e-6, 3e-5),
     "same_normal": (1e-10, 1e-7),

@@ -1,0 +1,104 @@
+"""The stiffness of beam and contacts, factorised at a cost that is linear in the segments.
+
+In the angles of the links themselves, not of the joints between them, springs couple neighbours
+only and the lever of a force turns with one link at a time: the matrix is tridiagonal, plus one of
+low rank for each contact. It is solved by Sherman, Morrison and Woodbury's formula, and whether it
+is positive definite follows from the inertia of the two (E. V. Haynsworth, Linear Algebra and its
+Applications 1, 1968).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg.lapack import dgesv, dgttrf, dgttrs, dpttrf, dpttrs, dstebz, dsyev
+
+from analytic.problem.arrays import Floats
+from mujoco_models.errors import DivergedError
+
+_LEAST_SHIFT = 0.02  # EI/L, times the number of joints: what makes it positive definite
+_LEAST_COUNT = 3  # of links for LAPACK's tridiagonal routines, as scipy has them
+_IN_RANGE = 1  # LAPACK's dstebz: count the eigenvalues between two bounds
+
+
+@dataclass(frozen=True)
+class Stiffness:
+    """Second derivative of an energy by the angles of the links.
+
+    Attributes
+    ----------
+    springs : array, shape (n,)
+        Of the joints [EI/L].
+    links : array, shape (n,)
+        What each link's own turn adds [EI/L].
+    directions : array, shape (m, n)
+        Of what has low rank.
+    weights : array, shape (m,)
+        The stiffness in each of them, not 0 [EI/L].
+    """
+
+    springs: Floats
+    links: Floats
+    directions: Floats
+    weights: Floats
+
+    def solve(self, moments: Floats) -> Floats:
+        """The turns of the links under moments.
+
+        Parameters
+        ----------
+        moments : array, shape (k, n)
+            Generalised forces of the links' angles, k times [EI/L].
+
+        Returns
+        -------
+        array, shape (k, n)
+            By this stiffness, or with the least addition to all springs that makes it positive
+            definite [rad].
+
+        Raises
+        ------
+        DivergedError
+            If the stiffness is not finite.
+        """
+        if not np.isfinite(self.springs.sum() + self.links.sum() + self.directions.sum()):
+            raise DivergedError("the stiffness is not finite")
+        count, rows = len(moments), np.concatenate([moments, self.directions])
+        shift, positive = 0.0, int((self.weights > 0).sum())
+        while True:
+            turns, negative = self._tridiagonal(shift, rows.T)
+            plain, low = turns[:, :count], turns[:, count:]
+            within = np.diag(1 / self.weights) + self.directions @ low
+            if negative + _positive(within) == positive:
+                break
+            shift = max(2 * shift, _LEAST_SHIFT * len(self.springs))
+        if len(within) == 0:
+            return plain.T
+        return np.asarray((plain - low @ dgesv(within, self.directions @ plain)[2]).T)
+
+    def _tridiagonal(self, shift: float, moments: Floats) -> tuple[Floats, int]:
+        """What the tridiagonal part makes of moments, and how many negative eigenvalues it has."""
+        springs = self.springs + shift
+        diagonal = springs + self.links
+        diagonal[:-1] += springs[1:]
+        beside = -springs[1:]
+        if len(diagonal) < _LEAST_COUNT:
+            whole = np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1)
+            negative = int((np.linalg.eigvalsh(whole) < 0).sum())
+            return np.linalg.solve(whole, moments).astype(float), negative
+        *factors, failed = dpttrf(diagonal, beside)
+        if not failed:
+            return np.asarray(dpttrs(*factors, moments)[0]), 0
+        *factors, singular = dgttrf(beside, diagonal, beside)
+        if singular:
+            return np.zeros_like(moments), len(diagonal) + 1  # more than any: another shift
+        lowest = -np.abs(diagonal).max() - 2 * np.abs(beside).max(initial=0.0) - 1.0
+        # A tolerance wider than the range: the eigenvalues are counted, not located.
+        negative = dstebz(diagonal, beside, _IN_RANGE, lowest, 0.0, 1, 1, -2 * lowest, b"E")[0]
+        return np.asarray(dgttrs(*factors, moments)[0]), int(negative)
+
+
+def _positive(matrix: Floats) -> int:
+    """How many eigenvalues of a symmetric matrix are positive."""
+    if len(matrix) == 0:
+        return 0
+    return int((dsyev(matrix, compute_v=0)[0] > 0).sum())
