@@ -10,6 +10,7 @@ from analytic.from_clamp.calibration.measured import Measured, check_size, measu
 from analytic.from_clamp.calibration.unknowns import UNKNOWNS, Sought, checked_unknowns
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case, Direction, Sweep
+from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
 
@@ -17,6 +18,8 @@ _DOUBLE_SIDED_95 = 1.959964
 _NOT_EXPLAINED = 0.1  # share of the stations that may be of no such vibrissa
 _ROUNDS = 4  # of fits, as stations that are of no such vibrissa are left out
 _WIDEST = 0.25  # half an interval that says something, of a dimensionless number
+_NOISE_KNOWN_TO = 1.1  # times what is stated
+_CHANCE = 3.0  # standard deviations of a misfit, which is 1 +- 1/sqrt(2 n)
 _SATISFIED = 1.5  # times the noise; a fit that leaves more is tried from elsewhere too
 _STARTS = 3
 _AT_THE_END = 1e-6  # from an end of what a number can be
@@ -72,8 +75,9 @@ class Calibration:
 
     @property
     def explains(self) -> bool:
-        """Whether the fit leaves little more than the noise."""
-        return self.misfit <= _SATISFIED
+        """Whether the fit leaves no more than chance and the noise, known to a tenth, do."""
+        freedom = len(CLAMP_READINGS) * self.stations - len(self.found)
+        return self.misfit <= _NOISE_KNOWN_TO + _CHANCE / np.sqrt(2 * freedom)
 
 
 def calibrate(

@@ -128,6 +128,20 @@ def test_noise_is_stated_as_an_interval():
 
 
 @pytest.mark.slow
+def test_an_object_that_is_one_per_cent_off_is_noticed():
+    """Under 1 % of noise it leaves 1.3 to 1.7 times the noise; the right object never 1.2."""
+    noticed = wrongly = 0
+    for seed in range(20):
+        true, stated = (
+            Case(profile=circle(1.0, (0.0, low)), sweep=Sweep(60)) for low in (0.4, 0.41)
+        )
+        readings, noise = noisy(solve_sweep(true), 0.01, np.random.default_rng(seed))
+        noticed += not calibrate(readings, stated, ["flexural_rigidity"], noise).explains
+        wrongly += not calibrate(readings, true, ["flexural_rigidity"], noise).explains
+    assert (noticed, wrongly) == (20, 0)
+
+
+@pytest.mark.slow
 def test_what_else_is_off_shows_as_a_misfit():
     readings, noise = noisy(solve_sweep(replace(SOFT, friction=0.3)), 0.01,
                             np.random.default_rng(2))  # fmt: skip
