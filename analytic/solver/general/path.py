@@ -228,12 +228,13 @@ def _points(curve: Curve, touch: Touch, largest: float, length: float) -> list[P
         if length <= _SMALLEST or _ended(points, curve.t_range, slack):
             break
         here = points[-1]
-        if here.swing > _BUCKLES:
-            length = min(length, _NEAR)
         ahead = curve.advance(here, length, bend)
         turn = curve.turning(here, ahead[0]) if ahead else np.inf
         if turn > 2 * largest or (length > _SHORT and _hides(curve, here, ahead[0])):
             length /= 2
+            continue
+        if length > _NEAR and max(here.swing, ahead[0].swing) > _BUCKLES:
+            length = max(length / 2, _NEAR)
             continue
         points.extend(ahead)
         bend = np.zeros(3)

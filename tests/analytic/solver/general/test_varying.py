@@ -373,3 +373,13 @@ def test_a_cone_past_small_facets_lets_go_where_it_does_past_the_curve():
     found = solve_sweep(Case(case.beam, facets, stations))
     assert set(found.table["status"]) == {"ok"}
     assert found.snap_off == pytest.approx(smooth.snap_off, abs=2e-3)
+
+
+def test_a_sharp_tip_does_not_let_go_by_chance():
+    """Shortly before it buckles one step of the curve reached another equilibrium, 0.47 L early."""
+    raised = named_case("tip-only")
+    found = []
+    for ratio in (0.0198, 0.02, 0.0202):
+        beam = Beam(radius=0.005, tip_radius=0.005 * ratio)
+        found.append(find_events(raised.profile, beam).snap_off.foot_x)
+    assert np.ptp(found) < 2e-3
