@@ -67,6 +67,22 @@ class Row:
         return float(np.hypot(self.force_x, self.force_y))
 
 
+def free_row(case: Case) -> Row:
+    """What a vibrissa reads that touches nothing.
+
+    Parameters
+    ----------
+    case : Case
+        Whose.
+
+    Returns
+    -------
+    Row
+        Without a load.
+    """
+    return Row(tip_angle=float(case.beam.unloaded.at(np.array(1.0))[2]))
+
+
 class Rest(Protocol):
     """What an engine is asked: a station, from the last state that was accepted."""
 
@@ -126,7 +142,7 @@ def sweep_stations(
     begun = time.process_time()
 
     def swept(leftward: Case) -> Readings:
-        way, length = _Way(rest(leftward)), leftward.beam.length
+        way, length = _Way(rest(leftward), free_row(leftward)), leftward.beam.length
         way.foot_x = float(leftward.foot_x[0]) / length
         rows, doubts = [], Counter[str]()
         for target in (leftward.foot_x / length).tolist():
@@ -162,9 +178,9 @@ def sweep_stations(
 class _Way:
     """The vibrissa on its way: the last state on the branch."""
 
-    def __init__(self, rest: Rest) -> None:
+    def __init__(self, rest: Rest, free: Row) -> None:
         self._rest = rest
-        self._last = Row()
+        self._last = self._free = free
         self._trail: list[tuple[float, ...]] = []  # foot position, clamp's readings, tip angle
         self._lost: str | None = None
         self.foot_x = 0.0
@@ -173,12 +189,12 @@ class _Way:
     def go_to(self, target: float) -> tuple[Row, str | None]:
         """The state at a station, and why it cannot be trusted."""
         if self.snap_off is not None:
-            return Row(), None
+            return self._free, None
         if self._lost is None:
             self._advance(target)
         if self._lost is not None:
             return replace(self._last, status="unsettled"), self._lost
-        return (Row() if self.snap_off is not None else self._last), None
+        return (self._free if self.snap_off is not None else self._last), None
 
     def _advance(self, target: float) -> None:
         step, begin = target - self.foot_x, self.foot_x == target

@@ -14,6 +14,7 @@ import numpy as np
 from exudyn import itemInterface as item  # noqa: N813  # the library's own name
 
 from analytic.problem.arrays import Floats
+from mujoco_models.beams.vibrissa import Vibrissa
 
 AXIAL_STIFFNESS = 1e6  # EI/L^2; a load of 10 stretches the cable by 1e-5
 _SLIPPED = 1e-9  # L; a joint that slipped no farther in a solution is where its force acts
@@ -21,6 +22,7 @@ _NO_FORCE = 1e-12  # EI/L^2; one that has no direction
 _REPEATS = 20  # three are usual
 _FORCE = exudyn.OutputVariableType.Force
 _COORDINATES = exudyn.OutputVariableType.Coordinates
+_TORQUE = exudyn.OutputVariableType.TorqueLocal
 _START = exudyn.ConfigurationType.Initial
 _NOW = exudyn.ConfigurationType.Current
 
@@ -57,6 +59,8 @@ class Cable:
     ----------
     elements : int
         How many.
+    vibrissa : Vibrissa
+        What it stands for: each element has the compliance and the natural curvature of its part.
 
     Attributes
     ----------
@@ -66,30 +70,60 @@ class Cable:
         Whether it has slipped out of the sliding joint.
     """
 
-    def __init__(self, elements: int) -> None:
+    def __init__(self, elements: int, vibrissa: Vibrissa) -> None:
         exudyn.config.printToConsole = False  # a step that fails is halved
-        self.held = Held(False, 1.0, np.array([0.0, 1.0]), np.array([0.0, 1.0]))
+        tip, along = vibrissa.at(np.array(1.0)), vibrissa.rest.at(np.array(1.0))[2]
+        self.held = Held(False, 1.0, tip, np.array([np.cos(along), np.sin(along)]))
         self.beyond = False
         self._container = exudyn.SystemContainer()
-        self._system = mbs = self._container.AddSystem()
+        self._system = self._container.AddSystem()
         self._length = 1 / elements
+        cables = self._add_cables(np.linspace(0, 1, elements + 1), vibrissa)
+        self._add_joints(cables)
+        self._add_clamp(cables[0], vibrissa.clamp_compliance)
+        self._system.Assemble()
+        self._settings = _settings()
+
+    def _add_cables(self, edges: Floats, vibrissa: Vibrissa) -> list[int]:
+        """The elements, upright; they start from the shape of the vibrissa at rest."""
+        mbs = self._system
+        softness, _ = vibrissa.bending(edges)
+        turn = vibrissa.turn(edges)
+        rest = np.column_stack([vibrissa.at(edges), -np.sin(turn), np.cos(turn)])
+        self._upright = np.zeros_like(rest)
+        self._upright[:, 1], self._upright[:, 3] = edges, 1.0
         self._nodes = [
-            mbs.AddNode(item.NodePoint2DSlope1(referenceCoordinates=[0, i / elements, 0, 1]))
-            for i in range(elements + 1)
+            mbs.AddNode(
+                item.NodePoint2DSlope1(
+                    referenceCoordinates=upright.tolist(),
+                    initialCoordinates=(place - upright).tolist(),
+                )
+            )
+            for place, upright in zip(rest, self._upright, strict=True)
         ]
-        cables = [
+        return [
             mbs.AddObject(
                 item.ObjectANCFCable2D(
                     length=self._length,
                     massPerLength=1,  # irrelevant at rest
-                    bendingStiffness=1,
+                    bendingStiffness=1 / soft,
+                    referenceCurvature=natural,
                     axialStiffness=AXIAL_STIFFNESS,
                     nodeNumbers=list(ends),
                 )
             )
-            for ends in pairwise(self._nodes)
+            for ends, soft, natural in zip(
+                pairwise(self._nodes),
+                softness.tolist(),
+                (np.diff(turn) / self._length).tolist(),
+                strict=True,
+            )
         ]
-        self._point = mbs.AddObject(item.ObjectGround(referencePosition=[0, 1, 0]))
+
+    def _add_joints(self, cables: list[int]) -> None:
+        """The point in space, and both joints there."""
+        mbs, count = self._system, len(cables)
+        self._point = mbs.AddObject(item.ObjectGround(referencePosition=[*self.held.point, 0]))
         self._at_point = mbs.AddMarker(item.MarkerBodyRigid(bodyNumber=self._point))
         self._spans = [
             mbs.AddMarker(item.MarkerBodyCable2DCoordinates(bodyNumber=i)) for i in cables
@@ -98,10 +132,10 @@ class Cable:
             item.ObjectJointSliding2D(  # the first object with multipliers: fx, fy and the slip
                 markerNumbers=[self._at_point, self._spans[-1]],
                 slidingMarkerNumbers=self._spans,
-                slidingMarkerOffsets=(self._length * np.arange(elements)).tolist(),
+                slidingMarkerOffsets=(self._length * np.arange(count)).tolist(),
                 nodeNumber=mbs.AddNode(
                     item.NodeGenericData(
-                        initialCoordinates=[elements - 1, 1.0], numberOfDataCoordinates=2
+                        initialCoordinates=[count - 1, 1.0], numberOfDataCoordinates=2
                     )
                 ),
                 activeConnector=False,
@@ -111,9 +145,14 @@ class Cable:
         self._revolute = mbs.AddObject(
             item.ObjectJointRevolute2D(markerNumbers=[self._at_point, tip])
         )
+
+    def _add_clamp(self, cable: int, compliance: float) -> None:
+        """What holds the foot: x, y and the slope, or x, y and a spring."""
+        mbs = self._system
         ground = mbs.AddNode(item.NodePointGround())
         fixed = mbs.AddMarker(item.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
-        # x, y, and the slope vector's x: its virtual work is that of a moment about -z.
+        # The slope vector's x is the third coordinate; its virtual work is that of a moment about
+        # -z, as is Exudyn's torque of the spring.
         self._clamp = [
             mbs.AddObject(
                 item.ObjectConnectorCoordinate(
@@ -125,10 +164,17 @@ class Cable:
                     ]
                 )
             )
-            for i in range(3)
+            for i in range(3 if compliance == 0 else 2)
         ]
-        mbs.Assemble()
-        self._settings = _settings()
+        self._spring = None
+        if compliance > 0:
+            world = mbs.AddObject(item.ObjectGround())
+            ends = [mbs.AddMarker(item.MarkerBodyRigid(bodyNumber=i)) for i in (world, cable)]
+            self._spring = mbs.AddObject(
+                item.ObjectConnectorTorsionalSpringDamper(
+                    markerNumbers=ends, stiffness=1 / compliance, offset=np.pi / 2
+                )
+            )
 
     def state(self) -> tuple[Held, list[Floats]]:
         """How it is held, and its shape.
@@ -209,10 +255,13 @@ class Cable:
             share = float(np.clip((before - slips) / step, 0.5, 2.0))  # by secants
         else:
             raise LostError
-        x, y, slope = (float(np.ravel(mbs.GetObjectOutput(i, _FORCE))[0]) for i in self._clamp)
+        forces = [float(np.ravel(mbs.GetObjectOutput(i, _FORCE))[0]) for i in self._clamp]
+        if self._spring is not None:
+            forces.append(float(mbs.GetObjectOutput(self._spring, _TORQUE)))
+        x, y, turn = forces
         along = np.array([y, -x]) / max(np.hypot(x, y), _NO_FORCE)
         self.held = self.held._replace(point=point, along=along)
-        return np.array([x, y, -slope])
+        return np.array([x, y, -turn])
 
     def _solve_once(self, slipped: float) -> float:
         """By how far the cable slips in its joint, from where it would be if it slipped so far."""
@@ -245,9 +294,7 @@ class Cable:
             Seen from the foot [L]; derivatives by arc length.
         """
         coordinates = np.array([self._system.GetNodeOutput(i, _COORDINATES) for i in self._nodes])
-        rest = np.zeros_like(coordinates)
-        rest[:, 1], rest[:, 3] = self._length * np.arange(len(self._nodes)), 1.0
-        both = coordinates + rest
+        both = coordinates + self._upright
         return both[:, :2], both[:, 2:]
 
 

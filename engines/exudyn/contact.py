@@ -18,10 +18,12 @@ from scipy.optimize import brentq
 
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
+from analytic.problem.rest import first_touch
 from engines.exudyn.cable import Cable, LostError
-from engines.stations import Row
+from engines.stations import Row, free_row
+from mujoco_models.beams.vibrissa import Vibrissa
 
-_STILL = 1e-8  # EI/L^2; the force along the contour that is none
+_STILL = 1e-7  # EI/L^2; the force along the contour that is none
 _CLOSE = 1e-10  # L, or rad about a corner; how well a root is known
 _PROBE, _LONGEST = 1e-5, 0.02  # L, or rad; the steps in which a root is looked for
 _SHORT = 1e-3  # L; a step of the foot in which a vibrissa can be seen to let go
@@ -43,18 +45,21 @@ class Contact:
     """
 
     def __init__(self, case: Case, elements: int) -> None:
-        self._cable = Cable(elements)
-        self._line, self._radius = case.centreline, case.radius
+        rest, self._line = case.beam.unloaded, case.centreline
+        self._rest, self._radius, self._free = rest, case.radius, free_row(case)
+        self._cable = Cable(elements, Vibrissa.of(case.beam, case.clamp_stiffness))
         self._last, self._first = case.reach
         self._breaks = self._line.breaks()
-        ends = self._line.at(np.array([self._last, self._first]))
-        self._far, self._near = ends.xi.tolist()  # between them an upright cable is in the object
-        if ends.eta[1] < 1 - _CLOSE:
-            self._cable.let_slide(float(ends.eta[1]), np.array([0.0, ends.eta[1]]))
-        self._t, self._state, self._has_let_go = self._first, self._cable.state(), False
+        self._normals, self._heights = self._tangents()
+        # Between the two feet the vibrissa at rest is in the object.
+        touch = first_touch(self._line, case.reach, rest)
+        self._near, self._far = touch.foot_x, self._last_touch()
+        if touch.excess < 0:
+            s = np.array(1 + touch.excess)
+            self._cable.let_slide(float(s), np.array(rest.at(s)[:2]))
+        self._t, self._state, self._has_let_go = touch.t, self._cable.state(), False
         self._found = self._t, self._state, self._has_let_go
         self._foot_x = self._accepted_at = np.inf
-        self._normals, self._heights = self._tangents()
 
     def _tangents(self) -> tuple[Floats, Floats]:
         """Lines that have the object on one side, one on every edge: normals, and how far out."""
@@ -66,12 +71,20 @@ class Contact:
         normals = np.column_stack([np.sin(on.alpha), -np.cos(on.alpha)])
         return normals, on.xi * normals[:, 0] + on.eta * normals[:, 1]
 
+    def _last_touch(self) -> float:
+        """The foot position left of which the vibrissa at rest is clear of the object [L]."""
+        s = np.linspace(0, 1, _POINTS)
+        x, y, _ = self._rest.at(s)
+        on = self._line.at(np.linspace(self._last, self._first, _POINTS))
+        beside = on.eta <= y[-1]
+        return float((on.xi - np.interp(on.eta, y, x))[beside].min())
+
     def at(self, foot_x: float) -> Row | None:
         """By moving the joint from where it was."""
         way, self._foot_x = self._accepted_at - foot_x, foot_x
         if foot_x >= self._near or self._has_let_go:
             self._found = self._t, self._state, self._has_let_go
-            return Row()
+            return self._free
         self._cable.go_back(self._state)
         try:
             t = self._settle(self._t)
@@ -80,7 +93,7 @@ class Contact:
         if t is None:
             # Not in a long step, in which it may have been touched and let go of unseen.
             self._found = self._last, self._state, True
-            return Row() if way < _SHORT and foot_x <= self._far else None
+            return self._free if way < _SHORT and foot_x <= self._far else None
         return None if self._is_inside() else self._row(t)
 
     def accept(self) -> None:

@@ -6,6 +6,7 @@ from importlib.metadata import version
 from threadpoolctl import threadpool_limits
 
 from analytic.problem.case import Case
+from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
 from engines.engine import Role
 from engines.stations import Rest, sweep_stations
@@ -27,7 +28,12 @@ class _Exudyn:
         self, case: Case, settings: Settings, advance: Callable[[], None] = lambda: None
     ) -> Readings:
         """By its static solver, station after station, past the contour itself: no mesh."""
-        case.require_plain("exudyn")
+        beam, cannot = case.beam, "exudyn cannot take it into account"
+        if case.friction != 0:
+            raise InputError("friction", case.friction, f"0: {cannot}", "leave it out")
+        if beam.tip_radius not in (None, beam.radius):
+            allowed = f"{beam.radius:g}: {cannot}"
+            raise InputError("beam.tip_radius", beam.tip_radius, allowed, "leave it out")
         chosen = {"elements": settings.segments, "obstacle": "the contour, by a joint on it"}
         about = {
             "engine": f"Exudyn {version('exudyn')}, vibrissa-testbed {version('vibrissa-testbed')}",
