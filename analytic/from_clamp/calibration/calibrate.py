@@ -77,7 +77,7 @@ class Calibration:
     def explains(self) -> bool:
         """Whether the fit leaves no more than chance and the noise, known to a tenth, do."""
         freedom = len(CLAMP_READINGS) * self.stations - len(self.found)
-        return self.misfit <= _NOISE_KNOWN_TO + _CHANCE / np.sqrt(2 * freedom)
+        return bool(self.misfit <= _NOISE_KNOWN_TO + _CHANCE / np.sqrt(2 * freedom))
 
 
 def calibrate(
