@@ -376,6 +376,7 @@ def test_a_cone_past_small_facets_lets_go_where_it_does_past_the_curve():
     assert found.snap_off == pytest.approx(smooth.snap_off, abs=2e-3)
 
 
+@pytest.mark.slow
 def test_a_sharp_tip_does_not_let_go_by_chance():
     """Shortly before it buckles one step of the curve reached another equilibrium, 0.47 L early."""
     raised = replace(named_case("tip-only"), sweep=Sweep(2))
