@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
+from typing import get_args
 
 from packaging.requirements import InvalidRequirement, Requirement
 
 from analytic.problem.errors import InputError
-from engines.engine import Engine
+from engines.engine import Engine, Role
 from engines.known import known_engines
 
 
@@ -78,6 +79,7 @@ def _found(name: str, target: str) -> Found:
     try:
         engine: Engine = getattr(import_module(module), attribute)
         Requirement(engine.requires)
+        _check(engine)
     except (Exception, SystemExit) as error:  # whatever another's module does when imported
         what = " ".join(f"{type(error).__name__}: {error}".split())
         if isinstance(error, InvalidRequirement):
@@ -85,6 +87,16 @@ def _found(name: str, target: str) -> Found:
         return Found(name, None, None, f"{target} cannot be loaded ({what})")
     there, trouble = installed(engine.requires)
     return Found(name, engine, there, trouble)
+
+
+def _check(engine: Engine) -> None:
+    """Raise if it lacks what an engine is asked for, so that only itself is lost by that."""
+    if engine.role not in get_args(Role):
+        raise ValueError(f"role is {engine.role!r}, not one of {', '.join(get_args(Role))}")
+    if not callable(engine.sweep):
+        raise TypeError("sweep is no function")
+    if not isinstance(engine.tuned, str):
+        raise TypeError("tuned is no text")
 
 
 def installed(requires: str) -> tuple[str | None, str | None]:

@@ -46,6 +46,12 @@ class Odd:
 RAISES, HANGS, DIES, EXITS = Odd("raises"), Odd("hangs"), Odd("dies"), Odd("exits")
 NAN, SHORT, TABLE = Odd("not-a-number"), Odd("short"), Odd("table")
 MISSING, OLD = Odd("missing", "no-such-thing>=2"), Odd("old", "numpy<1")
+
+class Bare:
+    requires = "numpy"
+
+BARE, MUTE, VAGUE = Bare(), Bare(), Odd("vague")
+MUTE.role, VAGUE.role = "twin", "rival"
 """
 POINTS = """
 [vibrissa.engines]
@@ -57,6 +63,9 @@ not-a-number = odd_engines:NAN
 short = odd_engines:SHORT
 table = odd_engines:TABLE
 missing = odd_engines:MISSING
+bare = odd_engines:BARE
+mute = odd_engines:MUTE
+vague = odd_engines:VAGUE
 old = odd_engines:OLD
 broken = odd_engines:NOTHING
 mujoco = odd_engines:RAISES
@@ -90,6 +99,9 @@ def test_the_shipped_engines_are_listed_first_and_cannot_be_replaced(odd_engines
         ("missing", "no-such-thing is not installed: pip install 'no-such-thing>=2'"),
         ("old", "is not <1: pip install 'numpy<1'"),
         ("broken", "cannot be loaded"),
+        ("bare", "no attribute 'role'"),
+        ("mute", "no attribute 'sweep'"),
+        ("vague", "role is 'rival', not one of subject, twin, other model"),
         ("mujocco", "one of mujoco"),
     ],
 )
