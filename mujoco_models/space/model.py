@@ -153,6 +153,24 @@ class SpaceModel:
         """
         return np.asarray(self.data.xmat[self._links[link]].reshape(3, 3)[:, 1])
 
+    def centre(self, link: int, s: float) -> Floats:
+        """Of a bead.
+
+        Parameters
+        ----------
+        link : int
+            Number of the link.
+        s : float
+            Arc length of the bead, on that link [L].
+
+        Returns
+        -------
+        array, shape (3,)
+            [L]
+        """
+        start = self.data.xpos[self._links[link]]
+        return np.asarray(start + (s - self.layout.joints[link]) * self.direction(link))
+
     def touch(self, link: int, s: float) -> Touch:
         """MuJoCo's nearest point of the body to a bead on a link.
 
@@ -168,8 +186,7 @@ class SpaceModel:
         Touch
             Place, normal and distance.
         """
-        start = self.data.xpos[self._links[link]]
-        centre = start + (s - self.layout.joints[link]) * self.direction(link)
+        centre = self.centre(link, s)
         normal, distance = self._nearest(link, centre)
         if self.shape.osculating is not None:
             for _ in range(_FOLLOWED):
@@ -223,6 +240,23 @@ class SpaceModel:
         values, ways = np.linalg.eigh((found + found.T) / 2)
         ways = ways.T @ sides
         return np.asarray(ways.T @ np.diag(np.maximum(values, 0.0)) @ ways)
+
+    def probe(self, link: int, centre: Floats) -> Touch:
+        """The nearest point to a bead wherever it is.
+
+        Parameters
+        ----------
+        link : int
+            Whose bead.
+        centre : array, shape (3,)
+            Where it is to be [L].
+
+        Returns
+        -------
+        Touch
+            Place, normal and distance.
+        """
+        return Touch(centre, *self._nearest(link, centre))
 
     def _nearest(self, link: int, centre: Floats) -> tuple[Floats, float]:
         bead = self._beads[link]

@@ -14,23 +14,22 @@ from scipy.optimize import brentq, minimize_scalar
 from analytic.problem.arrays import Floats
 from mujoco_models.space.model import SpaceModel
 from mujoco_models.space.rest import Rest, Settled, State
+from mujoco_models.space.surface import STAYS, Feature, features_around, surface_at
 
 _TOUCH = 1e-10  # L of the way, to which the first contact is enclosed
 _BEGIN = 1e-6  # L beyond it, where a contact begins
 _SMALLEST = 1e-5  # L; an equilibrium that steps as small as this do not find has ended
 _EVENT = 5e-4  # L, to which a change of phase and a hop are enclosed
-_TURN = 0.02  # rad, of a facet's normal in a step: more may be a facet that was left out
-_TURN_OF_SIDE = 0.1  # the same where the vibrissa runs over edges, with normals between the facets'
 # Of the contact in a step: more is another branch. Next to its end a branch is steep, so that steps
 # are halved there.
 _LEAP, _LEAST_LEAP = 5.0, 0.02  # of the step; L
+_LEAP_ON_FACE = 0.3  # L; a side that lies on a face touches anywhere along it
 _LANDING = 0.12  # L, of the contact: what comes to rest farther away depends on its motion
-_HOPS = (
-    0.0,
-    2e-3,
-    5e-3,
-    2e-2,
-)  # L: widths over which facets are smooth when the next one is looked for
+_CROSSED = 1e-4  # L, to which it is enclosed where a contact leaves a face, an edge or a corner
+_STEADY = 2e-3  # L, of the contact that goes on as it was beyond
+_SHORTER, _LONGER = 4.0, 2.0  # times the step where Newton's method fails, and where not
+_BESIDE = 0.02  # of the way to where it leaves: so much before and beyond it is looked for
+_FACES = 40  # of a mesh over which a vibrissa hops at once
 _GIVEN_UP = 3  # unsettled stations in a row: from then on all are, until the vibrissa comes clear
 _LOOSE = 1e-3  # EI/L^2; a contact that ends with less has been released
 
@@ -166,7 +165,8 @@ class Walk:
         model.place(foot, model.straight)
         _, link, s = model.nearest_link()
         start = State(model.straight, link, s, 0.0, False)
-        self._at, self._held = at, self._rest.settle(start, foot, foot)
+        surface = surface_at(model, link, model.touch(link, s))
+        self._at, self._held = at, self._rest.settle(start, surface, foot, foot)
 
     def _follow(self, target: float) -> bool:
         """Along the stable branch to the station, or to its end and what comes after it.
@@ -176,45 +176,82 @@ class Walk:
         bool
             False if the vibrissa does not come to rest.
         """
-        failed = np.inf
+        # `left` is where the contact is known to have left its face or edge, `guess` about where it
+        # does; `stride` is how far Newton's method leads.
+        left, guess, stride = np.inf, np.inf, np.inf
         while self._at < target:
             held = self._held
             assert held is not None
-            goal = target if failed == np.inf else (self._at + failed) / 2
+            goal = min(target, self._at + stride)
+            if left - self._at <= _CROSSED:
+                goal = min(goal, left)
+            elif left < np.inf:
+                goal = min(goal, guess if guess < left else (self._at + left) / 2)
+            found = self._neighbour(held, goal)
             step = goal - self._at
-            found = self._neighbour(held, goal, step)
-            if found is None and step > _SMALLEST:
-                failed = goal
-                continue
             if found is None:
-                return self._fall(held, goal)
-            self._note_phase(held, goal, found)
-            if self._turned(held, found) > _TURN:
-                self.events.append(Event("hop", goal))
-            self._at, self._held = goal, found
-            failed = np.inf if goal >= failed else failed
-            failed = np.inf if failed - goal < _SMALLEST else failed
+                stride = step / _SHORTER
+                if step <= _SMALLEST:
+                    return self._fall(held, goal)
+            elif found.stays:
+                self._note_phase(held, goal, found)
+                self._at, self._held = goal, found
+                left, guess = (end if end > goal else np.inf for end in (left, guess))
+                stride = max(_LONGER * step, stride)
+            elif step > _CROSSED:
+                left, guess = (
+                    goal,
+                    self._at + max(self._left(held, found, goal) * step, _CROSSED / 2),
+                )
+            else:
+                beyond = self._across(held, found, goal)
+                if beyond is None:
+                    return self._fall(held, goal)
+                self._note_phase(held, goal, beyond)
+                self._at, self._held, left, guess = goal, beyond, np.inf, np.inf
         return True
 
-    def _neighbour(self, held: Settled, goal: float, step: float) -> Settled | None:
-        """The stable equilibrium on the same branch."""
-        found = self._rest.settle(held.state, self._foot(self._at), self._foot(goal))
+    def _neighbour(self, held: Settled, goal: float) -> Settled | None:
+        """The stable equilibrium on the same branch, of a mesh on the same face, edge or corner."""
+        step = goal - self._at
+        found = self._rest.settle(held.state, held.surface, self._foot(self._at), self._foot(goal))
         if found is None or found.stability <= 0:
             return None
-        if _apart(found, held) > max(_LEAP * step, _LEAST_LEAP):
-            return None
-        turn = _TURN_OF_SIDE if held.state.sliding and found.state.sliding else _TURN
-        if step > _EVENT and self._turned(held, found) > turn:
-            return None
-        return found
+        on_face = isinstance(held.surface, Feature) and held.surface.flat
+        farthest = _LEAP_ON_FACE if on_face else max(_LEAP * step, _LEAST_LEAP)
+        return found if _apart(found, held) <= farthest else None
 
-    def _turned(self, held: Settled, found: Settled) -> float:
-        """By how much the normal of a faceted body has jumped [rad]."""
-        if not self._model.shape.faceted:
-            return 0.0
-        turned = found.touch.normal - held.touch.normal
-        expected = held.turning @ (found.touch.centre - held.touch.centre)
-        return float(min(np.linalg.norm(turned), np.linalg.norm(turned - expected)))
+    def _left(self, held: Settled, found: Settled, goal: float) -> float:
+        """At about which share of a step the contact leaves its face, edge or corner."""
+        if not isinstance(held.surface, Feature) or found.state.link != held.state.link:
+            return 0.5
+        model, link = self._model, found.state.link
+        model.place(self._foot(goal), found.state.configuration)
+        if held.surface.missed(link, found.state.s) < STAYS:
+            return 0.5  # another link is deeper
+        by = found.touch.centre - held.touch.centre
+        low, high = 0.0, 1.0
+        while high - low > _BESIDE / 4:
+            middle = (low + high) / 2
+            if held.surface.missed_at(link, held.touch.centre + middle * by) < STAYS:
+                low = middle
+            else:
+                high = middle
+        return low * (1 - _BESIDE) if low > _BESIDE else min(2 * high, 0.5)
+
+    def _across(self, held: Settled, found: Settled, goal: float) -> Settled | None:
+        """On the next face, edge or corner, where the equilibrium goes on as it was."""
+        model, foot, state = self._model, self._foot(goal), found.state
+        model.place(foot, state.configuration)
+        touch = model.touch(state.link, state.s)
+        if isinstance(held.surface, Feature) and held.surface.missed(state.link, state.s) < STAYS:
+            _, link, s = model.nearest_link()  # another link is deeper
+            state = state._replace(link=link, s=s, sliding=False)
+            touch = model.touch(link, s)
+        beyond = self._rest.settle(state, surface_at(model, state.link, touch), foot, foot)
+        if beyond is None or not (beyond.stays and beyond.stability > 0):
+            return None
+        return beyond if _apart(beyond, held) < _STEADY else None
 
     def _note_phase(self, held: Settled, goal: float, found: Settled) -> None:
         """Enclose a change between the tip and the side."""
@@ -223,8 +260,10 @@ class Walk:
             return
         while high - low > _EVENT:
             middle = (low + high) / 2
-            between = self._rest.settle(held.state, self._foot(low), self._foot(middle))
-            if between is None:
+            between = self._rest.settle(
+                held.state, held.surface, self._foot(low), self._foot(middle)
+            )
+            if between is None or not between.stays:
                 break
             if _at_tip(between) == _at_tip(held):
                 low, held = middle, between
@@ -234,29 +273,74 @@ class Walk:
 
     def _fall(self, held: Settled, goal: float) -> bool:
         """Where the vibrissa goes when no stable equilibrium is near any more."""
-        gap = self._gap(goal)
-        if held.state.force < _LOOSE or gap > 0:
-            released = held.state.force < _LOOSE
-            self.events.append(Event("release" if released else "slip-off", self._at))
-            self._held, self._lost, self._at = None, gap <= 0, goal
+        if held.state.force < _LOOSE:
+            self.events.append(Event("release", self._at))
+            self._held, self._lost, self._at = None, self._gap(goal) <= 0, goal
             return True
-        for wide in _HOPS if self._model.shape.faceted else _HOPS[:1]:
-            found = self._rest.settle(held.state, self._foot(self._at), self._foot(goal), wide)
-            if found is not None and found.stability > 0 and _apart(found, held) < _LANDING:
-                self.events.append(Event("hop", self._at))
-                self._note_phase(held, goal, found)
-                self._held, self._at = found, goal
-                return True
+        hopped = self._over_faces(held, goal)
+        if hopped is not None:
+            self.events.append(Event("hop", self._at))
+            self._note_phase(held, goal, hopped)
+            self._held, self._at = hopped, goal
+            return True
         landed = self._rest.descend(held, self._foot(goal), _LANDING)
         if landed is None:
             self.events.append(Event("slip-off", self._at))
-            self._held, self._lost, self._at = None, True, goal
+            self._held, self._lost, self._at = None, self._gap(goal) <= 0, goal
             return True
         if not landed.stability > 0:
             return False
         self.events.append(Event("hop", self._at))
         self._held, self._at = landed, goal
         return True
+
+    def _over_faces(self, held: Settled, goal: float) -> Settled | None:
+        """Where the vibrissa goes over an edge of a mesh, from face to face.
+
+        Damped by its material it goes straight towards the state that would be at rest if the face
+        it comes to had no end; at the next edge the next face says where that is.
+        """
+        if not self._model.shape.faceted:
+            return None
+        model, foot = self._model, self._foot(goal)
+        state, centre = held.state, held.touch.centre
+        for _ in range(_FACES):
+            model.place(foot, state.configuration)
+            left = None
+            for surface in features_around(model, state.link, centre):
+                found = self._rest.settle(state, surface, foot, foot)
+                if found is None or found.stability <= 0:
+                    continue
+                by = found.touch.centre - centre
+                if float(np.linalg.norm(by)) > _LANDING:
+                    continue
+                if found.stays:
+                    return found if _apart(found, held) < _LANDING else None
+                share = self._room(surface, found.state.link, centre, by)
+                if share > 0 and left is None:
+                    left = found.state, centre + share * by
+            if left is None:
+                return None
+            state, centre = left
+            if float(np.linalg.norm(centre - held.touch.centre)) > _LANDING:
+                return None
+        return None
+
+    def _room(self, surface: Feature, link: int, centre: Floats, by: Floats) -> float:
+        """How much of a way is along a face."""
+        size = float(np.linalg.norm(by))
+        first = min(1.0, 2 * self._model.radius / max(size, 1e-300))
+
+        def stays(share: float) -> bool:
+            return surface.missed_at(link, centre + share * by) < STAYS
+
+        if not surface.flat or not stays(first):
+            return 0.0
+        low, high = first, 1.0
+        while (high - low) * size > _EVENT:
+            middle = (low + high) / 2
+            low, high = (middle, high) if stays(middle) else (low, middle)
+        return low
 
 
 def _apart(one: Settled, other: Settled) -> float:

@@ -1,27 +1,53 @@
-"""Where a vibrissa goes that hops over an edge: the stable state near by, if there is just one.
+"""Where a vibrissa goes that hops over an edge: down its energy, to the first stable state near by.
 
 A tip that slides on a face and comes to an edge is not stable on the edge, whose curvature across
-the plane of bending drops it: it hops to the next face. That is a slip-off with a landing close by,
-and inertia has no say in it.
+the plane of bending drops it. What it does then takes no time against the way of the foot. A
+vibrissa whose material damps its motion (Kelvin and Voigt's law: as much as it is stiff) goes
+straight towards the state that would be at rest if the face it comes to had no end. If the face
+goes on that far, it has landed; if not, it comes to the next edge, and the faces there say where
+to. An edge from which no face leads away holds it, or leads it along. Where that finds nothing, as
+of a side that slides over a corner, the whole vibrissa goes down (`descent`).
 """
+
+from collections.abc import Iterator
+from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.space.problem.bodies.body import across
-from analytic.space.solver.contact import Contact, Scene, contact_at
+from analytic.space.problem.bodies.feature import Feature
+from analytic.space.problem.bodies.polyhedron import Polyhedron
+from analytic.space.solver.contact import APART, Contact, Scene, contact_at
+from analytic.space.solver.descent import Touching, descend
 from analytic.space.solver.newton import settle
 from analytic.space.solver.stability import is_stable
 
-_DISTANCES = (0.005, 0.02, 0.06)  # L on the parallel surface, from where it is looked for
-_WAYS = 8
-_FARTHEST = 0.12  # L on the parallel surface: what lands farther away depends on its motion
-_SAME = 1e-7  # L, of two landings that are one
+_FARTHEST = 0.12  # L, of the contact: what lands farther away depends on its motion
+_STEPS = 100
+_ABOVE = 1e-9  # L; a point that far outside has its nearest point on the surface
+_SAME = 1e-7  # L, between a face that has no end and the mesh
+_PARALLEL = 1e-9  # rad, between faces that have no edge
 _SLACK = 1e-9  # of the energy: rounding
+_NEAR = 0.02  # L, between a chain's contact and the one of the closed form
+_AHEAD = (0.0, 1e-3, 4e-3)  # L of the way: a chain may hold a little longer
+_SLOW, _ASKED = 2e-3, 8  # rad, of a step after which the closed form is asked; how often
+_LEAST = 1e-3  # rad, rotation of a tip that is searched for
 
 
-def landing(scene: Scene, start: Contact, foot: Floats) -> Contact | None:
-    """The stable state of less energy that is close to a state that ceases to be stable.
+class _Step(NamedTuple):
+    """Along a face or an edge."""
+
+    by: Floats
+    """Shape (3,) [L]."""
+    whole: bool
+    """Whether the face goes on as far as the state at rest."""
+    target: Contact
+    """That state."""
+
+
+def landing(scene: Scene, start: Contact, begin: Floats, foot: Floats) -> Contact | None:
+    """The stable state of less energy to which a vibrissa goes that has lost its hold.
 
     Parameters
     ----------
@@ -29,32 +55,112 @@ def landing(scene: Scene, start: Contact, foot: Floats) -> Contact | None:
         Body, clamp tangent, radius.
     start : Contact
         The last stable state.
-    foot : array, shape (3,)
-        A foot position just beyond [L].
+    begin, foot : array, shape (3,)
+        The foot's position in that state, and one just beyond [L].
 
     Returns
     -------
     Contact or None
-        The nearest; None if there is none, or another one in another direction is as low.
+        None if it comes clear of the body, or gets farther than 0.12 L.
     """
-    found: list[tuple[float, float, Contact]] = []
-    limit = start.energy * (1 + _SLACK)
-    free = start.arc_length if start.tangent else start.excess
-    for distance in _DISTANCES:
-        for angle in np.arange(_WAYS) * 2 * np.pi / _WAYS:
-            aside = np.array([np.cos(angle), np.sin(angle)]) @ across(start.spot.normal)
-            place = start.on_parallel + distance * aside
-            trial = settle(scene, contact_at(scene, place, free, start.tangent), foot)
-            if trial is None or trial.energy > limit or not is_stable(trial, scene.radius):
-                continue
-            leap = float(np.linalg.norm(trial.on_parallel - start.on_parallel))
-            if leap < _FARTHEST:
-                found.append((leap, trial.energy, trial))
-    if not found:
-        return None
-    _, low, nearest = min(found, key=lambda one: one[0])
-    for _, energy, other in found:
-        apart = float(np.linalg.norm(other.on_parallel - nearest.on_parallel))
-        if apart > _SAME and abs(energy - low) <= _SLACK * low:
+    if isinstance(scene.body, Polyhedron):
+        found = _over_faces(scene, scene.body, start, foot)
+        if found is not None:
+            return found if _apart(found.spot.point, start.spot.point) <= _FARTHEST else None
+    return _down(scene, start, begin, foot)
+
+
+def _over_faces(scene: Scene, body: Polyhedron, start: Contact, foot: Floats) -> Contact | None:
+    """Of a tip on a mesh, in closed form."""
+    point, normal, last = start.spot.point, start.spot.normal, start
+    for _ in range(_STEPS):
+        spot = body.nearest(point + _ABOVE * normal, APART)
+        if _apart(spot.point, start.spot.point) > _FARTHEST:
             return None
-    return nearest
+        for step in _steps(scene, body, last, spot.point, foot, start.energy * (1 + _SLACK)):
+            found = _landed(scene, step.target, foot) if step.whole else None
+            if found is not None:
+                return found
+            if not step.whole:
+                point, normal, last = spot.point + step.by, step.target.spot.normal, step.target
+                break
+        else:
+            return None
+    return None
+
+
+def _down(scene: Scene, start: Contact, begin: Floats, foot: Floats) -> Contact | None:
+    """Of a whole vibrissa, sides and all; the closed form where it comes to rest."""
+    onward = (foot - begin) / _apart(foot, begin)
+    for ahead in _AHEAD:
+        touching, asked = None, 0
+        for touching in descend(scene, start, foot + ahead * onward):
+            if _apart(touching.place, start.spot.point) > _FARTHEST:
+                return None
+            if touching.turned > _SLOW:
+                continue
+            found, asked = _next_to(scene, touching, foot), asked + 1
+            if found is not None and found.energy <= start.energy * (1 + _SLACK):
+                return found
+            if asked == _ASKED:
+                break
+        if asked < _ASKED:
+            return None
+    return None
+
+
+def _next_to(scene: Scene, touching: Touching, foot: Floats) -> Contact | None:
+    """The stable state of the closed form next to a chain at rest."""
+    for tangent in (False, True):
+        free = touching.arc_length if tangent else max(touching.bent, _LEAST)
+        trial = contact_at(scene, touching.on_parallel, free, tangent)
+        found = settle(scene, trial, foot)
+        if found is None or _apart(found.spot.point, touching.place) > _NEAR:
+            continue
+        if is_stable(found, scene.radius):
+            return found
+    return None
+
+
+def _steps(
+    scene: Scene, body: Polyhedron, last: Contact, point: Floats, foot: Floats, energy: float
+) -> Iterator[_Step]:
+    """Ways on from a point of the surface, on its faces before those along its edges."""
+    free = last.arc_length if last.tangent else last.excess
+    for feature in _features(body.normals_at(point), point):
+        alone = scene._replace(body=feature)
+        above = feature.nearest(point + APART * last.spot.normal, APART).normal
+        start = contact_at(alone, point + APART * above, free, last.tangent)
+        target = settle(alone, start, foot)
+        if target is None or target.energy > energy:
+            continue
+        by = target.spot.point - point
+        room = body.room(point, by)
+        if room * float(np.linalg.norm(by)) > _ABOVE:
+            yield _Step(room * by, room == 1.0, target)
+
+
+def _features(normals: Floats, point: Floats) -> Iterator[Feature]:
+    """The faces that meet at a point, and what may be edges between them."""
+    for n in normals:
+        yield Feature(point, np.zeros((0, 3)), n)
+    for one, other in combinations(normals, 2):
+        between, apart = one + other, one - other
+        size = float(np.linalg.norm(apart))
+        if size > _PARALLEL:
+            between = between / np.linalg.norm(between)
+            yield Feature(point, np.stack([between, apart / size]), between)
+
+
+def _landed(scene: Scene, target: Contact, foot: Floats) -> Contact | None:
+    """That state on the mesh as it is, if it is there and stable."""
+    free = target.arc_length if target.tangent else target.excess
+    start = contact_at(scene, target.on_parallel, free, target.tangent)
+    found = settle(scene, start, foot)
+    if found is None or not is_stable(found, scene.radius):
+        return None
+    return found if _apart(found.on_parallel, target.on_parallel) < _SAME else None
+
+
+def _apart(one: Floats, other: Floats) -> float:
+    return float(np.linalg.norm(one - other))

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from analytic.space.problem.bodies.polyhedron import Polyhedron
 from analytic.space.problem.straight import Way
 from analytic.space.solver.contact import APART, Contact, Scene, contact_at
 from analytic.space.solver.hop import landing
@@ -14,10 +15,12 @@ from analytic.space.solver.stability import is_stable
 
 _CLOSE = 1e-13  # L of the way, to which events are enclosed
 _BEYOND = 1e-9  # L: a state that is missing at one place only was missed by Newton's method
-_MISSES = 8  # of these between two stations
+_MISSES = 200  # of these between two stations, and of edges that are crossed
 _BARELY = 1e-7  # L and rad: how far a contact that has just begun is bent
 _LOOSE = 1e-5  # EI/L^2; a contact that ends with less has been released
 _LEAP = 0.3  # L on the parallel surface between neighbouring states: more is another branch
+_STEADY = 1e-6  # the same across an edge, where the foot moves by 1e-9
+_SAME = 1e-7  # the same between a face that has no end and the mesh
 
 
 class Event(NamedTuple):
@@ -63,6 +66,7 @@ class _Walker:
     def __init__(self, scene: Scene, way: Way) -> None:
         self._scene = scene
         self._way = way
+        self._smooth = not isinstance(scene.body, Polyhedron)
         self._events: list[Event] = []
 
     def along(self, travel: Sequence[float] | Floats) -> Walked:
@@ -110,7 +114,7 @@ class _Walker:
             if failed - at <= _CLOSE:
                 missed += 1
                 beyond = min(failed + _BEYOND, to)
-                found = self._stable_at(contact, beyond)
+                found = self._across(contact, beyond)
                 if found is None or missed > _MISSES:
                     return at, contact, False
                 goal, failed = beyond, np.inf
@@ -126,11 +130,34 @@ class _Walker:
         return at, contact, True
 
     def _stable_at(self, start: Contact, travel: float) -> Contact | None:
-        found = settle(self._scene, start, self._way.foot(travel))
-        if found is None or not is_stable(found, self._scene.radius):
+        """On the same face, edge or corner of a mesh."""
+        foot, radius = self._way.foot(travel), self._scene.radius
+        found = self._on_feature(start, foot)
+        if found is None or _apart(found, start) > _LEAP:
             return None
-        leap = float(np.linalg.norm(found.on_parallel - start.on_parallel))
-        return found if leap < _LEAP else None
+        if not self._smooth:
+            alone, found = found, settle(self._scene, self._there(found), foot)
+            if found is None or _apart(found, alone) > _SAME:
+                return None
+        return found if is_stable(found, radius) else None
+
+    def _on_feature(self, start: Contact, foot: Floats) -> Contact | None:
+        feature = self._scene.body.feature(start.spot)
+        return settle(self._scene._replace(body=feature), start, foot)
+
+    def _across(self, start: Contact, travel: float) -> Contact | None:
+        """On the next face, edge or corner, where the state goes on as it was."""
+        foot = self._way.foot(travel)
+        ahead = self._on_feature(start, foot)
+        if ahead is None:
+            return None
+        found = self._stable_at(self._there(ahead), travel)
+        return found if found is not None and _apart(found, start) < _STEADY else None
+
+    def _there(self, ahead: Contact) -> Contact:
+        """The contact with the whole body at the place of one with a feature of it."""
+        free = ahead.arc_length if ahead.tangent else ahead.excess
+        return contact_at(self._scene, ahead.on_parallel, free, ahead.tangent)
 
     def _change_of_phase(self, low: Contact, at: float, high: Contact, to: float) -> float:
         while to - at > _CLOSE:
@@ -149,7 +176,8 @@ class _Walker:
         if contact.force < _LOOSE:
             return None
         beyond = min(travel + _BEYOND, float(self._way.marks[-1]))
-        landed = landing(self._scene, contact, self._way.foot(beyond))
+        foot = self._way.foot(beyond)
+        landed = landing(self._scene, contact, self._way.foot(travel), foot)
         if landed is None:
             return None
         self._note("hop", travel)
@@ -170,3 +198,7 @@ class _Walker:
 
     def _note(self, kind: str, travel: float) -> None:
         self._events.append(Event(kind, travel, self._way.foot(travel)))
+
+
+def _apart(one: Contact, other: Contact) -> float:
+    return float(np.linalg.norm(one.on_parallel - other.on_parallel))

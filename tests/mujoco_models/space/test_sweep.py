@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from analytic import Beam, InputError, catenary
+from analytic import Beam, InputError, catenary, parabola
 from analytic.space import (
     FootPath,
     SpatialCase,
@@ -71,7 +71,8 @@ def test_the_stiffness_is_the_derivative_of_mujocos_own_moments(beam, joints):
         model.place(foot, configuration)
         tip = len(model.ends) - 1
         state = State(configuration, tip, 0.98, force, True)
-        return rest.linearised(state, model.touch(tip, 0.98), 0.0, 1e-5)
+        touch = model.touch(tip, 0.98)
+        return rest.linearised(state, touch, 0.0, model.turning(tip, touch, 1e-5))
 
     step, columns = 1e-5, []
     for i in range(size):
@@ -141,6 +142,15 @@ def test_where_it_slips_off_across_the_middle(name):
     exact, found = solve_space(case), simulate_space(case)
     assert len(left(exact)) == 1
     assert left(found)[0] == pytest.approx(left(exact)[0], abs=5e-3)
+
+
+@pytest.mark.slow
+def test_where_it_slips_off_a_tilted_prism():
+    body = prism(parabola(2, 0.4), (0.1, 0.3, 1))
+    case = SpatialCase(body=body, path=FootPath([[1.5, 0.0], [-1.5, 0.3]], stations=40))
+    exact, found = solve_space(case), simulate_space(case)
+    assert len(left(exact)) == 1
+    assert left(found) == pytest.approx(left(exact), abs=5e-3)
 
 
 @pytest.mark.slow

@@ -11,7 +11,11 @@ from analytic.problem.contours.mesh_file import read_body
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import positive
 from analytic.space.problem.bodies.body import Body, Spot
+from analytic.space.problem.bodies.feature import Feature
 from analytic.space.problem.numbers import Vector, vector
+
+_ON_PLANE = 1e-9  # of the extent: so near to a plane a point is on it
+_PARALLEL = 1e-9  # rad; a step that rises less from a plane is along it
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,6 +112,50 @@ class Polyhedron(Body):
         one, other = (triangles[begins[v] : begins[v + 1]] for v in edge)
         both = np.intersect1d(one, other)
         return bool((self.normals[both] == self.normals[face]).all())
+
+    def feature(self, spot: Spot) -> Feature:
+        """The face, the edge or the corner."""
+        return Feature.of(spot)
+
+    def normals_at(self, point: Floats) -> Floats:
+        """Of the faces that meet at a point of the surface.
+
+        Parameters
+        ----------
+        point : array, shape (3,)
+            [length]
+
+        Returns
+        -------
+        array, shape (n, 3)
+            Outward, of length 1.
+        """
+        on = np.abs(self.normals @ point - self.heights) < self._rounding
+        return np.unique(self.normals[on], axis=0)
+
+    def room(self, point: Floats, step: Floats) -> float:
+        """How much of a step along a face or an edge stays on it.
+
+        Parameters
+        ----------
+        point, step : array, shape (3,)
+            A point of the surface, and a step in the plane of a face that it is on [length].
+
+        Returns
+        -------
+        float
+            From 0 to 1.
+        """
+        towards = self.normals @ step
+        ahead = towards > _PARALLEL * float(np.linalg.norm(step))
+        if not ahead.any():
+            return 1.0
+        left = (self.heights - self.normals @ point)[ahead] / towards[ahead]
+        return float(np.clip(left.min(), 0.0, 1.0))
+
+    @cached_property
+    def _rounding(self) -> float:
+        return _ON_PLANE * float(np.abs(self.vertices).max())
 
     def scaled(self, factor: float) -> "Polyhedron":
         """With the same normals."""

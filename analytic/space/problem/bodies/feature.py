@@ -1,0 +1,90 @@
+"""A face, an edge or a corner of a mesh that goes on without end: what a contact stays on."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.space.problem.bodies.body import Body, Spot
+
+_TURNS = 0.5  # of the largest turning: a principal value is that or zero
+
+
+@dataclass(frozen=True, eq=False)
+class Feature(Body):
+    """A plane, a line or a point.
+
+    Parameters
+    ----------
+    point : array, shape (3,)
+        One of it [length].
+    free : array, shape (k, 3)
+        Directions in which normals turn, of length 1: none of a face, one of an edge, all three of
+        a corner.
+    normal : array, shape (3,)
+        Outward, of a face.
+    """
+
+    point: Floats
+    free: Floats
+    normal: Floats
+    label: str = "feature"
+
+    @classmethod
+    def of(cls, spot: Spot) -> "Feature":
+        """The one that a spot of a mesh is on.
+
+        Parameters
+        ----------
+        spot : Spot
+            Of a mesh.
+
+        Returns
+        -------
+        Feature
+            As if the rest of the mesh were not there.
+        """
+        values, ways = np.linalg.eigh(spot.turning)
+        turns = values > _TURNS * max(float(values[-1]), 1e-300)
+        count = int(turns.sum())
+        free = np.eye(3) if count == 2 else np.zeros((0, 3))
+        if count == 1:  # the normals of an edge span the plane across it
+            free = np.stack([ways[:, turns][:, 0], spot.normal])
+        return cls(spot.point, free, spot.normal)
+
+    def nearest(self, x: Floats, apart: float) -> Spot:
+        """Its foot of the perpendicular."""
+        away = x - self.point
+        if not len(self.free):
+            height = float(away @ self.normal)
+            return Spot(x - height * self.normal, self.normal, height, np.zeros((3, 3)))
+        span = self.free.T @ self.free
+        across = span @ away
+        distance = float(np.linalg.norm(across))
+        normal = across / max(distance, 1e-300)
+        turning = (span - np.outer(normal, normal)) / apart
+        return Spot(x - across, normal, distance, turning)
+
+    def scaled(self, factor: float) -> "Feature":
+        """With the same normals."""
+        return replace(self, point=factor * self.point)
+
+    def patches(self, centre: Floats, reach: float) -> Floats:
+        """Nothing is drawn of it."""
+        return np.zeros((0, 3, 3))
+
+
+def corner_at(point: Floats) -> Feature:
+    """A point that holds a vibrissa whichever way it pulls.
+
+    Parameters
+    ----------
+    point : array, shape (3,)
+        [length]
+
+    Returns
+    -------
+    Feature
+        A corner.
+    """
+    return Feature(point, np.eye(3), np.array([0.0, 1.0, 0.0]))

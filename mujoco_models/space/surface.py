@@ -1,0 +1,213 @@
+"""What a bead touches while Newton's method runs: the body, or one face, edge or corner of a mesh.
+
+On a mesh a face, an edge or a corner, each as if it had no end, is smooth, so that Newton's method
+converges, and a step along the way of the foot that ends on another one is seen. Which one it is
+MuJoCo's normals next to the contact say: they do not turn on a face, about an edge they turn one
+way, at a corner two.
+"""
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from mujoco_models.space.model import SpaceModel, Touch
+
+_STEPS = (
+    1e-6,
+    1e-7,
+    1e-8,
+)  # L, over which normals are compared: smaller where the first is unclear
+_FLAT, _SHARP = 0.1, 0.9  # of 1/distance: how fast normals turn that do not turn, or do
+_RINGS = 0.25, 1.0  # radii of the vibrissa; an edge's fan of normals is narrower than that
+STAYS = 1e-8
+"""How far a feature and the mesh may be apart where they are one [L]: its place and direction are
+found to that, over its length; what has left it by less has hardly moved."""
+_SAME_NORMAL = 1e-5  # rad, of two edges that are one
+
+
+class Surface(Protocol):
+    """What may be touched."""
+
+    def touch(self, link: int, s: float) -> Touch:
+        """The nearest point to a bead.
+
+        Parameters
+        ----------
+        link : int
+            The link that carries it.
+        s : float
+            Its arc length [L].
+
+        Returns
+        -------
+        Touch
+            Place, normal and distance.
+        """
+
+    def turning(self, link: int, touch: Touch) -> Floats:
+        """How the normal turns as the bead's centre moves.
+
+        Parameters
+        ----------
+        link : int
+            The link that carries it.
+        touch : Touch
+            Where it is.
+
+        Returns
+        -------
+        array, shape (3, 3)
+            Symmetric [1/L].
+        """
+
+
+class Whole(NamedTuple):
+    """The body as it is."""
+
+    model: SpaceModel
+
+    def touch(self, link: int, s: float) -> Touch:
+        """By MuJoCo."""
+        return self.model.touch(link, s)
+
+    def turning(self, link: int, touch: Touch) -> Floats:
+        """By differences of MuJoCo's normals."""
+        return self.model.turning(link, touch, self.model.shape.difference)
+
+
+class Feature(NamedTuple):
+    """A face, an edge or a corner without end."""
+
+    model: SpaceModel
+    point: Floats
+    """One of it, shape (3,) [L]."""
+    normal: Floats
+    """Of a face, shape (3,)."""
+    span: Floats
+    """Projects on the directions that its normals have, shape (3, 3)."""
+    flat: bool
+    """Whether it is a face."""
+
+    def touch(self, link: int, s: float) -> Touch:
+        """The foot of the perpendicular."""
+        return self._touched(self.model.centre(link, s))
+
+    def _touched(self, centre: Floats) -> Touch:
+        away = self.span @ (centre - self.point)
+        distance = float(away @ self.normal) if self.flat else float(np.linalg.norm(away))
+        normal = self.normal if self.flat else away / distance
+        return Touch(centre, normal, distance - self.model.radius)
+
+    def turning(self, link: int, touch: Touch) -> Floats:
+        """About an edge or a corner."""
+        n = touch.normal
+        return np.asarray((self.span - np.outer(n, n)) / (touch.distance + self.model.radius))
+
+    def missed(self, link: int, s: float) -> float:
+        """How far the mesh is from being as if this were all of it.
+
+        Parameters
+        ----------
+        link : int
+            The link that carries the bead.
+        s : float
+            Its arc length [L].
+
+        Returns
+        -------
+        float
+            Between the places that both have for the contact, or between the distances [L].
+        """
+        return self.missed_at(link, self.model.centre(link, s))
+
+    def missed_at(self, link: int, centre: Floats) -> float:
+        """The same for a bead wherever it is.
+
+        Parameters
+        ----------
+        link : int
+            Whose bead.
+        centre : array, shape (3,)
+            Where it is to be [L].
+
+        Returns
+        -------
+        float
+            [L]
+        """
+        ours, found = self._touched(centre), self.model.probe(link, centre)
+        apart = found.distance + self.model.radius
+        return max(
+            abs(ours.distance - found.distance),
+            apart * float(np.abs(ours.normal - found.normal).max()),
+        )
+
+
+def surface_at(model: SpaceModel, link: int, touch: Touch) -> Surface:
+    """What a bead touches.
+
+    Parameters
+    ----------
+    model : SpaceModel
+        Placed.
+    link : int
+        The link that carries it.
+    touch : Touch
+        By MuJoCo.
+
+    Returns
+    -------
+    Surface
+        Of a mesh the face, edge or corner.
+    """
+    if not model.shape.faceted:
+        return Whole(model)
+    apart = touch.distance + model.radius
+    n = touch.normal
+    for step in _STEPS:
+        values, ways = np.linalg.eigh(model.turning(link, touch, step))
+        values = values * apart
+        if ((values < _FLAT) | (values > _SHARP)).all():
+            break
+    turns = ways[:, values > (_FLAT + _SHARP) / 2]
+    span = np.outer(n, n) + turns @ turns.T
+    return Feature(model, touch.centre - apart * n, n, span, not turns.size)
+
+
+def features_around(model: SpaceModel, link: int, centre: Floats) -> list[Feature]:
+    """The faces and the edges of a mesh next to a bead, faces first.
+
+    Parameters
+    ----------
+    model : SpaceModel
+        Placed, of a mesh.
+    link : int
+        Whose bead.
+    centre : array, shape (3,)
+        Where it is to be [L].
+
+    Returns
+    -------
+    list of Feature
+        Each once.
+    """
+    faces: list[Feature] = []
+    edges: list[Feature] = []
+    for size in _RINGS:
+        for way in _ring(model.probe(link, centre).normal):
+            touch = model.probe(link, centre + size * model.radius * way)
+            found = surface_at(model, link, touch)
+            assert isinstance(found, Feature)
+            known = faces if found.flat else edges
+            if all(np.abs(found.span - one.span).max() > _SAME_NORMAL for one in known):
+                known.append(found)
+    return faces + edges
+
+
+def _ring(normal: Floats) -> Floats:
+    """Ways along a surface, shape (8, 3)."""
+    one = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+    one /= np.linalg.norm(one)
+    angle = np.arange(8) * np.pi / 4
+    return np.outer(np.cos(angle), one) + np.outer(np.sin(angle), np.cross(normal, one))
