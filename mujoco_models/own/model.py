@@ -202,7 +202,7 @@ class OwnModelInMotion:
                 raise DivergedError("the vibrissa throws its foot about")
             raise InputError(
                 "foot", f"{behind:.2g} L behind where it should be", "one that follows its drive",
-                "look at the actuator's gain, its ctrlrange, and the joint's range",
+                "look at its actuator's gain and ctrlrange, its joint's range or its weld's solref",
             )  # fmt: skip
 
     def clamp(self) -> Clamp:

@@ -87,6 +87,21 @@ def test_the_clamp_is_read_in_whatever_frame_the_sensor_has(tmp_path):
         assert other.values(name) == pytest.approx(plain.values(name), abs=1e-8)
 
 
+def test_a_vibrissa_of_30_mm_is_as_good_as_one_of_a_metre(tmp_path):
+    """In metres its object is so small that MuJoCo would refuse the volume of a part of it."""
+    unit, small = Beam(), 0.03
+    rigidity = small**3  # the same mass and period
+    plain = swept(tmp_path, Chain(), **OURS)
+    beam = Beam(small, rigidity, unit.radius * small)
+    case = replace(UNIT, beam=beam, profile=circle(0.8 * small, (0, 0.4 * small)))
+    chain = Chain(length=small, rigidity=rigidity, radius=beam.radius)
+    found = swept(tmp_path, chain, case=case, **OURS)
+    scale = beam.force_unit / unit.force_unit
+    off = found.values("force_y") / scale - plain.values("force_y")
+    # Vertices are kept in single precision, and facets amplify that.
+    assert np.abs(off)[5:15].max() < 2e-2 * np.abs(plain.values("force_y")).max()
+
+
 @pytest.mark.slow
 def test_wherever_the_vibrissa_stands_and_points(tmp_path):
     plain = swept(tmp_path, Chain(), **OURS)

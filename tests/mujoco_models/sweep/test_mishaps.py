@@ -14,6 +14,7 @@ from compare.study.grid.plan import Plan
 from compare.study.work.perform import perform
 from compare.study.work.recipe import Recipe
 from mujoco_models import DivergedError, Settings, simulate_sweep
+from mujoco_models.model.model import BeamModel
 
 CASE = Case(profile=circle(1.0, lowest=(0.0, 0.4)), sweep=Sweep(stations=20))
 QUICK = Settings(segments=8, obstacle="primitive")
@@ -104,6 +105,36 @@ def test_a_motion_that_explodes_is_an_error(monkeypatch, tmp_path):
     model.data.qpos[:] = 1e12
     with pytest.raises(DivergedError, match="stay finite"):
         model.creep(1e-3)
+
+
+def limited(model):
+    """One joint goes no farther than 0.02 rad."""
+    model.jnt_limited[3], model.jnt_range[3] = 1, (-0.02, 0.02)
+
+
+def softened(model):
+    """Contacts are MuJoCo's own, of 20 ms."""
+    model.geom_solref[:], model.geom_solimp[:] = (0.02, 1), (0.9, 0.95, 1e-3, 0.5, 2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", [limited, softened])
+def test_a_fault_that_the_solver_does_not_know_costs_bounded_effort(fault, monkeypatch):
+    """Observed 4 s for 30 stations; all that is not sound is unsettled, with the reason."""
+    stated, counted = BeamModel._set_contact_stiffness, []
+
+    def spoilt(self):
+        stated(self)
+        fault(self.model)
+        counted.append(self)
+
+    monkeypatch.setattr(BeamModel, "_set_contact_stiffness", spoilt)
+    found = simulate_sweep(CASE, QUICK)
+    assert max(model.evaluations for model in counted) < 2 * 5000 + 20 * 1500
+    bad = found.table["status"] != "ok"
+    assert set(found.table["status"]) <= {"ok", "unsettled"}
+    assert bad.sum() > 10
+    assert sum(found.provenance["unsettled"].values()) == bad.sum()
 
 
 def test_contacts_that_mujoco_leaves_out_are_an_error(vibrissa, monkeypatch):
