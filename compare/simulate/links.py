@@ -57,7 +57,7 @@ def order_in_links(found: MeasuredBeam) -> Order | None:
     Returns
     -------
     Order or None
-        None where it has no order that could be told: links of unequal length, a taper, a curve.
+        None where it has no order that could be stated: links of unequal length, a taper, a curve.
     """
     s = np.array([joint.s for joint in found.joints]) / found.length
     if len(s) < _FEWEST or tapers(found) or is_curved(found):

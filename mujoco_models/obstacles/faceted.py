@@ -210,8 +210,6 @@ def add_hull(spec: mujoco.MjSpec, vertices: Floats, inner: Floats, size: float) 
     speck = inner + size * np.kron(np.diag([1, 2, 3]), [[1], [-1]])
     faces = len(vertices) + np.array(_OCTAHEDRON, dtype=np.int32)
     mesh = spec.add_mesh(name=GEOM)
-    # By its surface: MuJoCo refuses a volume below 1e-15, of a speck for a vibrissa of 50 mm.
-    mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
     mesh.uservert, mesh.userface = np.concatenate([vertices, speck]).ravel(), faces.ravel()
     spec.worldbody.add_geom(
         name=mesh.name,

@@ -113,6 +113,8 @@ class OwnModelInMotion:
         ends = [np.insert(polygon, 2, z, axis=1) for z in (-_HALF_DEPTH, _HALF_DEPTH)]
         points = self._in_world(np.concatenate(ends))
         add_hull(spec, points, self._in_world(inner[None])[0], _SPECK * length)
+        # MuJoCo refuses a volume below 1e-15, which the speck has for a vibrissa of 50 mm.
+        spec.mesh(GEOM).inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
         geom = spec.geom(GEOM)
         geom.conaffinity, geom.priority = 1, -1  # the vibrissa's own contact parameters count
         try:

@@ -45,6 +45,6 @@ def test_one_joint_that_is_off_is_no_matter_of_the_order(tmp_path):
     assert found.error > 10 * found.error_of_twice
 
 
-def test_where_no_order_can_be_told_there_is_none(tmp_path):
+def test_a_curve_or_a_taper_has_no_order(tmp_path):
     assert order(tmp_path, curvature=0.4) is None
     assert order_in_links(inspect_model(shipped_models()["tapered-whisker"])) is None
