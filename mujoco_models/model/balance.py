@@ -13,17 +13,82 @@ from mujoco_models.model.lookout import Lookout
 from mujoco_models.obstacles.protocol import Obstacle
 
 
-class Balance(Protocol):
-    """An engine's model of the beam and the obstacle, at rest; dimensionless, L = EI = 1."""
+class Mechanics(Protocol):
+    """Springs, levers and contacts of one configuration: what a step of Newton's method needs."""
 
     layout: Layout
     """Where joints and beads are."""
     obstacle: Obstacle
     """What the beam is swept past."""
-    lookout: Lookout
-    """What takes part in collisions."""
     contact_stiffness: float
     """Force over penetration at every bead [EI/L^3]."""
+
+    def stiffness(self, angles: Floats) -> Floats:
+        """Derivative of each joint's elastic moment by its angle.
+
+        Parameters
+        ----------
+        angles : array, shape (n_joints,)
+            Joint angles [rad].
+
+        Returns
+        -------
+        array, shape (n_joints,)
+            Stiffnesses [EI/L].
+        """
+
+    def elastic_moments(self) -> Floats:
+        """The beam's own moment at each joint.
+
+        Returns
+        -------
+        array, shape (n_joints,)
+            Moments [EI/L].
+        """
+
+    def contact_curvature(self, slope: Floats) -> Floats:
+        """Curvature of the contour that the beads' centres feel.
+
+        Parameters
+        ----------
+        slope : array, shape (n,)
+            Slope angles [rad].
+
+        Returns
+        -------
+        array, shape (n,)
+            Curvatures [1/L].
+        """
+
+    def joint_positions(self) -> Floats:
+        """Where the joints are.
+
+        Returns
+        -------
+        array, shape (n_joints, 2)
+            Positions [L].
+        """
+
+    def slides(self, contacts: Contacts) -> Booleans:
+        """Which contacts are of a link whose beads slide.
+
+        Parameters
+        ----------
+        contacts : Contacts
+            Of the last evaluated configuration.
+
+        Returns
+        -------
+        array of bool, shape (n,)
+            None, if beads never do.
+        """
+
+
+class Balance(Mechanics, Protocol):
+    """An engine's model of the beam and the obstacle, at rest; dimensionless, L = EI = 1."""
+
+    lookout: Lookout
+    """What takes part in collisions."""
     evaluations: int
     """How often `imbalance` was called."""
 
@@ -57,29 +122,6 @@ class Balance(Protocol):
             Moments of the state last evaluated [EI/L].
         """
 
-    def stiffness(self, angles: Floats) -> Floats:
-        """Derivative of each joint's elastic moment by its angle.
-
-        Parameters
-        ----------
-        angles : array, shape (n_joints,)
-            Joint angles [rad].
-
-        Returns
-        -------
-        array, shape (n_joints,)
-            Stiffnesses [EI/L].
-        """
-
-    def elastic_moments(self) -> Floats:
-        """The beam's own moment at each joint.
-
-        Returns
-        -------
-        array, shape (n_joints,)
-            Moments [EI/L].
-        """
-
     def contacts(self) -> Contacts:
         """The contacts that are loaded or nearly so.
 
@@ -96,29 +138,6 @@ class Balance(Protocol):
         -------
         array, shape (n_contacts, 2)
             On the obstacle's surface or between the two surfaces [L].
-        """
-
-    def contact_curvature(self, slope: Floats) -> Floats:
-        """Curvature of the contour that the beads' centres feel.
-
-        Parameters
-        ----------
-        slope : array, shape (n,)
-            Slope angles [rad].
-
-        Returns
-        -------
-        array, shape (n,)
-            Curvatures [1/L].
-        """
-
-    def joint_positions(self) -> Floats:
-        """Where the joints are.
-
-        Returns
-        -------
-        array, shape (n_joints, 2)
-            Positions [L].
         """
 
     def bead_positions(self, beads: Integers) -> Floats:
@@ -156,20 +175,6 @@ class Balance(Protocol):
         -------
         bool
             Whether any was elsewhere.
-        """
-
-    def slides(self, contacts: Contacts) -> Booleans:
-        """Which contacts are of a link whose beads slide.
-
-        Parameters
-        ----------
-        contacts : Contacts
-            Of the last evaluated configuration.
-
-        Returns
-        -------
-        array of bool, shape (n,)
-            None, if beads never do.
         """
 
     def clamp(self) -> Clamp:

@@ -55,7 +55,7 @@ def by_contacts(model: mujoco.MjModel, data: mujoco.MjData, foot: Floats, moves:
     """
     held = np.zeros(3)
     wrench = np.zeros(6)
-    for i in range(data.ncon):
+    for i in np.flatnonzero(data.contact.efc_address >= 0).tolist():  # others carry nothing
         mujoco.mj_contactForce(model, data, i, wrench)
         contact = data.contact[i]
         force = wrench[:3] @ contact.frame.reshape(3, 3)

@@ -95,6 +95,8 @@ class Lookout:
 
     Attributes
     ----------
+    radii : array, shape (n_beads,)
+        Of the beads [L].
     window : int
         The obstacle's window that takes part in collisions.
     watched : frozenset of int
@@ -103,6 +105,7 @@ class Lookout:
 
     def __init__(self, scene: Scene, obstacle: Obstacle, radius: float) -> None:
         self._scene, self._obstacle, self._radius = scene, obstacle, radius
+        self.radii = scene.radii
         self._count = len(scene.radii)
         self.window = -1
         self.face(np.pi / 2)  # where a sweep to the left begins
@@ -206,9 +209,11 @@ class Lookout:
         float or None
             The place along the contour, see `Obstacle.place`; None if there is no such bead.
         """
-        unloaded = np.setdiff1d(
-            sorted(self.watched), contacts.touch[contacts.loaded | contacts.fused]
-        )
+        carries = contacts.touch[contacts.loaded | contacts.fused]
+        idle = np.zeros(self._count, dtype=bool)
+        idle[list(self.watched)] = True
+        idle[carries[carries < self._count]] = False
+        unloaded = np.flatnonzero(idle)
         positions = self._scene.positions()[unloaded]
         inside = self._scene.radii[unloaded] - _OVERLOOKED
         for suspect in self._obstacle.near(positions, self._radius - _OVERLOOKED):

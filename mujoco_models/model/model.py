@@ -75,6 +75,8 @@ class BeamModel:
         self._joints = np.unique(model.jnt_bodyid, return_index=True)[1]
         self._set_contact_stiffness()
         self._sliding = SlidingBeads(model, self.beads, self.layout, obstacle)
+        sharpest = obstacle.largest_curvature
+        self._slides = self._sliding.needed(sharpest / (1 + radius * sharpest))
         scene = MujocoScene(model, self.data, self.beads, obstacle)
         self.lookout = Lookout(scene, obstacle, radius)
 
@@ -296,6 +298,8 @@ class BeamModel:
         bool
             True if beads have been moved: MuJoCo's answer is then out of date.
         """
+        if not self._slides:
+            return False
         curvature = self.contact_curvature(contacts.slope)
         return self._sliding.slide(contacts, curvature, self.joint_positions())
 
@@ -385,8 +389,8 @@ class BeamModel:
         float
             Difference in length [L].
         """
-        ends = [*self.data.xanchor, self.data.geom_xpos[self.beads[-1]]]
-        bent = np.linalg.norm(np.diff(ends, axis=0), axis=1).sum()
+        ends = np.vstack([self.data.xanchor, self.data.geom_xpos[self.beads[-1]]])
+        bent = np.sqrt(((ends[1:] - ends[:-1]) ** 2).sum(axis=1)).sum()
         arched = (self.layout.lengths - self.layout.chords).sum()
         return float(bent + self.layout.joints[0] - 1 + arched)
 

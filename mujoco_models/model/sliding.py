@@ -46,6 +46,21 @@ class SlidingBeads:
         self._link: int | None = None
         self._guided = False
 
+    def needed(self, curvature: float) -> bool:
+        """Whether there may be a contact at which beads have to slide.
+
+        Parameters
+        ----------
+        curvature : float
+            The largest of the contour that a bead's centre feels [1/L].
+
+        Returns
+        -------
+        bool
+            False past corners, which touch the links' own sides.
+        """
+        return len(self._obstacle.corners) == 0 and curvature * self._spacing.max() >= _SHARP
+
     def slide(self, contacts: Contacts, curvature: Floats, joints: Floats) -> bool:
         """Let a bead be where the link that touches is tangential to the contour.
 
@@ -64,8 +79,8 @@ class SlidingBeads:
             True if beads have been moved: MuJoCo's answer is then out of date.
         """
         self._guided = False
-        if len(self._obstacle.corners) or not contacts.loaded.any():
-            return False  # corners touch the links' own sides
+        if not contacts.loaded.any():
+            return False
         deepest = int(np.argmin(contacts.distance))
         link, kappa = int(contacts.link[deepest]), float(curvature[deepest])
         spacing = self._spacing[link]

@@ -109,17 +109,26 @@ class Faceted(Obstacle):
         found = np.flatnonzero((points[:, 0] > left - distance) & (points[:, 0] < right + distance))
         foot = points[found, 0]
         for _ in range(2):
-            bound, slope = self._below(points[found], foot)
+            bound, aside = self._below(points[found], foot)
             close = bound < distance
-            found, foot = found[close], (points[found, 0] - bound * np.sin(slope))[close]
+            found, foot = found[close], (points[found, 0] - bound * aside)[close]
         return found
 
     def _below(self, points: Floats, x: Floats) -> tuple[Floats, Floats]:
-        """How far the points are below the lines of the facets at `x`, and the facets' slopes."""
-        facet = np.clip(np.searchsorted(self.vertices[:, 0], x) - 1, 0, len(self.facet_angles) - 1)
-        slope = self.facet_angles[facet]
-        offset = points - self.vertices[facet]
-        return offset[:, 0] * np.sin(slope) - offset[:, 1] * np.cos(slope), slope
+        """How far the points are below the lines of the facets at `x`, and the slopes' sines."""
+        facet = np.searchsorted(self._inner, x)
+        offset, (sin, cos) = points - self.vertices[facet], self._directions[:, facet]
+        return offset[:, 0] * sin - offset[:, 1] * cos, sin
+
+    @cached_property
+    def _inner(self) -> Floats:
+        """Where the facets but the first begin, shape (n - 2,) [L]."""
+        return self.vertices[1:-1, 0].copy()
+
+    @cached_property
+    def _directions(self) -> Floats:
+        """Sine and cosine of each facet's slope angle, shape (2, n - 1)."""
+        return np.array([np.sin(self.facet_angles), np.cos(self.facet_angles)])
 
     def clearance(self, point: Floats) -> tuple[float, float]:
         """From the nearest edge of the lower side, or of the roof over it; the facet's number."""

@@ -26,6 +26,7 @@ _SPAN = 4.0  # radii of the vibrissa that they span, at least: a link may rest o
 _GRADED = 8  # vertices a level farther out; the spacing doubles from level to level
 _OF_TURN = 0.01  # of a facet's turn from the last one; so much may its vertices' rounding turn it
 _FINEST = 1e-12  # L
+_ABOUT = np.arange(-2, 3)  # facets; the nearest one is found to within the next one
 _BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
 
 
@@ -126,6 +127,26 @@ class Prism(Faceted):
         edges = upright(self.vertices, HALF_DEPTH)
         return Corners.of(self.vertices, edges, self._corner_radius)
 
+    def gap(self, window: int, points: Floats) -> tuple[Floats, Floats] | None:
+        """From the facets about the nearest one; sharp corners are touched by links, not points."""
+        if len(self.corners):
+            return None
+        bound, aside = self._below(points, points[:, 0])
+        foot = points[:, 0] - bound * aside
+        nearest = np.searchsorted(self._inner, foot)[:, None]
+        facets = np.clip(nearest + _ABOUT, 0, len(self.facet_angles) - 1)
+        origin = self._origin(window)
+        ends = self._gridded[np.stack([facets, facets + 1])] - origin
+        begin, end = ends.astype(np.float32).astype(float)  # as MuJoCo keeps them
+        run, offset = end - begin, (points - origin)[:, None] - begin
+        along = np.clip((run * offset).sum(axis=2) / (run**2).sum(axis=2), 0, 1)
+        away = offset - along[:, :, None] * run
+        distances = np.hypot(away[:, :, 0], away[:, :, 1])
+        inside = (run[:, :, 0] * offset[:, :, 1] > run[:, :, 1] * offset[:, :, 0]).all(axis=1)
+        best = np.arange(len(points)), np.argmin(distances, axis=1)
+        distance = np.where(inside, -distances[best], distances[best])
+        return distance, away[best] / distance[:, None]
+
     def place(self, slope: Floats) -> Floats:
         """The number of the vertex at which the slope angle is passed."""
         return self.vertex(slope).astype(float)
@@ -168,9 +189,13 @@ class Prism(Faceted):
 
     def show(self, model: mujoco.MjModel, geom: int, window: int) -> None:
         """Let the mesh be the window's."""
-        centre = int(self._centres[window])
-        near = min(max(centre, 1), len(self.vertices) - 2)  # not at an end, far beyond reach
-        write_prism(model, geom, self._polygon(centre), self._gridded[near])
+        polygon = self._polygon(int(self._centres[window]))
+        write_prism(model, geom, polygon, self._origin(window))
+
+    def _origin(self, window: int) -> Floats:
+        """From where MuJoCo's vertices are counted: not an end, which is far beyond reach."""
+        near = min(max(int(self._centres[window]), 1), len(self.vertices) - 2)
+        return np.asarray(self._gridded[near])
 
     @cached_property
     def _centres(self) -> Integers:

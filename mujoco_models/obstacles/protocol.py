@@ -149,6 +149,24 @@ class Obstacle(ABC):
             Of the nearest point of the contour, in the measure of `place`.
         """
 
+    def gap(self, window: int, points: Floats) -> tuple[Floats, Floats] | None:
+        """How far points are from the contour as MuJoCo has it, to rounding.
+
+        Parameters
+        ----------
+        window : int
+            Its number; the points are near to what it has of the contour.
+        points : array, shape (n, 2)
+            Positions [L].
+
+        Returns
+        -------
+        tuple of array, shape (n,) and (n, 2), or None
+            Distances, negative inside [L], and unit vectors from the nearest points of the contour,
+            outwards. None if only MuJoCo knows them.
+        """
+        return None
+
     def is_cut(self, polyline: Floats) -> bool:
         """Whether a piece of a polyline is inside; asked of obstacles with corners only.
 

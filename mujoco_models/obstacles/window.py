@@ -6,6 +6,8 @@ vertices, in a sphere, which needs as much room as any hull of so many, and what
 replaced by the prism's.
 """
 
+from functools import cache
+
 import mujoco
 import numpy as np
 from scipy.spatial import ConvexHull
@@ -80,6 +82,7 @@ def write_prism(model: mujoco.MjModel, geom: int, polygon: Floats, origin: Float
     model.mesh_graph[begin : begin + len(graph)] = graph
 
 
+@cache
 def _graph(count: int) -> Integers:
     """What MuJoCo wants to know of the hull of a prism over `count` vertices.
 

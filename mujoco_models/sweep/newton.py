@@ -11,8 +11,8 @@ import numpy as np
 from scipy.linalg.lapack import dposv
 from scipy.optimize import nnls
 
-from analytic.problem.arrays import Booleans, Floats
-from mujoco_models.model.balance import Balance
+from analytic.problem.arrays import Booleans, Floats, Integers
+from mujoco_models.model.balance import Mechanics
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.state import State
@@ -20,17 +20,20 @@ from mujoco_models.sweep.stiffness import Stiffness
 
 
 class Touch(NamedTuple):
-    """Where a bead is, and which way the obstacle faces it.
+    """Where beads are, and which way the obstacle faces them.
 
     Attributes
     ----------
-    normal_angle : float
-        Slope angle of the contour there [rad].
-    position : array, shape (2,)
-        Of the bead's centre [L].
+    bead : array of int, shape (n,)
+        Their numbers.
+    normal_angle : array, shape (n,)
+        Slope angles of the contour there [rad].
+    position : array, shape (n, 2)
+        Of their centres [L].
     """
 
-    normal_angle: float
+    bead: Integers
+    normal_angle: Floats
     position: Floats
 
 
@@ -39,16 +42,16 @@ class Newton:
 
     Parameters
     ----------
-    model : Balance
+    model : Mechanics
         Evaluated at the state that a step starts from.
     numerics : Numerics
         Constants.
     """
 
-    def __init__(self, model: Balance, numerics: Numerics) -> None:
+    def __init__(self, model: Mechanics, numerics: Numerics) -> None:
         self._model = model
         self._numerics = numerics
-        self._last: dict[int, Touch] = {}
+        self._last: Touch | None = None
 
     def step(self, state: State, contacts: Contacts, inertia: float = 0.0) -> State:
         """The next iterate.
@@ -178,22 +181,18 @@ class Newton:
         found = self._model.contact_curvature(angles)
         if not self._model.obstacle.faceted or len(self._model.obstacle.corners):
             return found
-        now = {
-            bead: Touch(float(angle), point.copy())
-            for bead, angle, point in zip(
-                contacts.touch.tolist(), angles, contacts.point, strict=True
-            )
-        }
-        for i, (bead, touch) in enumerate(now.items()):
-            before = self._last.get(bead)
-            if before is None:
-                continue
-            turn = touch.normal_angle - before.normal_angle
-            slid = float(np.hypot(*(touch.position - before.position)))
-            if slid > 0:  # or another window shows the same place
-                same = abs(turn) < self._numerics.same_normal
-                found[i] = 0.0 if same else abs(turn) / slid
-        self._last = now
+        before = self._last
+        now = self._last = Touch(contacts.touch, angles, contacts.point.copy())
+        if before is None or len(before.bead) == 0:
+            return found
+        row = {bead: i for i, bead in enumerate(before.bead.tolist())}
+        old = np.array([row.get(bead, -1) for bead in now.bead.tolist()], dtype=int)
+        turn = np.abs(angles - before.normal_angle[old])
+        slid = np.hypot(*(now.position - before.position[old]).T)
+        moved = (old >= 0) & (slid > 0)  # or another window shows the same place
+        same = moved & (turn < self._numerics.same_normal)
+        found[moved] = turn[moved] / slid[moved]
+        found[same] = 0.0
         return found
 
 
@@ -212,17 +211,16 @@ def levers(contacts: Contacts, joints: Floats) -> tuple[Floats, Floats]:
     along, across : array, shape (n, n_links)
         Along the normals, and along the contour, negative if that is the way of its slope [L/rad].
     """
+    count, link = len(contacts.link), np.tile(contacts.link, 2)
     chord = np.zeros_like(joints)
     chord[:-1] = joints[1:] - joints[:-1]
-    carried = np.arange(len(joints)) < contacts.link[:, None]
-    turned = np.column_stack([contacts.normal[:, 1], -contacts.normal[:, 0]])
-    own = contacts.point - joints[contacts.link]
-    found = []
-    for direction in (turned, contacts.normal):
-        lever = direction @ chord.T * carried
-        lever[np.arange(len(own)), contacts.link] = (direction * own).sum(axis=1)
-        found.append(lever)
-    return found[0], found[1]
+    normal = contacts.normal
+    ways = np.concatenate([normal[:, ::-1] * [1, -1], normal])
+    own = np.tile(contacts.point - joints[contacts.link], (2, 1))
+    found = ways @ chord.T
+    found *= np.arange(len(joints)) < link[:, None]
+    found[np.arange(2 * count), link] = (ways * own).sum(axis=1)
+    return found[:count], found[count:]
 
 
 def of_links(moments: Floats) -> Floats:

@@ -24,6 +24,15 @@ class Numerics:
     nearly : float
         Tolerances out of balance below which rounding of depths may be what is left, if another
         Newton step has not helped: MuJoCo is asked for accelerations only then.
+    light : int
+        Joints up to which MuJoCo's accelerations cost less than another step: after a forecast they
+        are asked for at once then.
+    forecasts : int
+        The most steps of a forecast. Usually 2 or 3 suffice; where there is no state at rest near
+        the last one, more are in vain.
+    foreseen : float
+        A forecast ends with a step that turns all links by less than this [rad]: what is left is of
+        the order of its square.
     largest_turn : float
         Of any link in one Newton step [rad]. At 1 the solver jumps to another state at rest, 1.8e-3
         away, which is "ok" by itself; from 0.1 to 0.5 nothing changes.
@@ -97,6 +106,9 @@ class Numerics:
     iterations: int = 25
     stiffening: float = 1e3
     nearly: float = 1e3
+    light: int = 150
+    forecasts: int = 5
+    foreseen: float = 1e-6
     largest_turn: float = 0.3
     at_once: int = 200
     same_normal: float = 1e-9

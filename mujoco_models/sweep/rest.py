@@ -58,13 +58,14 @@ def relax(
     if start.slope is not None:
         lookout.face(start.slope)
     nearly, residual = numerics.nearly * tolerance, np.inf
+    at_once = start.foreseen and len(start.angles) <= numerics.light
     for _ in range(numerics.iterations):
         before, residual = residual, _largest(model.imbalance(foot_x, state.angles))
         contacts = model.contacts()
         if not held and model.slide_beads(contacts):
             residual = _largest(model.imbalance(foot_x, state.angles))
             contacts = model.contacts()
-        if tolerance <= residual < nearly and before < nearly:
+        if tolerance <= residual < nearly and (at_once or before < nearly):
             state = replace(state, imbalance=_largest(model.relieved()))
         else:
             state = replace(state, imbalance=residual)

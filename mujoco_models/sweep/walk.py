@@ -9,6 +9,7 @@ from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import NOWHERE
 from mujoco_models.model.stance import Stance
 from mujoco_models.sweep.descent import descend
+from mujoco_models.sweep.forecast import forecast
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.rest import refine, relax
 from mujoco_models.sweep.state import State, turned
@@ -65,6 +66,7 @@ class Walk(Generic[Model]):
         self._shown = self._state
         self._budget = self._numerics.budget
         self._lost: str | None = None
+        self._smooth = True  # no step was taken in vain at this station and the last one
         self._curved = not model.layout.vibrissa.is_straight
         self.snap_off: float | None = None
         self.doubt: str | None = None
@@ -99,7 +101,7 @@ class Walk(Generic[Model]):
     def _advance(self, target: float, limit: int) -> str | None:
         """Go to `target`; why not, if that is not possible."""
         wall: float | None = None  # the nearest place at which it let go, or failed short of that
-        step, let_go = target - self._foot_x, False
+        step, let_go, in_vain = target - self._foot_x, False, False
         while True:
             end = target if wall is None else wall
             trial = end if abs(step) >= abs(end - self._foot_x) else self._foot_x + step
@@ -110,6 +112,7 @@ class Walk(Generic[Model]):
                 step = step / 2 if let_go else 2 * step
                 let_go, wall = False, None if trial == wall else wall
             elif abs(trial - self._foot_x) > self._numerics.smallest_step:
+                self._smooth, in_vain = False, True
                 step = (trial - self._foot_x) / 2
                 let_go = wall is not None or state.stance is not self._state.stance
                 wall = trial if let_go else None
@@ -119,6 +122,7 @@ class Walk(Generic[Model]):
                     return trouble
                 step, wall = target - self._foot_x, None
             if self._foot_x == target:
+                self._smooth = not in_vain
                 return None
             if self.model.evaluations > limit:
                 return f"not at rest after {self._budget} evaluations"
@@ -157,7 +161,7 @@ class Walk(Generic[Model]):
         """From the last state on; what stops a short step, a descent decides."""
         short = abs(foot_x - self._foot_x) < self._numerics.confirm_step
         go = self._relax if short else self._thoroughly
-        state = go(foot_x, self._guess(foot_x), leave=self._state)
+        state = go(foot_x, self._forecast(foot_x), leave=self._state)
         if not self._leaves_its_facet(state):
             return state
         # It may have jumped there in a long step, while it is at rest on its own facet, too.
@@ -195,6 +199,13 @@ class Walk(Generic[Model]):
         if not state.settled and state.imbalance < flicker:
             state = self._relax(foot_x, refine(model, foot_x, state, numerics))
         return state
+
+    def _forecast(self, foot_x: float) -> State:
+        """Where the beam should come to rest, by the solver's own picture or as it went so far."""
+        guess = self._guess(foot_x)
+        if not (self._smooth and guess.forces):
+            return guess
+        return forecast(self.model, foot_x, guess, self._numerics) or guess
 
     def _guess(self, foot_x: float) -> State:
         """The last state, carried on along the branch; so is the place of its load."""

@@ -57,6 +57,9 @@ def test_readings_do_not_depend_on(quantity, factor, usual, monkeypatch):
 VARIED = {
     "stiffening": (3e2, 1e5),
     "nearly": (1e2, 1e4),
+    "light": (0, 1000),
+    "forecasts": (0, 10),
+    "foreseen": (1e-8, 1e-4),
     "largest_turn": (0.1, 0.5),
     "smallest_step": (1e-6, 3e-5),
     "same_normal": (1e-10, 1e-7),
@@ -77,7 +80,7 @@ VARIED = {
     "fallen": (1e-11, 1e-9),
     "load_held": (1e-3, 0.1),
 }
-FAST = ("stiffening",)
+FAST = ("stiffening", "forecasts")
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,91 @@
+"""The solver's own picture of beam and polygon: what the engine has only to confirm."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import Beam, named_case
+from mujoco_models import Settings, available_beams
+from mujoco_models.sweep.forecast import Picture
+from mujoco_models.sweep.numerics import Numerics
+from mujoco_models.sweep.sweep import set_out
+
+CONE = Beam(tip_radius=0.002)
+
+
+def stations(case, settings, numerics=None):
+    """A walk at each of some stations before the snap-off."""
+    walk = set_out(case, settings, numerics)
+    for foot_x in case.foot_x[15:120]:
+        walk.go_to(float(foot_x))
+        yield float(foot_x), walk
+
+
+@pytest.mark.parametrize("points", [400, 3200, 50_000])
+@pytest.mark.parametrize("beam", [Beam(), CONE], ids=["uniform", "cone"])
+def test_the_picture_is_mujocos(points, beam):
+    """Places, distances, normals and springs, to rounding: also where single precision rounds."""
+    case = replace(named_case("catenary"), beam=beam)
+    settings = Settings(segments=20, contour_points=points)
+    for number, (foot_x, walk) in enumerate(stations(case, settings)):
+        contacts = walk.model.contacts()
+        if number % 20 or not contacts.loaded.any():
+            continue
+        order = np.argsort(contacts.touch)
+        picture = Picture(walk.model, contacts.touch.tolist())
+        seen = picture.look(foot_x, walk.model.beam.angles(walk.model.data))
+        loaded = contacts.loaded[order]
+        np.testing.assert_array_equal(seen.touch, contacts.touch[order])
+        np.testing.assert_allclose(seen.point, contacts.point[order], atol=4e-15)
+        np.testing.assert_allclose(
+            seen.distance[loaded], contacts.distance[order][loaded], rtol=0, atol=4e-15
+        )
+        np.testing.assert_allclose(seen.normal[loaded], contacts.normal[order][loaded], atol=1e-12)
+        np.testing.assert_allclose(
+            picture.elastic_moments(), walk.model.elastic_moments(), rtol=0, atol=1e-12
+        )
+
+
+@pytest.mark.parametrize("kind", [name for name in available_beams() if name != "chain"])
+def test_the_springs_of_other_beams(kind):
+    """By quadrature of their stiffness; observed 2e-13 with the rod's tangents."""
+    case = named_case("catenary")
+    *_, (foot_x, walk) = stations(case, Settings(beam=kind, segments=20))
+    picture = Picture(walk.model, [0])
+    picture.look(foot_x, walk.model.beam.angles(walk.model.data))
+    moments = walk.model.elastic_moments()
+    np.testing.assert_allclose(
+        picture.elastic_moments(), moments, atol=1e-9 * np.abs(moments).max()
+    )
+
+
+@pytest.mark.parametrize("name", ["catenary", "parabola"])
+def test_one_evaluation_confirms_it(name):
+    """Observed 1.05 and 1.02 a station; 3.6 and 3.4 with the last states carried on alone."""
+    counts = []
+    for numerics in (Numerics(), Numerics(forecasts=0)):
+        spent = []
+        for _, walk in stations(named_case(name), Settings(segments=20), numerics):
+            assert walk.doubt is None
+            spent.append(walk.model.evaluations)
+        counts.append((spent[-1] - spent[4]) / 100)  # the first contact takes more
+    assert counts[0] < 1.5 < 3 < counts[1]
+
+
+def test_a_wrong_forecast_does_no_harm(monkeypatch):
+    """With springs half as stiff in the picture, MuJoCo's balance decides all the same."""
+    case, settings = named_case("parabola"), Settings(segments=20, contour_points=800)
+    expected = [walk.row() for _, walk in stations(case, settings)]
+    look = Picture.look
+
+    def soft(self, foot_x, angles):
+        seen = look(self, foot_x, angles)
+        self._elastic /= 2
+        return seen
+
+    monkeypatch.setattr(Picture, "look", soft)
+    found = [walk.row() for _, walk in stations(case, settings)]
+    assert all(row["status"] == "ok" for row in found)
+    error = [a["force_y"] - b["force_y"] for a, b in zip(found, expected, strict=True)]
+    assert np.abs(error).max() < 1e-6
