@@ -71,7 +71,7 @@ def test_workers_that_cannot_start_are_one_line(monkeypatch):
     assert "\n" not in str(caught.value)
 
 
-def test_a_script_without_a_guard_is_told_so(tmp_path):
+def test_a_script_without_a_guard_is_named(tmp_path):
     """Once: its workers read the script too, and would start workers of their own."""
     script = tmp_path / "study.py"
     script.write_text("from compare.simulate.workers import Workers\nWorkers(2)\n")
