@@ -14,7 +14,8 @@ from mujoco_models.settings import Settings
 _OF_RADIUS = 0.65
 OF_CURVATURE = 0.01
 _OF_CELLS = 3.0
-_LEAST = 1 / 8000  # L; reached from N = 155 on, where more beads cost more than they bring
+_LEAST = 1 / 4000  # L, of thin vibrissae and sharp contours: more beads cost more than they mend
+_LEAST_OF_CELLS = 1 / 8000  # L; reached from N = 155 on
 
 
 @dataclass(frozen=True)
@@ -223,8 +224,8 @@ def bead_spacing(segments: int, radius: float, curvature: float) -> float:
         Spacing [L].
     """
     turning = OF_CURVATURE / max(curvature, OF_CURVATURE)
-    dense = min(_OF_RADIUS * radius, turning, _OF_CELLS / segments**2)
-    return max(dense, _LEAST)
+    of_contact = max(min(_OF_RADIUS * radius, turning), _LEAST)
+    return min(of_contact, max(_OF_CELLS / segments**2, _LEAST_OF_CELLS))
 
 
 def vertices(settings: Settings, grading: float = 0.0) -> Floats:
