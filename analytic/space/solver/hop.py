@@ -63,21 +63,26 @@ def landing(scene: Scene, start: Contact, begin: Floats, foot: Floats) -> Contac
     Contact or None
         None if it comes clear of the body, or gets farther than 0.12 L.
     """
+    # No more than it had, and what the foot has done since: its step is short, but so may a
+    # vibrissa be bent that little.
+    limit = start.energy * (1 + _SLACK) + start.force * _apart(foot, begin)
     if isinstance(scene.body, Polyhedron):
-        found = _over_faces(scene, scene.body, start, foot)
+        found = _over_faces(scene, scene.body, start, foot, limit)
         if found is not None:
             return found if _apart(found.spot.point, start.spot.point) <= _FARTHEST else None
-    return _down(scene, start, begin, foot)
+    return _down(scene, start, begin, foot, limit)
 
 
-def _over_faces(scene: Scene, body: Polyhedron, start: Contact, foot: Floats) -> Contact | None:
+def _over_faces(
+    scene: Scene, body: Polyhedron, start: Contact, foot: Floats, limit: float
+) -> Contact | None:
     """Of a tip on a mesh, in closed form."""
     point, normal, last = start.spot.point, start.spot.normal, start
     for _ in range(_STEPS):
         spot = body.nearest(point + _ABOVE * normal, APART)
         if _apart(spot.point, start.spot.point) > _FARTHEST:
             return None
-        for step in _steps(scene, body, last, spot.point, foot, start.energy * (1 + _SLACK)):
+        for step in _steps(scene, body, last, spot.point, foot, limit):
             found = _landed(scene, step.target, foot) if step.whole else None
             if found is not None:
                 return found
@@ -89,7 +94,9 @@ def _over_faces(scene: Scene, body: Polyhedron, start: Contact, foot: Floats) ->
     return None
 
 
-def _down(scene: Scene, start: Contact, begin: Floats, foot: Floats) -> Contact | None:
+def _down(
+    scene: Scene, start: Contact, begin: Floats, foot: Floats, limit: float
+) -> Contact | None:
     """Of a whole vibrissa, sides and all; the closed form where it comes to rest."""
     onward = (foot - begin) / _apart(foot, begin)
     for ahead in _AHEAD:
@@ -100,7 +107,7 @@ def _down(scene: Scene, start: Contact, begin: Floats, foot: Floats) -> Contact 
             if touching.turned > _SLOW:
                 continue
             found, asked = _next_to(scene, touching, foot), asked + 1
-            if found is not None and found.energy <= start.energy * (1 + _SLACK):
+            if found is not None and found.energy <= limit:
                 return found
             if asked == _ASKED:
                 break
