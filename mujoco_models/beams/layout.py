@@ -14,7 +14,7 @@ from mujoco_models.settings import Settings
 _OF_RADIUS = 0.65
 OF_CURVATURE = 0.01
 _OF_CELLS = 3.0
-_LEAST = 1 / 4000  # L, of thin vibrissae and sharp contours: more beads cost more than they mend
+_LEAST = 1 / 4000  # L, of thin vibrissae and sharp contours: more beads cost more than they bring
 _LEAST_OF_CELLS = 1 / 8000  # L; reached from N = 155 on
 
 
