@@ -151,11 +151,10 @@ def test_a_mean_over_the_way_is_that_of_the_sweep_at_rest():
 
 
 @pytest.mark.slow
-def test_explicit_integrators_stay_finite_with_an_armature_and_say_that_they_chatter():
-    """Observed: 67 of 100 stations with twenty segments; `discrete` has two."""
+def test_explicit_integrators_stay_finite_with_an_armature():
+    """Nor do they chatter: with MuJoCo's own tolerance of 1e-8, 90 of 100 stations did."""
     mesh = Settings(segments=20, contour_points=800)
-    stiff = Motion(speed=0.2, integrator="implicitfast", armature=1.0)
-    moved = simulate_motion(CASE, stiff, mesh)
-    assert (moved.table["status"] == "chattering").mean() > 0.2
+    stiff = Motion(speed=0.2, integrator="implicitfast", armature=1.0, contact_stiffness=1e3)
+    assert (simulate_motion(CASE, stiff, mesh).table["status"] == "ok").all()
     with pytest.raises(DivergedError, match="soften contacts"):
         simulate_motion(CASE, replace(stiff, contact_stiffness=1e4), mesh)
