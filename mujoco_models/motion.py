@@ -1,12 +1,12 @@
 """How a sweep in motion is driven and stepped."""
 
 from dataclasses import dataclass
-from numbers import Real
 from typing import Literal, TypeAlias, get_args
 
 from pydantic import ConfigDict, StrictFloat
 
 from analytic.problem.errors import InputError
+from mujoco_models.allowed import check_number, check_word
 
 IntegratorKind: TypeAlias = Literal["discrete", "implicitfast", "implicit", "euler", "rk4"]
 SolverKind: TypeAlias = Literal["newton", "cg", "pgs"]
@@ -97,11 +97,7 @@ class Motion:
 
     def __post_init__(self) -> None:
         for name, allowed in (("integrator", INTEGRATORS), ("solver", SOLVERS), ("cone", CONES)):
-            value = getattr(self, name)
-            if value not in allowed:
-                raise InputError(
-                    f"motion.{name}", repr(value), f"one of {', '.join(allowed)}", "choose one"
-                )
+            check_word(f"motion.{name}", getattr(self, name), allowed)
         for name, low, high, remedy in (
             ("speed", 1e-6, 10, "in L/T1; 0.004 is a slow whisk"),
             ("timestep", 1e-7, 1, "in T1; 0.02 is usual"),
@@ -112,13 +108,17 @@ class Motion:
             ("ramp", 0, 1e3, "in T1; 1 is usual"),
             ("average", 0, 1, "1 is all the way"),
         ):
-            _check(name, getattr(self, name), low, high, remedy)
+            check_number(f"motion.{name}", getattr(self, name), low, high, remedy)
         if self.friction is not None:
-            _check("friction", self.friction, 0, 10, "leave it out for the case's")
+            check_number("motion.friction", self.friction, 0, 10, "leave it out for the case's")
         if self.cutoff is not None:
-            _check("cutoff", self.cutoff, 1e-3, 1e9, "in 1/T1; leave it out for no filter")
+            check_number(
+                "motion.cutoff", self.cutoff, 1e-3, 1e9, "in 1/T1; leave it out for no filter"
+            )
         if self.contact_stiffness is not None:
-            _check("contact_stiffness", self.contact_stiffness, 1e3, 1e9, "1e4 is usual")
+            check_number(
+                "motion.contact_stiffness", self.contact_stiffness, 1e3, 1e9, "1e4 is usual"
+            )
         if self.solref is not None:
             if self.contact_stiffness is not None:
                 raise InputError(
@@ -127,10 +127,14 @@ class Motion:
                     "left out where solref is given",
                     "leave one of them out",
                 )
-            if len(self.solref) != 2:
+            if not (isinstance(self.solref, tuple | list) and len(self.solref) == 2):
                 raise InputError("motion.solref", self.solref, "two numbers", "as (0.1, 1.0)")
-            _check("solref[0]", self.solref[0], 1e-6, 1e3, "MuJoCo's time constant in T1")
-            _check("solref[1]", self.solref[1], 1e-3, 1e3, "MuJoCo's damping ratio; 1 is usual")
+            check_number(
+                "motion.solref[0]", self.solref[0], 1e-6, 1e3, "MuJoCo's time constant in T1"
+            )
+            check_number(
+                "motion.solref[1]", self.solref[1], 1e-3, 1e3, "MuJoCo's damping ratio; 1 is usual"
+            )
 
     @property
     def stiffness(self) -> float:
@@ -139,9 +143,3 @@ class Motion:
             return self.contact_stiffness
         implicit = self.integrator == "discrete"
         return (_STIFFNESS if implicit else _STIFFNESS_EXPLICIT) / self.timestep**2
-
-
-def _check(name: str, value: float, low: float, high: float, remedy: str) -> None:
-    is_number = isinstance(value, Real) and not isinstance(value, bool)
-    if not (is_number and low <= value <= high):
-        raise InputError(f"motion.{name}", value, f"a number between {low:g} and {high:g}", remedy)

@@ -1,12 +1,12 @@
 """The numerics of a MuJoCo sweep: everything that is not physics."""
 
 from dataclasses import dataclass
-from numbers import Integral, Real
 from typing import Literal, TypeAlias, get_args
 
 from pydantic import ConfigDict, StrictBool, StrictFloat, StrictInt
 
 from analytic.problem.errors import InputError
+from mujoco_models.allowed import check_number, check_word
 
 BeamKind: TypeAlias = Literal["chain", "rod", "cable"]
 ClampKind: TypeAlias = Literal["second-order", "naive"]
@@ -63,12 +63,9 @@ class Settings:
     planar: StrictBool = True
 
     def __post_init__(self) -> None:
-        for name, allowed in (("beam", BEAMS), ("clamp", CLAMPS), ("obstacle", OBSTACLES)):
-            value = getattr(self, name)
-            if value not in allowed:
-                raise InputError(
-                    f"mujoco.{name}", repr(value), f"one of {', '.join(allowed)}", "choose one"
-                )
+        check_word("mujoco.beam", self.beam, BEAMS)
+        check_word("mujoco.clamp", self.clamp, CLAMPS)
+        check_word("mujoco.obstacle", self.obstacle, OBSTACLES)
         if not isinstance(self.planar, bool):
             raise InputError(
                 "mujoco.planar",
@@ -76,17 +73,12 @@ class Settings:
                 "true or false",
                 "false lets the beam leave the plane",
             )
-        for name, kind, low, high, remedy in (
-            ("segments", Integral, 2, 1000, "40 is usual"),
-            ("contour_points", Integral, 8, 50_000, "3200 is usual"),
-            ("contact_stiffness", Real, *CONTACT_STIFFNESSES, "1e7 is usual"),
-            ("corner_radius", Real, 1e-9, 1e-3, "1e-6 is usual"),
-            ("tolerance", Real, 1e-11, 1e-2, "1e-8 is usual"),
+        check_number("mujoco.segments", self.segments, 2, 1000, "40 is usual", whole=True)
+        points = self.contour_points
+        check_number("mujoco.contour_points", points, 8, 50_000, "3200 is usual", whole=True)
+        for name, low, high, remedy in (
+            ("contact_stiffness", *CONTACT_STIFFNESSES, "1e7 is usual"),
+            ("corner_radius", 1e-9, 1e-3, "1e-6 is usual"),
+            ("tolerance", 1e-11, 1e-2, "1e-8 is usual"),
         ):
-            value = getattr(self, name)
-            is_number = isinstance(value, kind) and not isinstance(value, bool)
-            if not (is_number and low <= value <= high):
-                number = "a whole number" if kind is Integral else "a number"
-                raise InputError(
-                    f"mujoco.{name}", value, f"{number} between {low:g} and {high:g}", remedy
-                )
+            check_number(f"mujoco.{name}", getattr(self, name), low, high, remedy)

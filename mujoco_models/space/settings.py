@@ -1,12 +1,12 @@
 """The numerics of a MuJoCo sweep in space: everything that is not physics."""
 
 from dataclasses import dataclass
-from numbers import Integral, Real
 from typing import Literal, TypeAlias, get_args
 
 from pydantic import ConfigDict, StrictFloat, StrictInt
 
 from analytic.problem.errors import InputError
+from mujoco_models.allowed import check_number, check_word
 from mujoco_models.settings import CONTACT_STIFFNESSES, ClampKind
 
 SpatialBeamKind: TypeAlias = Literal["chain", "rod"]
@@ -62,11 +62,7 @@ class SpatialSettings:
 
     def __post_init__(self) -> None:
         for name, allowed in _WORDS.items():
-            value = getattr(self, name)
-            if value not in allowed:
-                raise InputError(
-                    f"mujoco.{name}", repr(value), f"one of {', '.join(allowed)}", "choose one"
-                )
+            check_word(f"mujoco.{name}", getattr(self, name), allowed)
         if self.beam == "rod" and self.joints != "universal":
             raise InputError(
                 "mujoco.joints",
@@ -74,16 +70,11 @@ class SpatialSettings:
                 "'universal' for the rod",
                 "a one-dimensional flex cannot resist twisting",
             )
-        for name, kind, low, high, remedy in (
-            ("segments", Integral, 2, 400, "40 is usual"),
-            ("contact_stiffness", Real, *CONTACT_STIFFNESSES, "1e7 is usual"),
-            ("contour_points", Integral, 8, 20_000, "3200 is usual"),
-            ("tolerance", Real, 1e-10, 1e-2, "1e-8 is usual"),
+        check_number("mujoco.segments", self.segments, 2, 400, "40 is usual", whole=True)
+        points = self.contour_points
+        check_number("mujoco.contour_points", points, 8, 20_000, "3200 is usual", whole=True)
+        for name, low, high, remedy in (
+            ("contact_stiffness", *CONTACT_STIFFNESSES, "1e7 is usual"),
+            ("tolerance", 1e-10, 1e-2, "1e-8 is usual"),
         ):
-            value = getattr(self, name)
-            is_number = isinstance(value, kind) and not isinstance(value, bool)
-            if not (is_number and low <= value <= high):
-                number = "a whole number" if kind is Integral else "a number"
-                raise InputError(
-                    f"mujoco.{name}", value, f"{number} between {low:g} and {high:g}", remedy
-                )
+            check_number(f"mujoco.{name}", getattr(self, name), low, high, remedy)

@@ -1,0 +1,55 @@
+"""What settings may be: checks that those of every kind share, one line for what is wrong."""
+
+from numbers import Integral, Real
+
+from analytic.problem.errors import InputError
+
+
+def check_word(name: str, value: object, allowed: tuple[str, ...]) -> None:
+    """Refuse what is none of some words.
+
+    Parameters
+    ----------
+    name : str
+        What an error calls it.
+    value : object
+        What was given.
+    allowed : tuple of str
+        The words.
+
+    Raises
+    ------
+    InputError
+        If it is none of them.
+    """
+    if value not in allowed:
+        raise InputError(name, repr(value), f"one of {', '.join(allowed)}", "choose one")
+
+
+def check_number(
+    name: str, value: object, low: float, high: float, remedy: str, whole: bool = False
+) -> None:
+    """Refuse what is no number, or out of its range.
+
+    Parameters
+    ----------
+    name : str
+        What an error calls it.
+    value : object
+        What was given; booleans are no numbers.
+    low, high : float
+        The least and the largest.
+    remedy : str
+        What to do.
+    whole : bool
+        Whether it must be a whole number.
+
+    Raises
+    ------
+    InputError
+        If it is not between them.
+    """
+    is_number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)
+    if not (is_number and low <= value <= high):  # type: ignore[operator]
+        number = "a whole number" if whole else "a number"
+        raise InputError(name, value, f"{number} between {low:g} and {high:g}", remedy)
