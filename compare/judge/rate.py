@@ -96,6 +96,35 @@ def free_share(readings: "Readings") -> float:
     return float(np.mean(readings.table["phase"][readings.trusted] == "free"))
 
 
+def soft_tip_share(readings: "Readings") -> float:
+    """Share of the trusted stations whose contact, in Phase B, takes in the tip as well.
+
+    A contact that has sunk in by p spreads over sqrt(2 p R) to either side, R the radius of
+    curvature of what it is pressed on, here L. If the tip is that near, the source may call
+    tangential what the clamp feels as a contact of the tip.
+
+    Parameters
+    ----------
+    readings : Readings
+        A sweep.
+
+    Returns
+    -------
+    float
+        0 if it recorded no phases or no penetration.
+    """
+    table, length = readings.table, readings.beam.length
+    if (
+        not {"phase", "penetration", "contact_arc_length"} <= set(table)
+        or not readings.trusted.any()
+    ):
+        return 0.0
+    short = length - readings.values("contact_arc_length")
+    spread = np.sqrt(2 * np.maximum(readings.values("penetration"), 0.0) * length)
+    near = (table["phase"] == "tangent").to_numpy() & (short < spread)
+    return float(np.mean(near[readings.trusted]))
+
+
 def _is_size(value: object) -> TypeGuard[float]:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 
 from analytic import CLAMP_READINGS, PHASES, InputError
-from compare.judge.rate import Rate, free_share
+from compare.judge.rate import Rate, free_share, soft_tip_share
 
 if TYPE_CHECKING:  # limits are checked before pandas is needed
     from analytic import Readings
@@ -168,7 +168,8 @@ class Tolerances:
         rms = max(self.rms, min(self.rms + adds, _QUASI_STATIC))
         capped = rms < self.rms + adds
         most = ", but no more than this: a faster motion is not quasi-static" if capped else ""
-        free, bounces = free_share(candidate), 2 / stations + rate.speed / travel
+        free, soft = free_share(candidate), soft_tip_share(candidate)
+        bounces = 2 / stations + rate.speed / travel
         transition = self.transition + adds
         unclear = 4 * transition / travel
         return {
@@ -183,10 +184,11 @@ class Tolerances:
                 "(zeta v T1/(pi L))^(2/3) for dampers",
             ),
             "phase_agreement": Limit(
-                max(self.phase_agreement - free - unclear, 0.0),
+                max(self.phase_agreement - free - soft - unclear, 0.0),
                 f"{float(self.phase_agreement):.0%} at rest, less the {free:.1%} of the stations "
-                "at which it swings freely, which the clamp takes for contact, and the "
-                f"{unclear:.1%} by which the two limits of Phase B may be off to either side",
+                f"at which it swings freely, which the clamp takes for contact, the {soft:.1%} "
+                f"whose contact sinks in so far that it takes in the tip, and the {unclear:.1%} "
+                "by which the two limits of Phase B may be off to either side",
             ),
             "untrusted": Limit(
                 self.untrusted + bounces,

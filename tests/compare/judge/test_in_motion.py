@@ -72,6 +72,16 @@ def test_a_users_model_is_judged_by_its_own_damping():
     assert own.rms == Tolerances().suited_to(moving(damping_ratio=0.5)).rms
 
 
+def test_a_contact_that_takes_in_the_tip_shows_no_phase():
+    """Sunk in by 2e-4 L it reaches 0.02 L to either side: the stations there are allowed for."""
+    hard, soft = moving(), moving()
+    soft = replace(soft, table=soft.table.assign(penetration=2e-4))
+    near = (EXACT.table["phase"] == "tangent") & (EXACT.table["contact_arc_length"] > 0.98)
+    assert 0 < near.mean() < 0.2
+    allowed = [Tolerances().suited_to(sweep).phase_agreement for sweep in (hard, soft)]
+    assert allowed[0] - allowed[1] == pytest.approx(near.mean())
+
+
 def test_a_vibrissa_that_swings_free_shows_no_phase():
     """Its inertia loads the clamp like a contact: here as the last one did, in Phase B."""
     sweep = moving(damping_ratio=0.1)
