@@ -172,7 +172,8 @@ def budget(
         "facets": run["calm"] - run["smooth"],
         "softness": (run[hard] - run["stiff"]) * STIFFER / (STIFFER - 1),
         "unrest": run["base"] - run["calm"],
-        "sensor": _sensor(base, kept, scale),
+        # What is out of balance shows in the sensors, too: that is unrest, and counted there.
+        "sensor": _sensor(runs["calm"], kept, scale),
         "extension": stretched(signatures, base.values("extension")[kept]),
     }
     if "sharp" in run:  # linear in the edges' radius
@@ -315,10 +316,10 @@ def _limit(refined: list[Floats], power: Floats) -> tuple[Floats, Floats]:
     return np.asarray(limit), np.asarray(errors * np.linalg.norm(weights * power))
 
 
-def _sensor(base: Readings, kept: Booleans, scale: Mapping[str, float]) -> Floats:
+def _sensor(run: Readings, kept: Booleans, scale: Mapping[str, float]) -> Floats:
     """The sensors' discrepancy from the sum of the contacts, the worst of the three readings."""
-    discrepancy = base.values("discrepancy")[kept]
-    beam = base.beam
+    discrepancy = run.values("discrepancy")[kept]
+    beam = run.beam
     units = (beam.force_unit, beam.force_unit, beam.moment_unit)
     return np.stack(
         [discrepancy * u / scale[name] for name, u in zip(CLAMP_READINGS, units, strict=True)]
