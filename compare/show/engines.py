@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatter
 
 from analytic import CLAMP_READINGS, Case, Readings
 from analytic.problem.files import write_whole
@@ -16,6 +17,8 @@ from compare.show.colophon import colophon
 from compare.show.page import document, inline_svg, png, render
 from compare.show.side_by_side import SideBySide, picture, seconds_per_station, side_by_side
 from compare.show.style import LARGE, READING_COLOURS, READING_MARKERS, SMALL, SYMBOLS, label
+
+_DECADE = 10.0  # of time, drawn at least
 
 
 @dataclass(frozen=True)
@@ -272,6 +275,12 @@ def error_against_time(many: ManyEngines) -> Figure:
             label(name), (x, y), (0, 8), textcoords="offset points", ha="center", fontsize=SMALL
         )
     ax.margins(0.25)
+    low, high = ax.get_xlim()
+    if high < _DECADE * low:  # times that hardly differ are not drawn far apart
+        middle = np.sqrt(low * high)
+        ax.set_xlim(middle / np.sqrt(_DECADE), middle * np.sqrt(_DECADE))
+    for formatter in (ax.xaxis.set_major_formatter, ax.xaxis.set_minor_formatter):
+        formatter(LogFormatter(minor_thresholds=(1.5, 0.4)))  # 50, not 5 x 10^1
     ax.set_title(f"{label(many.case.name)}: error against time", fontsize=LARGE)
     ax.set_xlabel("processor time a station [ms], building the model included")
     ax.set_ylabel("rms relative to the largest magnitude")

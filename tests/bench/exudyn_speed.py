@@ -22,7 +22,7 @@ PLOT = Path("results/bench-exudyn.png")
 LOWEST, RADIUS = (0.0, 0.4), 1.0
 CASE = Case(profile=circle(RADIUS, LOWEST), sweep=Sweep(200, stop=-1.26))  # the fold is at -1.2705
 SEGMENTS, ELEMENTS = (10, 20, 40, 80, 160), (5, 10, 20, 40)
-_TICKS = (0.2, 0.5, 1, 2, 5, 10)  # ms
+_TICKS = (1, 2, 5, 10, 20)  # ms
 # Okabe and Ito's palette, and markers, so that colour is not needed.
 _STYLES = {
     "MuJoCo chain, mesh": {"color": "#0072B2", "marker": "o"},
@@ -85,11 +85,15 @@ def plot(runs: dict[str, dict[int, tuple[float, float]]]) -> Figure:
     for name, sizes in runs.items():
         took, error = zip(*sizes.values(), strict=True)
         ax.loglog(took, error, label=name, **_STYLES[name])
+        if "rod" in name or "cable, mesh" in name:
+            continue  # next to the chain's, which has the same numbers
+        aside = (-6, -11) if "primitive" in name else (6, 5)
         for n, x, y in zip(sizes, took, error, strict=True):
-            ax.annotate(str(n), (x, y), (5, 4), textcoords="offset points", fontsize=8)
+            ax.annotate(str(n), (x, y), aside, textcoords="offset points", fontsize=8, ha="center")
     ax.set_title("Vibrissa past a circle: error against time on one core", fontsize=11)
     ax.set_xlabel("CPU time a station [ms]   (numbers: segments or elements)")
     ax.set_ylabel("largest rms of $F_{Ax}$, $F_{Ay}$, $M_{Az}$\nrelative to its largest magnitude")
+    ax.set_xlim(left=1)
     ax.set_xticks(_TICKS, [f"{tick:g}" for tick in _TICKS])
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.grid(which="both", alpha=0.25)
