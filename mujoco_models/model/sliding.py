@@ -79,22 +79,27 @@ class SlidingBeads:
             True if beads have been moved: MuJoCo's answer is then out of date.
         """
         self._guided = False
-        if not contacts.loaded.any():
+        if len(contacts.link) == 0:
             return False
         deepest = int(np.argmin(contacts.distance))
         link, kappa = int(contacts.link[deepest]), float(curvature[deepest])
         spacing = self._spacing[link]
         if contacts.touch[deepest] == len(self._home) - 1 or kappa * spacing < _SHARP:
             return False
-        if -contacts.distance[contacts.loaded].sum() > kappa * spacing**2 / 2:
+        between = kappa * spacing**2 / 2  # how far the next bead is from the contour
+        if contacts.distance[deepest] > between:
+            return False  # so far away that it may be another link that touches
+        if -contacts.distance[contacts.loaded].sum() > between:
             return False  # so soft that several beads share the load
-        self._guided = True
         heading = contacts.point[deepest] - joints[link]
         heading /= np.hypot(*heading)
         across = contacts.normal[deepest] - (contacts.normal[deepest] @ heading) * heading
         touched = self._obstacle.support(float(slope_angle(across[None])[0]))
         along = float((touched - joints[link]) @ heading)
-        return self._shift(link, self._layout.joints[link] + along)
+        tangential = self._layout.joints[link] + along
+        there = float(np.clip(tangential, self._begins[link], self._ends[link]))
+        self._guided = there == tangential  # or it is a joint that touches, a material point
+        return self._shift(link, there)
 
     def hold(self) -> bool:
         """Put all beads where they were at first.
@@ -132,7 +137,6 @@ class SlidingBeads:
         """Slide a link's beads until one of them is there; whether that is another place."""
         own = np.flatnonzero(self._layout.links == link)
         home = self._home[own]
-        there = float(np.clip(there, self._begins[link], self._ends[link]))
         shift = there - home[np.argmin(np.abs(home - there))]
         places = np.clip(home + shift, self._begins[link], self._ends[link])
         same = np.abs(places - self._layout.beads[own]).max() < _SAME_PLACE

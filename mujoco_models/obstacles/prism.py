@@ -22,7 +22,8 @@ from mujoco_models.obstacles.window import HALF_DEPTH, add_room, write_prism
 from mujoco_models.settings import Settings
 
 _FINE = 32  # vertices at full resolution on either side of a window's centre, at least
-_SPAN = 4.0  # radii of the vibrissa that they span, at least: a link may rest on several beads
+_SPAN = 4.0  # radii of the vibrissa that they span: a link may rest on several beads
+_TURN = 0.1  # rad; or by which they turn, if that is less: farther away single precision shows
 _GRADED = 8  # vertices a level farther out; the spacing doubles from level to level
 _OF_TURN = 0.01  # of a facet's turn from the last one; so much may its vertices' rounding turn it
 _FINEST = 1e-12  # L
@@ -57,8 +58,7 @@ class Prism(Faceted):
     ) -> None:
         super().__init__(vertices, slopes)
         self._exact, self._corner_radius = exact, corner_radius
-        facet = float(np.median(np.hypot(*np.diff(vertices, axis=0).T)))
-        self._fine = max(_FINE, math.ceil(_SPAN * radius / facet))
+        self._radius = radius
 
     @classmethod
     def of(cls, case: Case, points: int, corner_radius: float = Settings.corner_radius) -> "Prism":
@@ -152,12 +152,13 @@ class Prism(Faceted):
         return self.vertex(slope).astype(float)
 
     def window_of(self, place: float) -> int:
-        """The window whose centre is nearest to a vertex."""
-        return int(np.argmin(np.abs(self._centres - place)))
+        """The window in whose middle a vertex is most."""
+        return int(np.argmin(np.abs(self._centres - place) / self._fine[self._centres]))
 
     def is_inside(self, window: int, places: Floats) -> bool:
         """Whether `window` has all of the contour around these vertices."""
-        return bool((np.abs(places - self._centres[window]) <= self._fine - 2).all())
+        centre = self._centres[window]
+        return bool((np.abs(places - centre) <= self._fine[centre] - 2).all())
 
     def hull(self, window: int) -> Floats:
         """The points of a window in double precision, one end of the extrusion after the other.
@@ -200,8 +201,17 @@ class Prism(Faceted):
     @cached_property
     def _centres(self) -> Integers:
         """Vertices at which the windows are centred; neighbouring windows overlap by half."""
-        n = len(self.vertices)
-        return np.append(np.arange(0, n - 1, self._fine), n - 1)
+        passed = np.cumsum(1 / self._fine)
+        return np.append(np.searchsorted(passed, np.arange(passed[-1])), len(passed) - 1)
+
+    @cached_property
+    def _fine(self) -> Integers:
+        """How many vertices a window has at full resolution on either side of each, shape (n,)."""
+        s, number = self._arc_length, np.arange(len(self.vertices))
+        with np.errstate(divide="ignore"):
+            span = np.minimum(_SPAN * self._radius, _TURN / self._curvature)
+        ahead, behind = np.searchsorted(s, s + span) - number, number - np.searchsorted(s, s - span)
+        return np.asarray(np.maximum(_FINE, np.maximum(ahead, behind)))
 
     @cached_property
     def _gridded(self) -> Floats:
@@ -210,10 +220,8 @@ class Prism(Faceted):
         Or else neighbouring windows would have facets that are not quite parallel, and a state at
         rest would depend on the way to it. No grid is so coarse that it shows beside the facets.
         """
-        length = np.hypot(*np.diff(self.vertices, axis=0).T)
-        if not self._exact:
-            length[[0, -1]] = length[[1, -2]]  # those beyond reach are longer, and never touched
-        s, number = np.insert(np.cumsum(length), 0, 0.0), np.arange(len(self.vertices))
+        s, number = self._arc_length, np.arange(len(self.vertices))
+        length = np.diff(s)
         ahead = s[np.minimum(number + self._fine, number[-1])] - s
         behind = s - s[np.maximum(number - self._fine, 0)]
         exact = np.maximum(ahead, behind) * 2.0**-24
@@ -223,15 +231,23 @@ class Prism(Faceted):
         grid = 2.0 ** np.ceil(np.log2(np.minimum(exact, shows)))[:, None]
         return np.asarray(np.round(self.vertices / grid) * grid)
 
-    @property
-    def _count(self) -> int:
-        """Vertices of a window's polygon."""
-        return min(len(self.vertices), len(self._offsets) + 2) + 1
+    @cached_property
+    def _arc_length(self) -> Floats:
+        """Of the vertices, shape (n,) [L]."""
+        length = np.hypot(*np.diff(self.vertices, axis=0).T)
+        if not self._exact:
+            length[[0, -1]] = length[[1, -2]]  # those beyond reach are longer, and never touched
+        return np.insert(np.cumsum(length), 0, 0.0)
 
     @cached_property
-    def _offsets(self) -> Integers:
+    def _count(self) -> int:
+        """Vertices of a window's polygon."""
+        widest = int(self._fine[self._centres].max())
+        return min(len(self.vertices), len(self._offsets(widest)) + 2) + 1
+
+    def _offsets(self, fine: int) -> Integers:
         """Which vertices a window keeps of a long polygon, counted from its centre."""
-        fine, n = self._fine, len(self.vertices)
+        n = len(self.vertices)
         levels = math.ceil(math.log2(1 + n / _GRADED))
         out = fine + np.cumsum(np.repeat(2 ** np.arange(1, levels + 1), _GRADED))
         return np.concatenate([-out[::-1], np.arange(-fine, fine + 1), out])
@@ -239,7 +255,7 @@ class Prism(Faceted):
     def _kept(self, centre: int) -> Integers:
         """Those within the polygon, its ends, and the next ones until there are enough."""
         n, count = len(self.vertices), self._count - 1
-        kept = centre + self._offsets
+        kept = centre + self._offsets(int(self._fine[centre]))
         kept = np.union1d(kept[(kept > 0) & (kept < n - 1)], [0, n - 1])
         near = np.arange(max(0, centre - count), min(n, centre + count + 1))
         spare = np.setdiff1d(near, kept, assume_unique=True)

@@ -295,9 +295,9 @@ def _summary(console: Console, results: list[tuple[Trial, Outcome | str]]) -> No
     table.add_row("refused", str(sum(s.startswith("refused") for s in said)))
     table.add_row("failed", str(sum(s.startswith("FAILED") for s in said)))
     if done:
-        table.add_row(
-            "median rms / explained", f"{np.median([o.rms / o.expected for o in done]):.2f}"
-        )
+        shares = [o.rms / o.expected for o in done]
+        table.add_row("median rms / explained", f"{np.median(shares):.2f}")
+        table.add_row("largest rms / explained", f"{max(shares):.2f}")
         table.add_row("stations ok", f"{np.mean([o.ok for o in done]):.2%}")
         table.add_row("median ms a station", f"{np.median([o.milliseconds for o in done]):.1f}")
     console.print(table)
