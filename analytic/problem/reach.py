@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
-from analytic.problem.roots import zero
+from analytic.problem.roots import zeros
 
 FARTHEST = 1e4  # L, from the origin: positions are then good to 2e-12 L
 _WIDEST = 1e3  # L; a wider object turns by less than 1e-3 rad while the vibrissa passes
@@ -48,7 +48,7 @@ def contact_range(centreline: Contour) -> tuple[float, float]:
             "below 1 L, the tip of the vibrissa",
             "lower the object or lengthen the vibrissa",
         )
-    ends = _height_one(centreline, low, bottom), _height_one(centreline, high, bottom)
+    ends = _height_one(centreline, low, bottom, high)
     _check_place(centreline, ends)
     return ends
 
@@ -99,11 +99,16 @@ def _check_place(centreline: Contour, ends: tuple[float, float]) -> None:
         )
 
 
-def _height_one(centreline: Contour, end: float, bottom: float) -> float:
-    """Where the contour passes the height 1 between its lowest point and an end, or that end."""
-    if _height(centreline, end) <= 1:
-        return end
-    return zero(lambda t: _height(centreline, t) - 1, min(end, bottom), max(end, bottom))
+def _height_one(centreline: Contour, low: float, bottom: float, high: float) -> tuple[float, float]:
+    """Where the contour passes the height 1 on both sides of its lowest point, or its ends."""
+    outer = np.array([low, high])
+    above = np.flatnonzero(centreline.at(outer).eta > 1)
+    outer[above] = zeros(
+        lambda _, t: centreline.at(t).eta - 1,
+        np.where(above == 0, low, bottom),
+        np.where(above == 0, bottom, high),
+    )
+    return float(outer[0]), float(outer[1])
 
 
 def _height(centreline: Contour, t: float) -> float:

@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.errors import InputError
-from analytic.problem.roots import zeros
+from analytic.problem.roots import zero, zeros
 from analytic.problem.unloaded import Unloaded
 
 _SAMPLES = 513  # of the contour, between which its distance from the vibrissa has one minimum
@@ -52,19 +52,15 @@ def first_touch(centreline: Contour, reach: tuple[float, float], rest: Unloaded)
     def height(t: Floats) -> Floats:
         return centreline.at(t).eta
 
-    ends = np.array([lowest]), np.array([first])
-    if height(ends[0])[0] >= tip_y:
+    at_lowest, at_first = height(np.array([lowest, first])).tolist()
+    if at_lowest >= tip_y:
         raise InputError(
             f"height of the lowest point of the object ({centreline.label}), less the radius,",
-            f"{height(ends[0])[0]:.6g} L",
+            f"{at_lowest:.6g} L",
             f"below {tip_y:.6g} L, the tip of the vibrissa at rest",
             "lower the object or lessen the natural curvature",
         )
-    top = (
-        first
-        if height(ends[1])[0] <= tip_y
-        else float(zeros(lambda t: height(t) - tip_y, *ends)[0])
-    )
+    top = first if at_first <= tip_y else zero(lambda t: height(t) - tip_y, lowest, first)
 
     def arc_length(t: Floats) -> Floats:
         return _arc_length(centreline.at(t), rest)
@@ -76,7 +72,7 @@ def first_touch(centreline: Contour, reach: tuple[float, float], rest: Unloaded)
 
     grid = np.linspace(top, lowest, _SAMPLES)
     steep = lean(grid)
-    at_tip = top < first or height(ends[1])[0] >= tip_y * (1 - 1e-15)
+    at_tip = top < first or at_first >= tip_y * (1 - 1e-15)
     if not at_tip and steep[0] < 0:
         raise InputError(
             "beam.natural_curvature",
@@ -86,7 +82,7 @@ def first_touch(centreline: Contour, reach: tuple[float, float], rest: Unloaded)
             "lessen it; only the object's lower side can be touched",
         )
     crossings = np.flatnonzero((steep[:-1] > 0) & (steep[1:] <= 0))
-    tangents = zeros(lean, grid[crossings + 1], grid[crossings])
+    tangents = zeros(lambda _, t: lean(t), grid[crossings + 1], grid[crossings])
     places = np.append(top, tangents)
     lengths = arc_length(places)
     lengths[0] = 1.0 if at_tip else lengths[0]
@@ -103,8 +99,9 @@ def _arc_length(point: ContourPoint, rest: Unloaded) -> Floats:
     """Arc length at which the vibrissa at rest is as high as the contour at given points."""
     if not rest.is_arc:
 
-        def above(s: Floats) -> Floats:
-            return rest.at(s)[1] + rest.taper(s) * np.cos(point.alpha) - point.eta
+        def above(which: Integers, s: Floats) -> Floats:
+            alpha, eta = point.alpha[which], point.eta[which]
+            return np.asarray(rest.at(s)[1] + rest.taper(s) * np.cos(alpha) - eta)
 
         return zeros(above, np.zeros_like(point.eta), np.ones_like(point.eta))
     natural = rest.natural

@@ -4,23 +4,30 @@ from collections.abc import Callable
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Booleans, Floats, Integers
 
 _MAX_ITERATIONS = 120  # bisection alone needs 53, and 64 more to pass from 1 to 1e-19
 _ROUNDING = 2 * float(np.finfo(float).eps)  # of a zero, relative
+_AT_ONCE, _ASIDE = 64, 15  # so many numbers take hardly longer than one; at most, on either side
 
 
-def zeros(function: Callable[[Floats], Floats], low: Floats, high: Floats) -> Floats:
+def zeros(
+    function: Callable[[Integers, Floats], Floats],
+    low: Floats,
+    high: Floats,
+) -> Floats:
     """Where `function` changes its sign between `low` and `high`.
 
     Chandrupatla's method (Adv. Eng. Software 28, 1997): inverse quadratic interpolation where three
-    values allow it, bisection elsewhere. Where the function jumps, it is the place of the jump.
+    values allow it, bisection elsewhere. A call of NumPy takes as long for one number as for sixty,
+    so that few zeros are sought at several places at once: crowded about what interpolation says,
+    or evenly spaced. Where the function jumps, it is the place of the jump.
 
     Parameters
     ----------
     function : callable
-        Maps an array of shape (n,) to its values, element by element; not continuous or smooth of
-        need, but never NaN.
+        Maps the numbers of zeros, ascending, and an array of places, both of shape (m,), to its
+        values, element by element; not continuous or smooth of need, but never NaN.
     low, high : array, shape (n,)
         Bounds, at which the function has different signs.
 
@@ -29,38 +36,38 @@ def zeros(function: Callable[[Floats], Floats], low: Floats, high: Floats) -> Fl
     array, shape (n,)
         Of the two numbers that enclose each zero to rounding, the one with the smaller value.
     """
-    a, b = np.array(low, dtype=float), np.array(high, dtype=float)
-    if a.size == 0:
-        return a
-    f_a, f_b = function(a), function(b)
-    share = np.full(a.shape, 0.5)
+    low, high = np.array(low, dtype=float), np.array(high, dtype=float)
+    found, which = np.empty_like(low), np.arange(low.size)
+    even = np.linspace(0, 1, 2 * _pairs(which.size) + 3)
+    x = low[:, None] + even * (high - low)[:, None]
+    x[:, -1] = high
+    f = _values(function, which, x)
     for _ in range(_MAX_ITERATIONS):
-        new = a + share * (b - a)
-        f_new = function(new)
-        same = np.signbit(f_new) == np.signbit(f_a)
-        c, f_c = np.where(same, a, b), np.where(same, f_a, f_b)
-        b, f_b = np.where(same, b, a), np.where(same, f_b, f_a)
-        a, f_a = new, f_new
+        a, b, c, f_a, f_b, f_c = _narrowed(x, f)
         width = np.abs(b - a)
         nearest = np.where(np.abs(f_a) < np.abs(f_b), a, b)
         rounding = _ROUNDING * np.abs(nearest)
         going = (width > 2 * rounding) & (f_a != 0) & (f_b != 0)
+        found[which] = nearest
         if not going.any():
             break
-        share = _share(a, b, c, f_a, f_b, f_c)
-        with np.errstate(all="ignore"):  # a bracket that is closed
-            margin = np.minimum(rounding / width, 0.5)
-        share = np.where(going, np.clip(share, margin, 1 - margin), 0.0)
-    return np.where(np.abs(f_a) < np.abs(f_b), a, b)
+        a, b, c, f_a, f_b, f_c = (values[going] for values in (a, b, c, f_a, f_b, f_c))
+        which, margin = which[going], np.minimum(rounding[going] / width[going], 0.5)
+        share, smooth = _share(a, b, c, f_a, f_b, f_c)
+        inside = _spread(np.clip(share, margin, 1 - margin), margin, smooth, _pairs(which.size))
+        x = a[:, None] + inside * (b - a)[:, None]
+        f = _values(function, which, x)
+        x, f = np.column_stack([a, x, b]), np.column_stack([f_a, f, f_b])
+    return found
 
 
-def zero(function: Callable[[float], float], low: float, high: float) -> float:
-    """`zeros` of a function of one number.
+def zero(function: Callable[[Floats], Floats], low: float, high: float) -> float:
+    """`zeros` of a function with one zero.
 
     Parameters
     ----------
     function : callable
-        Maps a number to a number.
+        Maps an array of places, shape (m,), to its values.
     low, high : float
         Bounds, at which the function has different signs.
 
@@ -69,16 +76,53 @@ def zero(function: Callable[[float], float], low: float, high: float) -> float:
     float
         The zero.
     """
-    found = zeros(lambda x: np.array([function(float(x[0]))]), np.array([low]), np.array([high]))
-    return float(found[0])
+    return float(zeros(lambda _, x: function(x), np.array([low]), np.array([high]))[0])
 
 
-def _share(a: Floats, b: Floats, c: Floats, f_a: Floats, f_b: Floats, f_c: Floats) -> Floats:
-    """How far from a to b the next point lies."""
+def _pairs(zeros: int) -> int:
+    """At how many places on either side of the most likely one each of so many zeros is sought."""
+    return min(_AT_ONCE // max(zeros, 1) // 2, _ASIDE)
+
+
+def _values(function: Callable[[Integers, Floats], Floats], which: Integers, x: Floats) -> Floats:
+    return function(np.repeat(which, x.shape[1]), x.ravel()).reshape(x.shape)
+
+
+def _narrowed(x: Floats, f: Floats) -> tuple[Floats, ...]:
+    """The two neighbours a and b with a zero between them, and the one next to a; their values."""
+    other = np.signbit(f) != np.signbit(f[:, :1])
+    other[:, -1] = True
+    end = np.argmax(other, axis=1)
+    row, last = np.arange(end.size), f.shape[1] - 1
+    before, after = np.maximum(end - 2, 0), np.minimum(end + 1, last)
+    back = (end == last) | ((end > 1) & (np.abs(f[row, before]) < np.abs(f[row, after])))
+    places = (
+        np.where(back, end - 1, end),
+        np.where(back, end, end - 1),
+        np.where(back, before, after),
+    )
+    return (*(x[row, place] for place in places), *(f[row, place] for place in places))
+
+
+def _share(
+    a: Floats, b: Floats, c: Floats, f_a: Floats, f_b: Floats, f_c: Floats
+) -> tuple[Floats, Booleans]:
+    """How far from a to b the zero most likely lies; whether interpolation says so."""
     with np.errstate(all="ignore"):  # coinciding values: bisection
         place, value = (a - b) / (c - b), (f_a - f_b) / (f_c - f_b)
         smooth = (value**2 < place) & ((1 - value) ** 2 < 1 - place)
         share = f_a / (f_b - f_a) * f_c / (f_b - f_c) + (c - a) / (b - a) * f_a / (
             f_c - f_a
         ) * f_b / (f_c - f_b)
-    return np.where(smooth & np.isfinite(share), share, 0.5)
+    smooth &= np.isfinite(share)
+    return np.where(smooth, share, 0.5), smooth
+
+
+def _spread(share: Floats, margin: Floats, smooth: Booleans, pairs: int) -> Floats:
+    """Places between a and b: about `share`, ever closer up to `margin`, or evenly spaced."""
+    if pairs == 0:
+        return share[:, None]
+    closer = margin[:, None] ** (np.arange(1, pairs + 1) / pairs)
+    share = share[:, None]
+    about = np.hstack([share - share * closer, share, (share + (1 - share) * closer)[:, ::-1]])
+    return np.where(smooth[:, None], about, np.linspace(0, 1, 2 * pairs + 3)[1:-1])

@@ -1,6 +1,7 @@
 """What may stand in the table of one sweep."""
 
 from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -149,7 +150,7 @@ def as_table(columns: Mapping[str, Floats | Integers]) -> pd.DataFrame:
     """
     return pd.DataFrame(
         {
-            name: in_words(name, values.astype(np.intp)) if name in WORDS else values
+            name: _words(name).take(values.astype(np.intp)) if name in WORDS else values
             for name, values in columns.items()
         }
     )
@@ -170,7 +171,13 @@ def in_words(name: str, numbers: NDArray[np.intp]) -> "pd.Series[str]":
     pandas.Series
         n texts.
     """
-    return pd.Series(pd.Series(WORDS[name]).array.take(numbers))
+    return pd.Series(_words(name).take(numbers))
+
+
+@cache
+def _words(name: str) -> "pd.api.extensions.ExtensionArray":
+    """The words that may stand in a column, as pandas holds texts."""
+    return pd.Series(WORDS[name]).array
 
 
 def mirrored_table(table: pd.DataFrame) -> pd.DataFrame:

@@ -32,8 +32,6 @@ class Branch:
 
     Attributes
     ----------
-    centreline : Contour
-        What the centreline feels, in units of the vibrissa's length.
     t : array, shape (n,)
         Contour parameters, decreasing along the sweep; the last is the snap-off.
     foot_x, excess : array, shape (n,)
@@ -45,7 +43,6 @@ class Branch:
         there [L], NaN out of reach.
     """
 
-    centreline: Contour
     t: Floats
     foot_x: Floats
     excess: Floats
@@ -121,12 +118,12 @@ class Branch:
         return np.clip(end, 1, len(self.t) - 1) - 1
 
 
-def trace(centrelines: Sequence[Contour], reaches: Sequence[tuple[float, float]]) -> list[Branch]:
+def trace(many: Contours, reaches: Sequence[tuple[float, float]]) -> list[Branch]:
     """Follow the equilibria along dimensionless contours, from first contact to snap-off.
 
     Parameters
     ----------
-    centrelines : sequence of Contour
+    many : Contours
         What the centrelines feel, in units of the vibrissae's lengths.
     reaches : sequence of tuple of float
         Contour parameters of the last point within reach and of the first contact, as
@@ -138,7 +135,6 @@ def trace(centrelines: Sequence[Contour], reaches: Sequence[tuple[float, float]]
         Of at least two points each; all in one place if nothing but the first contact can be
         reached.
     """
-    many = Contours(centrelines)
     last, first = np.array(reaches).T
     grid, samples = folded(many, along(many, first, last))
     ends = np.searchsorted(grid.owner, np.arange(len(many) + 1))
@@ -151,12 +147,11 @@ def trace(centrelines: Sequence[Contour], reaches: Sequence[tuple[float, float]]
     owner = np.repeat(np.arange(len(many)), counts)
     middles = np.concatenate([(t[1:] + t[:-1]) / 2 for t, _, _ in parts])
     tangent = surplus_and_rate(many.at(owner, middles))[0] < 0
-    lowest = np.concatenate([contour.parameter(np.zeros(1)) for contour in centrelines])
+    lowest = np.concatenate([contour.parameter(np.zeros(1)) for contour in many.contours])
     at_lowest = equilibria_at(many.at(np.arange(len(many)), lowest)).foot_x
     return [
-        Branch(contour, *part, cells, (float(t), float(foot_x)))
-        for contour, part, cells, t, foot_x in zip(
-            centrelines,
+        Branch(*part, cells, (float(t), float(foot_x)))
+        for part, cells, t, foot_x in zip(
             parts,
             np.split(tangent, np.cumsum(counts)[:-1]),
             lowest,

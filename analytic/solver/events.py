@@ -162,7 +162,8 @@ _PLACES = ("phase_b_start", "phase_b_end", "out_of_plane", "snap_off")
 def _plain_events(
     centrelines: Sequence[Contour], reaches: Sequence[tuple[float, float]], beams: Sequence[Beam]
 ) -> list[Events]:
-    many, branches = Contours(centrelines), trace(centrelines, reaches)
+    many = Contours(centrelines)
+    branches = trace(many, reaches)
     places = [
         (i, name, t)
         for i, branch in enumerate(branches)
@@ -246,7 +247,9 @@ def _contact_length_minima(many: Contours, reaches: Sequence[tuple[float, float]
     dips = np.flatnonzero(grid.cells & (rate[:-1] > 0) & (rate[1:] < 0))
     owner = grid.owner[dips]
     extrema = zeros(
-        lambda t: surplus_and_rate(many.at(owner, t))[1], grid.t[dips + 1], grid.t[dips]
+        lambda dip, t: surplus_and_rate(many.at(owner[dip], t))[1],
+        grid.t[dips + 1],
+        grid.t[dips],
     )
     owners, places = np.append(grid.owner, owner), np.append(grid.t, extrema)
     lowest = np.append(value, surplus_and_rate(many.at(owner, extrema))[0])

@@ -157,8 +157,8 @@ def _with_phase_changes(centrelines: Contours, grid: Grid) -> Grid:
     turns = np.flatnonzero(grid.cells & (below[1:] != below[:-1]))
     owner = grid.owner[turns]
 
-    def surplus(t: Floats) -> Floats:
-        return surplus_and_rate(centrelines.at(owner, t))[0]
+    def surplus(turn: Integers, t: Floats) -> Floats:
+        return surplus_and_rate(centrelines.at(owner[turn], t))[0]
 
     return grid.with_points(owner, zeros(surplus, grid.t[turns + 1], grid.t[turns]))
 
@@ -176,8 +176,8 @@ def _extrema(centrelines: Contours, grid: Grid, value: Floats, rate: Floats) -> 
     at = np.flatnonzero(dips & crosses)
     owner = grid.owner[at]
 
-    def rates(t: Floats) -> Floats:
-        return surplus_and_rate(centrelines.at(owner, t))[1]
+    def rates(dip: Integers, t: Floats) -> Floats:
+        return surplus_and_rate(centrelines.at(owner[dip], t))[1]
 
     return Grid(owner, zeros(rates, grid.t[at + 1], grid.t[at]))
 
@@ -260,9 +260,9 @@ def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> Grid:
     owner = grid.owner[turns]
     first = grid.t[np.flatnonzero(np.append(True, ~grid.cells))][owner]
 
-    def rates(at: Floats) -> Floats:
-        found = _sample(centrelines, Grid(owner, at)).rate
-        return np.where(at == first, 1.0, np.where(np.isnan(found), -1.0, found))
+    def rates(turn: Integers, at: Floats) -> Floats:
+        found = _sample(centrelines, Grid(owner[turn], at)).rate
+        return np.where(at == first[turn], 1.0, np.where(np.isnan(found), -1.0, found))
 
     return Grid(owner, zeros(rates, grid.t[turns + 1], grid.t[turns]))
 

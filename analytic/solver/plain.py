@@ -8,6 +8,7 @@ import numpy as np
 
 from analytic.problem.case import Case
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS, PHASES, STATUSES
+from analytic.problem.contours.many import Contours
 from analytic.problem.readings import Readings
 from analytic.problem.table import as_table
 from analytic.solver.branch import trace
@@ -39,7 +40,8 @@ def solve_plain(cases: Sequence[Case]) -> list[Readings]:
     whose = np.repeat(np.arange(len(cases)), counts)
     units = np.array([Units.of(case.beam) for case in cases]).T[:, whose]
     foot_x = np.concatenate([case.foot_x for case in cases])
-    branches = trace([case.centreline for case in cases], [case.reach for case in cases])
+    centrelines = Contours([case.centreline for case in cases])
+    branches = trace(centrelines, [case.reach for case in cases])
     places = foot_x / Units(*units).length
     first = np.array([branch.foot_x[0] for branch in branches])
     last = np.array([branch.foot_x[-1] for branch in branches])
@@ -49,7 +51,7 @@ def solve_plain(cases: Sequence[Case]) -> list[Readings]:
     if touching.any():
         ends = np.cumsum(counts)[:-1]
         parts = zip(np.split(places, ends), np.split(touching, ends), strict=True)
-        states = solve_stations(branches, [here[on] for here, on in parts])
+        states = solve_stations(centrelines, branches, [here[on] for here, on in parts])
         solved = to_columns(states, Units(*units[:, touching]))
         for name in COLUMNS[1:]:
             columns[name][touching] = solved[name]

@@ -40,7 +40,9 @@ class _Stations(NamedTuple):
         return _Stations(owner[chosen], foot_x[chosen], low[chosen], high[chosen])
 
 
-def solve_stations(branches: Sequence[Branch], foot_x: Sequence[Floats]) -> Equilibria:
+def solve_stations(
+    centrelines: Contours, branches: Sequence[Branch], foot_x: Sequence[Floats]
+) -> Equilibria:
     """The states at foot positions on branches.
 
     Newton's method starts from the branch's grid and may not leave the station's cell. What it
@@ -49,8 +51,10 @@ def solve_stations(branches: Sequence[Branch], foot_x: Sequence[Floats]) -> Equi
 
     Parameters
     ----------
+    centrelines : Contours
+        What the centrelines feel, in units of the vibrissae's lengths.
     branches : sequence of Branch
-        From first contact to snap-off.
+        Of each, from first contact to snap-off.
     foot_x : sequence of array
         Foot positions on each of them [L].
 
@@ -60,7 +64,6 @@ def solve_stations(branches: Sequence[Branch], foot_x: Sequence[Floats]) -> Equi
         Of all, one branch after the other, as exact as rounding allows; whether that is exact
         enough, `residuals` says.
     """
-    centrelines = Contours([branch.centreline for branch in branches])
     cells = [branch.cells(places) for branch, places in zip(branches, foot_x, strict=True)]
 
     def of_cells(name: str, ahead: int) -> Floats:
@@ -181,11 +184,12 @@ def _enclose(
     """
     owner, foot_x, low, high = stations
 
-    def ahead(t: Floats) -> Floats:
-        found = equilibria_at(centrelines.at(owner, t)).foot_x - foot_x
+    def ahead(station: Integers, t: Floats) -> Floats:
+        found = equilibria_at(centrelines.at(owner[station], t)).foot_x - foot_x[station]
         return np.where(np.isnan(found), 1.0, found)  # the first contact itself
 
-    at_low, at_high = ahead(low), ahead(high)
+    every = np.arange(owner.size)
+    at_low, at_high = ahead(every, low), ahead(every, high)
     t = zeros(ahead, low, high)
     t = np.where(at_low >= 0, low, np.where(at_high <= 0, high, t))
     states = equilibria_at(centrelines.at(owner, t))

@@ -16,6 +16,8 @@ from analytic.solver.elastica import (
 _MAX_ITERATIONS = 60  # bisection alone would halve the bracket to round-off in 53
 _CLOSE = 1e-5  # of a step of third order, relative: the next one would change round-off only
 
+_ROUNDING = float(np.finfo(float).eps)  # of the height [L]
+
 
 def tip_height(excess: Floats, alpha: Floats) -> Floats:
     """Height of a loaded tip above the foot line.
@@ -88,8 +90,10 @@ def tip_excess(alpha: Floats, eta: Floats) -> Floats:
         new = p - step
         inside = (new >= low) & (new <= high)
         new = np.where(inside, new, (low + high) / 2)
-        # After a small enough step the next would change round-off only; halving goes on.
+        # After a small enough step the next would change round-off only; halving goes on. So it
+        # is where the height agrees to a rounding: hardly bent, steps would go to and fro.
         done = np.abs(new - p) <= np.where(inside, _CLOSE, 1e-15) * new
+        done |= np.abs(deviation) * np.abs(deviation + 2 * sag) <= _ROUNDING
         p = new
         if done.any():
             excess[active[done]] = 2 * np.arcsin(p[done] ** 2)

@@ -27,6 +27,8 @@ class Contours:
 
     def __init__(self, contours: Sequence[Contour]) -> None:
         self.contours = tuple(contours)
+        if len(self.contours) == 1:
+            return
         families: dict[Any, list[int]] = {}
         numbers: list[tuple[float, ...]] = []
         for i, contour in enumerate(self.contours):

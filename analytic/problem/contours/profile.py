@@ -1,6 +1,7 @@
 """A strictly convex contour, as triples (alpha, xi, eta) by slope angle."""
 
-from dataclasses import dataclass, field, replace
+from copy import copy
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -105,8 +106,7 @@ class Profile(Contour):
         if radius == 0:
             return self
         positive("radius of the parallel curve", radius)
-        return replace(
-            self,
+        return self._changed(
             xi=partial(_offset_xi, self, radius),
             eta=partial(_offset_eta, self, radius),
             alpha_range=self.t_range,
@@ -118,8 +118,7 @@ class Profile(Contour):
         """The contour enlarged by `factor` about the origin, to change its unit of length."""
         if positive("profile.scale", factor) == 1:
             return self
-        return replace(
-            self,
+        return self._changed(
             xi=partial(_scaled, self.xi, factor),
             eta=partial(_scaled, self.eta, factor),
             radius_of_curvature=partial(_scaled, self._stretch, factor),
@@ -127,8 +126,7 @@ class Profile(Contour):
 
     def raised(self, height: float) -> "Profile":
         """The contour moved up by `height`."""
-        return replace(
-            self,
+        return self._changed(
             eta=partial(_raised, self.eta, height),
             radius_of_curvature=self._stretch,
         )
@@ -136,8 +134,7 @@ class Profile(Contour):
     def mirrored(self) -> "Profile":
         """The mirror image: x becomes -x and alpha becomes -alpha."""
         low, high = self.alpha_range
-        return replace(
-            self,
+        return self._changed(
             xi=partial(_mirrored, self.xi, -1),
             eta=partial(_mirrored, self.eta, 1),
             alpha_range=(-high, -low),
@@ -145,6 +142,13 @@ class Profile(Contour):
             kinks=tuple(-kink for kink in reversed(self.kinks)),
             label=f"{self.label}, mirrored",
         )
+
+    def _changed(self, **parts: object) -> "Profile":
+        """With other parts, made of those of a checked contour: they are not checked again."""
+        changed = copy(self)
+        for name, part in parts.items():
+            object.__setattr__(changed, name, part)
+        return changed
 
     def _on(self, alpha: Floats) -> Floats:
         """The nearest slope angles within the range."""

@@ -8,7 +8,7 @@ before it, can fail that: it would touch a second time, and the state is none.
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.problem.roots import zeros
 from analytic.solver.general.march import Trail, march
@@ -163,10 +163,11 @@ def _outside(centreline: Contour, x: Floats, y: Floats, taper: Floats) -> Boolea
     if left.size:  # between two tangents there may be a better one
         begin, end = t[np.maximum(best[left] - 1, 0)], t[np.minimum(best[left] + 1, len(t) - 1)]
 
-        def along(at: Floats) -> Floats:
+        def along(which: Integers, at: Floats) -> Floats:
             """Of the place, along the tangent: zero where the tangent is the best."""
             point = centreline.at(at)
-            dx, dy = places[left, 0] - point.xi, places[left, 1] - point.eta
+            place = places[left[which]]
+            dx, dy = place[:, 0] - point.xi, place[:, 1] - point.eta
             return np.asarray(dx * np.cos(point.alpha) + dy * np.sin(point.alpha))
 
         point = centreline.at(zeros(along, begin, end))

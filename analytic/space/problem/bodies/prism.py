@@ -8,7 +8,7 @@ from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import require
 from analytic.problem.numbers import positive
-from analytic.problem.roots import zeros
+from analytic.problem.roots import zero
 from analytic.space.problem.bodies.body import Body, Spot, across, grid_patches
 from analytic.space.problem.numbers import Vector, direction, vector
 
@@ -118,7 +118,7 @@ class Prism(Body):
             return low
         if ends[1] >= 0:
             return high
-        return float(zeros(ahead, np.array([low]), np.array([high]))[0])
+        return zero(ahead, low, high)
 
     def scaled(self, factor: float) -> "Prism":
         """With the same label."""

@@ -1,0 +1,41 @@
+"""Zeros: of smooth functions, of jumps, of a thousand, and in how many calls."""
+
+import numpy as np
+import pytest
+
+from analytic.problem.roots import zero, zeros
+
+EPS = float(np.finfo(float).eps)
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 40, 1000])
+def test_any_number_of_zeros_is_found_to_rounding(count: int) -> None:
+    place = np.linspace(0.1, 0.9, count)
+    found = zeros(lambda i, x: np.expm1(3 * (x - place[i])), np.zeros(count), np.ones(count))
+    np.testing.assert_allclose(found, place, rtol=4 * EPS)
+
+
+def test_the_place_of_a_jump_is_found_to_rounding() -> None:
+    assert zero(lambda x: np.where(x < 1 / 3, -1e-3, 5.0), 0.0, 1.0) == pytest.approx(
+        1 / 3, rel=4 * EPS
+    )
+
+
+def test_bounds_may_be_in_either_order() -> None:
+    assert zero(lambda x: x - 0.25, 1.0, 0.0) == 0.25
+
+
+def test_a_triple_zero_and_a_tiny_one_are_enclosed() -> None:
+    assert zero(lambda x: (x - 0.7) ** 3, 0.0, 1.0) == pytest.approx(0.7, rel=1e-5)
+    assert zero(lambda x: x - 1e-19, 0.0, 1.0) == pytest.approx(1e-19, rel=1e-12)
+
+
+def test_one_zero_of_a_smooth_function_takes_five_calls() -> None:
+    calls = []
+
+    def cosine(x: np.ndarray) -> np.ndarray:
+        calls.append(x.size)
+        return np.asarray(np.cos(x) - x)
+
+    assert zero(cosine, 0.0, 1.5) == pytest.approx(0.7390851332151607, rel=4 * EPS)
+    assert len(calls) <= 5
