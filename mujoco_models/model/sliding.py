@@ -17,6 +17,7 @@ from mujoco_models.obstacles.protocol import Obstacle
 _NEXT_TO_A_JOINT = 1e-3  # of its link; a bead stays on it
 _SAME_PLACE = 1e-9  # L
 _SHARP = 2 * OF_CURVATURE  # rad; beads a little farther apart than they should be do no harm
+_STAYS = 0.7  # of the depth at which beads begin to share a load: they go on down to that
 _ITS_OWN = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
 
 
@@ -45,6 +46,7 @@ class SlidingBeads:
         self._begins = layout.joints + _NEXT_TO_A_JOINT * layout.lengths
         self._link: int | None = None
         self._guided = False
+        self._shared = False
 
     def needed(self, curvature: float) -> bool:
         """Whether there may be a contact at which beads have to slide.
@@ -89,7 +91,9 @@ class SlidingBeads:
         between = kappa * spacing**2 / 2  # how far the next bead is from the contour
         if contacts.distance[deepest] > between:
             return False  # so far away that it may be another link that touches
-        if -contacts.distance[contacts.loaded].sum() > between:
+        depth = -contacts.distance[contacts.loaded].sum()
+        self._shared = bool(depth > (_STAYS if self._shared else 1) * between)
+        if self._shared:
             return False  # so soft that several beads share the load
         heading = contacts.point[deepest] - joints[link]
         heading /= np.hypot(*heading)

@@ -22,6 +22,7 @@ _OCTAHEDRON = (
 )
 _FLAT = 1e-5  # rad; MuJoCo's normal of a facet is as good as that
 _POINTED = 1e12  # 1/L
+_RAMP = 0.05  # of a facet's turn, on either side of its slope angle
 # rad; a facet that straddles the end of reach is touched at its own slope, a corner there with a
 # bead that may be half a spacing off. A polygon of few corners turns by far more at one of them.
 _SLACK = 0.35
@@ -89,8 +90,24 @@ class Faceted(Obstacle):
         return np.searchsorted(self.facet_angles, slope)
 
     def support(self, slope: float) -> Floats:
-        """The vertex at which the slope angle is passed."""
-        return np.asarray(self.vertices[np.searchsorted(self.facet_angles, slope)])
+        """The vertex at which the slope angle is passed, or a place on the facet that has it.
+
+        A line that lies on a facet may be loaded anywhere there: from one vertex to the next the
+        place passes within a small part of the facets' turn, not at once.
+        """
+        return np.array([np.interp(slope, self._passed, places) for places in self._places])
+
+    @cached_property
+    def _passed(self) -> Floats:
+        """Slope angles of the ends of `_places`, shape (2 n - 2,), ascending [rad]."""
+        turn = np.pad(np.diff(self.facet_angles), 1, constant_values=np.inf)
+        ramp = _RAMP * np.minimum(np.minimum(turn[1:], turn[:-1]), 1.0)
+        return np.column_stack([self.facet_angles - ramp, self.facet_angles + ramp]).ravel()
+
+    @cached_property
+    def _places(self) -> Floats:
+        """The ends of each facet, shape (2, 2 n - 2) [L]."""
+        return np.repeat(self.vertices, 2, axis=0)[1:-1].T.copy()
 
     def faces(self, slope: Floats) -> bool:
         """Whether these slope angles are among those at which it can be touched."""

@@ -232,3 +232,20 @@ def test_mujocos_contacts_are_those_of_the_polygon(body, points):
             found = data.contact.frame[deepest, :2]
             # Observed 0.017; 13 where windows were as long as the flank's facets are.
             assert abs(found[0] * normal[1] - found[1] * normal[0]) < 0.1 * turn[facet]
+
+
+def test_a_line_that_turns_passes_from_vertex_to_vertex_without_a_jump():
+    """Or a bead that slides to where its link touches has no place where the link lies flat."""
+    prism = Prism.of(Case(Beam(radius=2e-3), ellipse((0.15, 9.9), (0.0, 0.46))), 300)
+    low, high = prism.facet_angles[[0, -1]]
+    finest = np.diff(prism.facet_angles).min()
+    slopes = np.arange(low, high, finest / 200)[: 200 * 50]
+    places = np.array([prism.support(slope) for slope in slopes])
+    facet = np.hypot(*np.diff(prism.vertices, axis=0).T).max()
+    assert np.hypot(*np.diff(places, axis=0).T).max() < facet / 10
+    between = (prism.facet_angles[1:] + prism.facet_angles[:-1]) / 2
+    touched = np.array([prism.support(slope) for slope in between])
+    assert touched == pytest.approx(prism.vertices[1:-1], abs=0)
+    # On either side of its slope angle it lies on the facet, and on no other one.
+    flat = np.array([prism.support(slope) for slope in prism.facet_angles])
+    assert flat == pytest.approx((prism.vertices[1:] + prism.vertices[:-1]) / 2, abs=1e-12)
