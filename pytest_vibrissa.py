@@ -1,6 +1,7 @@
 """Fixtures for users' own tests: ``vibrissa_case``, ``vibrissa_sweep``, ``vibrissa_agreement``.
 
-And ``vibrissa_engine_sweep``, for a test that runs with every engine.
+And ``vibrissa_engine_sweep``, for a test that runs with every engine; ``vibrissa_space_case`` and
+``vibrissa_space_sweep`` for sweeps in space.
 
 The package registers this module as a pytest plugin, so every run of pytest in an environment that
 has the package imports it. It imports nothing but pytest until a fixture or option is used; and it
@@ -10,6 +11,7 @@ is no part of a package, so that a ``compare.py`` of the user's own is in nobody
 the cases that a test is run for, by default all named ones; where there are both, the marker's.
 ``--vibrissa-engine NAME`` and ``@pytest.mark.vibrissa_engine(NAME, ...)`` choose the engines in the
 same way, for tests that use `vibrissa_engine_sweep`; by default all that are known.
+``--vibrissa-space FILE`` and ``@pytest.mark.vibrissa_space(FILE, ...)`` choose the cases in space.
 ``--vibrissa-report DIR`` writes the report of every comparison that `vibrissa_agreement` makes, and
 ``DIR/summary.md``.
 """
@@ -31,19 +33,26 @@ import pytest
 
 if TYPE_CHECKING:
     from analytic import Case, Readings
+    from analytic.space import SpatialCase, SpatialReadings
+    from compare.align.frames import Frame
     from compare.comparison import Comparison
     from compare.explain.budget import Budget
+    from compare.judge.spatial import SpatialTolerances
     from compare.judge.tolerances import Tolerances
     from compare.read.case import Job
+    from compare.read.space import SpaceJob
+    from compare.spatial.comparison import SpatialComparison
     from mujoco_models import Settings
     from mujoco_models.settings import BeamKind
 
     Sweeps = dict[tuple[str, Settings | None], Readings]
     EngineSweeps = dict[tuple[str, Settings, str], Readings]
+    SpaceSweeps = dict[tuple[str, str], SpatialReadings]
 
 _PACKAGES = ("analytic", "mujoco_models", "engines", "compare")
 _RECORD = "vibrissa"
 _JOB = pytest.StashKey["Job"]()
+_SPACE_JOB = pytest.StashKey["SpaceJob"]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -64,6 +73,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "`vibrissa_engine`; repeat it (default: all that are known)",
     )
     group.addoption(
+        "--vibrissa-space",
+        action="append",
+        metavar="FILE",
+        help="case in space of tests that use `vibrissa_space_case` and have no marker "
+        "`vibrissa_space`; repeat it",
+    )
+    group.addoption(
         "--vibrissa-report",
         type=Path,
         metavar="DIR",
@@ -81,6 +97,10 @@ def pytest_configure(config: pytest.Config) -> None:
         "markers",
         "vibrissa_engine(name, ...): the engines of the `vibrissa_engine_sweep` fixture",
     )
+    config.addinivalue_line(
+        "markers",
+        "vibrissa_space(file, ...): the cases of the `vibrissa_space_case` fixture",
+    )
     for name in config.getoption("--vibrissa-engine") or ():
         try:
             _ours("engines.known").named_engines(name)
@@ -91,6 +111,11 @@ def pytest_configure(config: pytest.Config) -> None:
             _ours("compare.read.case").load_job(name)
         except (ValueError, OSError, pytest.fail.Exception) as error:  # InputError is a ValueError
             raise pytest.UsageError(f"--vibrissa-case: {error}") from None
+    for name in config.getoption("--vibrissa-space") or ():
+        try:
+            _ours("compare.read.space").load_space_job(name)
+        except (ValueError, OSError, pytest.fail.Exception) as error:
+            raise pytest.UsageError(f"--vibrissa-space: {error}") from None
     folder = config.getoption("--vibrissa-report")
     if folder is not None and not hasattr(config, "workerinput"):  # xdist's workers have that
         config.pluginmanager.register(_Summary(folder))
@@ -100,6 +125,7 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """One test a case and an engine, unless the user's own hook has chosen them."""
     _choose_engines(metafunc)
+    _choose_in_space(metafunc)
     if "vibrissa_case" not in metafunc.fixturenames:
         return
     # Without a public way to ask what is parametrized already, a user's `case` would be crossed
@@ -124,6 +150,19 @@ def _choose_engines(metafunc: pytest.Metafunc) -> None:
     names = (marker.args if marker else ()) or metafunc.config.getoption("--vibrissa-engine")
     names = list(names or [one.name for one in _ours("engines").list_engines()])
     metafunc.parametrize("vibrissa_engine", names, indirect=True)
+
+
+def _choose_in_space(metafunc: pytest.Metafunc) -> None:
+    chosen = {name for call in metafunc._calls for name in call.params}
+    if "vibrissa_space_case" not in metafunc.fixturenames or "vibrissa_space_case" in chosen:
+        return
+    marker = metafunc.definition.get_closest_marker("vibrissa_space")
+    names = (marker.args if marker else ()) or metafunc.config.getoption("--vibrissa-space")
+    if names:  # there are no named ones: the fixture says how to choose
+        names = [str(name) for name in names]
+        metafunc.parametrize(
+            "vibrissa_space_case", names, ids=[Path(name).stem for name in names], indirect=True
+        )
 
 
 @pytest.fixture
@@ -204,15 +243,51 @@ def vibrissa_engine_sweeps() -> EngineSweeps:
 
 
 @pytest.fixture
+def vibrissa_space_case(request: pytest.FixtureRequest) -> SpatialCase:
+    """A problem in space: an `analytic.space.SpatialCase`, one test for each that is chosen."""
+    if not hasattr(request, "param"):
+        pytest.fail(
+            "vibrissa_space_case: no case is chosen; name files with --vibrissa-space FILE or "
+            "@pytest.mark.vibrissa_space(FILE), and let the test itself use it",
+            pytrace=False,
+        )
+    job: SpaceJob = _ours("compare.read.space").load_space_job(request.param)
+    request.node.stash[_SPACE_JOB] = job
+    return job.case
+
+
+@pytest.fixture(scope="session")
+def vibrissa_space_sweeps() -> SpaceSweeps:
+    """The sweeps in space of this session, by file and MuJoCo's settings."""
+    return {}
+
+
+@pytest.fixture
+def vibrissa_space_sweep(
+    request: pytest.FixtureRequest,
+    vibrissa_space_case: SpatialCase,
+    vibrissa_space_sweeps: SpaceSweeps,
+) -> Callable[..., SpatialReadings]:
+    """``vibrissa_space_sweep()`` is the closed form's sweep of `vibrissa_space_case`.
+
+    ``vibrissa_space_sweep("chain", segments=80)`` is MuJoCo's; further words are those of
+    `mujoco_models.SpatialSettings`, and change the settings of the case. Each sweep is made once a
+    session.
+    """
+    return _space_sweep_of(request, vibrissa_space_sweeps)
+
+
+@pytest.fixture
 def vibrissa_agreement(
     request: pytest.FixtureRequest, record_property: Callable[[str, object], None]
-) -> Callable[..., Comparison]:
+) -> Callable[..., Comparison | SpatialComparison]:
     """``vibrissa_agreement(candidate)`` fails unless the candidate agrees with the closed form.
 
     ``vibrissa_agreement(candidate, reference, tolerances, offset=, noise=, budget=)``, as
     `compare.assert_agreement` takes them. Without a reference it is the closed form's sweep of
     ``vibrissa_case``, which the test then has to use; without tolerances those of the case's file
-    hold. The comparison is reported either way.
+    hold. Readings in space are compared in the same way, with ``vibrissa_space_case``, and with
+    ``frame=`` for the components. The comparison is reported either way.
     """
     return _agreement("vibrissa_case", request, record_property)
 
@@ -236,7 +311,7 @@ def sweep(
 @pytest.fixture
 def agreement(
     request: pytest.FixtureRequest, record_property: Callable[[str, object], None]
-) -> Callable[..., Comparison]:
+) -> Callable[..., Comparison | SpatialComparison]:
     """The old name of `vibrissa_agreement`."""
     _warn(request, "agreement")
     return _agreement("case", request, record_property)
@@ -280,41 +355,70 @@ def _sweep_of(case: Case, sweeps: Sweeps) -> Callable[..., Readings]:
     return made
 
 
+def _space_sweep_of(
+    request: pytest.FixtureRequest, sweeps: SpaceSweeps
+) -> Callable[..., SpatialReadings]:
+    job = request.node.stash[_SPACE_JOB]
+
+    def made(beam: str | None = None, **settings: Any) -> SpatialReadings:  # noqa: ANN401
+        numerics = None if beam is None else replace(job.settings, beam=beam, **settings)
+        key = str(request.node.callspec.params["vibrissa_space_case"]), repr(numerics)
+        if key not in sweeps:
+            sweeps[key] = (
+                _ours("analytic.space").solve_space(job.case)
+                if numerics is None
+                else _ours("mujoco_models").simulate_space(job.case, numerics)
+            )
+        return sweeps[key]
+
+    return made
+
+
 def _agreement(
     named: str, request: pytest.FixtureRequest, record: Callable[[str, object], None]
-) -> Callable[..., Comparison]:
+) -> Callable[..., Comparison | SpatialComparison]:
     reported = 0
 
+    def closed_form(in_space: bool) -> Readings | SpatialReadings:
+        asked = "vibrissa_space_case" if in_space else named
+        if asked not in request.fixturenames:
+            pytest.fail(
+                f"agreement: give a reference, or let the test use `{asked}`", pytrace=False
+            )
+        case = request.getfixturevalue(asked)
+        if in_space:
+            return _space_sweep_of(request, request.getfixturevalue("vibrissa_space_sweeps"))()
+        sweeps = request.getfixturevalue("vibrissa_sweeps")
+        return _sweep_of(_checked("agreement", case), sweeps)()
+
     def agree(
-        candidate: Readings,
-        reference: Readings | None = None,
-        tolerances: Tolerances | None = None,
+        candidate: Readings | SpatialReadings,
+        reference: Readings | SpatialReadings | None = None,
+        tolerances: Tolerances | SpatialTolerances | None = None,
         *,
         offset: float | Literal["auto"] = 0.0,
         noise: float | Literal["auto"] = 0.0,
         budget: Budget | None = None,
-    ) -> Comparison:
+        frame: Frame = "world",
+    ) -> Comparison | SpatialComparison:
         __tracebackhide__ = True
         nonlocal reported
         gates = _ours("compare.testing.gates")
+        in_space = isinstance(candidate, _ours("analytic.space").SpatialReadings)
         if reference is None:
-            if named not in request.fixturenames:
-                pytest.fail(
-                    f"agreement: give a reference, or let the test use `{named}`", pytrace=False
-                )
-            case = _checked("agreement", request.getfixturevalue(named))
-            reference = _sweep_of(case, request.getfixturevalue("vibrissa_sweeps"))()
-        job = request.node.stash.get(_JOB, None)
+            reference = closed_form(in_space)
+        job = request.node.stash.get(_SPACE_JOB if in_space else _JOB, None)
         if tolerances is None and job is not None:
             tolerances = job.tolerances
-        found: Comparison = gates.compared(
-            reference, candidate, tolerances, offset=offset, noise=noise
+        found: Comparison | SpatialComparison = gates.compared(
+            reference, candidate, tolerances, offset=offset, noise=noise, frame=frame
         )
         folder = request.config.getoption("--vibrissa-report")
         if folder is not None:
             reported += 1
             name = re.sub(r"[^\w.-]+", "-", f"{request.node.nodeid}-{reported}")
-            row = _ours("compare.testing.summary").report(found, folder, name)
+            body = job.case.body if in_space and job is not None else None
+            row = _ours("compare.testing.summary").report(found, folder, name, body)
             record(_RECORD, json.dumps(row))
         gates.demand(found, budget)
         return found

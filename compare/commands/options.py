@@ -99,6 +99,10 @@ Columns = Annotated[
         metavar="NAME=COLUMN[:UNIT]", help="A column of a rig's file; repeat the option for each."
     ),
 ]
+InFrame = Annotated[
+    Literal["world", "clamp"],
+    typer.Option("--frame", help="Of the six components in space."),
+]
 Way = Annotated[
     Literal["left", "right"] | None,
     typer.Option(help="Which sweep of a rig's file with one in each direction."),

@@ -15,6 +15,7 @@ from compare.commands.options import (
     DISAGREES,
     BeamFile,
     Columns,
+    InFrame,
     Way,
     number_or_auto,
     out_folder,
@@ -74,19 +75,41 @@ def compare(
         Path | None,
         typer.Option(metavar="FILE", help="budget.json of that reference, for its numerics."),
     ] = None,
+    frame: InFrame = "world",
 ) -> int:
     """Compare a file of readings, of an engine or a rig, with another or with a case's closed form.
 
-    The limits are those of --tolerances, else the case's.
+    The limits are those of --tolerances, else the case's. Sweeps in space are compared if the
+    reference is one: a case file with [body], or readings of `vibrissa space`.
     """
+    if _in_space(reference):
+        given = {
+            "--offset": offset != "0",
+            "--noise": noise != "0",
+            "--beam": beam,
+            "--reference-column": reference_column,
+            "--reference-beam": reference_beam,
+            "--direction": direction,
+            "--uncertainty": uncertainty,
+            "--budget": budget,
+        }
+        for option in (name for name, value in given.items() if value):
+            raise InputError(option, "given", "for sweeps in the plane only", "leave it out")
+        require_readings([candidate])
+        from compare.commands.space import compare_in_space
+
+        return compare_in_space(reference, candidate, out, column, frame, tolerances)
+    if frame != "world":
+        raise InputError("--frame", frame, "for sweeps in space only", "leave it out")
     given_offset, given_noise = (
         number_or_auto("--offset", offset),
         number_or_auto("--noise", noise),
     )
     with waiting("comparing"):
+        from compare.judge.tolerances import Tolerances
         from compare.read.limits import read_tolerances
 
-        limits = None if tolerances is None else read_tolerances(tolerances)
+        limits = None if tolerances is None else read_tolerances(tolerances, Tolerances)
         job = _job(reference)
         if job is not None and (reference_column or reference_beam):
             raise InputError(
@@ -282,6 +305,21 @@ def side_by_side(
         terminal.print_written(path)
         terminal.print_written(save_figure(picture(found), folder / "side-by-side.png"))
     return AGREES if all(one.agrees for one in found.against.values()) else DISAGREES
+
+
+def _in_space(reference: str) -> bool:
+    """Whether a reference is a case or a sweep in space."""
+    path = Path(reference)
+    if path.suffix.lower() in TABLES:
+        require_readings([path])
+        from compare.read.space_readings import is_spatial
+
+        return is_spatial(path)
+    if not reference.endswith(".toml"):
+        return False
+    from compare.read.toml import TomlFile
+
+    return "body" in TomlFile.read(path, "case file").tables
 
 
 def _job(reference: str) -> "Job | None":

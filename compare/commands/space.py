@@ -6,16 +6,29 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from compare.commands.options import AGREES, DISAGREES, Segments, out_folder
-from compare.commands.output import output_folder
+from compare.commands.options import (
+    AGREES,
+    DISAGREES,
+    Columns,
+    InFrame,
+    Segments,
+    out_folder,
+)
+from compare.commands.output import distinct_name, output_folder
 from compare.commands.waiting import waiting
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from analytic.space import SpatialCase, SpatialReadings
+    from analytic.space import Body, SpatialCase, SpatialReadings
+    from compare.align.frames import Frame
+    from compare.read.space import SpaceJob
+    from compare.show.report import Film
     from compare.spatial.comparison import SpatialComparison
+    from compare.spatial.parts import Parts
     from mujoco_models import SpatialSettings
+
+_FRAMES = 48  # of the animation, as in the plane
 
 
 def space(
@@ -51,21 +64,24 @@ def space(
     with_budget: Annotated[
         bool, typer.Option("--budget", help="Split the engine's disagreement into parts too.")
     ] = False,
+    frame: InFrame = "world",
+    column: Columns = None,
 ) -> int:
     """Sweep past a body in space in closed form, and find the body from the clamp.
 
     Writes the readings, the contacts found as a table and as a point cloud with normals, and a
-    picture; with an engine also the comparison and a report.
+    picture; with an engine also the comparison, an animation and a report. `vibrissa compare` takes
+    such a case and the readings of any other simulator.
     """
     from compare.read.space import load_space_job
 
-    found, settings = load_space_job(case)
+    job = load_space_job(case)
+    found = job.case
     _check_engine(engine, readings, segments, with_budget)
     agrees = True
     with output_folder(out or Path("results") / found.name) as folder:
         from analytic.problem.files import write_whole
         from analytic.space import (
-            SpatialReadings,
             point_cloud,
             reconstruct_space,
             solve_space,
@@ -75,6 +91,7 @@ def space(
         from compare.commands import terminal
         from compare.show.figures.space import sweep_in_space
         from compare.show.page import save_figure
+        from compare.show.scene import SweepScene
 
         if readings is None:
             with waiting("solving"):
@@ -83,11 +100,13 @@ def space(
             terminal.print_written(swept.write(folder / "analytic.parquet"))
             if engine is not None:
                 if segments is not None:
-                    settings = replace(settings, segments=segments)
-                compared = _compared(found, settings, swept, folder, with_budget)
+                    job = job._replace(settings=replace(job.settings, segments=segments))
+                compared = _compared(job, swept, folder, with_budget, frame)
                 swept, agrees = compared.candidate, compared.agrees
         else:
-            swept = SpatialReadings.read(readings, found.beam, found.path.tangent)
+            from compare.read.space_readings import read_space
+
+            swept = read_space(readings, found.beam, found.path.tangent, column or (), frame)
         with waiting("reconstructing"):
             points = reconstruct_space(swept, _deviations(swept, noise))
             cloud = point_cloud(points)
@@ -97,10 +116,11 @@ def space(
             terminal.print_line(f"readings: {complaint}")
         terminal.print_written(write_whole(folder / "points.csv", points.to_csv(index=False)))
         terminal.print_written(write_ply(cloud, folder / "points.ply"))
-        with waiting("drawing"):
-            picture = sweep_in_space(swept, points, found.body)
-            written = save_figure(picture, folder / "space.png")
-        terminal.print_written(written)
+        if engine is None:  # else the report has drawn it
+            with waiting("drawing"):
+                picture = sweep_in_space(SweepScene.of(swept, found.body))
+                written = save_figure(picture, folder / "space.png")
+            terminal.print_written(written)
     wrong = complaint is not None or not agrees
     if "status" in swept.table:
         wrong |= bool((swept.table["status"] == "diverged").any())
@@ -122,39 +142,116 @@ def _check_engine(
 
 
 def _compared(
-    case: "SpatialCase",
-    settings: "SpatialSettings",
+    job: "SpaceJob",
     exact: "SpatialReadings",
     folder: Path,
     with_budget: bool,
+    frame: "Frame",
 ) -> "SpatialComparison":
-    """MuJoCo's sweep, the comparison, its parts if asked for, and the report."""
+    """MuJoCo's sweep, the comparison, its parts if asked for, the animation and the report."""
     from compare.commands import terminal
-    from compare.show.spatial import write_spatial_report
+    from compare.show.animation.space import write_space_animation
+    from compare.show.report import Film
     from compare.spatial.comparison import compare_space
     from compare.spatial.parts import split
     from mujoco_models import simulate_space
+
+    case, file = job.case, folder / f"mujoco-{job.settings.beam}.parquet"
 
     def sweep(chosen: "SpatialSettings") -> "SpatialReadings":
         with terminal.progress("stations", case.path.stations) as advance:
             return simulate_space(case, chosen, advance, keep)
 
     def keep(part: "SpatialReadings") -> None:
-        terminal.print_written(part.write(folder / f"mujoco-{settings.beam}.parquet"))
+        terminal.print_written(part.write(file))
 
-    candidate = sweep(settings)
+    candidate = sweep(job.settings)
     terminal.print_line(_solved(candidate))
-    terminal.print_written(candidate.write(folder / f"mujoco-{settings.beam}.parquet"))
-    comparison = compare_space(exact, candidate)
-    parts = split(exact, candidate, settings, sweep) if with_budget else None
+    terminal.print_written(candidate.write(file))
+    comparison = compare_space(exact, candidate, job.tolerances, frame=frame)
+    parts = split(exact, candidate, job.settings, sweep) if with_budget else None
+    with terminal.progress("frames", _FRAMES) as advance:
+        write_space_animation(exact, candidate, folder, case.body, _FRAMES, advance)
+    _report(comparison, case.body, folder, parts, Film.of(folder))
+    return comparison
+
+
+def compare_in_space(
+    reference: str,
+    candidate: Path,
+    out: Path | None,
+    column: list[str] | None,
+    frame: "Frame",
+    tolerances: Path | None,
+) -> int:
+    """Compare a file of readings in space with another or with a case's closed form.
+
+    Parameters
+    ----------
+    reference : str
+        A case file with ``[body]``, or a file of readings in space.
+    candidate, out, column, tolerances
+        As `vibrissa compare` takes them.
+    frame : {"world", "clamp"}
+        Of the candidate's components, and of those that are compared.
+
+    Returns
+    -------
+    int
+        The exit code.
+    """
+    from compare.commands import terminal
+    from compare.judge.spatial import SpatialTolerances
+    from compare.read.limits import read_tolerances
+    from compare.read.space import load_space_job
+    from compare.read.space_readings import read_space
+
+    limits = None if tolerances is None else read_tolerances(tolerances, SpatialTolerances)
+    with waiting("comparing"):
+        from analytic.space import (
+            SpatialReadings,
+            reconstruct_space,
+            solve_space,
+            wrench_complaint,
+        )
+        from compare.spatial.comparison import compare_space
+
+        body = None
+        if reference.endswith(".toml"):
+            job = load_space_job(reference)
+            body, limits = job.case.body, limits or job.tolerances
+            exact, called = solve_space(job.case), job.case.name
+        else:
+            exact, called = SpatialReadings.read(reference), distinct_name(Path(reference))
+        measured = read_space(candidate, exact.beam, exact.tangent, column or (), frame)
+        comparison = compare_space(exact, measured, limits, frame=frame)
+    default = Path("results") / f"{called}-{distinct_name(candidate)}"
+    with output_folder(out or default) as folder:
+        _report(comparison, body, folder)
+        complaint = wrench_complaint(reconstruct_space(measured))
+    if complaint is not None:
+        terminal.print_line(f"{measured.source}: {complaint}")
+    return AGREES if comparison.agrees else DISAGREES
+
+
+def _report(
+    comparison: "SpatialComparison",
+    body: "Body | None",
+    folder: Path,
+    parts: "Parts | None" = None,
+    film: "Film | None" = None,
+) -> None:
+    """Write the report and print the verdict."""
+    from compare.commands import terminal
+    from compare.show.spatial import write_spatial_report
+
     with waiting("drawing"):
-        written = write_spatial_report(comparison, case.body, folder, parts)
+        written = write_spatial_report(comparison, body, folder, parts, film)
     for line in comparison.lines():
         terminal.print_line(line)
     if parts is not None:
         terminal.print_line(parts.line())
     terminal.print_written(written)
-    return comparison
 
 
 def _solved(readings: "SpatialReadings") -> str:

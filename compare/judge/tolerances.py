@@ -107,7 +107,7 @@ class Tolerances:
 
     def __post_init__(self) -> None:
         for name in GENERAL:
-            object.__setattr__(self, name, _limit(name, getattr(self, name)))
+            object.__setattr__(self, name, as_limit(name, getattr(self, name)))
         for name in self.special:
             if not _is_special(name):
                 raise InputError(
@@ -118,7 +118,7 @@ class Tolerances:
                     f"of {', '.join(_KINDS)}",
                     "correct the name",
                 )
-        special = {name: _limit(name, value) for name, value in self.special.items()}
+        special = {name: as_limit(name, value) for name, value in self.special.items()}
         object.__setattr__(self, "special", special)
 
     def suited_to(self, candidate: "Readings") -> "Tolerances":
@@ -221,8 +221,8 @@ class Tolerances:
         """
         for name in (f"{reading}.{phase}.{kind}", f"{reading}.{kind}", f"{phase}.{kind}"):
             if name in self.special:
-                return _limit(name, self.special[name])
-        return _limit(kind, getattr(self, kind))
+                return as_limit(name, self.special[name])
+        return as_limit(kind, getattr(self, kind))
 
     def of_sweep(self, reading: str) -> Limit:
         """The limit of a reading's rms over all phases.
@@ -237,7 +237,7 @@ class Tolerances:
         Limit
             With its reason.
         """
-        return _limit("rms", self.special.get(f"{reading}.rms", self.rms))
+        return as_limit("rms", self.special.get(f"{reading}.rms", self.rms))
 
     def of_phase(self, reading: str, phase: str) -> Limit | None:
         """The limit of a reading's rms in one phase.
@@ -256,7 +256,7 @@ class Tolerances:
         """
         for name in (f"{reading}.{phase}.rms", f"{phase}.rms"):
             if name in self.special:
-                return _limit(name, self.special[name])
+                return as_limit(name, self.special[name])
         return None
 
     def limits(self) -> dict[str, Limit]:
@@ -268,7 +268,7 @@ class Tolerances:
             Each with its reason.
         """
         named = {name: getattr(self, name) for name in GENERAL} | dict(self.special)
-        return {name: _limit(name, value) for name, value in named.items()}
+        return {name: as_limit(name, value) for name, value in named.items()}
 
 
 CONVENTION = (
@@ -321,7 +321,26 @@ def _is_special(name: str) -> bool:
     return kind in _KINDS and where in allowed
 
 
-def _limit(name: str, value: float) -> Limit:
+def as_limit(name: str, value: float) -> Limit:
+    """A limit of that name, checked.
+
+    Parameters
+    ----------
+    name : str
+        For the error.
+    value : float
+        A plain number becomes a `Limit` that the caller asked for.
+
+    Returns
+    -------
+    Limit
+        With its reason.
+
+    Raises
+    ------
+    InputError
+        If it is no finite number of zero or more.
+    """
     if isinstance(value, Limit):
         return value
     if isinstance(value, bool) or not isinstance(value, int | float):

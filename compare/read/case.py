@@ -91,8 +91,15 @@ def load_job(name_or_path: str) -> Job:
         )
     path = Path(name_or_path)
     file = TomlFile.read(path, "case file")
+    if "body" in file.tables:
+        raise InputError(
+            file.place(["body"]),
+            "given",
+            "left out in the plane",
+            "`vibrissa space` and `vibrissa compare` take cases in space",
+        )
     case_file = validate(file.tables, file.place)
-    limits = tolerances_of(case_file.tolerances, file.place)
+    limits = tolerances_of(case_file.tolerances, file.place, Tolerances)
     name = case_file.name or name_of(path)
     case = case_file.case(path.parent, name)
     moved = case_file.motion

@@ -2,25 +2,31 @@
 
 import difflib
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from analytic import InputError
-from compare.judge.tolerances import GENERAL, Limit, Tolerances
+from compare.judge.spatial import SpatialTolerances
+from compare.judge.tolerances import Limit, Tolerances
 from compare.read.toml import Place, TomlFile
 
+_Limits = TypeVar("_Limits", Tolerances, SpatialTolerances)
 
-def read_tolerances(path: Path) -> Tolerances:
+
+def read_tolerances(path: Path, kind: type[_Limits]) -> _Limits:
     """The ``[tolerances]`` table of a TOML file; other tables do not matter.
 
     Parameters
     ----------
     path : Path
         The file.
+    kind : type
+        `Tolerances`, or `SpatialTolerances`.
 
     Returns
     -------
-    Tolerances
+    Tolerances or SpatialTolerances
         What the table leaves out has its default.
 
     Raises
@@ -31,23 +37,25 @@ def read_tolerances(path: Path) -> Tolerances:
     file = TomlFile.read(path, "tolerance file")
     if "tolerances" not in file.tables:
         raise InputError(f"{path}: [tolerances]", "missing", "given", "add the table")
-    return tolerances_of(file.tables["tolerances"], file.place)
+    return tolerances_of(file.tables["tolerances"], file.place, kind)
 
 
-def tolerances_of(table: Mapping[str, Any], place: Place) -> Tolerances:
+def tolerances_of(table: Mapping[str, Any], place: Place, kind: type[_Limits]) -> _Limits:
     """What a ``[tolerances]`` table says; what it leaves out keeps its default.
 
     Parameters
     ----------
     table : mapping
-        ``NAME = { limit = 1e-3, reason = "..." }``, NAME as in `Tolerances`; limits of one reading
+        ``NAME = { limit = 1e-3, reason = "..." }``, NAME as in `kind`; limits of one reading
         or phase in tables of its name, ``[tolerances.force_x.tip]``.
     place : callable
         What an error calls a key.
+    kind : type
+        `Tolerances`, or `SpatialTolerances`.
 
     Returns
     -------
-    Tolerances
+    Tolerances or SpatialTolerances
         With the given limits and their reasons.
 
     Raises
@@ -55,23 +63,24 @@ def tolerances_of(table: Mapping[str, Any], place: Place) -> Tolerances:
     InputError
         If a name is unknown, or a limit has no reason or is no number.
     """
+    names = [one.name for one in fields(kind) if one.name != "special"]
     general: dict[str, Limit] = {}
     special: dict[str, Limit] = {}
     for keys, limit in _limits(table, (), place):
         name = ".".join(keys)
         if len(keys) > 1:
             special[name] = limit
-        elif name in GENERAL:
+        elif name in names:
             general[name] = limit
         else:
-            near = difflib.get_close_matches(name, GENERAL, n=1)
+            near = difflib.get_close_matches(name, names, n=1)
             raise InputError(
                 place(["tolerances", name]),
                 "unknown",
-                f"one of {', '.join(GENERAL)}",
+                f"one of {', '.join(names)}",
                 f"did you mean {near[0]}?" if near else "remove it",
             )
-    return Tolerances(**general, special=special)
+    return kind(**general, special=special)
 
 
 def _limits(

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from analytic import SENSED, Beam, Direction, InputError, Readings
+from analytic import Beam, Direction, InputError, Readings
 from analytic.problem.arrays import Floats
 from analytic.problem.files import as_path
 from analytic.problem.readings_file import is_ours
@@ -122,8 +122,8 @@ def read_sweeps(
             readings = replace(readings, beam=given, provenance=provenance)
         sweeps = [(_way(readings), readings)]
     else:
-        table, place, units = _table(source)
-        table, used, own = _renamed(table, columns, place, _called(source), units)
+        table, place, units = raw_table(source)
+        table, used, own = renamed(table, columns, place, _called(source), units)
         if used:
             _check_beam(beam, given or otherwise)
         units_used = {name: x for name, x in (("units", used), (OWN_UNITS, own)) if x}
@@ -156,8 +156,28 @@ def _called(source: Source) -> str:
     return Path(source).name if isinstance(source, str | Path) else "table"
 
 
-def _table(source: Source) -> tuple[pd.DataFrame, Place, dict[str, str]]:
-    """The table, where its rows stand, and units that it gives itself, by column."""
+def raw_table(source: Source) -> tuple[pd.DataFrame, Place, dict[str, str]]:
+    """The table, where its rows stand, and units that it gives itself, by column.
+
+    Parameters
+    ----------
+    source : path, pandas.DataFrame or mapping
+        As of `read_measured`.
+
+    Returns
+    -------
+    table : pandas.DataFrame
+        With its own columns.
+    place : callable
+        What an error calls a row.
+    units : dict
+        By column.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
     if isinstance(source, pd.DataFrame):
         return source, row_number, {}
     if isinstance(source, Mapping):
@@ -178,17 +198,44 @@ def _table(source: Source) -> tuple[pd.DataFrame, Place, dict[str, str]]:
     return found.frame, found.place, found.units
 
 
-def _renamed(
+def renamed(
     table: pd.DataFrame,
     columns: Sequence[str],
     place: Place,
     called: str,
     units: Mapping[str, str],
+    dimensions: Mapping[str, str] = DIMENSIONS,
 ) -> tuple[pd.DataFrame, dict[str, str], dict[str, str]]:
     """The table with the sensed quantities under their own names and, with units, in SI.
 
-    Also the units that they had, and those of them that only the file names.
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        With its own columns.
+    columns : sequence of str
+        As of `read_measured`.
+    place : callable
+        What an error calls a row.
+    called : str
+        What it calls the table.
+    units : mapping
+        That the table gives itself, by column.
+    dimensions : mapping
+        The sensed quantities, with an SI unit each.
+
+    Returns
+    -------
+    table : pandas.DataFrame
+        With the sensed quantities.
+    used, own : dict
+        The units that they had, and those of them that only the table names.
+
+    Raises
+    ------
+    InputError
+        If a column or unit cannot be used, a cell is no number, or a quantity is missing.
     """
+    sensed = tuple(dimensions)
     named: dict[str, Floats] = {}
     used: dict[str, str] = {}
     own: dict[str, str] = {}
@@ -197,12 +244,12 @@ def _renamed(
         # Names of columns may have colons, units never do.
         column, unit = (rest, "") if rest in table else rest.rpartition(":")[::2]
         column, unit = (column, unit) if column else (unit, "")
-        if name not in SENSED or not column:
+        if name not in sensed or not column:
             raise InputError(
                 "--column",
                 repr(text),
                 "NAME=COLUMN or NAME=COLUMN:UNIT",
-                f"NAME is one of {', '.join(SENSED)}",
+                f"NAME is one of {', '.join(sensed)}",
             )
         if name in named:
             raise InputError("--column", repr(text), f"the only one for {name}", "leave one out")
@@ -217,32 +264,34 @@ def _renamed(
             used[name] = unit
         elif units.get(column):
             own[name] = units[column]
-    for name in set(units) & set(SENSED) - set(named):
+    for name in set(units) & set(sensed) - set(named):
         if units[name]:
             named[name], own[name] = as_numbers(table[name], name, place), units[name]
     used |= own
     for name, unit in used.items():
-        named[name] = named[name] * unit_in_si(unit, DIMENSIONS[name])
+        named[name] = named[name] * unit_in_si(unit, dimensions[name])
     found = table.assign(**named)
-    missing = [name for name in SENSED if name not in found]
+    missing = [name for name in sensed if name not in found]
     if missing and not table.columns.empty:
+        first = missing[0]
+        example = _example(first, table.columns, units, dimensions[first])
         raise InputError(
             f"columns of {called}",
             ", ".join(map(str, table.columns[:20])),
-            f"at least {', '.join(SENSED)}",
-            f"name them with --column {_example(missing[0], table.columns, units)}",
+            f"at least {', '.join(sensed)}",
+            f"name them with --column {example}",
         )
     return found, used, own
 
 
-def _example(name: str, columns: Iterable[object], units: Mapping[str, str]) -> str:
+def _example(name: str, columns: Iterable[object], units: Mapping[str, str], dimension: str) -> str:
     """How the user may name a column: the first whose unit, in brackets or below, can be right."""
     for column in map(str, columns):
         unit = units.get(column) or next(iter(_BRACKETS.findall(column)), "")
         with suppress(InputError):
-            unit_in_si(unit, DIMENSIONS[name])
+            unit_in_si(unit, dimension)
             return f"{name}='{column}:{unit}'"
-    return f"{name}=COLUMN:{DIMENSIONS[name]}"
+    return f"{name}=COLUMN:{dimension}"
 
 
 def _sweeps(readings: Readings) -> list[tuple[Direction, Readings]]:

@@ -18,8 +18,10 @@ from analytic.space import (
     prism,
     sphere,
 )
+from compare.judge.spatial import SpatialTolerances
 from compare.read.case import check_units
 from compare.read.complaints import complaint, name_of
+from compare.read.limits import tolerances_of
 from compare.read.profiles import Drawn
 from compare.read.quantities import FileName, Length, Several, Table
 from compare.read.tables import BeamTable
@@ -145,6 +147,8 @@ class SpaceFile(Table):
         The contour of a prism, as in the plane.
     mujoco : table, optional
         The numerics of MuJoCo's sweep.
+    tolerances : table, optional
+        Limits of agreement, each with its reason.
     """
 
     name: FileName | None = None
@@ -156,6 +160,7 @@ class SpaceFile(Table):
     profile: Annotated[Drawn, Field(discriminator="kind")] | None = None
     path: PathTable
     mujoco: SpatialSettings = SpatialSettings()
+    tolerances: Annotated[dict[str, Any], Field(default_factory=dict)]
 
     def case(self, folder: Path, name: str) -> SpatialCase:
         """The whole problem.
@@ -199,6 +204,7 @@ class SpaceJob(NamedTuple):
 
     case: SpatialCase
     settings: SpatialSettings
+    tolerances: SpatialTolerances
 
 
 def load_space(path: str | Path) -> SpatialCase:
@@ -223,7 +229,7 @@ def load_space(path: str | Path) -> SpatialCase:
 
 
 def load_space_job(path: str | Path) -> SpaceJob:
-    """The case in space from a TOML file, and MuJoCo's settings.
+    """The case in space from a TOML file, MuJoCo's settings, and the limits of agreement.
 
     Parameters
     ----------
@@ -263,5 +269,6 @@ def load_space_job(path: str | Path) -> SpaceJob:
         raise complaint(error, SpaceFile, file.place) from error
     given: dict[str, Any] = dict(file.tables)
     check_units(found, given, file.place)
+    limits = tolerances_of(found.tolerances, file.place, SpatialTolerances)
     case = found.case(path.parent, found.name or name_of(path))
-    return SpaceJob(case, found.mujoco)
+    return SpaceJob(case, found.mujoco, limits)

@@ -5,18 +5,38 @@ from pathlib import Path
 from typing import Any
 
 from analytic.problem.files import write_whole
-from analytic.space import Body, reconstruct_space
+from analytic.space import Body
+from compare.align.frames import COMPONENTS
 from compare.show.colophon import colophon
-from compare.show.figures.space import both_in_space, sweep_in_space
-from compare.show.page import document, inline_svg, png, render
-from compare.spatial.comparison import COMPONENTS, SpatialComparison
+from compare.show.figures.space import (
+    both_in_space,
+    contacts_in_space,
+    parts_in_space,
+    sweep_in_space,
+)
+from compare.show.page import document, embedded, inline_svg, png, render
+from compare.show.report import Film
+from compare.show.scene import SweepScene
+from compare.show.turning import turning
+from compare.spatial.comparison import SpatialComparison
 from compare.spatial.parts import Parts
 
 _BULKY = ("events", "path")
+_SHOWN = {
+    "space": "The body, the vibrissa at some stations, the contacts, and the readings",
+    "components": "Six components of both sweeps over the way of the foot, and their differences",
+    "contacts": "When both sweeps touch, in which phase, and how far their contacts are apart",
+    "parts": "What the disagreement is made of, a bar a part",
+}
+"""What pictures show, for those who cannot see them."""
 
 
 def write_spatial_report(
-    comparison: SpatialComparison, body: Body, folder: Path, parts: Parts | None = None
+    comparison: SpatialComparison,
+    body: Body | None,
+    folder: Path,
+    parts: Parts | None = None,
+    film: Film | None = None,
 ) -> Path:
     """Write ``comparison.json``, the figures and ``report.html`` into `folder`.
 
@@ -24,12 +44,14 @@ def write_spatial_report(
     ----------
     comparison : SpatialComparison
         What is reported.
-    body : Body
-        In the unit of length of the readings.
+    body : Body, optional
+        In the unit of length of the readings; without it the vibrissa and its contacts are shown.
     folder : Path
         Made if it is not there.
     parts : Parts, optional
         Of the disagreement; then ``budget.json`` is written, too.
+    film : Film, optional
+        The sweep in motion.
 
     Returns
     -------
@@ -37,12 +59,16 @@ def write_spatial_report(
         Of ``report.html``.
     """
     candidate = comparison.candidate
-    scene = sweep_in_space(candidate, reconstruct_space(candidate), body)
-    curves = both_in_space(comparison)
-    contents: dict[str, str | bytes] = {
-        "components.png": png(curves),
-        "comparison.json": document(comparison.to_dict()),
+    scene = SweepScene.of(candidate, body)
+    drawn = {
+        "space": sweep_in_space(scene),
+        "components": both_in_space(comparison),
+        "contacts": contacts_in_space(comparison),
     }
+    if parts is not None:
+        drawn["parts"] = parts_in_space(parts)
+    contents: dict[str, str | bytes] = {f"{name}.png": png(one) for name, one in drawn.items()}
+    contents["comparison.json"] = document(comparison.to_dict())
     if parts is not None:
         contents["budget.json"] = document(parts.to_dict())
     contents["report.html"] = render(
@@ -52,12 +78,12 @@ def write_spatial_report(
         components=COMPONENTS,
         length=comparison.reference.beam.length,
         parts=parts,
-        events=comparison.events,
         recorded={
             one.source: _recorded(one.provenance) for one in (comparison.reference, candidate)
         },
-        scene=inline_svg(scene, "scene", "The body, the vibrissa at some stations, the contacts"),
-        curves=inline_svg(curves, "curves", "Six components of both models over the way"),
+        turning=turning(scene),
+        pictures={name: inline_svg(one, name, _SHOWN[name]) for name, one in drawn.items()},
+        film=None if film is None else {"gif": embedded(film.gif), "still": embedded(film.still)},
         colophon=colophon(),
     )
     folder.mkdir(parents=True, exist_ok=True)

@@ -1,59 +1,33 @@
 """Two sweeps in space: six components, contact points, phases and events, and a verdict."""
 
 import math
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from html import escape
 from typing import Any
 
 import numpy as np
 
 from analytic import InputError
-from analytic.problem.arrays import Booleans, Floats
-from analytic.problem.numbers import is_finite_number
-from analytic.space import SpatialReadings
+from analytic.problem.arrays import Booleans, Floats, Words
+from analytic.problem.errors import require
+from analytic.space import SpatialReadings, reconstruct_space
 from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE, MOMENT
+from compare.align.frames import Frame, components
+from compare.judge.failures import Failure
+from compare.judge.spatial import SpatialTolerances
+from compare.measure.disagreement import Occurrence
+from compare.spatial.events import paired_events
+from compare.spatial.failures import failures
 
-COMPONENTS = (*FORCE, *MOMENT)
 _SAME_FOOT = 1e-6  # L
-_ENDS = ("slip-off", "release")
+_SAME_BEAM = 1e-9  # of a length or rigidity: what a file's digits leave
+_SAME_TANGENT = 1e-6
 
 
 @dataclass(frozen=True)
-class SpatialTolerances:
-    """Limits of what agrees.
-
-    Parameters
-    ----------
-    rms : float
-        Of each component, over the largest component of force or of moment. 3e-3 is what forty
-        segments keep past smooth bodies with room to spare: they reach 1e-4 to 1e-3.
-    max : float
-        The same at any one station: ten times that.
-    contact : float
-        Of the contact point, root mean square [L].
-    event : float
-        Where the vibrissa touches and where it leaves [L of the way].
-    phases : float
-        Share of the stations in contact that may be in the other phase: those beside a change.
-    unsettled : float
-        Share of the stations without readings that the reference has: half a per cent.
-    """
-
-    rms: float = 3e-3
-    max: float = 3e-2
-    contact: float = 2e-3
-    event: float = 5e-3
-    phases: float = 0.05
-    unsettled: float = 5e-3
-
-    def __post_init__(self) -> None:
-        for one in fields(self):
-            value = getattr(self, one.name)
-            if not (is_finite_number(value) and value >= 0):
-                raise InputError(f"tolerances.{one.name}", value, "0 or more", "correct it")
-
-
-@dataclass(frozen=True)
-class Apart:
+class ComponentDisagreement:
     """How far one component of the candidate is off, over the largest of its kind.
 
     Attributes
@@ -62,17 +36,56 @@ class Apart:
         Over the compared stations; NaN if there are none.
     at : float
         Way of the foot where it is largest [length].
+    phase : str
+        The reference's phase there.
+    rms_by_phase : dict
+        By the reference's phases.
     scale : float
-        What it is relative to, in the readings' unit.
+        The reference's largest component of force, or of moment, in the readings' unit.
     """
 
     rms: float
     max: float
     at: float
+    phase: str
+    rms_by_phase: dict[str, float]
     scale: float
 
 
 @dataclass(frozen=True, eq=False)
+class ContactDisagreement:
+    """How far the contact points are apart [L], at the stations where both are known.
+
+    Attributes
+    ----------
+    rms, max : float
+        NaN if there is no such station.
+    stations : int
+        How many there are.
+    from_clamp : tuple of str
+        The sources that record no contacts: theirs are reconstructed from the clamp.
+    distance : array, shape (stations,)
+        Of each station of the sweeps; NaN where it is not known.
+    """
+
+    rms: float
+    max: float
+    stations: int
+    from_clamp: tuple[str, ...]
+    distance: Floats
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``comparison.json`` holds.
+
+        Returns
+        -------
+        dict
+            Without the single stations.
+        """
+        return {name: value for name, value in vars(self).items() if name != "distance"}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class SpatialComparison:
     """A candidate against a reference.
 
@@ -80,16 +93,22 @@ class SpatialComparison:
     ----------
     reference, candidate : SpatialReadings
         The two.
+    frame : {"world", "clamp"}
+        Of the components.
+    travel : array, shape (stations,)
+        Way of the foot [length].
     compared : array of bool, shape (stations,)
         Where both touch and are trusted.
-    apart : dict of Apart
-        By component.
-    contact_rms, contact_max : float
-        Between the contact points [L].
-    phases : float
-        Share of the compared stations that are in one phase.
-    events : dict
-        Of the first touch and each leaving, its way in both sweeps [length]; None where it is not.
+    disagreement : dict of ComponentDisagreement
+        By component, ``"force_x"`` to ``"moment_z"``.
+    contact : ContactDisagreement
+        Between the contact points.
+    phase_agreement : float or None
+        Share of the compared stations that are in one phase; None where a source records none.
+    events : dict of Occurrence
+        Way of the foot to each touch, slip-off and release, in both sweeps [length].
+    statuses : dict of dict
+        How many stations have which status, of the ``"reference"`` and of the ``"candidate"``.
     untrusted : int
         Stations of the candidate without readings where the reference has them.
     tolerances : SpatialTolerances
@@ -98,74 +117,75 @@ class SpatialComparison:
 
     reference: SpatialReadings
     candidate: SpatialReadings
+    frame: Frame
+    travel: Floats
     compared: Booleans
-    apart: dict[str, Apart]
-    contact_rms: float
-    contact_max: float
-    phases: float
-    events: dict[str, tuple[float | None, float | None]]
+    disagreement: dict[str, ComponentDisagreement]
+    contact: ContactDisagreement
+    phase_agreement: float | None
+    events: dict[str, Occurrence]
+    statuses: dict[str, dict[str, int]]
     untrusted: int
     tolerances: SpatialTolerances
 
+    @cached_property
+    def exceeded(self) -> tuple[Failure, ...]:
+        """Every limit that is exceeded."""
+        return tuple(failures(self))
+
     @property
-    def worst(self) -> str:
+    def failures(self) -> tuple[str, ...]:
+        """Every limit that is exceeded, in a sentence each."""
+        return tuple(str(failure) for failure in self.exceeded)
+
+    @property
+    def worst(self) -> Failure | None:
+        """The limit that is exceeded most; None if the sweeps agree."""
+        return max(self.exceeded, key=lambda failure: failure.excess, default=None)
+
+    @property
+    def largest(self) -> str:
         """The component that is off most, by its rms."""
-        return max(self.apart, key=lambda name: np.nan_to_num(self.apart[name].rms))
+        sizes = {name: one.rms for name, one in self.disagreement.items()}
+        return max(sizes, key=lambda name: np.nan_to_num(sizes[name]))
+
+    @property
+    def remark(self) -> str | None:
+        """What is to be known of the limits that are exceeded; None if there is nothing."""
+        return self.tolerances.remark(self.candidate) if self.exceeded else None
 
     @property
     def agrees(self) -> bool:
         """Whether no limit is exceeded."""
-        return not self.failures
+        return not self.exceeded
 
-    @property
-    def failures(self) -> list[str]:
-        """Every limit that is exceeded, in a clause each."""
-        limits, length = self.tolerances, self.reference.beam.length
-        found = []
-        if not self.compared.any():
-            found.append("no station at which both touch")
-        for name, one in self.apart.items():
-            if one.rms > limits.rms:
-                found.append(f"{name}: {one.rms:.1e} rms, {limits.rms:g} allowed")
-            elif one.max > limits.max:
-                found.append(f"{name}: {one.max:.1e} at {one.at:.4g}, {limits.max:g} allowed")
-        if self.contact_rms > limits.contact:
-            found.append(f"contact: {self.contact_rms:.1e} L rms, {limits.contact:g} L allowed")
-        if 1 - self.phases > limits.phases:
-            found.append(f"phases: {1 - self.phases:.1%} differ, {limits.phases:.1%} allowed")
-        for name, (ours, theirs) in self.events.items():
-            if (ours is None) != (theirs is None):
-                who = self.candidate if ours is None else self.reference
-                found.append(f"{name}: only in {who.source}")
-            elif ours is not None and theirs is not None:
-                off = abs(ours - theirs) / length
-                if off > limits.event:
-                    found.append(f"{name}: {off:.1e} L apart, {limits.event:g} L allowed")
-        if self.untrusted > limits.unsettled * len(self.reference.table):
-            found.append(f"{self.untrusted} stations without readings")
-        return found
-
-    def lines(self) -> list[str]:
+    def lines(self) -> Iterator[str]:
         """The verdict and what it rests on, for a terminal.
 
-        Returns
-        -------
-        list of str
-            A line each.
+        Yields
+        ------
+        str
+            A line.
         """
-        limits, one = self.tolerances, self.apart[self.worst]
-        verdict = "agrees with" if self.agrees else "disagrees with"
-        found = [
-            f"{self.candidate.source} {verdict} {self.reference.source}: {self.worst} "
-            f"{one.rms:.1e} rms, the worst ({limits.rms:g} allowed); contact "
-            f"{self.contact_rms:.1e} L rms; {int(self.compared.sum())} stations"
-        ]
-        length = self.reference.beam.length
-        for name, (ours, theirs) in self.events.items():
-            if ours is not None and theirs is not None:
-                found.append(f"  {name:10} {ours / length:.5f} L {(theirs - ours) / length:+.1e} L")
-        found += [f"  failed: {line}" for line in self.failures]
-        return found
+        name, length = self.largest, self.reference.beam.length
+        one = self.disagreement[name]
+        yield (
+            f"{self.candidate.source} {'agrees' if self.agrees else 'disagrees'} with "
+            f"{self.reference.source}: {name} {one.rms:.1e} rms, the worst "
+            f"({self.tolerances.of(name, 'rms'):g} allowed); contact {self.contact.rms:.1e} L rms; "
+            f"{int(self.compared.sum())} of {len(self.compared)} stations compared"
+        )
+        for event, pair in self.events.items():
+            if pair.reference is not None and pair.difference is not None:
+                wide = f" +- {pair.uncertainty / length:.1e} L" if pair.uncertainty else ""
+                yield (
+                    f"  {event:12} {pair.reference / length:.5f} L "
+                    f"{pair.difference / length:+.1e} L{wide}"
+                )
+        for failure in self.exceeded:
+            yield f"  failed: {failure.clause}"
+        if self.remark is not None:
+            yield f"  {self.remark}"
 
     def to_dict(self) -> dict[str, Any]:
         """What ``comparison.json`` holds.
@@ -173,45 +193,58 @@ class SpatialComparison:
         Returns
         -------
         dict
-            Anything JSON can hold.
+            Ways in the beam's unit of length, contacts in L, the rest relative; JSON can hold it.
         """
-        return {
-            "verdict": "agrees" if self.agrees else "disagrees",
-            "failures": self.failures,
-            "disagreement": {
-                name: {k: _plain(v) for k, v in asdict(one).items()}
-                for name, one in self.apart.items()
-            },
-            "contact": {"rms": _plain(self.contact_rms), "max": _plain(self.contact_max)},
-            "phases": {"agreement": _plain(self.phases)},
-            "events": {
-                name: {"reference": one, "candidate": other}
-                for name, (one, other) in self.events.items()
-            },
-            "stations": {
-                "all": len(self.reference.table),
-                "compared": int(self.compared.sum()),
-                "without readings": self.untrusted,
-            },
-            "tolerances": asdict(self.tolerances),
-            "reference": _origin(self.reference),
-            "candidate": _origin(self.candidate),
-        }
+        found: dict[str, Any] = _plain(
+            {
+                "verdict": "agrees" if self.agrees else "disagrees",
+                "failures": list(self.failures),
+                "frame": self.frame,
+                "disagreement": {name: asdict(one) for name, one in self.disagreement.items()},
+                "contact": self.contact.to_dict(),
+                "phases": {"agreement": self.phase_agreement},
+                "events": {name: one.to_dict() for name, one in self.events.items()},
+                "stations": {
+                    "all": len(self.compared),
+                    "compared": int(self.compared.sum()),
+                    "untrusted": self.untrusted,
+                    "status": self.statuses,
+                },
+                "tolerances": {name: float(x) for name, x in self.tolerances.limits().items()},
+                "tolerance_reasons": {n: x.reason for n, x in self.tolerances.limits().items()},
+                "reference": _origin(self.reference),
+                "candidate": _origin(self.candidate),
+            }
+        )
+        return found
+
+    def __repr__(self) -> str:
+        """The verdict, the events, and what failed."""
+        return "\n".join(self.lines())
+
+    def _repr_html_(self) -> str:
+        """The same for a notebook."""
+        return "<pre>" + "<br>".join(escape(line) for line in self.lines()) + "</pre>"
 
 
 def compare_space(
     reference: SpatialReadings,
     candidate: SpatialReadings,
     tolerances: SpatialTolerances | None = None,
+    *,
+    frame: Frame = "world",
 ) -> SpatialComparison:
-    """Set one sweep in space against another.
+    """Set one sweep in space against another, from their readings alone.
 
     Parameters
     ----------
     reference, candidate : SpatialReadings
-        With the same beam, at the same stations.
+        Of the same beam and clamp, at the same stations. Contacts that a source does not record are
+        found from its clamp.
     tolerances : SpatialTolerances, optional
-        Limits.
+        Limits for the verdict.
+    frame : {"world", "clamp"}
+        In which the components are compared. Both sweeps' columns are in the world's.
 
     Returns
     -------
@@ -221,59 +254,33 @@ def compare_space(
     Raises
     ------
     InputError
-        If the stations are not the same.
+        If the two are of different beams or clamps, or at other stations, or there is no such
+        frame.
     """
-    length = reference.beam.length
-    feet = reference.values(*FOOT), candidate.values(*FOOT)
-    same = feet[0].shape == feet[1].shape and bool(
-        np.abs(feet[0] - feet[1]).max() < _SAME_FOOT * length
-    )
-    if not same:
-        raise InputError(
-            f"stations of {candidate.source}",
-            f"{len(feet[1])}, not those of {reference.source}",
-            f"the same foot positions, to {_SAME_FOOT:g} L",
-            "sweep both along one [path]",
-        )
-    compared = reference.touching & candidate.touching
-    apart = {
-        name: one
-        for names in (FORCE, MOMENT)
-        for name, one in _components(reference, candidate, names, compared).items()
-    }
-    between = reference.values(*CONTACT_POINT) - candidate.values(*CONTACT_POINT)
-    far = np.linalg.norm(between[compared], axis=1) / length
-    phases = [r.table["phase"].to_numpy()[compared] for r in (reference, candidate)]
+    for name, given in (("reference", reference), ("candidate", candidate)):
+        require(name, given, SpatialReadings, "wrap a table as SpatialReadings(table, beam)")
+    if tolerances is not None:
+        require("tolerances", tolerances, SpatialTolerances, "see its fields")
+    _check_same(reference, candidate)
+    travel, compared = way(reference), reference.touching & candidate.touching
+    phases = _phases(reference), _phases(candidate)
+    same = None
+    if phases[0] is not None and phases[1] is not None and compared.any():
+        same = float((phases[0] == phases[1])[compared].mean())
     return SpatialComparison(
         reference,
         candidate,
+        frame,
+        travel,
         compared,
-        apart,
-        _rms(far),
-        float(far.max(initial=0.0)),
-        float((phases[0] == phases[1]).mean()) if compared.any() else math.nan,
-        _events(reference, candidate),
+        _disagreements(reference, candidate, frame, compared, travel),
+        _contacts(reference, candidate, compared),
+        same,
+        paired_events(reference, candidate, travel),
+        {"reference": _counted(reference), "candidate": _counted(candidate)},
         int((reference.trusted & ~candidate.trusted).sum()),
-        tolerances or SpatialTolerances(),
+        SpatialTolerances() if tolerances is None else tolerances,
     )
-
-
-def _components(
-    reference: SpatialReadings,
-    candidate: SpatialReadings,
-    names: tuple[str, ...],
-    compared: Booleans,
-) -> dict[str, Apart]:
-    exact, other = reference.values(*names), candidate.values(*names)
-    scale = float(np.abs(exact[reference.touching]).max(initial=0.0)) or math.nan
-    off = (other - exact)[compared] / scale
-    travel = way(reference)[compared]
-    found = {}
-    for name, column in zip(names, off.T, strict=True):
-        size = np.abs(column)
-        at = float(travel[np.argmax(size)]) if size.size else math.nan
-        found[name] = Apart(_rms(column), float(size.max(initial=0.0)), at, scale)
-    return found
 
 
 def way(readings: SpatialReadings) -> Floats:
@@ -287,46 +294,119 @@ def way(readings: SpatialReadings) -> Floats:
     Returns
     -------
     array, shape (stations,)
-        [length]
+        [length]; straight from station to station where the column ``travel`` is missing.
     """
+    recorded = readings.values("travel")
+    if np.isfinite(recorded).all():
+        return recorded
     steps = np.linalg.norm(np.diff(readings.values(*FOOT), axis=0), axis=1)
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
-def _events(
-    reference: SpatialReadings, candidate: SpatialReadings
-) -> dict[str, tuple[float | None, float | None]]:
-    """The first touch and where the vibrissa leaves, slipping off or released."""
-    found = [
-        [(e["kind"], float(e["travel"])) for e in r.provenance.get("events", [])]
-        for r in (reference, candidate)
-    ]
-    touches, *ends = (
-        [[at for kind, at in events if kind == name] for events in found]
-        for name in ("touch", *_ENDS)
-    )
-    paired: dict[str, tuple[float | None, float | None]] = {
-        "touch": (_first(touches[0]), _first(touches[1]))
-    }
-    for name, (ours, theirs) in zip(_ENDS, ends, strict=True):
-        for i in range(max(len(ours), len(theirs))):
-            label = name if i == 0 else f"{name} {i + 1}"
-            paired[label] = (_first(ours[i:]), _first(theirs[i:]))
-    return paired
+def _check_same(reference: SpatialReadings, candidate: SpatialReadings) -> None:
+    for name in ("length", "flexural_rigidity"):
+        ours, theirs = getattr(reference.beam, name), getattr(candidate.beam, name)
+        if not abs(ours - theirs) <= _SAME_BEAM * abs(ours):
+            raise InputError(
+                f"beam.{name} of {candidate.source}", theirs,
+                f"{ours:g}, that of {reference.source}", "compare sweeps of one vibrissa",
+            )  # fmt: skip
+    if np.abs(reference.clamp_tangent - candidate.clamp_tangent).max() > _SAME_TANGENT:
+        raise InputError(
+            f"tangent of {candidate.source}", candidate.clamp_tangent.tolist(),
+            f"{reference.clamp_tangent.tolist()}, that of {reference.source}",
+            "compare sweeps of one clamp",
+        )  # fmt: skip
+    feet = reference.values(*FOOT), candidate.values(*FOOT)
+    length = reference.beam.length
+    if feet[0].shape != feet[1].shape or np.abs(feet[0] - feet[1]).max() >= _SAME_FOOT * length:
+        raise InputError(
+            f"stations of {candidate.source}",
+            f"{len(feet[1])}, not the {len(feet[0])} of {reference.source}",
+            f"the same foot positions, to {_SAME_FOOT:g} L",
+            "sweep both along one [path]",
+        )
 
 
-def _first(values: list[float]) -> float | None:
-    return values[0] if values else None
+def _disagreements(
+    reference: SpatialReadings,
+    candidate: SpatialReadings,
+    frame: Frame,
+    compared: Booleans,
+    travel: Floats,
+) -> dict[str, ComponentDisagreement]:
+    exact, other = components(reference, frame), components(candidate, frame)
+    phases = _phases(reference)
+    names_of = np.full(len(compared), "") if phases is None else phases
+    found = {}
+    for names in (FORCE, MOMENT):
+        touching = reference.touching
+        sizes = [np.abs(exact[name][touching]).max(initial=0.0) for name in names]
+        scale = float(max(sizes)) or math.nan
+        for name in names:
+            off = np.abs((other[name] - exact[name])[compared]) / scale
+            at = int(np.argmax(off)) if off.size else None
+            found[name] = ComponentDisagreement(
+                _rms(off),
+                math.nan if at is None else float(off[at]),
+                math.nan if at is None else float(travel[compared][at]),
+                "" if at is None else str(names_of[compared][at]),
+                {
+                    str(phase): _rms(off[names_of[compared] == phase])
+                    for phase in np.unique(names_of[compared].astype(str))
+                    if phase
+                },
+                scale,
+            )
+    return found
+
+
+def _contacts(
+    reference: SpatialReadings, candidate: SpatialReadings, compared: Booleans
+) -> ContactDisagreement:
+    from_clamp, points = [], []
+    for readings in (reference, candidate):
+        contact = readings.values(*CONTACT_POINT)
+        if not np.isfinite(contact[compared]).all():
+            contact = reconstruct_space(readings)[list(CONTACT_POINT)].to_numpy(dtype=float)
+            from_clamp.append(readings.source)
+        points.append(contact)
+    distance = np.linalg.norm(points[0] - points[1], axis=1) / reference.beam.length
+    distance[~compared] = np.nan
+    far = distance[np.isfinite(distance)]
+    most = float(far.max()) if far.size else math.nan
+    return ContactDisagreement(_rms(far), most, far.size, tuple(from_clamp), distance)
+
+
+def _phases(readings: SpatialReadings) -> Words | None:
+    return readings.table["phase"].to_numpy() if "phase" in readings.table else None
+
+
+def _counted(readings: SpatialReadings) -> dict[str, int]:
+    if "status" not in readings.table:
+        fine = int(readings.trusted.sum())
+        return {"ok": fine, **({"missing": len(readings.table) - fine} if not
+                readings.trusted.all() else {})}  # fmt: skip
+    return {str(k): int(n) for k, n in readings.table["status"].value_counts().items()}
 
 
 def _rms(values: Floats) -> float:
     return float(np.sqrt((values**2).mean())) if values.size else math.nan
 
 
-def _plain(value: float) -> float | None:
-    """JSON has no NaN."""
-    return value if math.isfinite(value) else None
+def _plain(value: Any) -> Any:  # noqa: ANN401  # whatever JSON can hold
+    """JSON has neither NaN nor infinity: None stands for both."""
+    if isinstance(value, dict):
+        return {key: _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _origin(readings: SpatialReadings) -> dict[str, Any]:
-    return {"source": readings.source, "provenance": dict(readings.provenance)}
+    return {
+        "source": readings.source,
+        "beam": asdict(readings.beam),
+        "stations": len(readings.table),
+        "provenance": dict(readings.provenance),
+    }

@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, overload
 
 from analytic import InputError, Readings
+from analytic.space import SpatialReadings
 from compare.comparison import Comparison, compare
+from compare.judge.spatial import SpatialTolerances
 from compare.judge.tolerances import Tolerances
 from compare.show.verdict import why
+from compare.spatial.comparison import SpatialComparison, compare_space
 
 if TYPE_CHECKING:
+    from compare.align.frames import Frame
     from compare.explain.budget import Budget
 
 
+@overload
+def assert_agreement(
+    reference: SpatialReadings,
+    candidate: SpatialReadings,
+    tolerances: SpatialTolerances | None = None,
+    *,
+    frame: Frame = "world",
+) -> SpatialComparison: ...
+
+
+@overload
 def assert_agreement(
     reference: Readings,
     candidate: Readings,
@@ -21,7 +36,19 @@ def assert_agreement(
     offset: float | Literal["auto"] = 0.0,
     noise: float | Literal["auto"] = 0.0,
     budget: Budget | None = None,
-) -> Comparison:
+) -> Comparison: ...
+
+
+def assert_agreement(
+    reference: Readings | SpatialReadings,
+    candidate: Readings | SpatialReadings,
+    tolerances: Tolerances | SpatialTolerances | None = None,
+    *,
+    offset: float | Literal["auto"] = 0.0,
+    noise: float | Literal["auto"] = 0.0,
+    budget: Budget | None = None,
+    frame: Frame = "world",
+) -> Comparison | SpatialComparison:
     """Raise AssertionError unless the sweeps agree.
 
     Its message holds every exceeded limit in a line (which reading, which phase, where, how much,
@@ -30,14 +57,16 @@ def assert_agreement(
     Parameters
     ----------
     reference, candidate, tolerances, offset, noise
-        As `compare` takes them.
+        As `compare` takes them; two sweeps in space and their limits as `compare_space` does.
     budget : Budget, optional
-        Of the candidate's disagreement, measured by controlled changes; the message names its
-        largest part in place of the likeness to a known fault.
+        Of the candidate's disagreement in the plane, measured by controlled changes; the message
+        names its largest part in place of the likeness to a known fault.
+    frame : {"world", "clamp"}
+        Of the components in space.
 
     Returns
     -------
-    Comparison
+    Comparison or SpatialComparison
         If they agree.
 
     Raises
@@ -45,39 +74,48 @@ def assert_agreement(
     AssertionError
         If they do not.
     InputError
-        As `compare`.
+        As `compare` and `compare_space`, or if one sweep is in space and the other is not.
     """
     __tracebackhide__ = True  # a failing test shows its own lines, and the message
-    comparison = compared(reference, candidate, tolerances, offset=offset, noise=noise)
+    if budget is not None and isinstance(reference, SpatialReadings):
+        raise InputError("budget", "given", "for sweeps in the plane", "leave it out")
+    comparison = compared(reference, candidate, tolerances, offset=offset, noise=noise, frame=frame)
     demand(comparison, budget)
     return comparison
 
 
 def compared(
-    reference: Readings,
-    candidate: Readings,
-    tolerances: Tolerances | None = None,
+    reference: Readings | SpatialReadings,
+    candidate: Readings | SpatialReadings,
+    tolerances: Tolerances | SpatialTolerances | None = None,
     *,
     offset: float | Literal["auto"] = 0.0,
     noise: float | Literal["auto"] = 0.0,
-) -> Comparison:
+    frame: Frame = "world",
+) -> Comparison | SpatialComparison:
     """Compare two sweeps, if they are sweeps: a test's simulator may return anything.
 
     Parameters
     ----------
-    reference, candidate, tolerances, offset, noise
-        As `compare` takes them.
+    reference, candidate, tolerances, offset, noise, frame
+        As `assert_agreement` takes them.
 
     Returns
     -------
-    Comparison
+    Comparison or SpatialComparison
         Whether they agree or not.
 
     Raises
     ------
     InputError
-        If one of the two is no `Readings`; else as `compare`.
+        If one of the two is no `Readings`, nor both are `SpatialReadings`; else as `compare`.
     """
+    if isinstance(reference, SpatialReadings):
+        for name, value in (("offset", offset), ("noise", noise)):
+            if value != 0:
+                raise InputError(name, value, "0 in space", "leave it out, or widen the limits")
+        # What is of another kind, compare_space refuses.
+        return compare_space(reference, candidate, tolerances, frame=frame)  # type: ignore[arg-type]
     for name, given in (("reference", reference), ("candidate", candidate)):
         if not isinstance(given, Readings):
             raise InputError(
@@ -86,15 +124,15 @@ def compared(
                 "analytic.Readings",
                 "solve_sweep, simulate_sweep, read_measured or Readings(table, beam) make them",
             )
-    return compare(reference, candidate, tolerances, offset=offset, noise=noise)
+    return compare(reference, candidate, tolerances, offset=offset, noise=noise)  # type: ignore[arg-type]
 
 
-def demand(comparison: Comparison, budget: Budget | None = None) -> None:
+def demand(comparison: Comparison | SpatialComparison, budget: Budget | None = None) -> None:
     """Raise AssertionError unless `comparison` agrees.
 
     Parameters
     ----------
-    comparison : Comparison
+    comparison : Comparison or SpatialComparison
         What was found.
     budget : Budget, optional
         As `assert_agreement` takes it.
@@ -108,6 +146,7 @@ def demand(comparison: Comparison, budget: Budget | None = None) -> None:
     if comparison.agrees:
         return
     title = f"{comparison.candidate.source} disagrees with {comparison.reference.source}:"
+    causes = [] if isinstance(comparison, SpatialComparison) else [why(comparison, budget)]
     remark = [] if comparison.remark is None else [comparison.remark]
-    lines = [title, why(comparison, budget), *comparison.failures, *remark]
+    lines = [title, *causes, *comparison.failures, *remark]
     raise AssertionError("\n  ".join(lines))

@@ -6,28 +6,38 @@ from pathlib import Path
 from typing import Any
 
 from analytic.problem.files import write_whole
+from analytic.space import Body
 from compare.comparison import Comparison
 from compare.show.report import write_report
+from compare.show.spatial import write_spatial_report
+from compare.spatial.comparison import SpatialComparison
 
 
-def report(found: Comparison, folder: Path, name: str) -> dict[str, Any]:
+def report(
+    found: Comparison | SpatialComparison, folder: Path, name: str, body: Body | None = None
+) -> dict[str, Any]:
     """Write the report of one comparison.
 
     Parameters
     ----------
-    found : Comparison
+    found : Comparison or SpatialComparison
         The comparison.
     folder : Path
         Where all reports of the run go.
     name : str
         Of this report's folder there.
+    body : Body, optional
+        What was swept past in space.
 
     Returns
     -------
     dict
         Its row of the summary, fit for JSON.
     """
-    write_report(found, folder / name)
+    if isinstance(found, SpatialComparison):
+        write_spatial_report(found, body, folder / name)
+    else:
+        write_report(found, folder / name)
     return {
         "name": name,
         "reference": found.reference.source,
@@ -35,7 +45,7 @@ def report(found: Comparison, folder: Path, name: str) -> dict[str, Any]:
         "agrees": found.agrees,
         "rms": {reading: d.rms for reading, d in found.disagreement.items()},
         "failures": list(found.failures),
-        "likely": found.likely,
+        "likely": None if isinstance(found, SpatialComparison) else found.likely,
     }
 
 
@@ -52,12 +62,13 @@ def write_summary(rows: Iterable[Mapping[str, Any]], folder: Path) -> None:
     ordered = sorted(rows, key=lambda row: str(row["name"]))
     folder.mkdir(parents=True, exist_ok=True)
     write_whole(folder / "summary.json", json.dumps(ordered, indent=2))
+    readings = list(dict.fromkeys(name for row in ordered for name in row["rms"]))
     lines = [
-        "| comparison | verdict | force_x | force_y | moment_z | likely |",
-        "|---|---|---|---|---|---|",
+        f"| comparison | verdict | {' | '.join(readings)} | likely |",
+        f"|---|---|{'---|' * len(readings)}---|",
     ]
     for row in ordered:
-        rms = " | ".join(f"{x:.1e}" for x in row["rms"].values())
+        rms = " | ".join(f"{row['rms'][x]:.1e}" if x in row["rms"] else "" for x in readings)
         lines.append(
             f"| [{row['candidate']} against {row['reference']}]({row['name']}/report.html) "
             f"| {'agrees' if row['agrees'] else 'disagrees'} | {rms} | {row['likely'] or ''} |"

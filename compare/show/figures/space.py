@@ -1,7 +1,6 @@
 """A sweep in space: body, vibrissa and contacts as they stand, and the readings along the way."""
 
 import numpy as np
-import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -9,8 +8,10 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from analytic.problem.arrays import Floats
-from analytic.space import Body, SpatialReadings, deflected_rods
-from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE, MOMENT
+from analytic.space import SpatialReadings
+from analytic.space.problem.readings import FORCE, MOMENT
+from compare.align.frames import components
+from compare.show.scene import SweepScene
 from compare.show.style import (
     BLUE,
     BODY,
@@ -27,36 +28,40 @@ from compare.show.style import (
     label,
 )
 from compare.spatial.comparison import SpatialComparison, way
+from compare.spatial.parts import Parts
 
 _SHAPES = 24  # drawn of a sweep
-_DEPTH = 0.5  # of the scene, at least, over its longest side
-_DARK = 0.35  # how much darker a patch is that looks away from the light
+_DARK = 0.35  # how much darker a face is that looks away from the light
 _LIGHT = np.array([0.4, -0.2, -0.9]) / np.linalg.norm([0.4, -0.2, -0.9])
 _VIEW = {"elev": 12.0, "azim": -62.0}
 _COLOURS = (BLUE, ORANGE, GREEN)
+_LEAST = 1e-12  # L; contacts that are closer are drawn at this
 
 
-def sweep_in_space(readings: SpatialReadings, found: pd.DataFrame, body: Body) -> Figure:
+def sweep_in_space(scene: SweepScene) -> Figure:
     """Draw the body, the vibrissa at some stations, the contacts found, and the readings.
 
     Parameters
     ----------
-    readings : SpatialReadings
-        The sweep.
-    found : pandas.DataFrame
-        From `analytic.space.reconstruct_space`.
-    body : Body
-        In the unit of length of the readings.
+    scene : SweepScene
+        Of a sweep.
 
     Returns
     -------
     Figure
         The scene, and below it force and moment over the way of the foot.
     """
+    readings = scene.readings
     figure = Figure(figsize=(PAGE_WIDTH, 0.8 * PAGE_WIDTH), layout="constrained")
     grid = figure.add_gridspec(2, 2, height_ratios=(1.8, 1))
-    scene = figure.add_subplot(grid[0, :], projection="3d", computed_zorder=False)
-    _draw_scene(scene, readings, found, body.scaled(1 / readings.beam.length))
+    ax = figure.add_subplot(grid[0, :], projection="3d", computed_zorder=False)
+    draw_scene(ax, scene)
+    chosen = np.unique(np.linspace(0, len(scene.lines) - 1, _SHAPES).round().astype(int))
+    colours = [PHASE_COLOURS[phase] for phase in scene.phase[chosen]]
+    ax.add_collection3d(
+        Line3DCollection(upright(scene.lines[chosen]), colors=colours, linewidths=1.3)
+    )
+    ax.plot(*upright(scene.contact).T, color=INK, marker="o", markersize=1.8, linestyle="")
     left, right = (figure.add_subplot(grid[1, i]) for i in range(2))
     unit = readings.beam
     _draw_components(left, readings, FORCE, unit.force_unit, "$F$ / ($EI/L^2$)")
@@ -93,7 +98,8 @@ def both_in_space(comparison: SpatialComparison) -> Figure:
     grid = figure.subplots(2, 2, sharex=True, height_ratios=(2, 1))
     one, other = comparison.reference, comparison.candidate
     beam = one.beam
-    travel = way(one) / beam.length
+    travel = comparison.travel / beam.length
+    values = [components(r, comparison.frame) for r in (one, other)]
     for column, (names, unit, title) in enumerate(
         (
             (FORCE, beam.force_unit, "$F$ / ($EI/L^2$)"),
@@ -102,7 +108,7 @@ def both_in_space(comparison: SpatialComparison) -> Figure:
     ):
         above, below = grid[:, column]
         for name, colour in zip(names, _COLOURS, strict=True):
-            exact, found = (r.values(name) / unit for r in (one, other))
+            exact, found = (value[name] / unit for value in values)
             exact[~one.trusted], found[~other.trusted] = np.nan, np.nan
             above.plot(travel, exact, color=colour, linewidth=1, label=name[-1])
             above.plot(travel, found, color=colour, marker=".", markersize=3, linestyle="")
@@ -121,67 +127,146 @@ def both_in_space(comparison: SpatialComparison) -> Figure:
     return figure
 
 
-def _draw_scene(ax: Axes3D, readings: SpatialReadings, found: pd.DataFrame, body: Body) -> None:
-    length = readings.beam.length
-    lines = deflected_rods(readings) / length
-    foot = readings.values(*FOOT) / length
-    contact = found[list(CONTACT_POINT)].to_numpy(dtype=float) / length
-    shown = np.concatenate([lines[np.isfinite(lines).all(axis=2)], foot])
-    low, high = shown.min(axis=0), shown.max(axis=0)
-    widest = _DEPTH * float((high - low).max())  # a straight way has no depth
-    middle = (low + high)[[0, 2]] / 2
-    low[[0, 2]] = np.minimum(low[[0, 2]], middle - widest / 2)
-    high[[0, 2]] = np.maximum(high[[0, 2]], middle + widest / 2)
-    reach = 0.6 * float((high - low).max())
-    patches = body.patches((low + high) / 2, reach)
-    margin = 0.1
-    inside = ((patches >= low - margin) & (patches <= high + margin)).all(axis=(1, 2))
-    patches = patches[inside]
-    if len(patches):
-        across = np.cross(patches[:, 1] - patches[:, 0], patches[:, 2] - patches[:, 1])
+def contacts_in_space(comparison: SpatialComparison) -> Figure:
+    """Draw when both sweeps touch, in which phase, and how far their contacts are apart.
+
+    Parameters
+    ----------
+    comparison : SpatialComparison
+        Of two sweeps.
+
+    Returns
+    -------
+    Figure
+        A strip for each sweep, its touches and leavings marked, and distances below.
+    """
+    figure = Figure(figsize=(PAGE_WIDTH, 0.4 * PAGE_WIDTH), layout="constrained")
+    strips, below = figure.subplots(2, 1, sharex=True, height_ratios=(1, 1.6))
+    length = comparison.reference.beam.length
+    travel = comparison.travel / length
+    edges = np.concatenate([travel[:1], (travel[1:] + travel[:-1]) / 2, travel[-1:]])
+    sides = (comparison.reference, comparison.candidate)
+    for row, readings in enumerate(sides):
+        phase = np.where(readings.touching, "touching", "free").astype(object)
+        if "phase" in readings.table:
+            phase = readings.table["phase"].to_numpy()
+        phase = np.where(readings.trusted, phase, "")
+        for name, colour in {**PHASE_COLOURS, "touching": GREEN}.items():
+            spans = [(edges[i], edges[i + 1] - edges[i]) for i in np.flatnonzero(phase == name)]
+            strips.broken_barh(spans, (0.6 - row, 0.8), facecolors=colour, linewidth=0)
+        events = [pair.reference if row == 0 else pair.candidate
+                  for pair in comparison.events.values()]  # fmt: skip
+        at = [event / length for event in events if event is not None]
+        strips.plot(at, [1 - row] * len(at), color=INK, marker="|", markersize=18, linestyle="")
+    strips.set_yticks([1, 0], [label(readings.source) for readings in sides])
+    strips.set_ylim(-0.6, 1.6)
+    handles = [
+        Line2D([], [], color=colour, linewidth=5, label=PHASE_NAMES[phase])
+        for phase, colour in PHASE_COLOURS.items()
+    ]
+    handles.append(
+        Line2D([], [], color=INK, marker="|", markersize=9, linestyle="", label="touches or leaves")
+    )
+    strips.legend(handles=handles, fontsize=SMALL, frameon=False, ncols=4, loc="lower left",
+                  bbox_to_anchor=(0, 1))  # fmt: skip
+    far = np.maximum(comparison.contact.distance, _LEAST)
+    below.semilogy(travel, far, color=INK, marker=".", markersize=3, linewidth=0.8)
+    below.axhline(comparison.tolerances.contact, color=GREY, linestyle="--", linewidth=1)
+    below.set_ylabel("contacts apart / $L$")
+    below.set_xlabel("way of the foot / $L$")
+    return figure
+
+
+def parts_in_space(parts: Parts) -> Figure:
+    """Draw what a disagreement is made of.
+
+    Parameters
+    ----------
+    parts : Parts
+        Of a sweep.
+
+    Returns
+    -------
+    Figure
+        A bar a part.
+    """
+    figure = Figure(figsize=(0.6 * PAGE_WIDTH, 0.2 * PAGE_WIDTH), layout="constrained")
+    ax = figure.subplots()
+    sizes = {
+        "unexplained": parts.unexplained,
+        "softness": parts.softness,
+        "discretisation": parts.discretisation,
+        "disagreement": parts.whole,
+    }
+    ax.barh([*sizes], [*sizes.values()], color=[BLUE, BLUE, BLUE, INK])
+    ax.set_xscale("log")
+    ax.set_xlabel("rms of the worst component")
+    return figure
+
+
+def draw_scene(ax: Axes3D, scene: SweepScene) -> None:
+    """Draw what does not move: the body and the way of the foot, with axes of equal scale.
+
+    Parameters
+    ----------
+    ax : Axes3D
+        Where.
+    scene : SweepScene
+        Of a sweep.
+    """
+    faces = scene.faces
+    if len(faces):
+        across = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 1])
         size = np.maximum(np.linalg.norm(across, axis=1), 1e-300)
-        lit = np.abs(across @ _LIGHT) / size
-        grey = (1 - _DARK) + _DARK * lit
+        grey = (1 - _DARK) + _DARK * np.abs(across @ _LIGHT) / size
         colours = np.column_stack(
             [np.repeat(0.87 * grey[:, None], 3, axis=1), np.full(len(grey), 0.6)]
         )
         ax.add_collection3d(
-            Poly3DCollection(_up(patches), facecolors=colours, edgecolors=BODY, linewidths=0.2)
+            Poly3DCollection(upright(faces), facecolors=colours, edgecolors=BODY, linewidths=0.2)
         )
-    chosen = np.unique(np.linspace(0, len(lines) - 1, _SHAPES).round().astype(int))
-    phases = readings.table["phase"].to_numpy(dtype=str) if "phase" in readings.table else None
-    colours_of = [PHASE_COLOURS["free" if phases is None else phases[i]] for i in chosen]
-    ax.add_collection3d(Line3DCollection(_up(lines[chosen]), colors=colours_of, linewidths=1.3))
-    ax.plot(*_up(foot).T, color=GREY, linestyle="--", linewidth=1)
-    ax.plot(*_up(contact).T, color=INK, marker="o", markersize=1.8, linestyle="")
+    ax.plot(*upright(scene.foot).T, color=GREY, linestyle="--", linewidth=1)
+    low, high = scene.low, scene.high
     ax.set(
-        xlim=(low[0] - margin, high[0] + margin),
-        ylim=(high[2] + margin, low[2] - margin),
-        zlim=(low[1] - margin, high[1] + margin),
+        xlim=(low[0], high[0]),
+        ylim=(high[2], low[2]),
+        zlim=(low[1], high[1]),
         xlabel="$x$ / $L$",
         ylabel="$z$ / $L$",
         zlabel="$y$ / $L$",
     )
     ax.locator_params(nbins=5)
-    extent = high - low + 2 * margin
+    extent = high - low
     ax.set_box_aspect((extent[0], extent[2], extent[1]), zoom=1.45)
     ax.view_init(**_VIEW)
 
 
-def _up(points: Floats) -> Floats:
-    """From the case's axes, y up, to the picture's, whose third points up."""
+def upright(points: Floats) -> Floats:
+    """From the case's axes, y up, to the picture's, whose third points up.
+
+    Parameters
+    ----------
+    points : array, shape (..., 3)
+        In the case's axes.
+
+    Returns
+    -------
+    array, shape (..., 3)
+        In the picture's.
+    """
     return points[..., [0, 2, 1]]
 
 
 def _draw_components(
     ax: Axes, readings: SpatialReadings, names: tuple[str, ...], unit: float, title: str
 ) -> None:
-    foot = readings.values(*FOOT) / readings.beam.length
-    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(foot, axis=0), axis=1))])
+    travel = way(readings) / readings.beam.length
     values = readings.values(*names) / unit
     values[~readings.trusted] = np.nan
     for name, colour, column in zip(names, _COLOURS, values.T, strict=True):
-        ax.plot(way, column, color=colour, marker=".", markersize=2.5, linewidth=1, label=name[-1])
+        ax.plot(
+            travel, column, color=colour, marker=".", markersize=2.5, linewidth=1, label=name[-1]
+        )
     ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
     ax.set_xlabel("way of the foot / $L$")
     ax.set_ylabel(title)

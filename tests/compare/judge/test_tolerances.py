@@ -32,7 +32,7 @@ def test_every_limit_has_a_reason():
 
 def test_limits_from_a_file(tmp_path):
     (tmp_path / "limits.toml").write_text(FILE)
-    limits = read_tolerances(tmp_path / "limits.toml")
+    limits = read_tolerances(tmp_path / "limits.toml", Tolerances)
     assert limits.rms == 4e-3
     assert limits.max == Tolerances().max
     assert limits.of_sweep("force_x").reason == "the force that is used"
@@ -69,7 +69,7 @@ def test_limits_in_a_case_file(tmp_path):
 def test_limits_that_cannot_be_used(tmp_path, text, said):
     (tmp_path / "limits.toml").write_text(f"[tolerances]\n{text}\n")
     with pytest.raises(InputError, match=said):
-        read_tolerances(tmp_path / "limits.toml")
+        read_tolerances(tmp_path / "limits.toml", Tolerances)
 
 
 def test_a_phase_has_a_limit_of_its_own():

@@ -1,12 +1,16 @@
 """Case files of sweeps in space."""
 
 import numpy as np
+import pandas as pd
 import pytest
 import trimesh
 
 from analytic import InputError
 from analytic.space import solve_space
-from compare.read.space import load_space
+from compare import compare_space, read_space
+from compare.align.frames import components
+from compare.read.case import load_job
+from compare.read.space import load_space, load_space_job
 
 BALL = """
 [beam]
@@ -92,3 +96,47 @@ def test_a_planar_case_is_sent_to_its_command(tmp_path):
         loaded('[profile]\nkind = "circle"\nradius = 1\nlowest = [0, 0.4]\n', tmp_path)
     with pytest.raises(InputError, match="vibrissa run"):
         load_space("catenary")
+
+
+def test_a_case_in_space_is_sent_to_its_command(tmp_path):
+    (tmp_path / "ball.toml").write_text(BALL)
+    with pytest.raises(InputError, match=r"line 6: body = given.*vibrissa space"):
+        load_job(str(tmp_path / "ball.toml"))
+
+
+def test_limits_stand_in_the_case_file_with_their_reasons(tmp_path):
+    path = tmp_path / "ball.toml"
+    path.write_text(
+        BALL
+        + '[tolerances]\nrms = { limit = 1e-3, reason = "fine" }\n'
+        + '[tolerances.moment_y]\nmax = { limit = 0.5, reason = "a weak channel" }\n'
+    )
+    limits = load_space_job(path).tolerances
+    assert (limits.of("force_x", "rms"), limits.of("moment_y", "max")) == (1e-3, 0.5)
+    assert limits.of("moment_y", "max").reason == "a weak channel"
+    assert limits.of("moment_x", "max") == 3e-2
+    path.write_text(BALL + '[tolerances]\nevnt = { limit = 1e-3, reason = "x" }\n')
+    with pytest.raises(InputError, match="did you mean event"):
+        load_space_job(path)
+
+
+def test_a_foreign_file_has_columns_units_and_a_frame_of_its_own(tmp_path):
+    case = loaded(BALL, tmp_path)
+    exact = solve_space(case)
+    clamp = components(exact, "clamp")
+    table = pd.DataFrame(
+        {"X": exact.values("foot_x") * 1e3, "foot_y": exact.values("foot_y")}
+        | {"foot_z": exact.values("foot_z")}
+        | {name: values for name, values in clamp.items() if name != "moment_z"}
+        | {"Mz": clamp["moment_z"] * 1e3}
+    )
+    table.to_csv(tmp_path / "other.csv", index=False, sep=";")
+    columns = ["foot_x=X:mm", "moment_z=Mz:mN m"]
+    read = read_space(tmp_path / "other.csv", case.beam, case.path.tangent, columns, "clamp")
+    found = compare_space(exact, read)
+    assert found.agrees
+    assert max(one.max for one in found.disagreement.values()) < 1e-12
+    with pytest.raises(InputError, match="beside a vibrissa with units"):
+        read_space(tmp_path / "other.csv", None, None, columns)
+    with pytest.raises(InputError, match="force_w"):
+        read_space(tmp_path / "other.csv", case.beam, None, ["force_w=X"])

@@ -1,6 +1,13 @@
-"""One report that many tests look at: with a budget, a film and a name that means mischief."""
+"""One report that many tests look at: with a budget, a film and a name that means mischief.
 
+And a browser that looks at any report.
+"""
+
+import os
+import shutil
+import subprocess
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from PIL import Image
@@ -34,3 +41,29 @@ def comparison() -> Comparison:
 def page(comparison, film, tmp_path_factory) -> Page:
     report = write_report(comparison, tmp_path_factory.mktemp("report"), planted(), film)
     return Page(report.read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="session")
+def browser() -> str:
+    asked = os.environ.get("VIBRISSA_BROWSER")
+    found = shutil.which(asked or "chromium") or (shutil.which("google-chrome") if not asked else 0)
+    if not found and asked:
+        pytest.fail(f"VIBRISSA_BROWSER names {asked}, which is not installed")
+    if not found:
+        pytest.skip("no Chromium to look at the report with: install chromium")
+    return found
+
+
+@pytest.fixture
+def look(browser, tmp_path):
+    """Run the browser on a page; its output."""
+
+    def run(page: Path, *options: str) -> str:
+        command = [
+            browser, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
+            f"--user-data-dir={tmp_path / 'profile'}", *options, page.as_uri(),
+        ]  # fmt: skip
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+        return done.stdout
+
+    return run

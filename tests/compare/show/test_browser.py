@@ -5,10 +5,7 @@ to skip.
 """
 
 import json
-import os
 import re
-import shutil
-import subprocess
 from html import unescape
 from pathlib import Path
 
@@ -46,37 +43,11 @@ ORANGE = {"light": (0xD5, 0x5E, 0x00), "dark": (0xFF, 0x91, 0x47)}  # the blamed
 
 
 @pytest.fixture(scope="module")
-def browser() -> str:
-    asked = os.environ.get("VIBRISSA_BROWSER")
-    found = shutil.which(asked or "chromium") or (shutil.which("google-chrome") if not asked else 0)
-    if not found and asked:
-        pytest.fail(f"VIBRISSA_BROWSER names {asked}, which is not installed")
-    if not found:
-        pytest.skip("no Chromium to look at the report with: install chromium")
-    return found
-
-
-@pytest.fixture(scope="module")
 def report(tmp_path_factory) -> Path:
     exact, simulated = exact_sweep("catenary"), simulated_sweep("catenary")
     folder = tmp_path_factory.mktemp("report")
     gif, *stills = write_animation(exact, simulated, folder, 48)
     return write_report(compare(exact, simulated), folder, planted(), Film(gif, stills[2]))
-
-
-@pytest.fixture
-def look(browser, tmp_path):
-    """Run the browser on a page; its output."""
-
-    def run(page: Path, *options: str) -> str:
-        command = [
-            browser, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
-            f"--user-data-dir={tmp_path / 'profile'}", *options, page.as_uri(),
-        ]  # fmt: skip
-        done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
-        return done.stdout
-
-    return run
 
 
 @pytest.fixture

@@ -5,10 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from analytic import Beam, InputError
 from analytic.space import FootPath, SpatialCase, SpatialReadings, solve_space, sphere
-from compare.spatial.comparison import SpatialTolerances, compare_space
+from analytic.space.problem.readings import FORCE, MOMENT, SENSED_IN_SPACE
+from compare import SpatialTolerances, assert_agreement, compare_space
+from compare.align.frames import clamp_axes, components, from_frame
 from compare.spatial.parts import split
 from mujoco_models import SpatialSettings, simulate_space
 from tests.compare.command import vibrissa
@@ -23,36 +26,132 @@ def changed(readings, **columns):
     return SpatialReadings(table, readings.beam, readings.tangent, "other", readings.provenance)
 
 
-def test_a_sweep_agrees_with_itself_and_json_holds_it():
-    exact = solve_space(CASE)
+def as_if_foreign(readings, **columns):
+    """What another simulator writes: nine columns, no events."""
+    table = readings.table[[*SENSED_IN_SPACE]].assign(**columns)
+    return SpatialReadings(table, readings.beam, readings.tangent, "foreign")
+
+
+@pytest.fixture(scope="module")
+def exact():
+    return solve_space(CASE)
+
+
+def test_a_sweep_agrees_with_itself_and_json_holds_it(exact):
     found = compare_space(exact, exact)
     assert found.agrees
-    assert found.contact_max == 0
-    assert found.phases == 1
-    assert json.loads(json.dumps(found.to_dict()))["verdict"] == "agrees"
+    assert found.contact.max == 0
+    assert found.phase_agreement == 1
+    kept = json.loads(json.dumps(found.to_dict()))
+    assert kept["verdict"] == "agrees"
+    assert kept["stations"]["status"]["candidate"] == {"ok": 20}
+    assert kept["tolerance_reasons"].keys() == kept["tolerances"].keys()
 
 
-def test_planted_differences_are_found_by_name():
-    exact = solve_space(CASE)
+def test_planted_differences_are_found_by_name(exact):
     softer = solve_space(replace(CASE, beam=Beam(flexural_rigidity=0.98)))
+    softer = SpatialReadings(softer.table, exact.beam, exact.tangent, "softer", softer.provenance)
     found = compare_space(exact, softer)
     assert not found.agrees
-    assert max(one.max for one in found.apart.values()) == pytest.approx(0.02, rel=0.02)
-    turned = changed(exact, force_z=-exact.values("force_z"))
-    assert [line.split(":")[0] for line in compare_space(exact, turned).failures] == ["force_z"]
-    lost = exact.table["status"].mask(exact.touching, "unsettled")
-    assert any(
-        "both touch" in line for line in compare_space(exact, changed(exact, status=lost)).failures
-    )
+    largest = max(one.max for one in found.disagreement.values())
+    assert largest == pytest.approx(0.02, rel=0.02)
+    turned = compare_space(exact, changed(exact, force_z=-exact.values("force_z")))
+    assert {one.name for one in turned.exceeded} == {"force_z"}
+    assert turned.worst.excess > 10
+    assert "at" in turned.failures[-1]
+    assert "L of the way" in turned.failures[-1]
+    lost = changed(exact, status=exact.table["status"].mask(exact.touching, "unsettled"))
+    found = compare_space(exact, lost)
+    assert {"contact", "stations"} <= {one.name for one in found.exceeded}
+    assert found.statuses["candidate"]["unsettled"] == exact.touching.sum()
 
 
-def test_other_stations_and_limits_that_cannot_be_are_refused_in_one_line():
-    exact = solve_space(CASE)
+def test_each_limit_is_the_one_that_fails(exact):
+    """Half of what is found is too little, and twice as much is enough, limit by limit."""
+    shift = changed(exact, contact_x=exact.values("contact_x") + 1e-3)
+    late = dict(exact.provenance)
+    late["events"] = [dict(e, travel=e["travel"] + 4e-3) for e in late["events"]]
+    other = exact.table["phase"].replace({"tip": "tangent", "tangent": "tip"})
+    part = other.where(np.arange(20) < 8, exact.table["phase"])
+    for name, candidate, found in (
+        ("contact", shift, 1e-3),
+        ("event", SpatialReadings(exact.table, exact.beam, exact.tangent, "late", late), 4e-3),
+        ("force_x.rms", changed(exact, force_x=exact.values("force_x") * 1.001), None),
+    ):
+        kind = name.partition(".")[0]
+        size = found or compare_space(exact, candidate).disagreement[kind].rms
+        for factor, agrees in ((0.5, False), (2.0, True)):
+            limits = {name: size * factor} if found else {"special": {name: size * factor}}
+            judged = compare_space(exact, candidate, SpatialTolerances(**limits))
+            assert judged.agrees == agrees, name
+    found = compare_space(exact, changed(exact, phase=part))
+    assert [one.name for one in found.exceeded] == ["phases"]
+
+
+def test_a_foreign_file_is_compared_by_its_clamp_alone(exact):
+    found = compare_space(exact, as_if_foreign(exact))
+    assert found.agrees
+    assert found.contact.from_clamp == ("foreign",)
+    assert found.contact.max < 1e-12
+    assert found.phase_agreement is None
+    (touch,) = found.events.values()
+    assert abs(touch.difference) <= touch.uncertainty == pytest.approx(0.9 / 19 / 2)
+    # What touches three stations late is found, though no event is recorded.
+    late = exact.touching & (np.cumsum(exact.touching) > 3)
+    columns = {n: np.where(late, exact.values(n), 0.0) for n in (*FORCE, *MOMENT)}
+    found = compare_space(exact, as_if_foreign(exact, **columns))
+    assert [one.name for one in found.exceeded] == ["touch"]
+
+
+def test_frames_turn_the_components_and_nothing_else(exact):
+    tangent = np.array([0.3, 0.9, -0.2]) / np.linalg.norm([0.3, 0.9, -0.2])
+    axes = clamp_axes(tangent)
+    assert np.allclose(axes @ axes.T, np.eye(3), atol=1e-15)
+    assert np.linalg.det(axes) == pytest.approx(1)
+    assert np.allclose(axes[1], tangent)
+    assert np.allclose(clamp_axes(np.array([0.0, 1.0, 0.0])), np.eye(3))
+    assert np.allclose(clamp_axes(np.array([0.0, -1.0, 0.0]))[1], [0, -1, 0])
+    leaning = solve_space(replace(CASE, path=replace(CASE.path, tangent=tangent)))
+    clamp, world = components(leaning, "clamp"), components(leaning)
+    touching = leaning.touching
+    assert np.abs(world["moment_y"][touching]).max() > 1e-2
+    assert np.abs(clamp["moment_y"][touching]).max() < 1e-14  # nothing twists the vibrissa
+    for names in (FORCE, MOMENT):
+        sizes = [sum(x[n] ** 2 for n in names) for x in (world, clamp)]
+        assert np.allclose(*sizes, rtol=1e-13, atol=1e-30)
+    foreign = as_if_foreign(leaning, **clamp)
+    assert not compare_space(leaning, foreign).agrees
+    back = from_frame(foreign, "clamp")
+    assert compare_space(leaning, back, frame="clamp").disagreement["moment_y"].max < 1e-14
+    with pytest.raises(InputError, match="frame"):
+        components(leaning, "tool")
+
+
+def test_what_cannot_be_compared_is_refused_in_one_line(exact):
     moved = changed(exact, foot_x=exact.values("foot_x") + 0.1)
     with pytest.raises(InputError, match="the same foot positions"):
         compare_space(exact, moved)
     with pytest.raises(InputError, match=r"tolerances\.rms"):
         SpatialTolerances(rms=-1.0)
+    with pytest.raises(InputError, match="force_w"):
+        SpatialTolerances(special={"force_w.rms": 1.0})
+    stiff = SpatialReadings(exact.table, Beam(flexural_rigidity=2.0), exact.tangent)
+    with pytest.raises(InputError, match=r"beam\.flexural_rigidity"):
+        compare_space(exact, stiff)
+    with pytest.raises(InputError, match="tangent"):
+        compare_space(exact, SpatialReadings(exact.table, exact.beam, (0.1, 1, 0)))
+    with pytest.raises(InputError, match="candidate"):
+        compare_space(exact, exact.table)
+
+
+def test_the_gate_raises_with_every_limit(exact):
+    assert assert_agreement(exact, exact).agrees
+    with pytest.raises(AssertionError, match="moment_z: rms"):
+        assert_agreement(exact, changed(exact, moment_z=1.01 * exact.values("moment_z")))
+    with pytest.raises(InputError, match="noise"):
+        assert_agreement(exact, exact, noise=0.01)
+    with pytest.raises(InputError, match="candidate"):
+        assert_agreement(exact, object())
 
 
 @pytest.mark.slow
@@ -77,10 +176,32 @@ def test_the_command_compares_and_ends_with_the_right_code(tmp_path):
         done = vibrissa("space", "case.toml", "--engine", "mujoco", "--out", out, cwd=tmp_path)
         assert done.returncode == code, done.stdout + done.stderr
         assert says in done.stdout
-    for name in ("report.html", "comparison.json", "components.png", "mujoco-chain.parquet"):
+    for name in ("report.html", "comparison.json", "components.png", "contacts.png",
+                 "mujoco-chain.parquet", "animation.gif", "still-4.png"):  # fmt: skip
         assert (tmp_path / "of-40" / name).stat().st_size > 100
-    read = SpatialReadings.read(tmp_path / "of-3" / "mujoco-chain.parquet")
-    assert np.isfinite(read.values("foot_x")).all()
+    with Image.open(tmp_path / "of-40" / "animation.gif") as film:
+        assert film.n_frames == 20
+    # What was saved compares as it did, read back, and as another simulator's text file does.
+    saved = SpatialReadings.read(tmp_path / "of-40" / "mujoco-chain.parquet")
+    kept = json.loads((tmp_path / "of-40" / "comparison.json").read_text())
+    again = compare_space(SpatialReadings.read(tmp_path / "of-40" / "analytic.parquet"), saved)
+    assert json.loads(json.dumps(again.to_dict()))["disagreement"] == kept["disagreement"]
+    foreign = saved.table[[*SENSED_IN_SPACE]].rename(columns={"force_x": "Fx", "foot_x": "X"})
+    foreign.to_csv(tmp_path / "other.txt", sep=";", index=False)
+    named = ("--column", "force_x=Fx", "--column", "foot_x=X")
+    for arguments, code, says in (
+        (("case.toml", "other.txt", *named), 0, "agrees with"),
+        (("of-40/analytic.parquet", "of-40/mujoco-chain.parquet"), 0, "agrees with"),
+        (("of-40/analytic.parquet", "of-3/mujoco-chain.parquet"), 1, "disagrees with"),
+        (("case.toml", "other.txt"), 2, "--column"),
+        (("case.toml", "other.txt", *named, "--noise", "0.1"), 2, "--noise"),
+        (("catenary", "of-40/analytic.parquet"), 2, "in space"),
+        (("catenary", "other.txt", "--frame", "clamp"), 2, "--frame"),
+    ):
+        done = vibrissa("compare", *arguments, "--out", "again", cwd=tmp_path)
+        assert done.returncode == code, done.stdout + done.stderr
+        assert says in done.stdout + done.stderr
+        assert len(done.stderr.strip().splitlines()) == (code == 2)
     for wrong in (["--engine", "drake"], ["--budget"]):
         done = vibrissa("space", "case.toml", *wrong, cwd=tmp_path)
         assert done.returncode == 2

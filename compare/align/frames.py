@@ -1,0 +1,101 @@
+"""The frames that six components are given in: the world's, and that of the clamp."""
+
+from dataclasses import replace
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+
+from analytic import InputError
+from analytic.problem.arrays import Floats
+from analytic.space import SpatialReadings
+from analytic.space.problem.readings import FORCE, MOMENT
+
+Frame: TypeAlias = Literal["world", "clamp"]
+COMPONENTS = (*FORCE, *MOMENT)
+_OVERTURNED = 1e-9  # of 1 + cos: a clamp that points straight down
+
+
+def clamp_axes(tangent: Floats) -> Floats:
+    """The clamp's axes: the world's, by the shortest turn that takes y to the clamp's tangent.
+
+    Parameters
+    ----------
+    tangent : array, shape (3,)
+        Of the vibrissa at its clamp, of length 1.
+
+    Returns
+    -------
+    array, shape (3, 3)
+        A row an axis, in world coordinates; the second is `tangent`. A clamp that points straight
+        down is turned about x.
+    """
+    x, y, z = tangent
+    if 1 + y < _OVERTURNED:
+        return np.diag([1.0, -1.0, -1.0])
+    skew = np.array([[0.0, x, 0.0], [-x, 0.0, -z], [0.0, z, 0.0]])
+    return np.asarray((np.eye(3) + skew + skew @ skew / (1 + y)).T)  # y cross tangent is its axis
+
+
+def components(readings: SpatialReadings, frame: Frame = "world") -> dict[str, Floats]:
+    """The six components of a sweep in a frame.
+
+    Parameters
+    ----------
+    readings : SpatialReadings
+        A sweep.
+    frame : {"world", "clamp"}
+        In the clamp's, ``force_y`` is along the vibrissa and ``moment_y`` twists it.
+
+    Returns
+    -------
+    dict of array, shape (stations,)
+        By name, in the readings' units.
+
+    Raises
+    ------
+    InputError
+        If there is no such frame.
+    """
+    axes = _axes(readings, frame)
+    return {
+        name: column
+        for names in (FORCE, MOMENT)
+        for name, column in zip(names, (readings.values(*names) @ axes.T).T, strict=True)
+    }
+
+
+def from_frame(readings: SpatialReadings, frame: Frame) -> SpatialReadings:
+    """Readings whose components are in a frame, in that of the world.
+
+    Parameters
+    ----------
+    readings : SpatialReadings
+        As a sensor that is fixed to the clamp gives them.
+    frame : {"world", "clamp"}
+        Which their components are in.
+
+    Returns
+    -------
+    SpatialReadings
+        The same sweep.
+
+    Raises
+    ------
+    InputError
+        If there is no such frame.
+    """
+    axes = _axes(readings, frame)
+    if frame == "world":
+        return readings
+    turned = {
+        name: column
+        for names in (FORCE, MOMENT)
+        for name, column in zip(names, (readings.values(*names) @ axes).T, strict=True)
+    }
+    return replace(readings, table=readings.table.assign(**turned))
+
+
+def _axes(readings: SpatialReadings, frame: Frame) -> Floats:
+    if frame not in get_args(Frame):
+        raise InputError("frame", repr(frame), "'world' or 'clamp'", "choose one")
+    return np.eye(3) if frame == "world" else clamp_axes(readings.clamp_tangent)

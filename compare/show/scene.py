@@ -1,0 +1,145 @@
+"""A sweep in space as it is drawn: the body, the vibrissa, its foot and its contacts."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import linprog
+from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
+
+from analytic.problem.arrays import Floats, Words
+from analytic.space import Body, SpatialReadings, deflected_rods, reconstruct_space
+from analytic.space.problem.readings import CONTACT_POINT, FOOT
+
+_DEPTH = 0.5  # of the scene, at least, over its longest side
+_MARGIN = 0.1  # L, around what moves
+_CORNERS = 500  # of a body that is drawn: what a picture can show of a round one
+_AT_ONCE = 20  # directions; so many numbers a corner fit in memory for a million corners
+_SLIVER = 1e-6  # L; a body that shows less is not drawn
+
+
+@dataclass(frozen=True, eq=False)
+class SweepScene:
+    """What pictures of a sweep show; lengths in L, y up.
+
+    Attributes
+    ----------
+    readings : SpatialReadings
+        The sweep.
+    lines : array, shape (stations, points, 3)
+        Centrelines from clamp to tip; NaN where there are no readings.
+    foot, contact : array, shape (stations, 3)
+        Contacts as found from the clamp; NaN where there is none.
+    phase : array of str, shape (stations,)
+        As recorded, else as found from the clamp.
+    faces : array, shape (triangles, 3, 3)
+        Of the part of the body that is near, seen from outside their corners run against the
+        clock; none without a body.
+    low, high : array, shape (3,)
+        Corners of the box around all of it.
+    """
+
+    readings: SpatialReadings
+    lines: Floats
+    foot: Floats
+    contact: Floats
+    phase: Words
+    faces: Floats
+    low: Floats
+    high: Floats
+
+    @classmethod
+    def of(cls, readings: SpatialReadings, body: Body | None) -> "SweepScene":
+        """The scene of a sweep.
+
+        Parameters
+        ----------
+        readings : SpatialReadings
+            The sweep; contacts are found from its clamp.
+        body : Body, optional
+            In the unit of length of the readings.
+
+        Returns
+        -------
+        SweepScene
+            What is drawn.
+        """
+        length, table = readings.beam.length, readings.table
+        found = reconstruct_space(readings)
+        phase = table["phase"] if "phase" in table else found["phase"]
+        if "contact_arc_length" not in table:
+            arc = {"contact_arc_length": found["contact_arc_length"].to_numpy()}
+            readings = SpatialReadings(
+                table.assign(**arc), readings.beam, readings.tangent, readings.source,
+                readings.provenance,
+            )  # fmt: skip
+        lines, foot = deflected_rods(readings) / length, readings.values(*FOOT) / length
+        low, high = _box(np.concatenate([lines[np.isfinite(lines).all(axis=2)], foot]))
+        faces = np.empty((0, 3, 3))
+        if body is not None:
+            middle, reach = (low + high) / 2, 0.6 * float((high - low).max())
+            patches = body.scaled(1 / length).patches(middle, reach)
+            faces = faces_within(patches.reshape(-1, 3), low, high)
+        contact = found[list(CONTACT_POINT)].to_numpy(dtype=float) / length
+        return cls(readings, lines, foot, contact, phase.to_numpy(dtype=str), faces, low, high)
+
+
+def _box(points: Floats) -> tuple[Floats, Floats]:
+    low, high = points.min(axis=0), points.max(axis=0)
+    widest = _DEPTH * float((high - low).max())  # a straight way has no depth
+    middle = (low + high) / 2
+    for i in (0, 2):
+        low[i] = min(low[i], middle[i] - widest / 2)
+        high[i] = max(high[i], middle[i] + widest / 2)
+    return low - _MARGIN, high + _MARGIN
+
+
+def faces_within(points: Floats, low: Floats, high: Floats) -> Floats:
+    """The surface of what a convex body and a box have in common.
+
+    Parameters
+    ----------
+    points : array, shape (n, 3)
+        Corners of the body, of which it is the hull; of very many those that show.
+    low, high : array, shape (3,)
+        Corners of the box.
+
+    Returns
+    -------
+    array, shape (triangles, 3, 3)
+        Closed; seen from outside their corners run against the clock. None if there is nothing in
+        common.
+    """
+    try:
+        hull = ConvexHull(_outermost(points))
+        # A point within both, as far as can be from all planes: n.x + d + |n| r <= 0.
+        box = np.block([[np.eye(3), -high[:, None]], [-np.eye(3), low[:, None]]])
+        planes = np.concatenate([hull.equations, box])
+        upper = np.column_stack([planes[:, :3], np.ones(len(planes))])
+        found = linprog([0, 0, 0, -1], upper, -planes[:, 3], bounds=[(None, None)] * 3 + [(0, 9)])
+        inner = found.x
+        if inner is None or inner[3] < _SLIVER:
+            return np.empty((0, 3, 3))
+        cut = HalfspaceIntersection(planes, inner[:3]).intersections
+        surface = ConvexHull(cut[np.isfinite(cut).all(axis=1)])
+    except QhullError:  # of a flat or tiny part there is nothing to see
+        return np.empty((0, 3, 3))
+    corners = surface.points[surface.simplices]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
+    inward = (across * surface.equations[:, :3]).sum(axis=1) < 0
+    corners[inward] = corners[inward][:, ::-1]
+    return np.asarray(corners)
+
+
+def _outermost(points: Floats) -> Floats:
+    """The points themselves if they are few, else those that reach farthest in many directions."""
+    points = np.unique(points, axis=0)
+    if len(points) <= _CORNERS:
+        return points
+    height = 1 - 2 * (np.arange(_CORNERS) + 0.5) / _CORNERS  # evenly over the sphere, on a spiral
+    angle = np.pi * (1 + np.sqrt(5)) * np.arange(_CORNERS)
+    ring = np.sqrt(1 - height**2)
+    ways = np.stack([ring * np.cos(angle), height, ring * np.sin(angle)])
+    chosen = [
+        np.argmax(points @ ways[:, i : i + _AT_ONCE], axis=0) for i in range(0, _CORNERS, _AT_ONCE)
+    ]
+    return np.asarray(points[np.unique(np.concatenate(chosen))])

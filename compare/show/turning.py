@@ -1,0 +1,90 @@
+"""A sweep in space that the reader of a report turns, comes closer to and steps through."""
+
+from importlib.resources import files
+
+import numpy as np
+from markupsafe import Markup
+
+from analytic.problem.arrays import Floats
+from compare.show.page import render
+from compare.show.scene import SweepScene
+from compare.show.style import PHASE_NAMES
+
+_STATIONS = 200  # that a slider tells apart
+_GHOSTS = 24  # shapes that are always there
+_DIGITS = 4  # of a length in L: a tenth of a pixel
+_LIGHT = np.array([0.3, 0.2, 0.9]) / np.linalg.norm([0.3, 0.2, 0.9])
+_DARKEST = 0.62
+_COLOURS = {"free": "faint", "tip": "blue", "tangent": "orange"}  # of the page, light or dark
+
+
+def turning(scene: SweepScene) -> Markup:
+    """The view as HTML: a canvas, its controls, its data, and the scripts that draw it.
+
+    Zdog 1.1.3 (MIT licence, 30 kB) is part of it: nothing is fetched, and a canvas needs no WebGL,
+    which browsers without a graphics card lack. On paper and without scripts it does not show.
+
+    Parameters
+    ----------
+    scene : SweepScene
+        What is shown. Of very many stations every so many are.
+
+    Returns
+    -------
+    Markup
+        To be put into a page with the colours of ``report.css``; once a page.
+    """
+    shown = np.unique(np.linspace(0, len(scene.foot) - 1, _STATIONS).round().astype(int))
+    touching = [n for n, i in enumerate(shown) if np.isfinite(scene.contact[i]).all()]
+    corners, where = np.unique(scene.faces.reshape(-1, 3), axis=0, return_inverse=True)
+    data = {
+        "low": _rounded(scene.low),
+        "high": _rounded(scene.high),
+        "corners": _rounded(corners),
+        "faces": [
+            [light, *corner]
+            for light, corner in zip(
+                _lights(scene.faces), where.reshape(-1, 3).tolist(), strict=True
+            )
+        ],
+        "every": max(1, len(shown) // _GHOSTS),
+        "first": touching[len(touching) // 2] if touching else 0,
+        "colours": _COLOURS,
+        "stations": [
+            {
+                "foot": _rounded(scene.foot[i]),
+                "line": _rounded(scene.lines[i]),
+                "contact": _rounded(scene.contact[i]),
+                "phase": scene.phase[i],
+                "said": _said(scene, int(i)),
+            }
+            for i in shown
+        ],
+    }
+    zdog = (files("compare.show") / "templates" / "zdog.min.js").read_text(encoding="utf-8")
+    return Markup(render("compare.show", "turning.html.j2", data=data, zdog=Markup(zdog)))
+
+
+def _said(scene: SweepScene, station: int) -> str:
+    x, _, z = scene.foot[station]
+    status = "ok"
+    if "status" in scene.readings.table:
+        status = str(scene.readings.table["status"].iloc[station])
+    phase = PHASE_NAMES[scene.phase[station]] if status == "ok" else status
+    count = len(scene.foot)
+    return f"station {station + 1} of {count}, foot at ({x:.3f}, {z:.3f}) L, {phase}"
+
+
+def _lights(faces: Floats) -> list[float]:
+    across = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 1])
+    size = np.maximum(np.linalg.norm(across, axis=1), 1e-300)
+    lit = (1 + across @ _LIGHT / size) / 2
+    found: list[float] = (_DARKEST + (1 - _DARKEST) * lit).round(2).tolist()
+    return found
+
+
+def _rounded(values: Floats) -> list[object] | None:
+    if not np.isfinite(values).all():
+        return None
+    found: list[object] = values.round(_DIGITS).tolist()
+    return found

@@ -1,0 +1,133 @@
+"""The view that is turned, in a real browser: without network, without errors, and it moves.
+
+Needs Chromium, as `test_browser` does.
+"""
+
+import json
+import re
+from html import unescape
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from analytic.space import FootPath, SpatialCase, cylinder, polyhedron, solve_space, sphere
+from compare import compare_space
+from compare.show.scene import SweepScene, faces_within
+from compare.show.spatial import write_spatial_report
+from compare.show.turning import turning
+
+CASE = SpatialCase(
+    body=sphere(1.0, (0.0, 1.4, 0.0)), path=FootPath([[1.3, 0.3], [-1.5, 0.3]], stations=40)
+)
+# Turns, comes closer, moves the slider, and tells what has changed; errors are counted from the
+# first script on, and so is whatever the page fetches.
+WATCH = """<script>
+window.wrong = []; addEventListener("error", e => wrong.push(e.message));
+</script>"""
+PROBE = """<script>addEventListener("load", () => {
+  const canvas = document.getElementById("scene-canvas"), context = canvas.getContext("2d");
+  const pixels = () => context.getImageData(0, 0, canvas.width, canvas.height).data;
+  const seen = () => {
+    const colours = {}; let drawn = 0, sum = 0;
+    const data = pixels();
+    for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 200) {
+      drawn++; sum = (sum * 31 + data[i] + 7 * data[i + 1] + i) % 1e9;
+      const c = [data[i], data[i + 1], data[i + 2]].join(); colours[c] = (colours[c] || 0) + 1;
+    }
+    return {drawn, sum, colours};
+  };
+  const found = {first: seen(), said: document.getElementById("scene-said").textContent};
+  const slider = document.getElementById("scene-station");
+  slider.value = 0; slider.dispatchEvent(new Event("input"));
+  found.free = seen(); found.saidFree = document.getElementById("scene-said").textContent;
+  const box = canvas.getBoundingClientRect();
+  const pointer = (name, x, y) => {
+    const kind = window.PointerEvent ? "pointer" : "mouse";
+    (name === "down" ? canvas : window).dispatchEvent(new PointerEvent(kind + name,
+      {bubbles: true, pointerId: 1, button: 0, clientX: box.left + x, clientY: box.top + y}));
+  };
+  pointer("down", 100, 100); pointer("move", 180, 130); pointer("up", 180, 130);
+  found.turned = seen();
+  document.querySelector("[data-zoom]").click();
+  found.closer = seen();
+  found.max = Number(slider.max);
+  found.fetched = performance.getEntriesByType("resource").map(e => e.name)
+    .filter(name => !name.startsWith("data:"));
+  found.wrong = wrong;
+  document.body.dataset.found = JSON.stringify(found);
+});</script></body>"""
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    exact = solve_space(CASE)
+    folder = tmp_path_factory.mktemp("space")
+    return write_spatial_report(compare_space(exact, exact), CASE.body, folder)
+
+
+@pytest.mark.slow
+def test_it_draws_turns_zooms_and_steps_offline_without_errors(look, report, tmp_path):
+    text = report.read_text(encoding="utf-8")
+    assert "import(" not in text
+    assert not re.search(r'(src|href)="(?!data:|#)', text)
+    page = tmp_path / "probed.html"
+    page.write_text(text.replace("<head>", "<head>" + WATCH).replace("</body>", PROBE))
+    shown = look(page, "--window-size=1200,900", "--virtual-time-budget=4000", "--dump-dom")
+    found = json.loads(unescape(re.search(r'data-found="([^"]*)"', shown)[1]))
+    assert found["wrong"] == []
+    assert found["fetched"] == []
+    assert found["max"] == 39
+    assert found["first"]["drawn"] > 1000
+    assert "tangential" in found["said"]
+    assert "station 1 of 40" in found["saidFree"]
+    for colour in ("213,94,0", "0,114,178"):  # contacts of both phases
+        assert found["first"]["colours"].get(colour, 0) > 20
+    sums = [found[name]["sum"] for name in ("first", "free", "turned", "closer")]
+    assert len(set(sums)) == 4
+    assert found["closer"]["drawn"] > 1.1 * found["turned"]["drawn"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("width", [390, 1200])
+def test_paper_has_a_still_in_its_place(look, report, tmp_path, width):
+    shot = tmp_path / "shot.png"
+    look(report, f"--window-size={width},4000", f"--screenshot={shot}")
+    with Image.open(shot) as image:
+        assert (np.asarray(image.convert("RGB")).std(axis=(1, 2)) > 5).mean() > 0.3
+    pdf = report.parent / "report.pdf"
+    look(report, f"--print-to-pdf={pdf}", "--no-pdf-header-footer")
+    assert pdf.stat().st_size > 100_000
+
+
+def test_the_page_holds_every_station_and_is_small(report):
+    text = report.read_text(encoding="utf-8")
+    data = json.loads(re.search(r'id="scene-data" type="application/json">(.*?)</script>', text)[1])
+    assert len(data["stations"]) == 40
+    assert {one["phase"] for one in data["stations"]} == {"free", "tip", "tangent"}
+    assert "Zdog v1.1.3" in text
+    assert "Licensed MIT" in text
+    assert len(turning(SweepScene.of(solve_space(CASE), CASE.body))) < 400_000
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        polyhedron([[x, y, z] for x in (-9, 9) for y in (0.6, 5) for z in (-9, 9)]),
+        cylinder(0.5, (0, 0.9, 0), (0.2, 0.1, 1)),
+        sphere(1.0, (0, 1.4, 0)),
+    ],
+    ids=["wall", "endless", "ball"],
+)
+def test_a_body_is_cut_where_the_picture_ends_and_closed_there(body):
+    low, high = np.array([-1.0, 0.0, -1.0]), np.array([1.0, 1.0, 1.0])
+    corners = body.patches(np.zeros(3), 2.0).reshape(-1, 3)
+    faces = faces_within(corners, low, high)
+    assert len(faces) >= 12
+    assert (faces >= low - 1e-9).all()
+    assert (faces <= high + 1e-9).all()
+    across = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 1])
+    middle = faces.reshape(-1, 3).mean(axis=0)
+    assert (((faces.mean(axis=1) - middle) * across).sum(axis=1) > -1e-12).all()  # from outside
+    assert np.allclose(across.sum(axis=0), 0, atol=1e-9)  # closed
+    assert len(faces_within(corners, low - [0, 2, 0], high * [1, -0.1, 1])) == 0
