@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -181,7 +181,7 @@ def compare_in_space(
     candidate: Path,
     out: Path | None,
     column: list[str] | None,
-    frame: "Frame",
+    frame: Literal["world", "clamp"],
     tolerances: Path | None,
 ) -> int:
     """Compare a file of readings in space with another or with a case's closed form.

@@ -62,7 +62,7 @@ def read_space(
     columns : sequence of str
         ``NAME=COLUMN`` or ``NAME=COLUMN:UNIT``, NAME of `DIMENSIONS_IN_SPACE`.
     frame : {"world", "clamp"}
-        Of the components in the file.
+        Of the components in the file; what this project wrote is in the world's.
 
     Returns
     -------
@@ -76,7 +76,7 @@ def read_space(
         the vibrissa none, or there is no such frame.
     """
     if is_ours(path) and not columns:
-        return from_frame(SpatialReadings.read(path, beam, tangent), frame)
+        return SpatialReadings.read(path, beam, tangent)
     table, place, units = raw_table(path)
     table, used, _ = renamed(table, columns, place, path.name, units, DIMENSIONS_IN_SPACE)
     held = Beam() if beam is None else beam

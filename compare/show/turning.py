@@ -10,7 +10,7 @@ from compare.show.page import render
 from compare.show.scene import SweepScene
 from compare.show.style import PHASE_NAMES
 
-_STATIONS = 200  # that a slider tells apart
+_STATIONS = 200  # that a slider has
 _GHOSTS = 24  # shapes that are always there
 _DIGITS = 4  # of a length in L: a tenth of a pixel
 _LIGHT = np.array([0.3, 0.2, 0.9]) / np.linalg.norm([0.3, 0.2, 0.9])

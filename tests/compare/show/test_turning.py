@@ -20,7 +20,7 @@ from compare.show.turning import turning
 CASE = SpatialCase(
     body=sphere(1.0, (0.0, 1.4, 0.0)), path=FootPath([[1.3, 0.3], [-1.5, 0.3]], stations=40)
 )
-# Turns, comes closer, moves the slider, and tells what has changed; errors are counted from the
+# Turns, comes closer, moves the slider, and reports what has changed; errors are counted from the
 # first script on, and so is whatever the page fetches.
 WATCH = """<script>
 window.wrong = []; addEventListener("error", e => wrong.push(e.message));
