@@ -197,6 +197,21 @@ class SpaceModel:
                     break
         return Touch(centre, normal, distance)
 
+    def contact(self, touch: Touch) -> Floats:
+        """Where the body is touched.
+
+        Parameters
+        ----------
+        touch : Touch
+            Of a bead.
+
+        Returns
+        -------
+        array, shape (3,)
+            On the body's surface [L].
+        """
+        return np.asarray(touch.centre - (self.radius + touch.distance) * touch.normal)
+
     def _follow(self, normal: Floats, centre: Floats) -> None:
         """Put MuJoCo's cylinder where it has the prism's circle of curvature."""
         assert self.shape.osculating is not None

@@ -20,11 +20,11 @@ from scipy.linalg.lapack import dgesv, dpotrf, dpotrs
 
 from analytic.problem.arrays import Floats
 from mujoco_models.space.model import SpaceModel, Touch
-from mujoco_models.space.surface import STAYS, Feature, Surface, Whole, surface_at
+from mujoco_models.space.surface import STAYS, Feature, Surface, surface_at
 
 _ITERATIONS, _QUICK = 30, 14  # of Newton's method; on one face or edge, which is smooth
 _SHARE = 0.3  # of the tolerance; the rest is for MuJoCo's own rounding
-_LARGEST_TURN = 0.3  # rad, of a link in one step
+_LARGEST_TURN = 0.1  # rad, of a link in one step
 _OUTWARD = 1e-12  # cosine; rounding of what is tangential
 _SAME = 1e-13  # L
 _FLATTEST = 1e-9  # 1/L, curvature given to a flat face along the vibrissa
@@ -35,13 +35,6 @@ _ROUNDING = 4e-15  # L, of a distance
 _OVERLOOKED = 1e-8  # L; as deep as another link may be
 _SWITCHES = 6  # to another link that is deeper
 _POWER_STEPS = 8
-_NUDGE = 1e-4  # rad, of the joint that turns most, where a descent begins
-_INERTIA = 1.0  # of a descent's first step, in units of the stiffness
-_GENTLE = 1e-2  # rad, of a joint in a step of a descent
-_DESCENT = 300  # steps
-_UNLOADED = 20  # steps in a row without a force, and the vibrissa is free
-_LANDED = 0.02  # L, of the contact: Newton's method that leads farther left the way down
-_NEARLY = 1e-3  # EI/L, of balance, where Newton's method is tried
 
 
 class State(NamedTuple):
@@ -95,6 +88,24 @@ class Linearised(NamedTuple):
     """Second derivative of the Lagrangian, shape (nv, nv)."""
     springs: Floats
 
+    def curvature(self, state: State) -> Floats:
+        """The same with the bead where its link is nearest to the body, if it slides.
+
+        Parameters
+        ----------
+        state : State
+            Where the system is.
+
+        Returns
+        -------
+        array, shape (nv, nv)
+            [EI/L]
+        """
+        if not state.sliding:
+            return self.stiffness
+        share = state.force / max(self.along, _FLATTEST)
+        return np.asarray(self.stiffness + share * np.outer(self.rolling, self.rolling))
+
 
 class Rest:
     """Newton's method on a model.
@@ -108,7 +119,7 @@ class Rest:
     """
 
     def __init__(self, model: SpaceModel, tolerance: float) -> None:
-        self._model, self._tolerance = model, tolerance
+        self.model, self._tolerance = model, tolerance
         self._k = model.contact_stiffness
         # Half of what counts twice: a joint's own, of velocities that turn about shared axes.
         joint, size = model.joint_of, len(model.joint_of)
@@ -136,13 +147,13 @@ class Rest:
         Settled or None
             None if it leads nowhere, or to where nothing presses.
         """
-        model = self._model
+        model = self.model
         state = self._along(start, surface, begin, foot - begin)
         for _ in range(_SWITCHES):
             found = self._converge(state, surface, foot)
             if found is None or found.force <= 0:
                 return None
-            state, system = self._look(found, surface, foot)
+            state, system = self.look(found, surface, foot)
             depth, link, s = model.nearest_link()
             near = depth >= system.touch.distance - model.shape.inscribed - _OVERLOOKED
             if isinstance(surface, Feature):
@@ -159,81 +170,10 @@ class Rest:
             return Settled(state, system.touch, system.turning, stability, softest, surface, near)
         return None
 
-    def descend(self, start: Settled, foot: Floats, far: float) -> Settled | None:
-        """Where the vibrissa goes from a state that has ceased to be stable.
-
-        Down the energy of its springs and its contact: each step is one of Newton's method with as
-        much inertia as makes the stiffness positive and the step gentle.
-
-        Parameters
-        ----------
-        start : Settled
-            The last stable state.
-        foot : array, shape (3,)
-            Position of the foot, a little beyond [L].
-        far : float
-            How far the contact may get [L].
-
-        Returns
-        -------
-        Settled or None
-            Where it comes to rest; None if it loses its contact, or the contact gets farther than
-            `far`. If it was still on its way after the last step, `stability` is not a number.
-        """
-        model, state, whole_body = self._model, start.state, Whole(self._model)
-        push = _NUDGE / np.abs(start.softest).max()
-        configuration = state.configuration.copy()
-        mujoco.mj_integratePos(model.model, configuration, push * start.softest, 1.0)
-        state, inertia, unloaded = state._replace(configuration=configuration), _INERTIA, 0
-        for _ in range(_DESCENT):
-            state, system = self._look(state, whole_body, foot)
-            if np.linalg.norm(system.touch.centre - start.touch.centre) > far:
-                return None
-            depth, link, s = model.nearest_link()
-            if depth < system.touch.distance - model.shape.inscribed - _OVERLOOKED:
-                state = state._replace(link=link, s=s, sliding=False)
-                state, system = self._look(state, whole_body, foot)
-            if self._is_held(state, system):
-                surface = surface_at(model, state.link, system.touch)
-                found = self.settle(state, surface, foot, foot)
-                near = (
-                    found is not None
-                    and found.stays
-                    and np.linalg.norm(found.touch.centre - system.touch.centre) < _LANDED
-                )
-                if found is not None and near and found.stability > 0:
-                    return found
-            whole, springs = self._whole(state, system)
-            while dpotrf(whole + inertia * np.diag(springs), lower=1)[1]:
-                inertia *= 2.0  # or it would go up to the saddle
-            after = self._step(state, system, inertia * springs)
-            if after is None:
-                return start._replace(stability=np.nan)
-            turn = self._turn(state, after)
-            unloaded = unloaded + 1 if after.force <= 0 else 0
-            if unloaded > _UNLOADED:
-                return None
-            state = after._replace(force=max(after.force, 0.0))
-            inertia *= float(np.clip(turn / _GENTLE, 0.5, 2.0))
-        return start._replace(stability=np.nan)
-
-    def _is_held(self, state: State, system: Linearised) -> bool:
-        """Whether the state is nearly in balance."""
-        out_of_balance = np.abs(system.springs + state.force * system.push).max()
-        return bool(out_of_balance < _NEARLY and abs(system.touch.distance) < _NEAR)
-
-    def _turn(self, before: State, after: State) -> float:
-        """The largest turn of a joint [rad]."""
-        turns = np.zeros(self._model.model.nv)
-        mujoco.mj_differentiatePos(
-            self._model.model, turns, 1.0, before.configuration, after.configuration
-        )
-        return float(np.abs(turns).max())
-
     def _converge(self, state: State, surface: Surface, foot: Floats) -> State | None:
-        model = self._model
+        model = self.model
         for _ in range(_QUICK if isinstance(surface, Feature) else _ITERATIONS):
-            state, system = self._look(state, surface, foot)
+            state, system = self.look(state, surface, foot)
             out_of_balance = np.abs(system.springs + state.force * system.push).max()
             missed = self._k * abs(system.touch.distance + state.force / self._k)
             skewed = abs(system.slope) * state.force if state.sliding else 0.0
@@ -253,7 +193,7 @@ class Rest:
 
     def _along(self, state: State, surface: Surface, begin: Floats, by: Floats) -> State:
         """The first step, as the foot moves, by the equations at the start."""
-        model = self._model
+        model = self.model
         model.place(begin, state.configuration)
         touch = surface.touch(state.link, state.s)
         slope = float(touch.normal @ model.direction(state.link))
@@ -266,9 +206,26 @@ class Rest:
         )
         return self._step(state, moved) or state
 
-    def _look(self, state: State, surface: Surface, foot: Floats) -> tuple[State, Linearised]:
-        """The system at a state, whose bead is first put on the right link."""
-        model = self._model
+    def look(self, state: State, surface: Surface, foot: Floats) -> tuple[State, Linearised]:
+        """The system at a state.
+
+        Parameters
+        ----------
+        state : State
+            Its bead is first put on the right link.
+        surface : Surface
+            What is touched.
+        foot : array, shape (3,)
+            Position of the foot [L].
+
+        Returns
+        -------
+        state : State
+            Sliding, or held at the tip or a joint.
+        system : Linearised
+            Balance and its derivatives.
+        """
+        model = self.model
         model.place(foot, state.configuration)
         state = self._inward(state)
         touch = surface.touch(state.link, state.s)
@@ -281,7 +238,7 @@ class Rest:
 
     def _slid_or_held(self, state: State, touch: Touch, slope: float) -> State:
         """Whether the bead slides: not at the tip, nor at a joint that protrudes."""
-        model = self._model
+        model = self.model
         if state.s - model.layout.joints[0] < _SAME:
             return state._replace(sliding=False)
         if model.ends[state.link] - state.s > _SAME or slope > _OUTWARD:
@@ -295,8 +252,8 @@ class Rest:
 
     def _inward(self, state: State) -> State:
         """A joint is the end of the link before it."""
-        if state.link > 0 and state.s - self._model.layout.joints[state.link] < _SAME:
-            return state._replace(link=state.link - 1, s=float(self._model.ends[state.link - 1]))
+        if state.link > 0 and state.s - self.model.layout.joints[state.link] < _SAME:
+            return state._replace(link=state.link - 1, s=float(self.model.ends[state.link - 1]))
         return state
 
     def linearised(self, state: State, touch: Touch, slope: float, turning: Floats) -> Linearised:
@@ -318,12 +275,9 @@ class Rest:
         Linearised
             First and second derivatives.
         """
-        model, force, n = self._model, state.force, touch.normal
-        carried = model.joint_of <= state.link
-        axes = model.axes * carried[:, None]
-        lever = (touch.centre - model.joints)[model.joint_of]
-        moved = _cross(axes, lever)
-        swung = _cross(n[None], axes)
+        model, force, n = self.model, state.force, touch.normal
+        moved = self.moved(state.link, touch.centre)
+        swung = _cross(n[None], self._axes(state.link))
         # n . (a_i x (a_k x r)) for joints i before k; of one joint's, the symmetric part.
         both = swung @ moved.T
         bent = self._before * both
@@ -348,17 +302,34 @@ class Rest:
             model.springs.copy(),
         )
 
-    def _step(
-        self, state: State, system: Linearised, inertia: Floats | None = None
-    ) -> State | None:
-        """One step of Newton's method; with inertia a shorter one, downhill."""
-        model, force = self._model, state.force
+    def moved(self, link: int, centre: Floats) -> Floats:
+        """How a place of a link moves with the joints' turns.
+
+        Parameters
+        ----------
+        link : int
+            Its number.
+        centre : array, shape (3,)
+            The place [L].
+
+        Returns
+        -------
+        array, shape (nv, 3)
+            [L]
+        """
+        return _cross(self._axes(link), (centre - self.model.joints)[self.model.joint_of])
+
+    def _axes(self, link: int) -> Floats:
+        """Of the joints that carry a link."""
+        return self.model.axes * (self.model.joint_of <= link)[:, None]
+
+    def _step(self, state: State, system: Linearised) -> State | None:
+        """One step of Newton's method."""
+        model, force = self.model, state.force
         count = len(system.push)
         size = count + 1 + state.sliding
         matrix, right = np.zeros((size, size)), np.zeros(size)
         matrix[:count, :count] = system.stiffness
-        if inertia is not None:
-            matrix[:count, :count] += np.diag(inertia)
         matrix[:count, count] = matrix[count, :count] = -system.push
         matrix[count, count] = -1 / self._k
         right[:count] = system.springs + force * system.push
@@ -372,8 +343,7 @@ class Rest:
         if failed or not np.isfinite(found).all():
             return None
         turns = found[:count]
-        largest = _LARGEST_TURN / 3 if inertia is None else _GENTLE
-        share = min(1.0, largest / max(float(np.abs(turns).max()), 1e-300))
+        share = min(1.0, _LARGEST_TURN / max(float(np.abs(turns).max()), 1e-300))
         configuration = state.configuration.copy()
         mujoco.mj_integratePos(model.model, configuration, share * turns, 1.0)
         link, s = state.link, state.s
@@ -383,7 +353,7 @@ class Rest:
 
     def _slid(self, link: int, s: float, by: float) -> tuple[int, float]:
         """No farther than the next joint."""
-        model = self._model
+        model = self.model
         if s + by >= model.ends[link]:
             return link, float(model.ends[link])
         low = float(model.layout.joints[link])
@@ -393,11 +363,8 @@ class Rest:
 
     def _whole(self, state: State, system: Linearised) -> tuple[Floats, Floats]:
         """The energy's second derivative, shape (nv, nv), and that of the springs, shape (nv,)."""
-        whole = system.stiffness + self._k * np.outer(system.push, system.push)
-        if state.sliding:
-            share = state.force / max(system.along, _FLATTEST)
-            whole = whole + share * np.outer(system.rolling, system.rolling)
-        return whole, np.concatenate([np.diag(block) for block in self._model.blocks()])
+        whole = system.curvature(state) + self._k * np.outer(system.push, system.push)
+        return whole, np.concatenate([np.diag(block) for block in self.model.blocks()])
 
     def _stability(self, state: State, system: Linearised) -> tuple[float, Floats]:
         """The least eigenvalue of the energy's second derivative over the springs', its vector."""

@@ -183,11 +183,10 @@ def _rest(model: SpaceModel, found: Settled) -> float:
 
 def _contact(model: SpaceModel, found: Settled) -> dict[str, Any]:
     touch, state = found.touch, found.state
-    point = touch.centre - (model.radius + touch.distance) * touch.normal
     along = float(touch.normal @ model.tangent)
     across = float(np.linalg.norm(touch.normal - along * model.tangent))
     return {
-        **dict(zip(CONTACT_POINT, point, strict=True)),
+        **dict(zip(CONTACT_POINT, model.contact(touch), strict=True)),
         **dict(zip(NORMAL, touch.normal, strict=True)),
         "contact_angle": float(np.arctan2(across, -along)),
         "contact_arc_length": state.s,

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from analytic.problem.arrays import Floats
+from mujoco_models.space.descent import descend
 from mujoco_models.space.model import SpaceModel
 from mujoco_models.space.rest import Rest, Settled, State
 from mujoco_models.space.surface import STAYS, Feature, features_around, surface_at
@@ -25,6 +26,7 @@ _EVENT = 5e-4  # L, to which a change of phase and a hop are enclosed
 _LEAP, _LEAST_LEAP = 5.0, 0.02  # of the step; L
 _LEAP_ON_FACE = 0.3  # L; a side that lies on a face touches anywhere along it
 _LANDING = 0.12  # L, of the contact: what comes to rest farther away depends on its motion
+_AHEAD = 0.0, 1e-3, 4e-3  # L, of the foot, for a way down that does not begin
 _CROSSED = 1e-4  # L, to which it is enclosed where a contact leaves a face, an edge or a corner
 _STEADY = 2e-3  # L, of the contact that goes on as it was beyond
 _SHORTER, _LONGER = 4.0, 2.0  # times the step where Newton's method fails, and where not
@@ -283,7 +285,7 @@ class Walk:
             self._note_phase(held, goal, hopped)
             self._held, self._at = hopped, goal
             return True
-        landed = self._rest.descend(held, self._foot(goal), _LANDING)
+        landed = self._descended(held, goal)
         if landed is None:
             self.events.append(Event("slip-off", self._at))
             self._held, self._lost, self._at = None, self._gap(goal) <= 0, goal
@@ -294,6 +296,23 @@ class Walk:
         self._held, self._at = landed, goal
         return True
 
+    def _descended(self, held: Settled, goal: float) -> Settled | None:
+        """Where the vibrissa goes down to.
+
+        Just beyond the end of a branch the way down begins so slowly that the foot goes on.
+        """
+        for ahead in _AHEAD:
+            at = min(goal + ahead, float(self._marks[-1]))
+            landed = descend(self._rest, held, self._foot(at), _LANDING)
+            if landed is None:
+                return None
+            if landed.stability > 0:
+                foot = self._foot(goal)
+                back = self._rest.settle(landed.state, landed.surface, self._foot(at), foot)
+                if back is not None and back.stays and back.stability > 0:
+                    return back
+        return held._replace(stability=np.nan)
+
     def _over_faces(self, held: Settled, goal: float) -> Settled | None:
         """Where the vibrissa goes over an edge of a mesh, from face to face.
 
@@ -303,7 +322,7 @@ class Walk:
         if not self._model.shape.faceted:
             return None
         model, foot = self._model, self._foot(goal)
-        state, centre = held.state, held.touch.centre
+        state, centre, begin = held.state, held.touch.centre, self._model.contact(held.touch)
         for _ in range(_FACES):
             model.place(foot, state.configuration)
             left = None
@@ -312,10 +331,9 @@ class Walk:
                 if found is None or found.stability <= 0:
                     continue
                 by = found.touch.centre - centre
-                if float(np.linalg.norm(by)) > _LANDING:
-                    continue
                 if found.stays:
-                    return found if _apart(found, held) < _LANDING else None
+                    far = float(np.linalg.norm(model.contact(found.touch) - begin))
+                    return found if far <= _LANDING else None
                 share = self._room(surface, found.state.link, centre, by)
                 if share > 0 and left is None:
                     left = found.state, centre + share * by

@@ -6,10 +6,20 @@ from tests.fuzz.space import KINDS, main
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [100, 101, 107, 148])  # a ball, an egg, a hull, a capsule
+@pytest.mark.parametrize(
+    "seed",
+    [
+        *(100, 101, 107, 148),  # a ball, an egg, a hull, a capsule
+        *(105, 2006),  # a contact that leaves a face slowly, next to its edge
+        *(120, 138),  # a side that slides over corners, on several links at a time
+        122,  # along an edge, so slowly that the foot goes on
+        2008,  # a tip that lands next to the limit of 0.12 L
+    ],
+)
 def test_a_mesh_has_no_silent_error(seed):
     (outcome,) = main(1, seed)
-    assert not {"silent", "lost", "rms", "slip-off"} & set(outcome.flags), outcome
+    wrong = {"silent", "lost", "rms", "slip-off", "unsettled"}
+    assert not wrong & set(outcome.flags), outcome
 
 
 @pytest.mark.trial

@@ -65,6 +65,22 @@ def test_the_nearest_point_of_a_mesh_is_trimeshs(tmp_path):
         assert np.abs(spot.point + spot.distance * spot.normal - x).max() < 1e-12
 
 
+def test_next_to_an_edge_the_nearest_point_is_on_the_right_side_of_it():
+    """Their distances differ by 1e-17 there: a face is left where its edge begins."""
+    body, apart, aside = polyhedron(ball().vertices), 0.25, 1e-9
+    for face in range(0, len(body.faces), 7):
+        normal, corners = body.normals[face], body.corners[face]
+        for i in range(3):
+            middle = (corners[i] + corners[i - 1]) / 2
+            outward = np.cross(corners[i] - corners[i - 1], normal)
+            outward *= np.sign(outward @ (middle - corners.mean(axis=0)))
+            outward /= np.linalg.norm(outward)
+            for side in (-1, 1):
+                spot = body.nearest(middle + side * aside * outward + apart * normal, apart)
+                on_face = bool((spot.turning == 0).all())
+                assert on_face == (side < 0), (face, i, side)
+
+
 @pytest.mark.slow
 def test_a_mesh_in_millimetres_and_inside_out(tmp_path):
     mesh = ball(4, 1000.0, (0.0, 1400.0, 0.0))

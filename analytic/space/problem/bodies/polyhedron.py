@@ -16,6 +16,7 @@ from analytic.space.problem.numbers import Vector, vector
 
 _ON_PLANE = 1e-9  # of the extent: so near to a plane a point is on it
 _PARALLEL = 1e-9  # rad; a step that rises less from a plane is along it
+_TIED = 1e-14  # of a square of a distance: so near to each other rounding decides
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +61,8 @@ class Polyhedron(Body):
         """Walks over the triangles that the point sees, always to a nearer one.
 
         The distance from a convex body has no local minimum but the least, so the walk ends there.
+        Next to an edge it is the same on either side to the second order: which side the point is
+        on decides then, not the distance, in which that drowns 1e-8 away from the edge.
         """
         ahead = self.normals @ x - self.heights
         face = int(np.argmax(ahead))
@@ -77,7 +80,21 @@ class Polyhedron(Body):
             point, weight = found[nearest], weights[nearest]
             tried = self._neighbours(face)
             tried = tried[ahead[tried] > 0]
+        tied = np.flatnonzero(far <= (1 + _TIED) * best)
+        if len(tied) > 1 and not (weight > 0).all():
+            beyond = self._beyond(tried, x, found[tied])
+            chosen = tied[int(np.argmin(beyond))]
+            face, point, weight = int(tried[chosen]), found[chosen], weights[chosen]
         return self._spot(x, face, point, weight, apart, float(ahead[face]))
+
+    def _beyond(self, tried: Integers, x: Floats, points: Floats) -> Floats:
+        """How much nearer points of some triangles are than the plane through each point allows.
+
+        The plane is normal to the way to `x`; of the nearest point nothing is beyond it.
+        """
+        others = self.corners[tried].reshape(-1, 3)
+        away = x - points
+        return np.asarray((away @ others.T).max(axis=1) - (away * points).sum(axis=1))
 
     def _neighbours(self, face: int) -> Integers:
         begins, triangles = self._around
