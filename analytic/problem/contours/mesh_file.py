@@ -162,7 +162,7 @@ def _load(file: Path) -> _Read:
     mesh = trimesh.Trimesh((points - middle) / size, faces, process=False)
     mesh.remove_unreferenced_vertices()
     mesh.merge_vertices()  # with an absolute tolerance: hence in units of its size
-    mesh.update_faces(mesh.nondegenerate_faces())
+    mesh.update_faces((np.diff(np.sort(mesh.faces, axis=1)) > 0).all(axis=1))  # slivers close it
     return _Read(mesh, middle, size)
 
 

@@ -291,3 +291,14 @@ def test_a_missing_package_is_named(tmp_path, monkeypatch):
     monkeypatch.setattr(trimesh, "load_mesh", load)
     (tmp_path / "box.glb").write_bytes(b"glTF")
     assert "pip install rare" in refusal(tmp_path / "box.glb")
+
+
+def test_a_closed_needle_is_not_open(tmp_path):
+    """Triangles of its caps are 1e-9 of its size high: they close it, flat as they are."""
+    slope = np.linspace(0, 2 * np.pi, 1000, endpoint=False)
+    support = np.hypot(0.083 * np.sin(slope), 5.1 * np.cos(slope))
+    ring = np.column_stack([0.083**2 * np.sin(slope), -(5.1**2) * np.cos(slope)]) / support[:, None]
+    ends = [np.insert(ring, 2, z, axis=1) for z in (-0.5, 0.5)]
+    trimesh.convex.convex_hull(np.concatenate(ends)).export(tmp_path / "needle.obj")
+    found = mesh_section(tmp_path / "needle.obj", height=0.0)
+    assert len(found.vertices) == pytest.approx(501, abs=1)  # its lower side
