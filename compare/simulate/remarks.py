@@ -78,6 +78,7 @@ def remarks(found: MeasuredBeam, stated: Beam | None = None) -> tuple[Remark, ..
         *_stated(found, stated),
         *_units(found, stated),
         *_rest(found, stated),
+        *_plane(found),
         *_foot(found),
         *_sensors(found),
         *_contacts(found),
@@ -116,6 +117,12 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
     if found.limits and found.limits[0] < _BENDS * max(j.cell for j in found.joints) / found.length:
         yield Remark("fault", "limits", f"a joint is limited to {np.rad2deg(found.limits[0]):.3g} "
                      "degrees, less than a sweep bends it")  # fmt: skip
+    stretch = found.stretch * _FORCE * found.tip_rigidity / found.length**2
+    if stretch > _LENGTH:
+        far = f"by {stretch:.1%}" if stretch < 1 else "to more than twice its length"
+        yield Remark("fault", "edges", f"a pull of {_FORCE:g} EI/L^2 stretches one {far}"
+                     ": stiffen their constraint, as <edge equality=\"true\" solref=\"0.001 1\" "
+                     "solimp=\"0.9999 0.9999 0.001\"/>")  # fmt: skip
     if found.friction_loss > 0:
         yield Remark("fault", "friction in joints", f"frictionloss of {found.friction_loss:.3g} "
                      "holds moments: the vibrissa stays bent")  # fmt: skip
@@ -175,6 +182,14 @@ def _rest(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
                      "tip; the theory has none")  # fmt: skip
 
 
+def _plane(found: MeasuredBeam) -> Iterator[Remark]:
+    if not found.planar:
+        yield Remark(
+            "note", "plane", "nothing keeps it in the plane of the sweep: where an object without "
+            "friction recedes, it slips off sideways before it would let go"
+        )  # fmt: skip
+
+
 def _foot(found: MeasuredBeam) -> Iterator[Remark]:
     if found.drive is None:
         yield Remark("fault", "foot", f"nothing can move {found.foot!r}: make it a mocap body, or "
@@ -193,6 +208,13 @@ def _sensors(found: MeasuredBeam) -> Iterator[Remark]:
         if sensor is None:
             yield Remark("fault", f"{word} sensor", f"none on {found.foot!r} or the vibrissa: add "
                          f"a site at the clamp and <{word} site=.../>")  # fmt: skip
+            continue
+        if not sensor.feels_contacts:
+            yield Remark(
+                "fault", f"{word} sensor", f"{sensor.name!r} reads nothing of contacts: MuJoCo "
+                "leaves those of a flex out of what its own tree feels. Let the flex hang on a "
+                "free body that is welded to the one with the sensors"
+            )  # fmt: skip
             continue
         yield from _axes(word, sensor)
         lever = np.linalg.norm(sensor.lever) / found.length

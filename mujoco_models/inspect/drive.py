@@ -51,13 +51,13 @@ def mover_of(model: mujoco.MjModel, foot: int, left: Floats) -> Mover | None:
     """
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
+    welded = None
     for body in holders(model, foot):
         if model.body_mocapid[body] >= 0:
-            return Mover(mocap=body)
+            return Mover(mocap=body, joint=welded)
         for joint in _joints(model, body):
             if model.jnt_type[joint] == _FREE:
-                weld = _welded_to(model, body)
-                return None if weld is None else Mover(mocap=weld, joint=joint)
+                welded = joint
             along = abs(float(data.xaxis[joint] @ left))
             if model.jnt_type[joint] == _SLIDE and along > _ALONG:
                 return Mover(joint=joint, actuator=_actuator_of(model, joint))
@@ -84,7 +84,7 @@ def slides(model: mujoco.MjModel, foot: int) -> Iterator[int]:
 
 
 def holders(model: mujoco.MjModel, body: int) -> Iterator[int]:
-    """A body and all that hold it, but for the world.
+    """A body and all that hold it, but for the world; what is free is held by its weld.
 
     Parameters
     ----------
@@ -98,9 +98,12 @@ def holders(model: mujoco.MjModel, body: int) -> Iterator[int]:
     int
         A body.
     """
-    while body > 0:
+    seen: set[int] = set()
+    while body > 0 and body not in seen:
         yield body
-        body = int(model.body_parentid[body])
+        seen.add(body)
+        free = any(model.jnt_type[joint] == _FREE for joint in _joints(model, body))
+        body = _welded_to(model, body) if free else int(model.body_parentid[body])
 
 
 def drive_of(model: mujoco.MjModel, foot: int, left: Floats) -> str | None:
@@ -139,14 +142,16 @@ def _joints(model: mujoco.MjModel, body: int) -> range:
     return range(first, first + int(model.body_jntnum[body]))
 
 
-def _welded_to(model: mujoco.MjModel, body: int) -> int | None:
-    """The mocap body that a weld ties a free one to."""
-    welds = np.flatnonzero(model.eq_type == int(mujoco.mjtEq.mjEQ_WELD))
-    for pair in zip(model.eq_obj1id[welds], model.eq_obj2id[welds], strict=True):
-        for one, other in (pair, pair[::-1]):
-            if one == body and model.body_mocapid[other] >= 0:
-                return int(other)
-    return None
+def _welded_to(model: mujoco.MjModel, body: int) -> int:
+    """What a weld ties a free body to; the world if none does."""
+    welds = (model.eq_type == int(mujoco.mjtEq.mjEQ_WELD)) & model.eq_active0
+    for weld in np.flatnonzero(welds):
+        ends = [int(model.eq_obj1id[weld]), int(model.eq_obj2id[weld])]
+        if model.eq_objtype[weld] == int(mujoco.mjtObj.mjOBJ_SITE):
+            ends = [int(model.site_bodyid[site]) for site in ends]
+        if body in ends:
+            return ends[1 - ends.index(body)]
+    return 0
 
 
 def _actuator_of(model: mujoco.MjModel, joint: int) -> int | None:

@@ -4,10 +4,13 @@ from copy import copy
 
 import mujoco
 import numpy as np
+from scipy.linalg import eigh
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.errors import InputError
+from mujoco_models.inspect.bending import Bending
 from mujoco_models.inspect.parts import Parts, axis_of
+from mujoco_models.inspect.sensing import Sensing
 
 _HELD = 1e12  # times the mass of the vibrissa, as the inertia of whatever is held
 _STEP = 1e-6  # rad; MuJoCo's forces are smooth there, and exact to 1e-14 of their size
@@ -16,7 +19,7 @@ _LONGEST_TURN = 0.2  # rad, of any coordinate in an iteration
 _AT_REST = 1e-9  # of a joint's stiffness: rad by which it is out of balance
 
 
-class Held:
+class Held(Sensing):
     """A model whose foot is held, without contacts and gravity, and loads on the tip.
 
     Parameters
@@ -36,9 +39,13 @@ class Held:
         The coordinates in which the vibrissa bends.
     gravity : array, shape (3,)
         The model's.
+    small : float
+        Loads by which sensors are probed, in the linear range [EI/L^2, EI/L].
     tip_in_body : array, shape (3,)
         Where the tip is in the frame of the last body.
     """
+
+    small = 1e-4
 
     def __init__(self, model: mujoco.MjModel, parts: Parts) -> None:
         self.model, self.parts = copy(model), parts
@@ -178,19 +185,36 @@ class Held:
             "look at its joints' limits and equality constraints",
         )
 
-    def inertia(self, armature: bool) -> Floats:
-        """The mass matrix of the vibrissa on its held foot.
+    def bending(self, axes: Floats) -> Bending:
+        """How it bends and vibrates about its present state, by its stiffness and inertia.
 
         Parameters
         ----------
-        armature : bool
-            Whether the joints' own inertia counts.
+        axes : array, shape (3, 3)
+            Of the sweep, in rows.
 
         Returns
         -------
-        array, shape (n, n)
-            Moments over angular accelerations.
+        Bending
+            In the plane of the sweep; vibrations in all directions.
         """
+        stiffness = self.stiffness()
+        flexibility = np.linalg.inv(stiffness)
+        turns = self._turns(axes[2])
+        links = turns @ flexibility @ turns[-1]  # turns under a unit moment on the tip
+        way = axes[0] @ self._moves()
+        squares, modes = eigh(stiffness, self._inertia(armature=True))
+        bare = eigh(stiffness, self._inertia(armature=False), eigvals_only=True)
+        return Bending(
+            compliances=np.diff(links, prepend=0.0),
+            tip_compliance=float(way @ flexibility @ way),
+            squares=squares,
+            damping=np.einsum("im,ij,jm->m", modes, self._damping(), modes),
+            slowest_without_armature=float(bare[0]),
+        )
+
+    def _inertia(self, armature: bool) -> Floats:
+        """The mass matrix of the vibrissa on its held foot, shape (n, n)."""
         unit = np.eye(self.model.nv)[self.dofs]
         found = np.zeros_like(unit)
         for row, turn in zip(found, unit, strict=True):
@@ -200,14 +224,8 @@ class Held:
             inertia = inertia - np.diag(self.model.dof_armature[self.dofs])
         return np.asarray(inertia)
 
-    def damping(self) -> Floats:
-        """How the passive forces fall with each joint's speed.
-
-        Returns
-        -------
-        array, shape (n, n)
-            Moments over angular speeds.
-        """
+    def _damping(self) -> Floats:
+        """How the passive forces fall with each joint's speed, shape (n, n)."""
         columns = []
         for dof in self.dofs:
             both = []
@@ -220,19 +238,8 @@ class Held:
         self.evaluate()
         return np.array(columns).T
 
-    def turns(self, axis: Floats) -> Floats:
-        """How each link turns about an axis with the coordinates.
-
-        Parameters
-        ----------
-        axis : array, shape (3,)
-            In the world frame.
-
-        Returns
-        -------
-        array, shape (n_links, n)
-            Turns over turns.
-        """
+    def _turns(self, axis: Floats) -> Floats:
+        """How each link turns about an axis with the coordinates, shape (n_links, n)."""
         rotation = np.zeros((3, self.model.nv))
         rows = []
         for body in self.parts.chain:
@@ -240,48 +247,8 @@ class Held:
             rows.append(axis @ rotation[:, self.dofs])
         return np.array(rows)
 
-    def moves(self) -> Floats:
-        """How the tip moves with the coordinates.
-
-        Returns
-        -------
-        array, shape (3, n)
-            Lengths over turns.
-        """
+    def _moves(self) -> Floats:
+        """How the tip moves with the coordinates, shape (3, n)."""
         way = np.zeros((3, self.model.nv))
         mujoco.mj_jac(self.model, self.data, way, None, self.tip, self._tip_body)
         return np.asarray(way[:, self.dofs])
-
-    def sensed(self, sensor: int) -> Floats:
-        """What a sensor reads.
-
-        Parameters
-        ----------
-        sensor : int
-            Its number.
-
-        Returns
-        -------
-        array, shape (3,)
-            In its own axes.
-        """
-        first = self.model.sensor_adr[sensor]
-        return np.array(self.data.sensordata[first : first + 3])
-
-    def site(self, sensor: int) -> tuple[Floats, Floats]:
-        """Where the site of a sensor is, and how it is turned.
-
-        Parameters
-        ----------
-        sensor : int
-            Its number.
-
-        Returns
-        -------
-        position : array, shape (3,)
-            In the world frame.
-        axes : array, shape (3, 3)
-            Its axes in the world frame, in columns.
-        """
-        site = self.model.sensor_objid[sensor]
-        return np.array(self.data.site_xpos[site]), self.data.site_xmat[site].reshape(3, 3).copy()

@@ -10,6 +10,7 @@ from analytic.problem.files import regular_file
 
 _LARGEST = 50_000_000  # bytes of the file itself; assets are MuJoCo's matter
 _REMEDIES = (
+    (r"flex with general attachments", "a flex that is a beam needs MuJoCo 4"),
     (r"plugin|composite", "MuJoCo 3.17 has composite cables and their plugin, 4.0 has neither"),
     (r"mesh|stl|obj|msh|resource|open", "put its files where it says, or correct meshdir"),
     (r"mass and inertia", "give every moving body a mass"),

@@ -5,21 +5,23 @@ from typing import cast
 
 import mujoco
 import numpy as np
-from scipy.linalg import eigh
 
 from analytic.problem.arrays import Floats
 from mujoco_models.inspect.drive import drive_of, slides
 from mujoco_models.inspect.held import Held
+from mujoco_models.inspect.held_rod import HeldRod
 from mujoco_models.inspect.load import load
-from mujoco_models.inspect.measured import Geom, Joint, MeasuredBeam, Sensed
-from mujoco_models.inspect.parts import Names, Parts, axis_of, find, radius_of
-from mujoco_models.inspect.probe import Probe, probe_of
+from mujoco_models.inspect.measured import Joint, MeasuredBeam, Sensed
+from mujoco_models.inspect.parts import Names, Parts, find
+from mujoco_models.inspect.probe import probe_of
+from mujoco_models.inspect.touching import self_contacts, thickness, touching
 from mujoco_models.motion import IntegratorKind
+from mujoco_models.quiet import unlogged
 
 _LOADS = (0.01, 0.5, 1.0, 2.0, 5.0, 10.0)  # EI/L^2; up to a tip turned by 82 degrees
 _ACROSS = 0.05  # cosine, and what a cosine lacks of one
 _WORLD = 0.999999  # cosine; along an axis of the world
-_SMALL = 1e-4  # EI/L^2 and EI/L: sensors are probed in the linear range
+_ALONG = 1e-3  # cosine of an axis that is across, and what it lacks of one that is along
 
 
 def inspect_model(path: Path, names: Names) -> MeasuredBeam:
@@ -43,7 +45,26 @@ def inspect_model(path: Path, names: Names) -> MeasuredBeam:
         If the model, a name of it or the vibrissa cannot be used.
     """
     model = load(path)
-    return measure(model, find(model, names), path)
+    with unlogged():
+        return measure(model, find(model, names), path)
+
+
+def hold(model: mujoco.MjModel, parts: Parts) -> Held | HeldRod:
+    """Hold the foot of a model.
+
+    Parameters
+    ----------
+    model : mujoco.MjModel
+        The user's; a copy of it is held.
+    parts : Parts
+        What of it is the vibrissa.
+
+    Returns
+    -------
+    Held or HeldRod
+        In its own first state.
+    """
+    return Held(model, parts) if parts.rod is None else HeldRod(model, parts, parts.rod)
 
 
 def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
@@ -72,25 +93,19 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     InputError
         If nothing holds a joint, or it does not come to rest.
     """
-    held = Held(model, parts)
+    held = hold(model, parts)
     held.rest()
     axes = sweep_axes(held)
     nodes = np.vstack([held.clamp, held.joints, held.tip])
     s = np.cumsum(np.linalg.norm(np.diff(nodes, axis=0), axis=1))
     length = float(s[-1])
-    stiffness = held.stiffness()
-    flexibility = np.linalg.inv(stiffness)
-    turns = held.turns(axes[2])
-    links = turns @ flexibility @ turns[-1]  # turns of the links under a unit moment on the tip
-    way = axes[0] @ held.moves()
-    tip_rigidity = float(length**3 / (3 * way @ flexibility @ way))
-    inertia, bare = held.inertia(armature=True), held.inertia(armature=False)
-    squares, modes = eigh(stiffness, inertia)
-    damping = np.einsum("im,ij,jm->m", modes, held.damping(), modes)
-    joints = _joints(held, s[:-1], np.diff(links, prepend=0.0), nodes, axes)
+    bending = held.bending(axes)
+    squares, damping = bending.squares, bending.damping
+    tip_rigidity = length**3 / (3 * bending.tip_compliance)
+    joints = _joints(held, s[:-1], bending.compliances, nodes, axes)
     sensors = [_sensed(held, number, axes, tip_rigidity, length) for number in
                (parts.force, parts.torque)]  # fmt: skip
-    probe = probe_of(path, radius_of(model, parts.geoms[-1]))
+    probe = probe_of(path, thickness(model, parts))
     loads, bent = _bent(held, axes, tip_rigidity / length**2)
     return MeasuredBeam(
         model=_model_name(model),
@@ -98,21 +113,23 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         drive=drive_of(model, parts.foot, -axes[0]),
         length=length,
         joints=joints,
-        geoms=_geoms(model, held, nodes[0], axes, probe),
+        geoms=touching(model, parts, held.data, (nodes[0], axes), probe),
         tip_rigidity=tip_rigidity,
+        stretch=bending.stretch,
         loads=loads,
         bent=bent,
         straightness=float(np.linalg.norm(_aside(nodes - nodes[0], axes[1]), axis=1).max()),
         mass=float(model.body_mass[list(parts.chain)].sum()),
         period=float(2 * np.pi / np.sqrt(squares[0])),
-        period_without_armature=_period(stiffness, bare),
+        period_without_armature=float(2 * np.pi / np.sqrt(bending.slowest_without_armature)),
         stable_step=_stable_step(model, squares, damping),
         damping_ratio=float(damping[0] / (2 * np.sqrt(squares[0]))),
         gravity=tuple((axes @ held.gravity).tolist()),
         sag=_sag(held),
         force=sensors[0],
         torque=sensors[1],
-        self_contacts=_self_contacts(model, parts),
+        planar=_planar(held, axes[2]),
+        self_contacts=self_contacts(model, parts),
         timestep=float(model.opt.timestep),
         integrator=cast(
             IntegratorKind,
@@ -123,7 +140,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     )
 
 
-def sweep_axes(held: Held) -> Floats:
+def sweep_axes(held: Held | HeldRod) -> Floats:
     """The axes of the sweep in the world frame.
 
     Parameters
@@ -157,7 +174,7 @@ def sweep_axes(held: Held) -> Floats:
     return np.array([np.cross(y, z), y, z])
 
 
-def _normal(held: Held, hinges: Floats, y: Floats) -> Floats:
+def _normal(held: Held | HeldRod, hinges: Floats, y: Floats) -> Floats:
     """Of the plane of the sweep where its hinges leave it open: by a slide, a hinge, a sensor."""
     for joint in slides(held.model, held.parts.foot):
         way = held.data.xaxis[joint]
@@ -176,12 +193,21 @@ def _across(y: Floats) -> Floats:
     return np.array([0.0, 0.0, 1.0]) if abs(y[2]) < 0.5 else np.array([0.0, 1.0, 0.0])
 
 
+def _planar(held: Held | HeldRod, z: Floats) -> bool:
+    """Whether nothing of it can leave the plane of the sweep."""
+    joints = np.flatnonzero(np.isin(held.model.jnt_bodyid, held.parts.chain))
+    kinds, across = held.model.jnt_type[joints], np.abs(held.data.xaxis[joints] @ z)
+    hinges = (kinds == int(mujoco.mjtJoint.mjJNT_HINGE)) & (across > 1 - _ALONG)
+    slides_ = (kinds == int(mujoco.mjtJoint.mjJNT_SLIDE)) & (across < _ALONG)
+    return bool((hinges | slides_).all())
+
+
 def _aside(points: Floats, direction: Floats) -> Floats:
     return np.asarray(points - np.outer(points @ direction, direction))
 
 
 def _joints(
-    held: Held, s: Floats, compliance: Floats, nodes: Floats, axes: Floats
+    held: Held | HeldRod, s: Floats, compliance: Floats, nodes: Floats, axes: Floats
 ) -> tuple[Joint, ...]:
     length = float(np.linalg.norm(np.diff(nodes, axis=0), axis=1).sum())
     bounds = np.concatenate([[0.0], (s[1:] + s[:-1]) / 2, [length]])
@@ -200,7 +226,7 @@ def _joints(
     )
 
 
-def _bent(held: Held, axes: Floats, unit: float) -> tuple[Floats, Floats]:
+def _bent(held: Held | HeldRod, axes: Floats, unit: float) -> tuple[Floats, Floats]:
     """Tip displacements under forces across the beam, ever larger ones."""
     start = held.tip
     loads = unit * np.array(_LOADS)
@@ -215,7 +241,7 @@ def _bent(held: Held, axes: Floats, unit: float) -> tuple[Floats, Floats]:
     return loads, np.array(bent)
 
 
-def _sag(held: Held) -> float:
+def _sag(held: Held | HeldRod) -> float:
     """How far gravity moves the tip."""
     start = held.tip
     held.model.opt.gravity[:] = held.gravity
@@ -228,7 +254,7 @@ def _sag(held: Held) -> float:
 
 
 def _sensed(
-    held: Held, sensor: int | None, axes: Floats, rigidity: float, length: float
+    held: Held | HeldRod, sensor: int | None, axes: Floats, rigidity: float, length: float
 ) -> Sensed | None:
     """A sensor's readings of small forces and moments on the tip, one after the other."""
     if sensor is None:
@@ -236,7 +262,7 @@ def _sensed(
     zero = held.sensed(sensor)
     is_force = held.model.sensor_type[sensor] == int(mujoco.mjtSensor.mjSENS_FORCE)
     by_force, by_moment = np.zeros((2, 3, 3))
-    force, moment = _SMALL * rigidity / length**2, _SMALL * rigidity / length
+    force, moment = held.small * rigidity / length**2, held.small * rigidity / length
     for i, axis in enumerate(axes):
         for found, size, kind in ((by_force, force, 0), (by_moment, moment, 1)):
             loads = [np.zeros(3), np.zeros(3)]
@@ -254,61 +280,18 @@ def _sensed(
     place, _ = held.site(sensor)
     name = _name(held.model, mujoco.mjtObj.mjOBJ_SENSOR, sensor)
     offset = axes @ (place - held.clamp)
-    return Sensed(name, turned, offset, offset if is_force else arm - seen)
+    lever = offset if is_force else arm - seen
+    return Sensed(name, turned, offset, lever, _feels_contacts(held, sensor))
 
 
-def _geoms(
-    model: mujoco.MjModel, held: Held, clamp: Floats, axes: Floats, probe: Probe | None
-) -> tuple[Geom, ...]:
-    found = []
-    for number in held.parts.geoms:
-        body = int(model.geom_bodyid[number])
-        turn = held.data.xmat[body].reshape(3, 3)
-        ends = held.data.xpos[body] + axis_of(model, number) @ turn.T
-        start, end = sorted(((ends - clamp) @ axes[1]).tolist())
-        time_constant, ratio = model.geom_solref[number]
-        impedance = min(float(model.geom_solimp[number, 0]), 0.9999)
-        weight = float(model.body_invweight0[body, 0])  # 0 if it cannot move
-        # At rest the force is k/((1 - d) A) times the depth, with MuJoCo's k, impedance d and the
-        # body's inverse mass A; see MuJoCo's documentation, "Solver parameters".
-        if time_constant > 0:
-            stiffness = 1 / (max(time_constant, 2 * model.opt.timestep) * ratio) ** 2
-        else:
-            stiffness, time_constant = -time_constant, np.nan
-        if weight and probe is not None:
-            radius = radius_of(model, number)
-            weight = probe.weight(number, ends.mean(axis=0), axes[0], radius) or weight
-        found.append(
-            Geom(
-                _name_of_geom(model, number),
-                start,
-                end,
-                radius_of(model, number),
-                bool((model.geom_contype[number] & 1) | (model.geom_conaffinity[number] & 1)),
-                float(stiffness / ((1 - impedance) * weight)) if weight else np.inf,
-                float(time_constant),
-                float(model.geom_friction[number, 0]) if model.geom_condim[number] > 1 else 0.0,
-            )
-        )
-    return tuple(found)
-
-
-def _name_of_geom(model: mujoco.MjModel, number: int) -> str:
-    """Its own, its body's, or its number."""
-    body = int(model.geom_bodyid[number])
-    own = _name(model, mujoco.mjtObj.mjOBJ_GEOM, number)
-    return own or _name(model, mujoco.mjtObj.mjOBJ_BODY, body) or f"geom {number}"
-
-
-def _self_contacts(model: mujoco.MjModel, parts: Parts) -> tuple[str, ...]:
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    found = []
-    for contact in data.contact:
-        if contact.dist < 0 and not {*parts.geoms}.isdisjoint(contact.geom.tolist()):
-            names = [_name_of_geom(model, g) for g in contact.geom.tolist()]
-            found.append(" and ".join(names))
-    return tuple(dict.fromkeys(found))
+def _feels_contacts(held: Held | HeldRod, sensor: int) -> bool:
+    """MuJoCo does not count those of a flex among the forces on the bodies of its vertices."""
+    model = held.model
+    body = int(model.site_bodyid[model.sensor_objid[sensor]])
+    tree = held.parts.chain[0]
+    while tree > 0 and tree != body:
+        tree = int(model.body_parentid[tree])
+    return held.parts.rod is None or tree != body
 
 
 def _limits(model: mujoco.MjModel, parts: Parts) -> tuple[float, ...]:
@@ -316,11 +299,6 @@ def _limits(model: mujoco.MjModel, parts: Parts) -> tuple[float, ...]:
     if not joints.size:
         return ()
     return (float(np.abs(model.jnt_range[joints]).max(axis=1).min()),)
-
-
-def _period(stiffness: Floats, inertia: Floats) -> float:
-    slowest = eigh(stiffness, inertia, eigvals_only=True)[0]
-    return float(2 * np.pi / np.sqrt(slowest))
 
 
 def _stable_step(model: mujoco.MjModel, squares: Floats, damping: Floats) -> float:

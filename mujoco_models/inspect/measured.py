@@ -23,12 +23,15 @@ class Sensed:
         Where its site is, from the clamp, in the axes of the sweep [length].
     lever : array, shape (3,)
         From where its moments are counted, by its own readings; the same [length].
+    feels_contacts : bool
+        False where MuJoCo leaves them out: of a flex, by a sensor on what its vertices hang on.
     """
 
     name: str
     axes: Floats
     place: Floats
     lever: Floats
+    feels_contacts: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +114,8 @@ class MeasuredBeam:
         Likewise.
     tip_rigidity : float
         EI of the uniform beam with the same small tip deflection under a force on the tip.
+    stretch : float
+        Strain of the edge that gives way most over a pull; 0 for links [1/force].
     loads : array, shape (n,)
         Forces on the tip across the beam [force].
     bent : array, shape (n, 2)
@@ -130,6 +135,8 @@ class MeasuredBeam:
         How far gravity moves the tip [length].
     force, torque : Sensed or None
         The sensors at the clamp.
+    planar : bool
+        Whether its joints keep it in the plane of the sweep.
     self_contacts : tuple of str
         Pairs of geoms, one of them the vibrissa's, that touch in the first state.
     timestep : float
@@ -147,6 +154,7 @@ class MeasuredBeam:
     joints: tuple[Joint, ...]
     geoms: tuple[Geom, ...]
     tip_rigidity: float
+    stretch: float
     loads: Floats
     bent: Floats
     straightness: float
@@ -159,6 +167,7 @@ class MeasuredBeam:
     sag: float
     force: Sensed | None
     torque: Sensed | None
+    planar: bool
     self_contacts: tuple[str, ...]
     timestep: float
     integrator: IntegratorKind

@@ -3,16 +3,14 @@
 import difflib
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
-from typing import TypeAlias
 
 import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
-
-Chain: TypeAlias = tuple[int, ...]
-"""Bodies that bend, from the clamp to the tip."""
+from mujoco_models.inspect.drive import holders as holders_of
+from mujoco_models.inspect.rod import Chain, Rod, flexes, rod_of
 
 _FEWEST = 3  # joints of a vibrissa; what has fewer is an arm
 _BENDS = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_BALL))
@@ -56,6 +54,8 @@ class Parts:
         Its geoms, from the clamp to the tip.
     force, torque : int or None
         The sensors at its clamp; None if there is none.
+    rod : Rod or None
+        The flex that it is, instead of geoms on hinges.
     """
 
     foot: int
@@ -63,13 +63,14 @@ class Parts:
     geoms: tuple[int, ...]
     force: int | None
     torque: int | None
+    rod: Rod | None = None
 
 
 def find(model: mujoco.MjModel, names: Names) -> Parts:
     """Find the vibrissa, as far as the names leave it open.
 
     It is the longest row of bodies, each on the one before by hinges or a ball without an
-    actuator; what holds the first of them is the foot.
+    actuator, or the vertices of a flex of dimension 1; what holds the first of them is the foot.
 
     Parameters
     ----------
@@ -89,15 +90,15 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
         If a name is none of the model's, nothing looks like a vibrissa, or several things do.
     """
     asked = None if names.geoms is None else _geoms(model, names.geoms)
-    chains = _chains(model)
+    rods = flexes(model)
+    chains = [*_chains(model), *rods]
     if names.foot is not None:
         foot = _named(model, "--foot", names.foot, mujoco.mjtObj.mjOBJ_BODY)
-        chains = [chain for chain in chains if foot in _holders(model, chain)]
+        chains = [chain for chain in chains if foot in _holders(model, chain[0])]
     if asked is not None:
         bodies = set(model.geom_bodyid[asked].tolist())
         chains = [chain for chain in chains if bodies.intersection(chain)]
     if not chains:
-        _refuse_a_flex(model)
         raise InputError(
             "model",
             "without a vibrissa" + ("" if names == Names() else " where the names say"),
@@ -117,11 +118,15 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
             "say which with --foot or --geoms",
         )  # fmt: skip
     (chain,) = likely
-    holders = _holders(model, chain)
+    rod = rod_of(model, rods[chain]) if chain in rods else None
+    chain = chain if rod is None else rod.chain
+    holders = _holders(model, chain[0])
     geoms = asked if asked is not None else _along(model, holders[0], chain)
-    if not geoms:
+    if not geoms and rod is None:
         raise InputError("model", "without geoms on the vibrissa", "one that can touch", "add some")
     bodies = {*holders, *chain}
+    if rod is not None:
+        bodies |= {*holders_of(model, holders[-1])}
     sensors = [
         _sensor(model, option, name, kind, bodies)
         for option, name, kind in (
@@ -129,18 +134,8 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
             ("--torque", names.torque, mujoco.mjtSensor.mjSENS_TORQUE),
         )
     ]
-    return Parts(holders[-1], chain, tuple(geoms), *sensors)
-
-
-def _refuse_a_flex(model: mujoco.MjModel) -> None:
-    """Raise InputError where the vibrissa is one: its vertices have no hinges to be measured."""
-    for flex in np.flatnonzero(np.asarray(model.flex_dim) == 1):
-        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_FLEX, int(flex))
-        raise InputError(
-            f"flex {name!r}", "of dimension 1, on vertices that slide",
-            "a row of links on hinges or balls, which is what is measured",
-            "fix its vertices to such links; `vibrissa run CASE --beam rod` sweeps a flex of ours",
-        )  # fmt: skip
+    force, torque = sensors
+    return Parts(holders[-1], chain, tuple(geoms), force, torque, rod)
 
 
 def axis_of(model: mujoco.MjModel, geom: int) -> Floats:
@@ -235,9 +230,9 @@ def _chains(model: mujoco.MjModel) -> list[Chain]:
     return chains
 
 
-def _holders(model: mujoco.MjModel, chain: Chain) -> list[int]:
+def _holders(model: mujoco.MjModel, link: int) -> list[int]:
     """What holds the first link, and what that is fixed to, but for the world."""
-    found = [int(model.body_parentid[chain[0]])]
+    found = [int(model.body_parentid[link])]
     while model.body_jntnum[found[-1]] == 0 and model.body_parentid[found[-1]] != 0:
         found.append(int(model.body_parentid[found[-1]]))
     return found

@@ -8,6 +8,7 @@ ten times harder: a small ball touches each geom for one step, and what MuJoCo t
 from pathlib import Path
 
 import mujoco
+import numpy as np
 
 from analytic.problem.arrays import Floats
 from mujoco_models.model.stiffness import weights_in_last_step
@@ -36,7 +37,7 @@ class Probe:
         Parameters
         ----------
         geom : int
-            Which one.
+            Which one; -1 for what a flex has there.
         place, across : array, shape (3,)
             On its axis, and the direction in which the ball is from there; in the world frame.
         radius : float
@@ -51,11 +52,19 @@ class Probe:
         size = self._model.geom_size[self._ball, 0]
         data.mocap_pos[-1] = place + (radius * (1 - _DEPTH) + size) * across
         mujoco.mj_step(self._model, data)
-        friction = max(self._model.geom_friction[[geom, self._ball], 0])
-        frictionless = max(self._model.geom_condim[[geom, self._ball]]) == 1
+        friction, frictionless = self._friction(geom)
         pairs, weights = weights_in_last_step(self._model, data, 0 if frictionless else friction)
         mine = (pairs == geom).any(axis=1) & (pairs == self._ball).any(axis=1)
         return float(weights[mine][0]) if mine.any() else None
+
+    def _friction(self, geom: int) -> tuple[float, bool]:
+        """Coefficient of a contact with the ball, whose own is 1, and whether it has none."""
+        model = self._model
+        if geom < 0:
+            rods = np.asarray(model.flex_dim) == 1
+            return max(model.flex_friction[rods, 0]), max(model.flex_condim[rods]) == 1
+        friction = max(model.geom_friction[[geom, self._ball], 0])
+        return friction, max(model.geom_condim[[geom, self._ball]]) == 1
 
 
 def probe_of(path: Path, radius: float) -> Probe | None:

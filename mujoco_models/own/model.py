@@ -11,9 +11,9 @@ from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError
 from mujoco_models.errors import DivergedError
 from mujoco_models.inspect.held import Held
+from mujoco_models.inspect.held_rod import HeldRod
 from mujoco_models.inspect.measure import sweep_axes
 from mujoco_models.inspect.measured import MeasuredBeam
-from mujoco_models.inspect.parts import radius_of
 from mujoco_models.model.clamp import Clamp
 from mujoco_models.model.contacts import NOWHERE
 from mujoco_models.model.stiffness import stiffen, weights_in_last_step
@@ -23,6 +23,7 @@ from mujoco_models.obstacles.prism import Prism
 from mujoco_models.obstacles.protocol import GEOM
 from mujoco_models.own.drive import drive_to
 from mujoco_models.own.names import OwnModel
+from mujoco_models.own.skin import Edges, Links, Skin
 
 _HALF_DEPTH = 1.5  # L; as of all prisms
 _SPECK = 1e-4  # L
@@ -45,7 +46,7 @@ class OwnModelInMotion:
     ----------
     own : OwnModel
         The model's file, and what is changed of it.
-    held : Held
+    held : Held or HeldRod
         The same model, at rest with its foot held.
     measured : MeasuredBeam
         What was measured of it.
@@ -69,7 +70,7 @@ class OwnModelInMotion:
     def __init__(
         self,
         own: OwnModel,
-        held: Held,
+        held: Held | HeldRod,
         measured: MeasuredBeam,
         beam: Beam,
         obstacle: Prism,
@@ -78,8 +79,6 @@ class OwnModelInMotion:
     ) -> None:
         self._parts, self._beam, self._period = held.parts, beam, measured.period
         self._axes, self._start, self._origin = sweep_axes(held), foot_x, held.clamp
-        self._tip = held.tip_in_body
-        self._nodes = np.append([joint.s for joint in measured.joints], measured.length)
         self.label = obstacle.label
         self.model = self._with_object(own.file, obstacle)
         self.data = mujoco.MjData(self.model)
@@ -89,10 +88,16 @@ class OwnModelInMotion:
         self._object = self.model.geom(GEOM).id
         # The object is one more geom of the world, and the world's come first.
         self._geoms = frozenset(g + (g >= self._object) for g in self._parts.geoms)
+        self._skin = self._skin_of(held, measured)
         self._drive = drive_to(self.model, self._foot, -self._axes[0])
         self._stiffness = motion.stiffness * beam.base_rigidity / beam.length**3
         self._change(own, held)
         ours = own.contact == "ours"
+        if ours and self._parts.rod is not None:
+            raise InputError(
+                "model.contact", "ours", "own, for a flex, all of whose edges have one solref",
+                "state solref and solimp in its <contact>",
+            )  # fmt: skip
         if ours:
             self._take_our_contacts()
         implicit = self.model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_DISCRETE)
@@ -102,7 +107,7 @@ class OwnModelInMotion:
         self._way = 0.0
         self.time = 0.0
         mujoco.mj_forward(self.model, self.data)
-        self._still = float(self.data.energy[0])
+        self._still = self._skin.elastic_energy()
 
     def _with_object(self, path: Path, obstacle: Prism) -> mujoco.MjModel:
         """The model with the object in its world, in memory."""
@@ -125,6 +130,14 @@ class OwnModelInMotion:
                 "model", path, "one that an object can be added to", f"rename what clashes ({said})"
             ) from error
 
+    def _skin_of(self, held: Held | HeldRod, measured: MeasuredBeam) -> Skin:
+        nodes = np.append([joint.s for joint in measured.joints], measured.length)
+        if isinstance(held, HeldRod):
+            compliances = np.array([joint.compliance for joint in measured.joints])
+            return Edges(self.model, self.data, held.rod, nodes, compliances)
+        chain, tip = held.parts.chain, held.tip_in_body
+        return Links(self.model, self.data, chain, self._geoms, nodes, tip)
+
     def _in_world(self, points: Floats) -> Floats:
         """Points of the case's frame [L] in the model's world."""
         off = self._beam.length * (points - [self._start, 0, 0])
@@ -133,7 +146,7 @@ class OwnModelInMotion:
     def _pose(self, data: mujoco.MjData) -> tuple[Floats, Floats]:
         return np.array(data.xpos[self._parts.foot]), data.xmat[self._parts.foot].reshape(3, 3)
 
-    def _change(self, own: OwnModel, held: Held) -> None:
+    def _change(self, own: OwnModel, held: Held | HeldRod) -> None:
         option = self.model.opt
         option.timestep *= own.timestep
         self.model.dof_damping[held.dofs] *= own.damping
@@ -237,8 +250,7 @@ class OwnModelInMotion:
         """The contacts of vibrissa and object that carry a force, and how much."""
         wrench, found = np.zeros(6), []
         for i in range(self.data.ncon):
-            pair = self.data.contact.geom[i].tolist()
-            if self._object in pair and not self._geoms.isdisjoint(pair):
+            if self._object in self.data.contact.geom[i].tolist() and self._skin.has(i):
                 mujoco.mj_contactForce(self.model, self.data, i, wrench)
                 if wrench[0] > 0:
                     found.append((i, float(wrench[0])))
@@ -275,7 +287,8 @@ class OwnModelInMotion:
         # MuJoCo's normal goes from the first geom to the second.
         sense = np.where(contact.geom[numbers, 0] == self._object, 1.0, -1.0)
         normal = self._axes @ (weight * sense @ contact.frame[numbers, :3])
-        s = weight @ [self._arc_length(i) for i in numbers]
+        inward = sense[:, None] * contact.frame[numbers, :3]
+        s = weight @ [self._skin.arc_length(i, way) for i, way in zip(numbers, inward, strict=True)]
         x, y, _ = self._axes @ (place - self._origin) / unit
         return {
             "phase": "tip" if s > 1 - _AT_TIP else "tangent",
@@ -286,38 +299,9 @@ class OwnModelInMotion:
             "penetration": float(-weight @ contact.dist[numbers] / unit),
         }
 
-    def _arc_length(self, contact: int) -> float:
-        """Of the point of the axis that is nearest to a contact [L]."""
-        pair = self.data.contact.geom[contact].tolist()
-        geom = next(g for g in pair if g in self._geoms)
-        sense = 1.0 if pair[0] == self._object else -1.0
-        inward = sense * radius_of(self.model, geom) * self.data.contact.frame[contact, :3]
-        point = self.data.contact.pos[contact] + inward
-        body, chain = int(self.model.geom_bodyid[geom]), self._parts.chain
-        if body not in chain:
-            along = self._axes[1] @ (point - self.clamp_at)
-            return float(np.clip(along, 0, self._nodes[0]) / self._nodes[-1])
-        link = chain.index(body)
-        joint = self.data.xanchor[self.model.body_jntadr[body]]
-        way = self._direction(link)
-        room = self._nodes[link + 1] - self._nodes[link]
-        along = float(np.clip(way @ (point - joint), 0, room))
-        return float((self._nodes[link] + along) / self._nodes[-1])
-
-    def _direction(self, link: int) -> Floats:
-        """Of a link, from its joint to the next one, or the last one's."""
-        chain = self._parts.chain
-        joint = self.data.xanchor[self.model.body_jntadr[chain[link]]]
-        if link + 1 < len(chain):
-            far = self.data.xanchor[self.model.body_jntadr[chain[link + 1]]]
-        else:
-            turn = self.data.xmat[chain[-1]].reshape(3, 3)
-            far = self.data.xpos[chain[-1]] + turn @ self._tip
-        return np.asarray((far - joint) / np.linalg.norm(far - joint))
-
     def _tip_angle(self) -> float:
         """Slope angle of the last link, in the case's frame [rad]."""
-        x, y, _ = self._axes @ self._direction(len(self._parts.chain) - 1)
+        x, y, _ = self._axes @ self._skin.tip_direction()
         return float(np.arctan2(y, x))
 
     def _kinetic_share(self) -> float:
@@ -326,5 +310,5 @@ class OwnModelInMotion:
         moving[self._dofs] = self.data.qvel[self._dofs]
         mujoco.mj_mulM(self.model, self.data, product, moving)
         kinetic = float(moving @ product) / 2
-        total = kinetic + max(float(self.data.energy[0]) - self._still, 0.0)
+        total = kinetic + max(self._skin.elastic_energy() - self._still, 0.0)
         return kinetic / total if total > 0 else 0.0

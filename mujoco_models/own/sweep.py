@@ -7,15 +7,15 @@ from dataclasses import asdict, replace
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
-from mujoco_models.inspect.held import Held
 from mujoco_models.inspect.load import load
-from mujoco_models.inspect.measure import measure
+from mujoco_models.inspect.measure import hold, measure
 from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.inspect.parts import Names, Parts, find
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.prism import Prism
 from mujoco_models.own.model import OwnModelInMotion
 from mujoco_models.own.names import OwnModel
+from mujoco_models.quiet import unlogged
 from mujoco_models.settings import Settings
 from mujoco_models.stepping.record import Record
 from mujoco_models.stepping.sweep import start_of, sweep_moving
@@ -50,7 +50,10 @@ def run_own(
     """
     model = load(own.file)
     parts = find(model, Names(own.foot, own.force, own.torque, own.geoms))
-    measured = measure(model, parts, own.file)
+    with unlogged():
+        measured = measure(model, parts, own.file)
+        held = hold(model, parts)
+        held.rest()
     _check(case, parts, measured)
     moved = replace(
         motion, timestep=measured.timestep / measured.period, integrator=measured.integrator
@@ -59,8 +62,6 @@ def run_own(
         stiffness = own.stiffness * moved.stiffness
         moved = replace(moved, contact_stiffness=min(max(stiffness, 1e3), 1e9))
     moved = replace(moved, timestep=own.timestep * moved.timestep)
-    held = Held(model, parts)
-    held.rest()
     record = Record(case.foot_x / case.beam.length, motion.average)
     in_motion = OwnModelInMotion(
         own,
@@ -105,6 +106,14 @@ def _check(case: Case, parts: Parts, measured: MeasuredBeam) -> None:
                 "missing",
                 "one at the clamp",
                 f"add a site there and <{word} site=.../>, or name it",
+            )
+    for word, sensed in (("force", measured.force), ("torque", measured.torque)):
+        if sensed is not None and not sensed.feels_contacts:
+            raise InputError(
+                f"{word} sensor of the model",
+                f"{sensed.name!r}, which reads nothing of a flex's contacts",
+                "one on another tree of bodies than the flex",
+                "let the flex hang on a free body that is welded to the one with the sensors",
             )
     if not any(geom.meets for geom in measured.geoms):
         raise InputError(

@@ -3,8 +3,7 @@
 import math
 import platform
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from importlib.metadata import version
 from typing import Any
@@ -24,6 +23,7 @@ from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.errors import DivergedError
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.kinds import place
+from mujoco_models.quiet import unlogged
 from mujoco_models.settings import Settings
 from mujoco_models.stepping.model import MovingModel
 from mujoco_models.stepping.moving import Moving
@@ -118,7 +118,7 @@ def sweep_moving(
     """
     begun = time.process_time()
     try:
-        with threadpool_limits(1), _unlogged():
+        with threadpool_limits(1), unlogged():
             _drive(model, motion, record, advance)
     except BaseException as error:  # whatever it is, what there is must not be lost
         if isinstance(error, DivergedError):
@@ -152,16 +152,6 @@ def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> Mo
         spacing = bead_spacing(settings.segments, thinnest, obstacle.largest_curvature)
     beam = build(settings, spacing, Vibrissa.of(case.beam, case.clamp_stiffness))
     return MovingModel(beam, case.radius, obstacle, motion, start)
-
-
-@contextmanager
-def _unlogged() -> Iterator[None]:
-    """Keep MuJoCo from writing its warnings to the terminal and a file: the models heed them."""
-    mujoco.set_mju_user_warning(lambda _: None)
-    try:
-        yield
-    finally:
-        mujoco.set_mju_user_warning(None)
 
 
 def _drive(model: Moving, motion: Motion, record: Record, advance: Callable[[], None]) -> None:

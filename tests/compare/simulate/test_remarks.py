@@ -142,7 +142,7 @@ def test_the_shipped_models_have_the_faults_that_they_say():
     found = {
         name: {r.subject for r in Inspection(inspect_model(path)).remarks if r.kind == "fault"}
         for name, path in shipped_models().items()
-        if name != "cable"
+        if name != "cable" and "rod" not in name
     }
     assert found == {
         "sound-chain": set(),
