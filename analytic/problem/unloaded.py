@@ -116,6 +116,34 @@ class Unloaded:
             return turn(np.array(end)) - turn(begin)
         return self.natural * (end - begin)
 
+    def side(self, begin: Floats) -> Floats:
+        """Length of the side that touches an object, from a place to the tip.
+
+        Of a cone it goes along at the half-angle to the axis; where the vibrissa is curved to the
+        left, towards the object, it is shorter than the axis.
+
+        Parameters
+        ----------
+        begin : array, any shape
+            Arc length of the axis at which it begins [L].
+
+        Returns
+        -------
+        array, shape of `begin`
+            [L].
+        """
+        left, narrowing = 1 - begin, self.base_radius - self.tip_radius
+        turn = self.turn_between(begin, 1.0)
+        # The radius times the curvature, integrated by parts: the radius is linear.
+        if isinstance(self.natural, Along):
+            slope = self._integrals[2]
+            mean = slope.integral()
+            turned = slope(np.array(1.0)) * left - (mean(np.array(1.0)) - mean(begin))
+        else:
+            turned = turn * left / 2
+        shorter = (self.tip_radius + self.taper(begin)) * turn - narrowing * turned
+        return np.asarray(np.cos(self.lean) * left - shorter)
+
     @cached_property
     def _integrals(self) -> tuple[Along, Along, Along]:
         assert isinstance(self.natural, Along)

@@ -11,10 +11,10 @@ from analytic.problem.columns import CLAMP_READINGS, COLUMNS
 from analytic.problem.errors import InputError, require
 from analytic.problem.numbers import is_finite_number
 from analytic.problem.rest import first_touch
-from analytic.problem.support import require_uniform
 from analytic.problem.table import mirrored_table
 from analytic.solver.general.columns import to_columns
 from analytic.solver.general.path import Path, follow
+from analytic.solver.general.residuals import without_inexact
 from analytic.solver.general.states import Vibrissa, states
 from analytic.solver.general.stations import solve_places
 from analytic.solver.general.sticking import between, stick
@@ -121,9 +121,9 @@ def stiction_limits(case: Case) -> tuple[pd.DataFrame, pd.DataFrame]:
     Raises
     ------
     InputError
-        If the case has no friction, or the vibrissa varies along its length.
+        If the case has no friction.
     ArithmeticError
-        If the states of a branch are lost.
+        If the states of a branch are lost, or not exact.
     """
     _check(case)
     if case.sweep.direction == "right":
@@ -172,10 +172,9 @@ def turn_back(case: Case, turn_at: float, stations: int = 100) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If the case has no friction, the vibrissa does not touch where it is to turn, or varies
-        along its length.
+        If the case has no friction, or the vibrissa does not touch where it is to turn.
     ArithmeticError
-        If the states are lost on the way.
+        If the states are lost on the way, or not exact.
     """
     _check(case)
     if not is_finite_number(turn_at):
@@ -220,7 +219,6 @@ def _check(case: Case) -> None:
     require("case", case, Case, "as Case(profile=..., friction=0.3)")
     if case.friction == 0:
         raise InputError("friction", 0.0, "positive", "without friction nothing sticks")
-    require_uniform("the way back", case.beam)
 
 
 def _free(case: Case, foot: Floats) -> pd.DataFrame:
@@ -246,7 +244,12 @@ def _fill(
     plain = Vibrissa.of(case.beam, case.clamp_stiffness, 0.0)
     held = plain._replace(friction=np.tan(angle))
     found = states(case.centreline.at(z[:, 0]), z[:, 1], z[:, 2], held)
-    columns = to_columns(found, np.zeros(len(z), dtype=bool), case.beam)
+    columns = without_inexact(
+        to_columns(found, np.zeros(len(z), dtype=bool), case.beam), case.beam, held
+    )
+    if (inexact := columns["status"] == "diverged").any():
+        place = table["foot_x"].to_numpy()[where][inexact][0]
+        raise ArithmeticError(f"the state at foot_x = {place:.6g} is not exact")
     for name in COLUMNS[1:-1]:
         table.loc[where, name] = columns[name]
     table.loc[where, "friction_angle"] = angle

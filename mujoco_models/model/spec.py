@@ -7,6 +7,10 @@ from mujoco_models.model.surface import CONTACT_GAP, SIDE_PREFIX
 from mujoco_models.obstacles.corners import LINKS
 from mujoco_models.obstacles.protocol import Obstacle
 
+# Bytes. A vibrissa bent round an object may have 6,000 beads within its gap, and MuJoCo's own choice
+# has no room to solve for them; what is not used takes none.
+_MEMORY = 2**28
+
 
 def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
     """Beam, beads, sensors and obstacle.
@@ -76,6 +80,7 @@ def add_options(spec: mujoco.MjSpec) -> None:
     spec : mujoco.MjSpec
         Changed in place.
     """
+    spec.memory = _MEMORY
     option = spec.option
     option.gravity = [0, 0, 0]
     option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE  # 4.0.0: wrong Hessian with sparse ones

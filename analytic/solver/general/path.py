@@ -14,7 +14,7 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.problem.rest import Touch
 from analytic.solver.general.curve import INSIDE, Curve, Point
-from analytic.solver.general.states import Vibrissa
+from analytic.solver.general.states import Vibrissa, states, with_rates
 
 # By how much the curve may turn between neighbours [rad], and its first step; finer if it is lost.
 _STEPS = ((0.3, 0.02), (0.05, 0.004))
@@ -27,6 +27,7 @@ _FACET = 0.02  # L; facets up to that length make a contour, and no edges
 _SHORT = 1e-3  # of the curve's length: nothing hides there
 _MOST, _A_BREAK = 1000, 4  # steps tried, and for each break of the contour: tens suffice mostly
 _WITHIN = np.linspace(0, 1, 17)  # of a step, where the phase is looked at
+_POLISHES, _MISSED = 3, 1e-12  # of the points that are kept; roundings of their misses
 _HALVINGS = 20  # of a cell, to begin Newton's method from
 
 
@@ -209,14 +210,33 @@ def follow(
         if complete:
             break
     points = _with_turns(curve, points)
-    return Path(
-        np.array([point.z for point in points]),
-        np.array([point.direction for point in points]),
-        np.array([point.foot_x for point in points]),
-        np.array([point.rate for point in points]),
-        complete,
-        vibrissa.least_force,
-    )
+    z = np.array([point.z for point in points])
+    direction = np.array([point.direction for point in points])
+    z, foot_x = _exact(curve, z, direction)
+    rate = np.array([point.rate for point in points])
+    return Path(z, direction, foot_x, rate, complete, vibrissa.least_force)
+
+
+def _exact(curve: Curve, z: Floats, direction: Floats) -> tuple[Floats, Floats]:
+    """Points of the curve by Newton's method, across it, and their foot positions.
+
+    A point of a sharp cone that misses its conditions by 1e-8 may seem to lie beyond the fold.
+    """
+    z = z.copy()
+    inside = z[:, 2] < 0
+    normal = direction.copy()
+    normal[:, 1] /= np.maximum(curve.vibrissa.least_force, z[:, 1]) ** 2
+    for _ in range(_POLISHES):
+        here, rates = with_rates(curve.centreline.at(z[:, 0]), z[:, 1], z[:, 2], curve.vibrissa)
+        misses = np.column_stack([here.twist, here.above, np.zeros(len(z))])
+        # One that is exact stays: it may stand on a kink.
+        poor = (np.abs(misses).max(axis=1) > _MISSED) & (z[:, 1] > 0)
+        if not poor.any():
+            break
+        slopes = np.stack([rates.twist, rates.above, normal], axis=1)[poor]
+        z[poor] -= np.linalg.solve(slopes, misses[poor, :, None])[..., 0]
+        z[:, 2] = np.where(inside, np.minimum(z[:, 2], INSIDE), np.maximum(z[:, 2], 0.0))
+    return z, states(curve.centreline.at(z[:, 0]), z[:, 1], z[:, 2], curve.vibrissa).foot_x
 
 
 def _points(curve: Curve, touch: Touch, largest: float, length: float) -> list[Point]:

@@ -149,7 +149,7 @@ def _misses(centreline: Contour, vibrissa: Vibrissa, start: Floats, z: Floats) -
     """What states miss at the clamp's slope, at the contact's height and by sliding."""
     here = _states(centreline, vibrissa, z)
     slid = _slid(centreline, vibrissa, start, z)
-    return np.stack([here.twist, here.up - here.point.eta, slid], axis=1)
+    return np.stack([here.twist, here.above, slid], axis=1)
 
 
 def _differences(misses: Misses) -> Jacobian:
@@ -184,13 +184,14 @@ def _slid(centreline: Contour, vibrissa: Vibrissa, start: Floats, z: Floats) -> 
     """By how much vibrissa and object would have slid on each other since `start` [L].
 
     The object's surface passes by what the centreline's contour does less what that turns, the
-    vibrissa's by the arc length of the contact along it, and by the turn of the round tip.
+    vibrissa's by the length of its side from the contact to the tip, and by the turn of the round
+    tip.
     """
-    radius = vibrissa.radius
+    radius, rest = vibrissa.radius, vibrissa.unloaded
 
     def on_vibrissa(excess: Floats) -> Floats:
-        along = (1 - radius * vibrissa.natural_curvature) * np.minimum(excess, 0.0)
-        return np.asarray(along + radius * np.maximum(excess, 0.0))
+        side = rest.side(1 + np.minimum(excess, 0.0))
+        return np.asarray(radius * np.maximum(excess, 0.0) - side)
 
     turned = centreline.at(z[:, 0]).alpha - centreline.at(start[:1]).alpha
     way = np.array([_way(centreline, float(start[0]), float(t)) for t in z[:, 0]])
