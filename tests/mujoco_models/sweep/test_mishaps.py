@@ -1,13 +1,14 @@
 """A sweep that ends early: named in one line, the stations so far kept."""
 
 import sys
+from dataclasses import replace
 
 import mujoco
 import numpy as np
 import pytest
 import trimesh
 
-from analytic import Case, InputError, Readings, Sweep, circle, mesh_section
+from analytic import Case, InputError, Readings, Sweep, circle, mesh_section, named_case
 from compare.commands.main import main
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
@@ -135,6 +136,19 @@ def test_a_fault_that_the_solver_does_not_know_costs_bounded_effort(fault, monke
     assert set(found.table["status"]) <= {"ok", "unsettled"}
     assert bad.sum() > 10
     assert sum(found.provenance["unsettled"].values()) == bad.sum()
+
+
+def test_mujoco_has_room_for_six_thousand_contacts():
+    """Of a vibrissa bent round an object: its own choice of memory ended in a fatal error."""
+    from mujoco_models.sweep.sweep import set_out
+
+    case = named_case("catenary")
+    case = replace(case, beam=replace(case.beam, natural_curvature=0.5))
+    model = set_out(case, Settings(segments=160, contour_points=400)).model
+    model.lookout.watch(set(range(len(model.layout.beads))))
+    model.imbalance(0.4, np.zeros(160))
+    assert model.data.ncon > 6000
+    assert np.isfinite(model.relieved()).all()
 
 
 def test_contacts_that_mujoco_leaves_out_are_an_error(vibrissa, monkeypatch):
