@@ -7,8 +7,8 @@ from mujoco_models.model.surface import CONTACT_GAP, SIDE_PREFIX
 from mujoco_models.obstacles.corners import LINKS
 from mujoco_models.obstacles.protocol import Obstacle
 
-# Bytes. A vibrissa bent round an object may have 6,000 beads within its gap, and MuJoCo's own choice
-# has no room to solve for them; what is not used takes none.
+# Bytes. A vibrissa bent round an object may have 6,000 beads within its gap, and MuJoCo's own
+# choice has no room to solve for them; what is not used takes none.
 _MEMORY = 2**28
 
 
