@@ -1,9 +1,10 @@
 """Case files of sweeps in space."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
+import numpy as np
 from pydantic import BeforeValidator, Field, ValidationError
 
 from analytic import InputError
@@ -25,6 +26,7 @@ from compare.read.limits import tolerances_of
 from compare.read.profiles import Drawn
 from compare.read.quantities import FileName, Length, Several, Table
 from compare.read.tables import BeamTable
+from compare.read.toml import Place as Keyed
 from compare.read.toml import TomlFile
 from mujoco_models.space.settings import SpatialSettings
 
@@ -122,16 +124,21 @@ class PathTable(Table):
     height: Length = 0.0
     tangent: Way = (0.0, 1.0, 0.0)
     stations: int = 200
+    turn: float = Field(default=0.0, allow_inf_nan=False)
 
     def build(self) -> FootPath:
-        """The way.
+        """The way, turned about y by so many degrees: 90 take x to -z.
 
         Returns
         -------
         FootPath
             In the units of the file, or SI.
         """
-        return FootPath(self.points, self.height, self.tangent, self.stations)
+        points = self.points
+        if self.turn:
+            cos, sin = np.cos(np.radians(self.turn)), np.sin(np.radians(self.turn))
+            points = [(cos * x + sin * z, cos * z - sin * x) for x, z in points]
+        return FootPath(points, self.height, self.tangent, self.stations)
 
 
 class SpaceFile(Table):
@@ -263,12 +270,36 @@ def load_space_job(path: str | Path) -> SpaceJob:
             "given for a sweep in space",
             "`vibrissa run` takes cases in the plane",
         )
-    try:
-        found = SpaceFile.model_validate(file.tables)
-    except ValidationError as error:
-        raise complaint(error, SpaceFile, file.place) from error
-    given: dict[str, Any] = dict(file.tables)
-    check_units(found, given, file.place)
+    found = validate_space(file.tables, file.place)
     limits = tolerances_of(found.tolerances, file.place, SpatialTolerances)
     case = found.case(path.parent, found.name or name_of(path))
     return SpaceJob(case, found.mujoco, limits)
+
+
+def validate_space(tables: Mapping[str, Any], place: Keyed) -> SpaceFile:
+    """What the tables of a case in space say.
+
+    Parameters
+    ----------
+    tables : mapping
+        As parsed.
+    place : callable
+        What an error calls a key.
+
+    Returns
+    -------
+    SpaceFile
+        The same, checked, in SI if there are units.
+
+    Raises
+    ------
+    InputError
+        If there are unknown keys, wrong types, unknown units, or numbers with and without units
+        mixed.
+    """
+    try:
+        found = SpaceFile.model_validate(tables)
+    except ValidationError as error:
+        raise complaint(error, SpaceFile, place) from error
+    check_units(found, tables, place)
+    return found

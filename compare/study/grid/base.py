@@ -8,14 +8,21 @@ from typing import Any
 from pydantic import ValidationError
 
 from analytic import NAMED_TABLES, InputError
-from compare.read.case import validate
 from compare.read.complaints import complaint, shown
 from compare.read.quantities import Table
+from compare.read.space import SpaceFile
 from compare.read.tables import CaseFile
 from compare.read.toml import TomlFile
 from compare.study.grid.axes import Value
 from compare.study.grid.schema import CASE_TABLES, StudyFile
-from compare.study.grid.study import BEAM, MESH, flatten
+from compare.study.grid.study import (
+    BEAM,
+    COMPONENTS_OF,
+    MESHES,
+    checked_case,
+    flatten,
+    replaced,
+)
 from engines.known import named_engines
 
 _VARIED = (*CASE_TABLES, "noise", "reconstruction")
@@ -50,17 +57,22 @@ class Base:
             "reconstruction": content.reconstruction,
         }
         self._tables = self._overlaid(content)
-        checked = validate(self._tables, file.place)
+        checked = checked_case(self._tables, file.place)
         try:
             self._built(checked)
         except InputError as error:
             named, _, _ = str(error).partition(" = ")
-            where = file.place(_KEYS.get(named, named.split(".") if "." in named else ["profile"]))
+            table, _, key = named.partition("[")[0].partition(".")
+            table = table.partition(" ")[0]  # "body sphere.radius"
+            default = ["body" if "body" in self._tables else "profile"]
+            keys = [table, key] if key and table in self._tables else default
+            where = file.place(_KEYS.get(named, keys))
             raise InputError(where, "unusable", "usable", str(error)) from error
         tables = _plain(checked) | {n: own.model_dump() for n, own in self._own.items()}
         self.values = {key: value for key, value in flatten(tables).items() if value is not None}
-        if MESH in self.values:
-            self.values[MESH] = self._path(self.values[MESH])
+        for mesh in MESHES:
+            if mesh in self.values:
+                self.values[mesh] = self._path(self.values[mesh])
 
     def check_key(self, key: str, place: Sequence[str]) -> None:
         """Check that a key can vary.
@@ -79,11 +91,18 @@ class Base:
         """
         where = self._file.place(place)
         table, *inner = key.split(".")
-        if table not in _VARIED or len(inner) != 1:
+        component = inner[1:]
+        if (
+            table not in _VARIED
+            or not 1 <= len(inner) <= 2
+            or (component and component[0] not in COMPONENTS_OF)
+        ):
             raise InputError(
                 where, "an axis", f"a key of {', '.join(_VARIED)}",
-                "write it as in a case file, as beam.radius",
+                "write it as in a case file, as beam.radius; path.tangent.x of what has x, y, z",
             )  # fmt: skip
+        if component and len(self._components(table, inner[0])) != len(COMPONENTS_OF):
+            raise InputError(where, "an axis", "a component of x, y, z", "leave the component out")
         if key == BEAM and place[0] == "axes":
             raise InputError(where, "an axis", "given as study.beams", "list the beams there")
 
@@ -111,8 +130,14 @@ class Base:
         """
         self.check_key(key, place)
         where = self._file.place(place)
-        table, inner = key.split(".")
-        found = self._tried(table, inner, value, place)
+        table, inner, *component = key.split(".")
+        if component:
+            whole = replaced(self._components(table, inner), component[0], value)
+            plain = self._tried(table, inner, whole, place)
+            # `check_key` has seen that there are as many as components.
+            found = dict(zip(COMPONENTS_OF, plain, strict=True))[component[0]]  # type: ignore[call-overload]
+        else:
+            found = self._tried(table, inner, value, place)
         if isinstance(value, bool) != isinstance(found, bool):
             allowed = "true or false" if isinstance(found, bool) else "a number or a word"
             raise InputError(where, shown(value), allowed, "correct it")
@@ -120,7 +145,7 @@ class Base:
             raise InputError(
                 where, shown(value), "one number or word", "this key cannot be an axis"
             )
-        return self._path(str(found)) if key == MESH else found
+        return self._path(str(found)) if key in MESHES else found
 
     def _tried(self, table: str, key: str, value: object, place: Sequence[str]) -> object:
         """What the base case holds with `value` for a key."""
@@ -133,7 +158,7 @@ class Base:
             return varied.model_dump()[key]
         where = self._file.place(place)
         changed = {**self._tables, table: {**self._tables.get(table, {}), key: value}}
-        checked = validate(changed, partial(_at, where))
+        checked = checked_case(changed, partial(_at, where))
         try:
             self._built(checked)
         except InputError as error:
@@ -143,8 +168,16 @@ class Base:
             raise InputError(where, shown(value), "in natural units", "vary what it is a unit of")
         return plain[key]
 
-    def _built(self, case: CaseFile) -> None:
+    def _components(self, table: str, key: str) -> Sequence[Any]:
+        """What the file or else the case has for a key; nothing if that is no list."""
+        given = self._tables.get(table, {}).get(key, self.values.get(f"{table}.{key}"))
+        return given if isinstance(given, list | tuple) else ()
+
+    def _built(self, case: CaseFile | SpaceFile) -> None:
         """Raise if the parts of a case cannot be made."""
+        if isinstance(case, SpaceFile):
+            case.case(self._folder, "study")
+            return
         case.physics(self._folder)
         case.sweep.build()
         if case.motion is not None:
@@ -163,7 +196,8 @@ class Base:
             base: dict[str, Any] = {k: dict(v) for k, v in NAMED_TABLES[case].items()}
         elif case.endswith(".toml"):
             file = TomlFile.read(self._folder / case, "case file")
-            if validate(file.tables, file.place).model is not None:  # errors are on its own lines
+            found = checked_case(file.tables, file.place)  # errors are on its own lines
+            if isinstance(found, CaseFile) and found.model is not None:
                 raise InputError(
                     file.place(["model"]), "of a study", "left out", "a study sweeps our models"
                 )
@@ -182,9 +216,11 @@ class Base:
         return str((self._folder / name).resolve())
 
 
-def _plain(case: CaseFile) -> dict[str, Any]:
+def _plain(case: CaseFile | SpaceFile) -> dict[str, Any]:
     """The tables of a case as plain numbers and words, a motion in natural units."""
     tables = case.model_dump(include={*CASE_TABLES} - {"motion"})
+    if isinstance(case, SpaceFile):
+        return {name: table for name, table in tables.items() if table is not None}
     if case.motion is not None:
         tables["motion"] = asdict(case.motion.build(case.beam.build()))
     return tables

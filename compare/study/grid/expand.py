@@ -13,6 +13,7 @@ from compare.read.toml import TomlFile
 from compare.study.grid.axes import Axis, Interval, Range, Value
 from compare.study.grid.base import Base
 from compare.study.grid.schema import StudyFile
+from compare.study.grid.study import COMPONENTS_OF
 
 _LONGEST_LIST = 10_000  # each value of a list is tried on the base case, at some milliseconds
 _RANGE_KEYS = frozenset(Range.model_json_schema()["properties"])
@@ -73,7 +74,11 @@ class _AxisReader:
         for name, table in axes.items():
             dotted: dict[str, object] = {name: table}
             if isinstance(table, dict) and table and not _RANGE_KEYS & table.keys():
-                dotted = {f"{name}.{key}": value for key, value in table.items()}
+                dotted = {
+                    whole: values
+                    for key, value in table.items()
+                    for whole, values in _components(f"{name}.{key}", value).items()
+                }
             for key, value in dotted.items():
                 if key in seen:
                     raise InputError(self._named(key), "given twice", "given once", "remove one")
@@ -119,6 +124,13 @@ class _AxisReader:
 
     def _named(self, key: str) -> str:
         return self._file.place(_place(key))
+
+
+def _components(key: str, value: object) -> dict[str, object]:
+    """What is said of a key, or of its components by their own keys."""
+    if isinstance(value, dict) and value and value.keys() <= {*COMPONENTS_OF}:
+        return {f"{key}.{component}": inner for component, inner in value.items()}
+    return {key: value}
 
 
 def _place(key: str) -> list[str]:

@@ -15,7 +15,7 @@ from pydantic import TypeAdapter
 from analytic import InputError
 from compare.study.grid.axes import MOST_RUNS, Axis, Value
 from compare.study.grid.sources import sources_digest
-from compare.study.grid.study import MESH, Study
+from compare.study.grid.study import MESHES, Study
 from engines.found import list_engines
 
 
@@ -164,8 +164,9 @@ class Plan:
         """The same for the same problem, wherever in the file its numbers stand."""
         study = self.study
         described = {**study.base, **parameters}
-        if MESH in described:
-            described[MESH] = _content(str(described[MESH]))
+        for mesh in MESHES:
+            if mesh in described:
+                described[mesh] = _content(str(described[mesh]))
         if not study.beams:
             described = {
                 k: v for k, v in described.items() if not k.startswith(("mujoco.", "engine."))

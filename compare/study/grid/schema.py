@@ -10,7 +10,9 @@ from compare.study.grid.estimator import Estimator
 from compare.study.grid.sensor import SensorNoise
 from compare.study.grid.study import Record
 
-CASE_TABLES = ("beam", "support", "contact", "profile", "sweep", "mujoco", "motion", "engine")
+CASE_TABLES = (
+    "beam", "support", "contact", "profile", "sweep", "mujoco", "motion", "engine", "body", "path",
+)  # fmt: skip
 # A day: no sweep of this project takes so long, and the alarm that ends a run must not overflow.
 _LONGEST = 86_400.0
 
@@ -43,3 +45,5 @@ class StudyFile(Table):
     mujoco: dict[str, Any] = Field(default_factory=dict)
     motion: dict[str, Any] = Field(default_factory=dict)
     engine: dict[str, Any] = Field(default_factory=dict)
+    body: dict[str, Any] = Field(default_factory=dict)
+    path: dict[str, Any] = Field(default_factory=dict)

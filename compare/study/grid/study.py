@@ -1,11 +1,13 @@
 """What a study is, once its file has been checked."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 from compare.read.case import validate
+from compare.read.space import SpaceFile, validate_space
 from compare.read.tables import CaseFile
+from compare.read.toml import Place
 from compare.study.grid.axes import Axis
 from compare.study.grid.estimator import Estimator
 from compare.study.grid.sensor import SensorNoise
@@ -14,7 +16,9 @@ Record: TypeAlias = Literal["events", "disagreement", "reconstruction"]
 RECORDS: tuple[Record, ...] = ("events", "disagreement", "reconstruction")
 BEAM = "mujoco.beam"
 ENGINE = "engine.name"
-MESH = "profile.file"
+MESHES = ("profile.file", "body.file")
+COMPONENTS_OF = ("x", "y", "z")
+"""Of a place or direction in space: ``path.tangent.x`` is a key of its own."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +55,11 @@ class Study:
     case: str = "case"
 
     @property
+    def in_space(self) -> bool:
+        """Whether its sweeps are in space."""
+        return "body.kind" in self.base
+
+    @property
     def crossed(self) -> tuple[Axis, ...]:
         """All axes, that of the beams included."""
         return (*self.axes, Axis.of({BEAM: self.beams})) if self.beams else self.axes
@@ -85,7 +94,7 @@ def flatten(tables: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     }
 
 
-def case_file(parameters: Mapping[str, Any]) -> tuple[CaseFile, SensorNoise, Estimator]:
+def case_file(parameters: Mapping[str, Any]) -> tuple[CaseFile | SpaceFile, SensorNoise, Estimator]:
     """Read the case, the noise and the method from dotted keys.
 
     Parameters
@@ -95,7 +104,7 @@ def case_file(parameters: Mapping[str, Any]) -> tuple[CaseFile, SensorNoise, Est
 
     Returns
     -------
-    CaseFile
+    CaseFile or SpaceFile
         The case.
     SensorNoise
         The noise.
@@ -109,8 +118,54 @@ def case_file(parameters: Mapping[str, Any]) -> tuple[CaseFile, SensorNoise, Est
     """
     tables: dict[str, dict[str, Any]] = {}
     for dotted, value in parameters.items():
-        name, _, key = dotted.partition(".")
-        tables.setdefault(name, {})[key] = value
+        name, key, *component = dotted.split(".")
+        table = tables.setdefault(name, {})
+        table[key] = replaced(table[key], component[0], value) if component else value
     noise = SensorNoise(**tables.pop("noise", {}))
     estimator = Estimator(**tables.pop("reconstruction", {}))
-    return validate(tables, ".".join), noise, estimator
+    return checked_case(tables, ".".join), noise, estimator
+
+
+def checked_case(tables: Mapping[str, Any], place: Place) -> CaseFile | SpaceFile:
+    """The case of some tables, in space if it has a body.
+
+    Parameters
+    ----------
+    tables : mapping
+        As parsed.
+    place : callable
+        What an error calls a key.
+
+    Returns
+    -------
+    CaseFile or SpaceFile
+        The same, checked.
+
+    Raises
+    ------
+    InputError
+        If they are no case.
+    """
+    return validate_space(tables, place) if "body" in tables else validate(tables, place)
+
+
+def replaced(values: Sequence[Any], component: str, value: object) -> list[Any]:
+    """A place or direction with another component.
+
+    Parameters
+    ----------
+    values : sequence
+        Of the components x, y and z.
+    component : str
+        One of `COMPONENTS_OF`.
+    value : object
+        Of that component.
+
+    Returns
+    -------
+    list
+        The others are as they were.
+    """
+    found = list(values)
+    found[COMPONENTS_OF.index(component)] = value
+    return found

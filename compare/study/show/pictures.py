@@ -28,6 +28,11 @@ _AXES = {
     "support.rotational_stiffness": "rotational stiffness of the clamp [moment/rad]",
     "contact.friction": r"friction coefficient $\mu$",
     "noise.relative": "noise / largest magnitude",
+    "path.height": "height of the foot's plane [length]",
+    "path.turn": "direction of the way [degrees]",
+    "path.tangent.x": "lean of the clamp in $x$",
+    "path.tangent.z": "lean of the clamp in $z$",
+    "path.stations": "stations of the sweep",
     "profile.a": "$a$ of the object [1/length]",
     "profile.c": "$c$ of the object [length]",
 }

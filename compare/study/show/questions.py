@@ -46,6 +46,14 @@ QUESTIONS = (
         "the shift of the snap-off", "shift of the snap-off [length]",
     ),
     Question(
+        "slip-off", "How far is the slip-off shifted?", "slip_off_difference",
+        "the shift of the slip-off", "shift of the slip-off [length]",
+    ),
+    Question(
+        "leaving", "Where does the vibrissa slip off?", "event_slip_off",
+        "the foot's way to the slip-off", "way to the slip-off [length]",
+    ),
+    Question(
         "reconstruction", "How well is the object reconstructed?", "reconstruction_rms",
         "the rms reconstruction error", "rms reconstruction error / $L$", least=1e-6,
     ),

@@ -1,18 +1,18 @@
 """What is stored of a study, as its report looks at it."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import pandas as pd
 
-from analytic import CLAMP_READINGS
 from compare.study.grid.plan import Plan
 from compare.study.grid.study import BEAM
 
 WORST = "disagreement_worst_rms"
 SEED = "noise.seed"
 METHOD = "reconstruction.method"
-REFINED = ("mujoco.segments", "mujoco.contour_points", "sweep.stations")
+REFINED = ("mujoco.segments", "mujoco.contour_points", "sweep.stations", "path.stations")
 """Parameters that should make the disagreement fall."""
 _FEW_POINTS = 12  # parameters that advance together in more points than these are a sample
 
@@ -57,8 +57,8 @@ class StudyResults:
         """
         rows = rows[rows["run"].isin({run.id for run in plan})]
         done = rows[rows["outcome"] == "done"]
-        readings = [f"disagreement_{name}_rms" for name in CLAMP_READINGS]
-        if readings[0] in done:
+        readings = [name for name in done if re.fullmatch(r"disagreement_\w+_rms", str(name))]
+        if readings:
             done = done.assign(**{WORST: done[readings].max(axis=1)})
         keys = [key for axis in plan.study.crossed for key in axis.keys]
         numeric = done.select_dtypes("number")

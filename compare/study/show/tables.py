@@ -7,8 +7,11 @@ import pandas as pd
 
 from analytic import CLAMP_READINGS
 from analytic.problem.arrays import Floats
+from compare.align.frames import COMPONENTS
 from compare.study.grid.study import BEAM
 from compare.study.show.results import REFINED, StudyResults, together
+
+ONLY_IN_SPACE = tuple(name for name in COMPONENTS if name not in CLAMP_READINGS)
 
 
 def outcomes(found: StudyResults) -> pd.DataFrame:
@@ -58,7 +61,7 @@ def orders(found: StudyResults) -> pd.DataFrame:
             if other != axis and not together(done, axis, other):
                 done = done[done[other] == done[other].max()]
         for values, group in _grouped(done, groups):
-            for name in CLAMP_READINGS:
+            for name in (*CLAMP_READINGS, *ONLY_IN_SPACE):
                 metric = f"disagreement_{name}_rms"
                 if metric not in group:
                     continue

@@ -31,7 +31,11 @@ def estimate(plan: Plan, workers: int) -> str:
     probes = sorted({round(i * last / (_PROBES - 1)) for i in range(_PROBES)})
     rows = [perform(recipe, plan[index]).row for index in probes]
     seconds = mean(row["seconds"] for row in rows) * len(plan) / workers
-    stations = plan.study.base["sweep.stations"] if plan.study.keep_readings else 0
+    stations = (
+        plan.study.base["path.stations" if plan.study.in_space else "sweep.stations"]
+        if plan.study.keep_readings
+        else 0
+    )
     size = len(plan) * (_BYTES_A_ROW + 2 * stations * _BYTES_A_STATION)
     trouble = sum(row["outcome"] != "done" for row in rows)
     return (

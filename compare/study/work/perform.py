@@ -15,11 +15,15 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from analytic import InputError, Readings, solve_sweep
+from analytic.space import SpatialReadings, solve_space
 from compare.judge.tolerances import Tolerances
+from compare.read.space import SpaceFile
 from compare.study.grid.axes import Value
+from compare.study.grid.estimator import Estimator
 from compare.study.grid.plan import PlannedRun
+from compare.study.grid.sensor import SensorNoise
 from compare.study.grid.study import RECORDS, Study, case_file
-from compare.study.work import metrics
+from compare.study.work import in_space, metrics
 from compare.study.work.recipe import Recipe
 from compare.study.work.together import Known, known_of
 from engines.apart import checked
@@ -42,7 +46,12 @@ _BOUNCES = 0.1
 _IDENTITY = {"run": "string", "outcome": "string", "reason": "string"}
 RECORDED = {
     **_IDENTITY,
-    **{name: kind for record in RECORDS for name, kind in metrics.COLUMNS[record].items()},
+    **{
+        name: kind
+        for columns_of in (metrics.COLUMNS, in_space.COLUMNS)
+        for record in RECORDS
+        for name, kind in columns_of[record].items()
+    },
     "seed": "int64",
     **_ABOUT,
 }
@@ -54,7 +63,7 @@ class Result:
     """A run's row, and its readings if they are to be kept."""
 
     row: Row
-    readings: dict[str, Readings] = field(default_factory=dict)
+    readings: dict[str, Readings | SpatialReadings] = field(default_factory=dict)
 
 
 class _TimeIsUp(Exception):  # noqa: N818  # not an error: an outcome
@@ -81,7 +90,7 @@ def columns(study: Study) -> dict[str, str]:
             kinds = {types[type(value)] for value in values}
             found[key] = kinds.pop() if len(kinds) == 1 else "double"
     for record in study.record:
-        found |= metrics.COLUMNS[record]
+        found |= (in_space if study.in_space else metrics).COLUMNS[record]
     return found | {"seed": "int64"} | _ABOUT
 
 
@@ -131,7 +140,7 @@ def perform_together(recipe: Recipe, runs: Sequence[PlannedRun]) -> list[Result]
 def _performed(recipe: Recipe, run: PlannedRun, known: Known, spent: float = 0.0) -> Result:
     begin = time.perf_counter() - spent
     row: Row = {"run": run.id, "outcome": "done", "reason": "", **run.parameters, **_system()}
-    readings: dict[str, Readings] = {}
+    readings: dict[str, Readings | SpatialReadings] = {}
     try:
         row |= _measure(recipe, run.parameters, readings, known)
     except _TimeIsUp:
@@ -188,9 +197,14 @@ def lost(run: PlannedRun, outcome: Outcome, reason: str) -> Result:
 
 
 def _measure(
-    recipe: Recipe, parameters: dict[str, Value], readings: dict[str, Readings], known: Known
+    recipe: Recipe,
+    parameters: dict[str, Value],
+    readings: dict[str, Readings | SpatialReadings],
+    known: Known,
 ) -> Row:
     file, noise, estimator = known.file or case_file({**recipe.base, **parameters})
+    if isinstance(file, SpaceFile):
+        return _measure_in_space(recipe, file, noise, estimator, readings)
     row: Row = {"seed": noise.seed}
     if "events" in recipe.record:
         physics, direction = file.physics(Path()), file.sweep.direction
@@ -231,7 +245,45 @@ def _measure(
     return row
 
 
-def _trust(simulated: Readings) -> Row:
+def _measure_in_space(
+    recipe: Recipe,
+    file: SpaceFile,
+    noise: SensorNoise,
+    estimator: Estimator,
+    readings: dict[str, Readings | SpatialReadings],
+) -> Row:
+    row: Row = {"seed": noise.seed}
+    case = file.case(Path(), "run")
+    reference = simulated = solve_space(case)
+    if "events" in recipe.record:
+        row |= in_space.events(reference)
+    if recipe.events_only:
+        return row
+    if recipe.simulate:
+        from mujoco_models import simulate_space
+
+        begin = time.perf_counter()
+        simulated = simulate_space(case, file.mujoco, _deadline(begin + recipe.timeout))
+        row["seconds_candidate"] = time.perf_counter() - begin
+        row |= _trust(simulated)
+    candidate = in_space.with_noise(simulated, noise.relative, noise.seed)
+    readings["analytic"] = reference
+    if candidate is not reference:
+        readings["candidate"] = candidate
+    if row.get("outcome") == "diverged":
+        return row
+    if "disagreement" in recipe.record:
+        row |= in_space.disagreement(reference, candidate)
+    if "reconstruction" in recipe.record:
+        if estimator.method != "elastica":
+            raise InputError(
+                "reconstruction.method", estimator.method, "elastica in space", "leave it out"
+            )
+        row |= in_space.reconstruction(candidate)
+    return row
+
+
+def _trust(simulated: Readings | SpatialReadings) -> Row:
     """The outcome, if the simulation itself speaks against too many of its stations."""
     status = simulated.table["status"].to_numpy()
     for outcome in ("diverged", "unsettled"):

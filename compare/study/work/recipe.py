@@ -17,6 +17,11 @@ class Recipe:
     timeout: float
 
     @property
+    def in_space(self) -> bool:
+        """Whether the sweeps are in space."""
+        return "body.kind" in self.base
+
+    @property
     def events_only(self) -> bool:
         """Whether nothing has to be swept."""
         return set(self.record) == {"events"} and not self.simulate

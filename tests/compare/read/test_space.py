@@ -143,3 +143,8 @@ def test_a_foreign_file_has_columns_units_and_a_frame_of_its_own(tmp_path):
         read_space(tmp_path / "other.csv", None, None, columns)
     with pytest.raises(InputError, match="force_w"):
         read_space(tmp_path / "other.csv", case.beam, None, ["force_w=X"])
+
+
+def test_the_way_is_turned_about_y(tmp_path):
+    case = loaded(BALL.replace("stations = 20", "stations = 20\nturn = 90"), tmp_path)
+    assert np.allclose(case.path.points, [[0.015, -0.065], [0.010, 0.075]])
