@@ -2,9 +2,10 @@
 
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.simplify import thinned
@@ -19,6 +20,8 @@ _ASCII = bytes(range(128)) + 128 * b"?"
 _LARGEST = 256_000_000  # bytes; an STL file of 5 million faces
 _ROUNDING = 1e-5  # of the volume: files hold single precision
 _FLAT = 1e-7  # of the extent: likewise
+# Odd numbers without a pattern, to scatter what is multiplied by them.
+_HASH = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dtype=np.uint64)
 _MOST_VERTICES = 50_000  # the hull of a round body takes MuJoCo half a second then
 
 
@@ -100,11 +103,11 @@ def read_body(file: str | Path, hull: bool, tolerance: float) -> Body:
 def _check_convex(read: _Read, hull: float, file: Path) -> None:
     """Refuse a mesh that fills less than the volume of its hull."""
     mesh, middle, size = read
-    if mesh.is_winding_consistent:
-        volume = abs(float(mesh.volume))
-    else:  # then by cones from the middle, whichever way the faces look
-        corners = mesh.triangles - mesh.vertices.mean(axis=0)
-        volume = float(np.abs(np.linalg.det(corners)).sum()) / 6
+    corners = mesh.triangles - mesh.vertices.mean(axis=0)
+    cones = np.einsum("nd,nd->n", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
+    if not mesh.is_winding_consistent:
+        cones = np.abs(cones)  # whichever way the faces look
+    volume = abs(float(cones.sum()))
     if volume < (1 - _ROUNDING) * hull:
         dent = int(np.argmax(mesh.face_adjacency_projections * np.sign(mesh.volume)))
         x, y, z = middle + size * mesh.vertices[mesh.face_adjacency_edges[dent, 0]]
@@ -124,6 +127,7 @@ def _load(file: Path) -> _Read:
         )
     regular_file(file, "mesh file", _LARGEST)
     import trimesh
+    from trimesh.exchange.stl import load_stl
 
     kind = file.suffix.lower().removeprefix(".")
     options = {"skip_materials": True} if kind == "obj" else {}
@@ -131,11 +135,12 @@ def _load(file: Path) -> _Read:
         with np.errstate(all="ignore"):
             # A glTF may name files beside it.
             source = file if kind in ("glb", "gltf") else _in_ascii(file.read_bytes(), kind)
-            found: trimesh.Trimesh = trimesh.load_mesh(
-                source, file_type=kind, process=False, **options
-            )
-            points = np.asarray(found.vertices, dtype=float).reshape(-1, 3)
-            faces = np.asarray(found.faces).reshape(-1, 3)
+            if kind == "stl":
+                points, faces = _triangles(load_stl(source))
+            else:
+                found = trimesh.load_mesh(source, file_type=kind, process=False, **options)
+                points = np.asarray(found.vertices, dtype=float).reshape(-1, 3)
+                faces = np.asarray(found.faces).reshape(-1, 3)
             size = float(np.ptp(points[faces], axis=(0, 1)).max()) if len(faces) else 0.0
     except ImportError as error:  # of what trimesh needs for some files only
         package = error.name or str(error)
@@ -158,12 +163,36 @@ def _load(file: Path) -> _Read:
         raise InputError(
             f"mesh {file}", f"of size {size:.3g}", "between 1e-90 and 1e90", "change its unit"
         )
+    points, faces = _merged(points, faces)
     middle = points[faces].mean(axis=(0, 1))
     mesh = trimesh.Trimesh((points - middle) / size, faces, process=False)
     mesh.remove_unreferenced_vertices()
     mesh.merge_vertices()  # with an absolute tolerance: hence in units of its size
-    mesh.update_faces((np.diff(np.sort(mesh.faces, axis=1)) > 0).all(axis=1))  # slivers close it
+    one, two, three = mesh.faces.T  # slivers close it
+    mesh.update_faces((one != two) & (two != three) & (three != one))
     return _Read(mesh, middle, size)
+
+
+def _triangles(found: dict[str, Any]) -> tuple[Floats, Integers]:
+    """Of an STL file's solids, without the copies that a scene makes of them."""
+    solids = found.get("geometry", {"": found}).values()
+    points = np.concatenate([np.zeros((0, 3)), *(solid["vertices"] for solid in solids)])
+    return points, np.arange(len(points)).reshape(-1, 3)
+
+
+def _merged(points: Floats, faces: Integers) -> tuple[Floats, Integers]:
+    """Points that are alike to the last digit once each: an STL file repeats every vertex.
+
+    Without sorting them: by one number for each, whose points are then compared.
+    """
+    bits = np.ascontiguousarray(points + 0.0).view(np.uint64)  # + 0.0 turns -0.0 into 0.0
+    bits ^= bits >> np.uint64(29)  # numbers of single precision end with so many zeros
+    codes, numbers = pd.factorize((bits * _HASH).sum(axis=1))
+    first = np.empty(len(numbers), dtype=np.intp)
+    first[codes[::-1]] = np.arange(len(points))[::-1]
+    if not np.array_equal(points[first][codes], points):  # two points with one number
+        return points, faces
+    return points[first], codes[faces]
 
 
 def _in_ascii(content: bytes, kind: str) -> BytesIO:

@@ -5,7 +5,8 @@ import numpy as np
 from analytic.problem.arrays import Floats, Integers
 
 _START = 4  # cells along an edge of the cube
-_ROUNDS = 12  # the number of points about doubles in each
+_SAMPLE, _EACH = 50_000, 8  # points that are asked at least, and for each that is kept
+_ROUNDS = 20  # the number of points about doubles in each
 _NEAREST = 6  # faces that are asked whether a vertex lies outside of them
 _ROUNDING = 1e-12  # of the body's size; as far outside is on the surface
 
@@ -14,7 +15,8 @@ def thinned(points: Floats, tolerance: float, most: int) -> tuple[Floats, float]
     """Points of a convex surface such that their hull is nearly that of all.
 
     It begins with the point farthest out in each of some hundred ranges of directions. Then, round
-    by round, each face of the hull gets the point that is farthest outside of it.
+    by round, each face of the hull gets the point that is farthest outside of it. Few faces need no
+    more than a sample of the points; the last round, and what is said of it, has all of them.
 
     Parameters
     ----------
@@ -36,17 +38,23 @@ def thinned(points: Floats, tolerance: float, most: int) -> tuple[Floats, float]
     if tolerance == 0 and len(points) <= most:
         return points, 0.0
     allowed = max(tolerance, _ROUNDING * float(np.ptp(points, axis=0).max()))
-    kept = _farthest(points)
+    kept, everyone = _farthest(points), np.arange(len(points))
+    mixed, enough = np.random.default_rng(0).permutation(len(points)), False
     for _ in range(_ROUNDS):
-        outside, face = _outside(points, points[kept])
+        enough = enough or len(kept) == most
+        asked = everyone if enough else mixed[: max(_SAMPLE, _EACH * len(kept))]
+        outside, face = _outside(points[asked], points[kept])
         miss = float(outside.max())
-        if miss <= allowed or len(kept) == most:
+        if len(asked) == len(points) and (miss <= allowed or len(kept) == most):
             break
+        enough = enough or miss <= allowed
         order = np.lexsort((-outside, face))
         worst = order[np.append(True, np.diff(face[order]) > 0)]
         worst = worst[outside[worst] > allowed]
         worst = worst[np.argsort(-outside[worst])][: most - len(kept)]
-        kept = np.union1d(kept, worst)
+        kept = np.union1d(kept, asked[worst])
+    else:
+        miss = float(_outside(points, points[kept])[0].max())
     if miss > allowed and len(points) <= most:
         return points, 0.0
     return points[kept], miss if miss > allowed or tolerance > 0 else 0.0
@@ -81,8 +89,10 @@ def _outside(points: Floats, kept: Floats) -> tuple[Floats, Integers]:
     centres = KDTree(hull.points[hull.simplices].mean(axis=1))
     scaled = (points - middle) / size
     near = np.asarray(centres.query(scaled, k=min(_NEAREST, len(hull.simplices)))[1])
-    planes = hull.equations[near]
-    distance = np.einsum("nkd,nd->nk", planes[..., :3], scaled) + planes[..., 3]
-    worst = np.argmax(distance, axis=1)
-    each = np.arange(len(points))
-    return np.maximum(distance[each, worst], 0) * size, near[each, worst]
+    most, face = np.full(len(points), -np.inf), near[:, 0].copy()
+    for candidate in near.T:
+        planes = hull.equations[candidate]
+        distance = np.einsum("nd,nd->n", planes[:, :3], scaled) + planes[:, 3]
+        farther = distance > most
+        most[farther], face[farther] = distance[farther], candidate[farther]
+    return np.maximum(most, 0) * size, face

@@ -82,6 +82,23 @@ def test_next_to_an_edge_the_nearest_point_is_on_the_right_side_of_it():
 
 
 @pytest.mark.slow
+def test_a_fine_mesh_is_simplified_within_what_its_label_says(tmp_path):
+    """327,680 triangles, a second's work."""
+    file = saved(ball(7), tmp_path)
+    fine = np.asarray(trimesh.load_mesh(file).vertices)
+    for tolerance in (0.0, 1e-3):
+        body = convex_mesh(file, scale=2.0, tolerance=tolerance)
+        said = float(body.label.split("simplified within ")[1])
+        assert len(body.vertices) <= 50_000
+        assert tolerance == 0 or said <= tolerance * 1.05  # of two digits
+        draw = np.random.default_rng(0).permutation(len(fine))[:300]
+        beyond = (2 * fine[draw] @ body.normals.T - body.heights).max(axis=1)
+        assert beyond.max() <= 1.05 * said
+    with pytest.raises(InputError, match=r"tolerance.* or more"):
+        convex_mesh(file, tolerance=1e-6)
+
+
+@pytest.mark.slow
 def test_a_mesh_in_millimetres_and_inside_out(tmp_path):
     mesh = ball(4, 1000.0, (0.0, 1400.0, 0.0))
     mesh.invert()

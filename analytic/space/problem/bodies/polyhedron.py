@@ -222,7 +222,8 @@ def convex_mesh(
     """A convex body from a mesh file.
 
     Vertices at one place are merged, a mesh that is inside out is turned. A body of more than
-    50,000 vertices is thinned to that number at most.
+    50,000 vertices is thinned to that number at most, and its label says how far outside those lie
+    that are left out.
 
     Parameters
     ----------
@@ -252,7 +253,10 @@ def convex_mesh(
     if not (np.isfinite(tolerance) and tolerance >= 0):
         raise InputError("body mesh.tolerance", tolerance, "0 or more", "correct it")
     body = read_body(file, hull, tolerance / unit)
-    return _polyhedron(unit * body.vertices + place, body.faces, body.normals, Path(file).name)
+    label = Path(file).name
+    if body.miss > 0:
+        label += f", simplified within {body.miss * unit:.1e}"
+    return _polyhedron(unit * body.vertices + place, body.faces, body.normals, label)
 
 
 def polyhedron(points: Floats, label: str = "polyhedron") -> Polyhedron:
