@@ -133,11 +133,11 @@ def _load(file: Path) -> _Read:
     options = {"skip_materials": True} if kind == "obj" else {}
     try:
         with np.errstate(all="ignore"):
-            # A glTF may name files beside it.
-            source = file if kind in ("glb", "gltf") else _in_ascii(file.read_bytes(), kind)
             if kind == "stl":
-                points, faces = _triangles(load_stl(source))
+                points, faces = _triangles(load_stl(_in_ascii(file.read_bytes(), kind)))
             else:
+                # A glTF may name files beside it.
+                source = file if kind in ("glb", "gltf") else _in_ascii(file.read_bytes(), kind)
                 found = trimesh.load_mesh(source, file_type=kind, process=False, **options)
                 points = np.asarray(found.vertices, dtype=float).reshape(-1, 3)
                 faces = np.asarray(found.faces).reshape(-1, 3)
