@@ -87,7 +87,8 @@ def relax(
                 continue
             if not twice and lookout.belied(contacts):
                 continue
-            slope = float(slopes.mean()) if slopes.size else None
+            depths = contacts.distance[contacts.loaded]
+            slope = float(depths @ slopes / depths.sum()) if slopes.size else None
             return replace(state, settled=True, stance=stance(model, contacts), slope=slope)
         state = newton.step(state, contacts)
         if leave is not None and turned(state.angles, leave.angles) > numerics.left_turn:

@@ -142,6 +142,7 @@ def _tilt(body: Body, points: Floats, across: list[int]) -> float:
     """Largest component of the normals across the plane, along the lower side of the section.
 
     An edge in the plane has all normals between those of its two faces; the least tilted counts.
+    So has the edge where the lower side ends, which an upright vibrissa can touch.
 
     `points` are the body's vertices, `across` its axes in the frame of the section.
     """
@@ -155,4 +156,7 @@ def _tilt(body: Body, points: Floats, across: list[int]) -> float:
     pairs = pairs[up[pairs].sum(axis=1) < 0]
     one_way = third[pairs].prod(axis=1) > 0
     tilts = [*np.abs(third[cut]), *np.abs(third[pairs[one_way]]).min(axis=1)]
-    return float(max(tilts, default=0.0))
+    face, edge = np.nonzero(cut[:, None] & (ends.prod(axis=2) < 0) & (up[body.neighbours] >= 0))
+    begin, end = body.faces[face, edge - 2], body.faces[face, edge - 1]
+    x, _, z = (points[end] - points[begin]).T
+    return float(max([*tilts, *(np.abs(x) / np.hypot(x, z))], default=0.0))

@@ -302,3 +302,15 @@ def test_a_closed_needle_is_not_open(tmp_path):
     trimesh.convex.convex_hull(np.concatenate(ends)).export(tmp_path / "needle.obj")
     found = mesh_section(tmp_path / "needle.obj", height=0.0)
     assert len(found.vertices) == pytest.approx(501, abs=1)  # its lower side
+
+
+@pytest.mark.parametrize(("height", "tilted"), [(0.5, False), (0.02, True)])
+def test_the_rim_of_a_tilted_cone_is_no_side(tmp_path, height, tilted):
+    """Near its base the plane leaves the cone through the rim, which lies nearly in the plane."""
+    cone = trimesh.creation.cone(radius=4.0, height=400.0, sections=64)
+    turn = trimesh.transformations.rotation_matrix(0.05, [1.0, 1.0, 0.0])
+    cone.apply_transform(turn)
+    cone.apply_translation([0, 0, -cone.bounds[0][2]])
+    cone.export(tmp_path / "cone.stl")
+    solid = mesh_section(tmp_path / "cone.stl", height=height).solid
+    assert (solid.tilt > 0.5) is tilted
