@@ -8,10 +8,12 @@ from tests.bench import (
     exudyn_speed,
     mujoco_speed,
     plain_stepping,
+    ratios,
     study_speed,
 )
 
 PARTS = {
+    "ratios": ratios.main,
     "analytic": analytic_speed.main,
     "mujoco": mujoco_speed.main,
     "stepping": plain_stepping.main,

@@ -1,0 +1,209 @@
+"""Costs as ratios within one run, with a history in `results/bench.json`.
+
+Seconds depend on the machine and on what else runs there; what a sweep costs in units of another
+calculation, timed beside it in the same process, hardly does. The other calculation is never ours,
+so that a change of ours shows in the ratio.
+"""
+
+import json
+import resource
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from datetime import UTC, datetime
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+from scipy.integrate import solve_ivp
+from scipy.special import ellipkinc
+
+from analytic import (
+    Beam,
+    Case,
+    Sweep,
+    catenary,
+    named_case,
+    reconstruct,
+    solve_contact,
+    solve_sweep,
+    solve_sweeps,
+)
+from mujoco_models import Settings, simulate_sweep
+
+HISTORY = Path(__file__).parents[2] / "results" / "bench.json"
+REGRESSION = 1.3
+"""More than this over the last entry of the history is a regression.
+
+Medians of seven pairs repeat within 10 % on a machine with other work to do.
+"""
+
+_PAIRS = 7
+_COUNT = 100_000  # contacts in an array
+_BATCH = 82  # sweeps: as many as `solve_sweeps` takes at once
+
+_COMMAND = "import sys; from compare.commands.main import main"
+
+
+class Cost(NamedTuple):
+    """A calculation of ours, and another one to hold it against."""
+
+    ours: Callable[[], object]
+    other: Callable[[], object]
+    share: float = 1.0
+    """What the ratio is of: one of so many sweeps, or stations."""
+
+
+class Measured(NamedTuple):
+    """The median of a ratio over some pairs, and half the width that holds half of them."""
+
+    ratio: float
+    spread: float
+
+
+def costs() -> dict[str, Cost]:
+    """What is timed, by the name that it has in the history."""
+    profile, thin, case = catenary(0.5, -0.8), Beam(radius=0.0), named_case("catenary")
+    tangent = np.deg2rad(np.linspace(-14, 30, _COUNT))
+    tip = np.deg2rad(np.linspace(-31, -15, _COUNT))
+    readings = solve_sweep(case)
+    amplitudes = np.linspace(0.1, 1.5, _COUNT)
+    integrals = partial(ellipkinc, amplitudes, 0.3)
+
+    def many() -> list[object]:
+        return list(
+            solve_sweeps(Case(profile=catenary(0.4 + 1e-3 * i, -0.8)) for i in range(_BATCH))
+        )
+
+    found = {
+        "contacts in Phase A, by SciPy's elliptic integrals": Cost(
+            lambda: solve_contact(profile, tip, thin), integrals
+        ),
+        "contacts in Phase B, by SciPy's elliptic integrals": Cost(
+            lambda: solve_contact(profile, tangent, thin), integrals
+        ),
+        "a sweep in closed form, by SciPy's integration of a pendulum": Cost(
+            lambda: solve_sweep(replace(case)), _pendulum
+        ),
+        "one of many such sweeps, by the same": Cost(many, _pendulum, _BATCH),
+        "the object from its readings, by the same": Cost(lambda: reconstruct(readings), _pendulum),
+        "`vibrissa cases`, by an import of SciPy's optimisers": Cost(
+            partial(_process, f"{_COMMAND}; sys.argv[1:] = ['cases']; main()"),
+            partial(_process, "import scipy.optimize"),
+        ),
+    }
+    for segments in (40, 160):
+        short = replace(case, sweep=Sweep(60))
+        found[f"a station of MuJoCo's chain, N = {segments}, by an mj_forward of a chain"] = Cost(
+            partial(simulate_sweep, short, Settings(segments=segments)),
+            partial(_forward, *_chain(segments)),
+            60,
+        )
+    return found
+
+
+def measure(cost: Cost, pairs: int = _PAIRS) -> Measured:
+    """A ratio of CPU times, in pairs one after the other."""
+    cost.ours()
+    repeats = max(1, round(_seconds(cost.ours) / max(_seconds(cost.other), 1e-9) / 2))
+    found = []
+    for _ in range(pairs):
+        ours = _seconds(cost.ours)
+        other = min(_seconds(partial(_repeat, cost.other, repeats)) for _ in range(2))
+        found.append(ours / other * repeats / cost.share)
+    quarter, half, three = statistics.quantiles(found, n=4)
+    return Measured(half, (three - quarter) / 2)
+
+
+def last(path: Path = HISTORY) -> dict[str, float]:
+    """The ratios of the last entry."""
+    entry = json.loads(path.read_text())[-1]
+    return {name: float(value["ratio"]) for name, value in entry["ratios"].items()}
+
+
+def regressions(now: Mapping[str, Measured], before: Mapping[str, float]) -> list[str]:
+    """What has become dearer, a line each."""
+    return [
+        f"{name}: {now[name].ratio:.3g}, {now[name].ratio / ratio:.2f} times {ratio:.3g}"
+        for name, ratio in before.items()
+        if name in now and now[name].ratio > REGRESSION * ratio
+    ]
+
+
+def main(quick: bool) -> None:
+    """Measure, show beside the last entry and, if not quick, add an entry to the history."""
+    before = last()
+    found = {name: measure(cost, 2 if quick else _PAIRS) for name, cost in costs().items()}
+    table = Table("cost", "ratio", "spread", "last entry", title="Ratios of CPU times in one run")
+    for name, (ratio, spread) in found.items():
+        table.add_row(name, f"{ratio:.3g}", f"{spread:.1g}", f"{before.get(name, np.nan):.3g}")
+    Console().print(table)
+    for line in regressions(found, before):
+        Console().print(f"dearer than in the last entry: {line}")
+    if not quick:
+        entry = {
+            "date": datetime.now(UTC).date().isoformat(),
+            "mujoco": mujoco.__version__,
+            "numpy": np.__version__,
+            "ratios": {
+                name: {"ratio": float(f"{x.ratio:.4g}"), "spread": float(f"{x.spread:.2g}")}
+                for name, x in found.items()
+            },
+        }
+        history = [*json.loads(HISTORY.read_text()), entry]
+        HISTORY.write_text(json.dumps(history, indent=1) + "\n")
+
+
+def _seconds(call: Callable[[], object]) -> float:
+    """CPU time of a call and of the processes that it has started and awaited."""
+    begin = _spent()
+    call()
+    return _spent() - begin
+
+
+def _spent() -> float:
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + usage.ru_utime + usage.ru_stime
+
+
+def _repeat(call: Callable[[], object], times: int) -> None:
+    for _ in range(times):
+        call()
+
+
+def _process(program: str) -> None:
+    subprocess.run([sys.executable, "-c", program], check=True, capture_output=True)
+
+
+def _pendulum() -> object:
+    return solve_ivp(lambda _, y: [y[1], -np.sin(y[0])], (0.0, 10.0), [1.0, 0.0], rtol=1e-8)
+
+
+def _chain(segments: int) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    """A chain of capsules on hinges: nothing of it is ours."""
+    spec = mujoco.MjSpec()
+    spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    body, length = spec.worldbody, 1 / segments
+    for i in range(segments):
+        body = body.add_body(pos=[0, 0, length if i else 0])
+        body.add_joint(type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 1, 0])
+        body.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_CAPSULE,
+            fromto=[0, 0, 0, 0, 0, length],
+            size=[0.005, 0, 0],
+            contype=0,
+            conaffinity=0,
+        )
+    model = spec.compile()
+    return model, mujoco.MjData(model)
+
+
+def _forward(model: mujoco.MjModel, data: mujoco.MjData) -> None:
+    mujoco.mj_forward(model, data)
