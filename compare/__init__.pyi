@@ -13,6 +13,7 @@ from .sense.phases import Classification as Classification
 from .sense.phases import classify as classify
 from .spatial.comparison import SpatialComparison as SpatialComparison
 from .spatial.comparison import compare_space as compare_space
+from .spatial.parts import split_space as split_space
 from .testing.gates import assert_agreement as assert_agreement
 from .validate.stated import Input as Input
 from .validate.stated import Uncertainties as Uncertainties

@@ -153,7 +153,7 @@ def _compared(
     from compare.show.animation.space import write_space_animation
     from compare.show.report import Film
     from compare.spatial.comparison import compare_space
-    from compare.spatial.parts import split
+    from compare.spatial.parts import split_space
     from mujoco_models import simulate_space
 
     case, file = job.case, folder / f"mujoco-{job.settings.beam}.parquet"
@@ -169,7 +169,7 @@ def _compared(
     terminal.print_line(_solved(candidate))
     terminal.print_written(candidate.write(file))
     comparison = compare_space(exact, candidate, job.tolerances, frame=frame)
-    parts = split(exact, candidate, job.settings, sweep) if with_budget else None
+    parts = split_space(exact, candidate, job.settings, sweep) if with_budget else None
     with terminal.progress("frames", _FRAMES) as advance:
         write_space_animation(exact, candidate, folder, case.body, _FRAMES, advance)
     _report(comparison, case.body, folder, parts, Film.of(folder))
@@ -214,6 +214,7 @@ def compare_in_space(
             solve_space,
             wrench_complaint,
         )
+        from compare.show.report import Film
         from compare.spatial.comparison import compare_space
 
         body = None
@@ -227,7 +228,8 @@ def compare_in_space(
         comparison = compare_space(exact, measured, limits, frame=frame)
     default = Path("results") / f"{called}-{distinct_name(candidate)}"
     with output_folder(out or default) as folder:
-        _report(comparison, body, folder)
+        film = Film.of(folder) if candidate.parent.resolve() == folder.resolve() else None
+        _report(comparison, body, folder, film=film)
         complaint = wrench_complaint(reconstruct_space(measured))
     if complaint is not None:
         terminal.print_line(f"{measured.source}: {complaint}")

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from analytic.problem.errors import InputError
 from compare.commands.options import (
     AGREES,
     DISAGREES,
@@ -115,8 +116,17 @@ def report(
     """
     from compare.read.sweep_files import sweep_files
 
-    sweep_files(folder)
+    reference, candidate = sweep_files(folder)
     from compare.read.run_folder import read_run
+    from compare.read.space_readings import is_spatial
+
+    if is_spatial(reference):
+        raise InputError(
+            "DIR",
+            folder,
+            "the folder of a run in the plane",
+            f"in space: vibrissa compare CASE.toml {candidate} --out {folder}",
+        )
 
     stored = read_run(folder)
     with output_folder(folder):

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
@@ -132,14 +133,14 @@ def faces_within(points: Floats, low: Floats, high: Floats) -> Floats:
 
 def _outermost(points: Floats) -> Floats:
     """The points themselves if they are few, else those that reach farthest in many directions."""
-    points = np.unique(points, axis=0)
+    points = pd.DataFrame(points).drop_duplicates().to_numpy()
     if len(points) <= _CORNERS:
         return points
     height = 1 - 2 * (np.arange(_CORNERS) + 0.5) / _CORNERS  # evenly over the sphere, on a spiral
     angle = np.pi * (1 + np.sqrt(5)) * np.arange(_CORNERS)
     ring = np.sqrt(1 - height**2)
-    ways = np.stack([ring * np.cos(angle), height, ring * np.sin(angle)])
+    ways = np.column_stack([ring * np.cos(angle), height, ring * np.sin(angle)])
     chosen = [
-        np.argmax(points @ ways[:, i : i + _AT_ONCE], axis=0) for i in range(0, _CORNERS, _AT_ONCE)
+        np.argmax(ways[i : i + _AT_ONCE] @ points.T, axis=1) for i in range(0, _CORNERS, _AT_ONCE)
     ]
     return np.asarray(points[np.unique(np.concatenate(chosen))])

@@ -9,9 +9,11 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.space import SpatialReadings
 from analytic.space.problem.readings import FORCE, MOMENT
+from mujoco_models.settings import CONTACT_STIFFNESSES
 from mujoco_models.space.settings import SpatialSettings
 
 _ORDER = 2  # of the chain in 1/N
+_MOST = 400  # segments
 _STIFFER = 10.0
 
 
@@ -24,9 +26,9 @@ class Parts(NamedTuple):
     whole: float
     """Of the disagreement itself."""
     discretisation: float
-    """What the limit of many segments does not have, by twice as many and order two."""
+    """What the limit of many segments does not have, by another number and order two."""
     softness: float
-    """What a rigid contact does not have, by ten times the stiffness."""
+    """What a rigid contact does not have, by another stiffness."""
     unexplained: float
     """What is left when these are subtracted, station by station."""
     stations: int
@@ -56,13 +58,13 @@ class Parts(NamedTuple):
         return self._asdict()
 
 
-def split(
+def split_space(
     exact: SpatialReadings,
     base: SpatialReadings,
     settings: SpatialSettings,
     sweep: Callable[[SpatialSettings], SpatialReadings],
 ) -> Parts:
-    """Split the disagreement of a MuJoCo sweep.
+    """Split the disagreement of a MuJoCo sweep in space, by two more sweeps.
 
     Parameters
     ----------
@@ -78,8 +80,13 @@ def split(
     Parts
         Root mean squares.
     """
-    finer = sweep(replace(settings, segments=2 * settings.segments))
-    stiffness = min(_STIFFER * settings.contact_stiffness, 1e9)
+    other = 2 * settings.segments  # where there cannot be so many, half as many show the same
+    if other > _MOST:
+        other = settings.segments // 2
+    finer = sweep(replace(settings, segments=other))
+    stiffness = _STIFFER * settings.contact_stiffness
+    if stiffness > CONTACT_STIFFNESSES[1]:
+        stiffness = settings.contact_stiffness / _STIFFER
     stiffer = sweep(replace(settings, contact_stiffness=stiffness))
     shared = np.logical_and.reduce([r.touching for r in (exact, base, finer, stiffer)])
     values = {
@@ -87,9 +94,8 @@ def split(
         for name, readings in (("exact", exact), ("base", base), ("n", finer), ("k", stiffer))
     }
     whole = values["base"] - values["exact"]
-    coarse = (values["base"] - values["n"]) * 2**_ORDER / (2**_ORDER - 1)
-    share = settings.contact_stiffness / stiffness
-    soft = (values["base"] - values["k"]) / (1 - share) if share < 1 else np.zeros_like(whole)
+    coarse = (values["base"] - values["n"]) / (1 - (settings.segments / other) ** _ORDER)
+    soft = (values["base"] - values["k"]) / (1 - settings.contact_stiffness / stiffness)
     rest = whole - coarse - soft
     return Parts(_worst(whole), _worst(coarse), _worst(soft), _worst(rest), int(shared.sum()))
 

@@ -12,8 +12,8 @@
   const line = (points, stroke, color) =>
     new Zdog.Shape({addTo: all, path: points.map(at), closed: false, stroke, color});
   const shaded = light => {
-    const rgb = colour("body").match(/\w\w/g).map(x => Math.round(parseInt(x, 16) * light));
-    return `rgba(${rgb}, 0.62)`;
+    const rgb = colour("faint").match(/\w\w/g).map(x => Math.round(parseInt(x, 16) * light));
+    return `rgba(${rgb}, 0.42)`;
   };
 
   const picture = new Zdog.Illustration({

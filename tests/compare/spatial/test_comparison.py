@@ -10,9 +10,8 @@ from PIL import Image
 from analytic import Beam, InputError
 from analytic.space import FootPath, SpatialCase, SpatialReadings, solve_space, sphere
 from analytic.space.problem.readings import FORCE, MOMENT, SENSED_IN_SPACE
-from compare import SpatialTolerances, assert_agreement, compare_space
+from compare import SpatialTolerances, assert_agreement, compare_space, split_space
 from compare.align.frames import clamp_axes, components, from_frame
-from compare.spatial.parts import split
 from mujoco_models import SpatialSettings, simulate_space
 from tests.compare.command import vibrissa
 
@@ -154,11 +153,29 @@ def test_the_gate_raises_with_every_limit(exact):
         assert_agreement(exact, object())
 
 
+@pytest.mark.parametrize(("segments", "stiffness"), [(40, 1e7), (300, 1e9)])
+def test_planted_parts_are_found(exact, segments, stiffness):
+    """Off by 2/N^2, by 1e-3 for its contact and, planted, by 1e-3: each is found."""
+
+    def sweep(settings):
+        size = 1 + 2 / settings.segments**2 + 1e-3 * stiffness / settings.contact_stiffness + 1e-3
+        columns = {name: size * exact.values(name) for name in (*FORCE, *MOMENT)}
+        return changed(exact, **columns)
+
+    settings = SpatialSettings(segments=segments, contact_stiffness=stiffness)
+    parts = split_space(exact, sweep(settings), settings, sweep)
+    assert parts.stations == exact.touching.sum()
+    share = parts.whole / (2 / segments**2 + 2e-3)
+    assert parts.discretisation == pytest.approx(2 / segments**2 * share, rel=1e-9)
+    assert parts.softness == pytest.approx(1e-3 * share, rel=1e-9)
+    assert parts.unexplained == pytest.approx(1e-3 * share, rel=1e-9)
+
+
 @pytest.mark.slow
 def test_the_parts_are_mostly_the_discretisation():
     exact, settings = solve_space(CASE), SpatialSettings(segments=10)
     base = simulate_space(CASE, settings)
-    parts = split(exact, base, settings, lambda chosen: simulate_space(CASE, chosen))
+    parts = split_space(exact, base, settings, lambda chosen: simulate_space(CASE, chosen))
     assert parts.discretisation == pytest.approx(parts.whole, rel=0.3)
     assert parts.unexplained < 0.5 * parts.whole
     assert parts.softness < 1e-4
@@ -202,6 +219,9 @@ def test_the_command_compares_and_ends_with_the_right_code(tmp_path):
         assert done.returncode == code, done.stdout + done.stderr
         assert says in done.stdout + done.stderr
         assert len(done.stderr.strip().splitlines()) == (code == 2)
+    done = vibrissa("report", "of-40", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "vibrissa compare CASE.toml of-40/mujoco-chain.parquet --out of-40" in done.stderr
     for wrong in (["--engine", "drake"], ["--budget"]):
         done = vibrissa("space", "case.toml", *wrong, cwd=tmp_path)
         assert done.returncode == 2
