@@ -112,8 +112,9 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
                      f"{rigidity[-1]:.4g} at the tip")  # fmt: skip
     error = elastica_error(found)
     if abs(off) <= _RIGIDITY and error > _ELASTICA and not found.limits:
+        why = "take more links" if found.linear else "its springs stiffen as they turn"
         yield Remark("fault", "large bending", f"the tip is up to {error:.1e} L off the exact "
-                     "cantilever: take more links")  # fmt: skip
+                     f"cantilever: {why}")  # fmt: skip
     if found.limits and found.limits[0] < _BENDS * max(j.cell for j in found.joints) / found.length:
         yield Remark("fault", "limits", f"a joint is limited to {np.rad2deg(found.limits[0]):.3g} "
                      "degrees, less than a sweep bends it")  # fmt: skip
@@ -174,6 +175,10 @@ def _rest(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
         own, should = (x * found.length for x in (found.natural_curvature, wanted))
         yield Remark("fault", "natural curvature", f"{own:.3g}/L instead of {should:.3g}/L: at "
                      "rest the tip is turned by so much")  # fmt: skip
+    if any(found.medium):
+        density, viscosity, wind = found.medium
+        yield Remark("note", "medium", f"a density of {density:g}, a viscosity of {viscosity:g} "
+                     f"and a wind of {wind:g} act on vibrissa and foot, not in theory")  # fmt: skip
     strength = float(np.linalg.norm(found.gravity))
     if strength > 0:
         sag = found.sag / found.length
@@ -217,6 +222,10 @@ def _sensors(found: MeasuredBeam) -> Iterator[Remark]:
             )  # fmt: skip
             continue
         yield from _axes(word, sensor)
+        most = _FORCE * found.tip_rigidity / found.length ** (2 if word == "force" else 1)
+        if sensor.cutoff < 2 * most:
+            yield Remark("fault", f"{word} sensor", f"{sensor.name!r} is cut off at "
+                         f"{sensor.cutoff:.3g}; a sweep has up to {2 * most:.2g}")  # fmt: skip
         lever = np.linalg.norm(sensor.lever) / found.length
         if lever > _LEVER:
             yield Remark("fault" if word == "torque" else "note", f"{word} sensor",
@@ -269,6 +278,10 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
             depth = "deeper into the object than the vibrissa is thick, and slips past"
         yield Remark("fault", "contact", f"{_softness(softest, found)} a force of {_FORCE:g} "
                      f"EI/L^2 sinks {depth}")  # fmt: skip
+    thickest = max(meeting, key=lambda geom: geom.margin)
+    if abs(thickest.margin) > _RADIUS * found.length:
+        yield Remark("fault", "contact", f"a margin of {thickest.margin:.3g} pushes before "
+                     "anything touches, as if the vibrissa were so much thicker")  # fmt: skip
     rubs = max(geom.friction for geom in meeting)
     if rubs > 0:
         yield Remark("note", "contact", f"friction {rubs:g}; state it in the case, or set "

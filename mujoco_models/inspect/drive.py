@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from analytic.problem.errors import InputError
 
 _ALONG = 0.999  # cosine; a slide that is turned by 2.5 degrees goes elsewhere
 _FOLLOWS = int(mujoco.mjtBias.mjBIAS_AFFINE)  # of a position or velocity actuator
@@ -48,6 +49,11 @@ def mover_of(model: mujoco.MjModel, foot: int, left: Floats) -> Mover | None:
     -------
     Mover or None
         The innermost one; None if nothing can, or if a free joint lets it fall.
+
+    Raises
+    ------
+    InputError
+        If something else holds what could move it.
     """
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
@@ -60,6 +66,7 @@ def mover_of(model: mujoco.MjModel, foot: int, left: Floats) -> Mover | None:
                 welded = joint
             along = abs(float(data.xaxis[joint] @ left))
             if model.jnt_type[joint] == _SLIDE and along > _ALONG:
+                _refuse_other_drives(model, joint)
                 return Mover(joint=joint, actuator=_actuator_of(model, joint))
     return None
 
@@ -122,6 +129,11 @@ def drive_of(model: mujoco.MjModel, foot: int, left: Floats) -> str | None:
     -------
     str or None
         As ``"mocap body 'hand'"``; None if nothing can.
+
+    Raises
+    ------
+    InputError
+        As `mover_of` does.
     """
     mover = mover_of(model, foot, left)
     if mover is None:
@@ -160,6 +172,26 @@ def _actuator_of(model: mujoco.MjModel, joint: int) -> int | None:
         if at_joint and model.actuator_trnid[i, 0] == joint:
             return i
     return None
+
+
+def _refuse_other_drives(model: mujoco.MjModel, joint: int) -> None:
+    """Raise InputError where a tendon's actuator or another joint holds the slide."""
+    ropes = [
+        model.tendon_adr[t] + i for t in range(model.ntendon) for i in range(model.tendon_num[t])
+        if model.actuator_trntype.size
+        and t in model.actuator_trnid[model.actuator_trntype == int(mujoco.mjtTrn.mjTRN_TENDON), 0]
+    ]  # fmt: skip
+    is_joint = int(mujoco.mjtWrap.mjWRAP_JOINT)
+    by_tendon = any(model.wrap_type[w] == is_joint and model.wrap_objid[w] == joint for w in ropes)
+    coupled = (model.eq_type == int(mujoco.mjtEq.mjEQ_JOINT)) & model.eq_active0
+    by_joint = joint in model.eq_obj1id[coupled] or joint in model.eq_obj2id[coupled]
+    if by_tendon or by_joint:
+        raise InputError(
+            f"slide {_name(model, mujoco.mjtObj.mjOBJ_JOINT, joint)!r} of the foot",
+            "held by a tendon's actuator" if by_tendon else "coupled to another joint",
+            "one that can be moved by itself",
+            "give the joint an actuator of position or velocity, or none",
+        )
 
 
 def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:

@@ -39,6 +39,8 @@ class Held(Sensing):
         The coordinates in which the vibrissa bends.
     gravity : array, shape (3,)
         The model's.
+    cutoffs : array, shape (n_sensors,)
+        The model's, which are without effect here; 0 for none.
     small : float
         Loads by which sensors are probed, in the linear range [EI/L^2, EI/L].
     tip_in_body : array, shape (3,)
@@ -54,6 +56,7 @@ class Held(Sensing):
         self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
         self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS
         self.model.opt.tolerance = 0
+        self.cutoffs = np.array(model.sensor_cutoff)
         self.model.sensor_cutoff[:] = 0
         self.model.sensor_noise[:] = 0
         bends = np.isin(model.dof_bodyid, parts.chain)
@@ -164,6 +167,12 @@ class Held(Sensing):
         for _ in range(_ITERATIONS):
             residual = self.evaluate()
             slope = self.stiffness()
+            if not np.isfinite(slope).all():
+                raise InputError(
+                    "model", "with moments that are not finite", "one that has a state at rest",
+                    "if it is a cable of MuJoCo 3 on a mocap body, put that on a slide: its plugin "
+                    "reads the body's place before MuJoCo has written it",
+                )  # fmt: skip
             scale = np.abs(np.diag(slope))
             if not scale.min() > 1e-9 * scale.max():
                 body = self.model.dof_bodyid[self.dofs[int(np.argmin(scale))]]

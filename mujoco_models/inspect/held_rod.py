@@ -46,7 +46,7 @@ class HeldRod(Sensing):
 
     Attributes
     ----------
-    model, data, parts, dofs, gravity, small
+    model, data, parts, dofs, gravity, cutoffs, small
         As of `mujoco_models.inspect.held.Held`.
     rod : Rod
         As given.
@@ -62,6 +62,7 @@ class HeldRod(Sensing):
         self.model.opt.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
         self.model.opt.solver = mujoco.mjtSolver.mjSOL_NEWTON
         self.model.opt.tolerance = _TOLERANCE
+        self.cutoffs = np.array(model.sensor_cutoff)
         self.model.sensor_cutoff[:] = 0
         self.model.sensor_noise[:] = 0
         self.dofs = np.flatnonzero(np.isin(model.dof_bodyid, parts.chain))
@@ -264,7 +265,7 @@ class HeldRod(Sensing):
         return stretch / float(np.linalg.norm(natural))
 
     def _stiffen_edges(self) -> None:
-        """Take the stretch away, so that what bends can be told from it."""
+        """Take the stretch away, so that what bends shows by itself."""
         mine = self.model.eq_type == int(mujoco.mjtEq.mjEQ_FLEX)
         mine &= self.model.eq_obj1id == self.rod.flex
         self.model.eq_solref[mine] = [2 * self.model.opt.timestep, 1]

@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from analytic.problem.errors import InputError
 from mujoco_models.inspect.drive import drive_of, slides
 from mujoco_models.inspect.held import Held
 from mujoco_models.inspect.held_rod import HeldRod
@@ -93,6 +94,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     InputError
         If nothing holds a joint, or it does not come to rest.
     """
+    _check_constraints(model, parts)
     held = hold(model, parts)
     held.rest()
     axes = sweep_axes(held)
@@ -124,6 +126,8 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         period_without_armature=float(2 * np.pi / np.sqrt(bending.slowest_without_armature)),
         stable_step=_stable_step(model, squares, damping),
         damping_ratio=float(damping[0] / (2 * np.sqrt(squares[0]))),
+        linear=_linear(model, parts),
+        medium=(model.opt.density, model.opt.viscosity, float(np.linalg.norm(model.opt.wind))),
         gravity=tuple((axes @ held.gravity).tolist()),
         sag=_sag(held),
         force=sensors[0],
@@ -206,6 +210,29 @@ def _aside(points: Floats, direction: Floats) -> Floats:
     return np.asarray(points - np.outer(points @ direction, direction))
 
 
+def _linear(model: mujoco.MjModel, parts: Parts) -> bool:
+    terms = getattr(model, "jnt_stiffnesspoly", np.zeros((model.njnt, 1)))
+    return not terms[np.isin(model.jnt_bodyid, parts.chain)].any()
+
+
+def _check_constraints(model: mujoco.MjModel, parts: Parts) -> None:
+    """Raise InputError where an equality constraint holds the vibrissa beside its springs."""
+    for i in np.flatnonzero(model.eq_active0).tolist():
+        ends, kind = [int(model.eq_obj1id[i]), int(model.eq_obj2id[i])], int(model.eq_type[i])
+        if kind == int(mujoco.mjtEq.mjEQ_JOINT):
+            ends = [int(model.jnt_bodyid[joint]) for joint in ends if joint >= 0]
+        elif model.eq_objtype[i] == int(mujoco.mjtObj.mjOBJ_SITE):
+            ends = [int(model.site_bodyid[site]) for site in ends]
+        elif model.eq_objtype[i] != int(mujoco.mjtObj.mjOBJ_BODY):
+            continue
+        for body in set(ends).intersection(parts.chain):
+            raise InputError(
+                f"body {_name(model, mujoco.mjtObj.mjOBJ_BODY, body)!r} of the vibrissa",
+                "held by an equality constraint", "one that springs alone hold",
+                "remove the constraint, or set active=\"false\"",
+            )  # fmt: skip
+
+
 def _joints(
     held: Held | HeldRod, s: Floats, compliance: Floats, nodes: Floats, axes: Floats
 ) -> tuple[Joint, ...]:
@@ -259,7 +286,7 @@ def _sensed(
     """A sensor's readings of small forces and moments on the tip, one after the other."""
     if sensor is None:
         return None
-    zero = held.sensed(sensor)
+    zero, cutoff = held.sensed(sensor), held.cutoffs[sensor] or np.inf
     is_force = held.model.sensor_type[sensor] == int(mujoco.mjtSensor.mjSENS_FORCE)
     by_force, by_moment = np.zeros((2, 3, 3))
     force, moment = held.small * rigidity / length**2, held.small * rigidity / length
@@ -281,7 +308,7 @@ def _sensed(
     name = _name(held.model, mujoco.mjtObj.mjOBJ_SENSOR, sensor)
     offset = axes @ (place - held.clamp)
     lever = offset if is_force else arm - seen
-    return Sensed(name, turned, offset, lever, _feels_contacts(held, sensor))
+    return Sensed(name, turned, offset, lever, _feels_contacts(held, sensor), cutoff)
 
 
 def _feels_contacts(held: Held | HeldRod, sensor: int) -> bool:

@@ -25,6 +25,8 @@ class Sensed:
         From where its moments are counted, by its own readings; the same [length].
     feels_contacts : bool
         False where MuJoCo leaves them out: of a flex, by a sensor on what its vertices hang on.
+    cutoff : float
+        The largest reading that it gives; infinite if it has no such limit.
     """
 
     name: str
@@ -32,6 +34,7 @@ class Sensed:
     place: Floats
     lever: Floats
     feels_contacts: bool
+    cutoff: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +87,8 @@ class Geom:
         Of its contacts, as its solref says; NaN if solref states a stiffness [time].
     friction : float
         Coefficient; 0 if its contacts have no friction.
+    margin : float
+        How far from an object its contacts already push, less their gap [length].
     """
 
     name: str
@@ -94,6 +99,7 @@ class Geom:
     stiffness: float
     time_constant: float
     friction: float
+    margin: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,6 +135,10 @@ class MeasuredBeam:
         The longest stable time step of an integrator that is explicit in springs [time].
     damping_ratio : float
         Of the first vibration.
+    linear : bool
+        Whether its springs are: MuJoCo 4 has polynomials of the turn, too.
+    medium : tuple of float
+        Density, viscosity and the strength of the wind of what it moves in.
     gravity : tuple of float
         In the axes of the sweep.
     sag : float
@@ -163,6 +173,8 @@ class MeasuredBeam:
     period_without_armature: float
     stable_step: float
     damping_ratio: float
+    linear: bool
+    medium: tuple[float, float, float]
     gravity: tuple[float, float, float]
     sag: float
     force: Sensed | None

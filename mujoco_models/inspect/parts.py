@@ -244,7 +244,7 @@ def _children(model: mujoco.MjModel, body: int) -> list[int]:
 
 def _along(model: mujoco.MjModel, foot: int, chain: Chain) -> list[int]:
     """The geoms of the chain, and of the foot what goes on as the first link does."""
-    found = [int(g) for body in chain for g in np.flatnonzero(model.geom_bodyid == body)]
+    found = [geom for body in chain for geom in _touchable(model, body)]
     if not found:
         return []
     start, end = axis_of(model, found[0])
@@ -263,6 +263,13 @@ def _along(model: mujoco.MjModel, foot: int, chain: Chain) -> list[int]:
         if np.abs(aside).max() < _ALIGNED * length:
             rigid.append(geom)
     return rigid + found
+
+
+def _touchable(model: mujoco.MjModel, body: int) -> list[int]:
+    """The geoms of a body, but for those that are only seen beside others that collide."""
+    geoms = np.flatnonzero(model.geom_bodyid == body)
+    collide = (model.geom_contype[geoms] != 0) | (model.geom_conaffinity[geoms] != 0)
+    return [int(geom) for geom in (geoms[collide] if collide.any() else geoms)]
 
 
 def _geoms(model: mujoco.MjModel, text: str) -> list[int]:

@@ -89,10 +89,11 @@ def _geoms(
             start,
             end,
             radius_of(model, number),
-            bool((model.geom_contype[number] & 1) | (model.geom_conaffinity[number] & 1)),
+            _meets(model, model.geom_contype[number], model.geom_conaffinity[number]),
             stiffness,
             time_constant,
             float(model.geom_friction[number, 0]) if model.geom_condim[number] > 1 else 0.0,
+            float(model.geom_margin[number] - model.geom_gap[number]),
         )
 
 
@@ -107,7 +108,8 @@ def _edges(
     vertices = data.flexvert_xpos[list(rod.vertices)]
     bodies = model.flex_vertbodyid[list(rod.vertices)]
     radius = float(model.flex_radius[flex])
-    meets = bool((model.flex_contype[flex] & 1) | (model.flex_conaffinity[flex] & 1))
+    meets = _meets(model, model.flex_contype[flex], model.flex_conaffinity[flex])
+    margin = float(model.flex_margin[flex] - model.flex_gap[flex])
     friction = float(model.flex_friction[flex, 0]) if model.flex_condim[flex] > 1 else 0.0
     for i, (ends, pair) in enumerate(zip(_pairs(vertices), _pairs(bodies), strict=True)):
         start, end = sorted(((ends - clamp) @ axes[1]).tolist())
@@ -118,7 +120,14 @@ def _edges(
         stiffness, time_constant = _stiffness(
             model, model.flex_solref[flex], model.flex_solimp[flex], weight
         )
-        yield Geom(f"edge {i}", start, end, radius, meets, stiffness, time_constant, friction)
+        name = f"edge {i}"
+        yield Geom(name, start, end, radius, meets, stiffness, time_constant, friction, margin)
+
+
+def _meets(model: mujoco.MjModel, contype: int, conaffinity: int) -> bool:
+    """Whether it collides with an object that has MuJoCo's default contype and conaffinity."""
+    none_does = model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    return not none_does and bool((contype & 1) | (conaffinity & 1))
 
 
 def _pairs(values: Floats) -> Floats:

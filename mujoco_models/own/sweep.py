@@ -115,12 +115,12 @@ def _check(case: Case, parts: Parts, measured: MeasuredBeam) -> None:
                 "one on another tree of bodies than the flex",
                 "let the flex hang on a free body that is welded to the one with the sensors",
             )
-    if not any(geom.meets for geom in measured.geoms):
+    if not any(geom.meets and geom.stiffness < math.inf for geom in measured.geoms):
         raise InputError(
             "geoms of the vibrissa",
             f"{len(measured.geoms)} that meet nothing",
             "such that an object with MuJoCo's default contype and conaffinity can touch them",
-            'set contype="1" conaffinity="1"',
+            'set contype="1" conaffinity="1", and disable no contacts',
         )
     if measured.self_contacts:
         raise InputError(

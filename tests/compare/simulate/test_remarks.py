@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import mujoco
 import numpy as np
 import pandas as pd
 import pytest
@@ -15,6 +16,8 @@ from tests.compare.command import vibrissa
 from tests.mujoco_models.inspect.chains import Chain
 
 STATED = Beam()
+NO_CONTACTS = '<option><flag contact="disable"/></option></mujoco>'
+FORCE = '<force name="F" site="clamp" {}/><torque name="T" site="clamp"/>'
 DATA = Path(__file__).parents[2] / "data"
 
 
@@ -71,6 +74,8 @@ def test_sound_models_are_called_sound(tmp_path, sound):
         ({"sensors": '<force name="F" site="clamp"/>'}, "torque sensor: none"),
         ({"sensors": '<torque name="T" site="clamp"/>'}, "force sensor: none"),
         ({"length": 1000.0, "radius": 5.0}, "units: the length is 1000, 1000 times"),
+        ({"tip": 'margin="0.02"'}, "contact: a margin of 0.02 pushes before anything touches"),
+        ({"sensors": FORCE.format('cutoff="1"')}, "force sensor: 'F' is cut off at 1"),
     ],
 )
 def test_planted_mistakes_are_named_and_nothing_else(tmp_path, mistake, said, links):
@@ -87,6 +92,41 @@ def test_a_foot_that_is_fixed_to_the_world_touches_its_first_link(tmp_path):
     found = faults(tmp_path, Chain(foot=""))
     assert any("whisker-geom0 and whisker-geom1 touch" in fault for fault in found)
     assert any("nothing can move" in fault for fault in found)
+
+
+def changed(tmp_path, chain, *changes):
+    path = chain.write(tmp_path)
+    text = path.read_text()
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text)
+    return Inspection(inspect_model(path), STATED).remarks
+
+
+def test_disabled_contacts_meet_nothing(tmp_path):
+    found = changed(tmp_path, Chain(), ("</mujoco>", NO_CONTACTS))
+    assert any("21 of 21 geoms" in str(remark) for remark in found)
+
+
+def test_what_is_only_seen_is_no_part_of_it(tmp_path):
+    """Balls without contacts beside capsules that have some: neither its tip nor a fault."""
+    seen = '<geom type="sphere" size="0.002" pos="0 0.01 0" contype="0" conaffinity="0"/>'
+    found = changed(
+        tmp_path, Chain(), ('<geom name="whisker-geom', f'{seen}<geom name="whisker-geom')
+    )
+    assert [remark for remark in found if remark.kind == "fault"] == []
+
+
+def test_a_medium_is_noted(tmp_path):
+    found = changed(tmp_path, Chain(), ('integrator="', 'density="1000" integrator="'))
+    assert [remark.subject for remark in found if remark.subject == "medium"] == ["medium"]
+
+
+@pytest.mark.skipif(not hasattr(mujoco.MjModel, "jnt_stiffnesspoly"), reason="of MuJoCo 4")
+def test_springs_that_stiffen_are_no_lack_of_links(tmp_path):
+    found = changed(tmp_path, Chain(), ('stiffness="20.0"', 'stiffness="20 0 1e4"'))
+    assert any("its springs stiffen" in str(remark) for remark in found)
 
 
 def test_a_curved_one_is_sound_if_that_is_stated(tmp_path):

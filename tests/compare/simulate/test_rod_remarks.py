@@ -69,7 +69,7 @@ def test_a_soft_weld_is_a_clamp_that_turns(tmp_path):
 
 
 @pytest.mark.slow
-def test_what_can_leave_the_plane_is_told_so(tmp_path):
+def test_what_can_leave_the_plane_has_a_note(tmp_path):
     for dof, count in (("", 1), ('dof="2d"', 0)):
         found = Inspection(inspect_model(Rod(dof=dof).write(tmp_path)), STATED)
         assert [remark.subject for remark in found.remarks].count("plane") == count

@@ -199,6 +199,32 @@ def test_what_is_wrong_is_one_line(tmp_path, chain, names, said):
     assert "\n" not in str(caught.value)
 
 
+COUPLED = '<equality><joint joint1="j2" joint2="j1"/><joint joint1="j3" joint2="j1"/></equality>'
+TENDON = (
+    '<tendon><fixed name="t"><joint joint="rail" coef="1"/></fixed></tendon>'
+    '<actuator><position tendon="t" kp="1e3"/></actuator>'
+)
+
+
+def test_joints_that_are_coupled_are_no_beam(tmp_path):
+    path = Chain(links=4).write(tmp_path)
+    text = path.read_text().replace("</mujoco>", COUPLED + "</mujoco>")
+    for i in range(1, 5):
+        text = text.replace("<joint axis", f'<joint name="j{i}"  axis', 1)
+    path.write_text(text)
+    with pytest.raises(InputError, match="held by an equality constraint") as caught:
+        inspect_model(path)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_slide_that_something_else_holds_is_no_drive_of_ours(tmp_path):
+    slide = Chain(foot="", inside_foot='<joint name="rail" type="slide" axis="1 0 0"/>')
+    path = slide.write(tmp_path)
+    path.write_text(path.read_text().replace("</mujoco>", TENDON + "</mujoco>"))
+    with pytest.raises(InputError, match="'rail' of the foot = held by a tendon's actuator"):
+        inspect_model(path)
+
+
 def test_the_name_of_the_foot_chooses_between_two(tmp_path):
     both = Chain(beside=TWO.replace('name="clamp"', 'name="c2"'))
     found = measured(tmp_path, both, foot="whisker-foot")
