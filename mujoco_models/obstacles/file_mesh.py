@@ -105,8 +105,18 @@ class FileMesh(Faceted):
     @cached_property
     def corners(self) -> Corners:
         """Where the mesh's own edges cross the plane of the sweep."""
-        return Corners.of(self.vertices, self._edges(), self._corner_radius)
+        return Corners.of(self.vertices, self._edges, self._corner_radius)
 
+    def across(self, slope: Floats) -> Floats:
+        """Of the edges at corners; facets that are smooth to beads turn with the contour."""
+        if len(self.corners) == 0:
+            return np.ones(len(slope))
+        begin, end = self._edges[self.vertex(slope)].transpose(1, 0, 2)
+        edge = end - begin
+        slide = edge[:, 0] * np.cos(slope) + edge[:, 1] * np.sin(slope)
+        return np.asarray(1 - slide**2 / (edge**2).sum(axis=1))
+
+    @cached_property
     def _edges(self) -> Floats:
         """The edge through each vertex of the section, shape (n, 2, 3) [L].
 

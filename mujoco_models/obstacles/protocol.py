@@ -85,6 +85,21 @@ class Obstacle(ABC):
             Curvatures [1/L].
         """
 
+    def across(self, slope: Floats) -> Floats:
+        """How much slower a contact's normal turns because the edge that it passes is not upright.
+
+        Parameters
+        ----------
+        slope : array, shape (n,)
+            Slope angles [rad].
+
+        Returns
+        -------
+        array, shape (n,)
+            The square of what of a slide along the contour is across the edge; 1 for a prism.
+        """
+        return np.ones(len(slope))
+
     @abstractmethod
     def support(self, slope: float) -> Floats:
         """The point of the contour that a line at this slope angle touches.

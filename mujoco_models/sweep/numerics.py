@@ -39,7 +39,8 @@ class Numerics:
     at_once : int
         The most contacts that a Newton step sees, the nearest ones: along the flank of a needle
         thousands of beads are within MuJoCo's reach, and those that come to be loaded are seen in
-        the next step.
+        the next step. Twice as many as are loaded, if these are more: a beam that lies on a flat
+        facet rests on hundreds, and without all of them no step ends at rest.
     same_normal : float
         What rounding makes of a facet's normal [rad]. Above a facet's turn, every corner would be
         taken for flat, and Newton's method would not settle on it.
