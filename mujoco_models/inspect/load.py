@@ -9,6 +9,7 @@ from analytic.problem.errors import InputError
 from analytic.problem.files import regular_file
 
 _LARGEST = 50_000_000  # bytes of the file itself; assets are MuJoCo's matter
+_SUFFIXES = (".xml", ".urdf")  # MuJoCo reads by the name what an object is to be added to
 _REMEDIES = (
     (r"flex with general attachments", "a flex that is a beam needs MuJoCo 4"),
     (r"plugin|composite", "MuJoCo 3.17 has composite cables and their plugin, 4.0 has neither"),
@@ -33,8 +34,13 @@ def load(path: Path) -> mujoco.MjModel:
     Raises
     ------
     InputError
-        If there is no such file, or MuJoCo does not take it; its own words are quoted.
+        If it is named otherwise, there is no such file, or MuJoCo does not take it; its own words
+        are quoted.
     """
+    if path.suffix not in _SUFFIXES:
+        raise InputError(
+            "model", path, f"named {' or '.join(f'*{suffix}' for suffix in _SUFFIXES)}", "rename it"
+        )
     regular_file(path, "model", _LARGEST)
     try:
         return mujoco.MjModel.from_xml_path(str(path))

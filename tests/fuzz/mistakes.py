@@ -17,6 +17,7 @@ from analytic import (
     CLAMP_READINGS,
     SENSED,
     Case,
+    InputError,
     Readings,
     Sweep,
     catenary,
@@ -315,9 +316,14 @@ MISTAKES: dict[str, Mistake] = {
 def named(mistake: Mistake, seed: int) -> str | None:
     """What the comparison calls a mistake planted at random; None if it names nothing."""
     rng = np.random.default_rng(seed)
-    case = replace(random_case(rng), **mistake.stated)
-    reference = solve_sweep(case)
-    sweep = reference if mistake.swept is None else mistake.swept(case, rng)
+    while True:
+        case = replace(random_case(rng), **mistake.stated)
+        reference = solve_sweep(case)
+        try:
+            sweep = reference if mistake.swept is None else mistake.swept(case, rng)
+            break
+        except InputError:  # the vibrissa as it really is does not come past that object
+            continue
     sweep = with_own_error(sweep, rng, rng.uniform(*_OWN_ERROR))
     noise = dict.fromkeys(CLAMP_READINGS, float(rng.uniform(0, _NOISE)) * rng.integers(2))
     if mistake.sensed is not None:

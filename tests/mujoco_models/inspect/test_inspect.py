@@ -199,6 +199,13 @@ def test_what_is_wrong_is_one_line(tmp_path, chain, names, said):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize("suffix", [".txt", ".XML", ".mjcf", ".mjb"])
+def test_a_name_by_which_mujoco_reads_no_file_is_refused(tmp_path, suffix):
+    path = Chain().write(tmp_path)
+    with pytest.raises(InputError, match=r"named \*\.xml or \*\.urdf; rename it"):
+        inspect_model(path.rename(path.with_suffix(suffix)))
+
+
 COUPLED = '<equality><joint joint1="j2" joint2="j1"/><joint joint1="j3" joint2="j1"/></equality>'
 TENDON = (
     '<tendon><fixed name="t"><joint joint="rail" coef="1"/></fixed></tendon>'
