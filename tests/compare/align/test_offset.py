@@ -52,7 +52,7 @@ def test_the_interval_covers(level):
     assert sum(hits("parabola", 157, level, range(40))) >= 34
 
 
-@pytest.mark.slow
+@pytest.mark.trial
 @pytest.mark.parametrize("stations", [157, 200])
 def test_the_interval_covers_all_cases(stations):
     """Five cases, 0.1 % and 1 % of noise, 40 seeds each. Observed: 95.3 % and 93.5 %.
