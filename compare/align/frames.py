@@ -1,17 +1,20 @@
 """The frames that six components are given in: the world's, and that of the clamp."""
 
+from __future__ import annotations
+
 from dataclasses import replace
-from typing import Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 import numpy as np
 
 from analytic import InputError
 from analytic.problem.arrays import Floats
-from analytic.space import SpatialReadings
-from analytic.space.problem.readings import FORCE, MOMENT
+
+if TYPE_CHECKING:  # limits are checked before pandas is needed
+    from analytic.space import SpatialReadings
 
 Frame: TypeAlias = Literal["world", "clamp"]
-COMPONENTS = (*FORCE, *MOMENT)
+COMPONENTS = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
 _OVERTURNED = 1e-9  # of 1 + cos: a clamp that points straight down
 
 
@@ -59,7 +62,7 @@ def components(readings: SpatialReadings, frame: Frame = "world") -> dict[str, F
     axes = _axes(readings, frame)
     return {
         name: column
-        for names in (FORCE, MOMENT)
+        for names in (COMPONENTS[:3], COMPONENTS[3:])
         for name, column in zip(names, (readings.values(*names) @ axes.T).T, strict=True)
     }
 
@@ -89,7 +92,7 @@ def from_frame(readings: SpatialReadings, frame: Frame) -> SpatialReadings:
         return readings
     turned = {
         name: column
-        for names in (FORCE, MOMENT)
+        for names in (COMPONENTS[:3], COMPONENTS[3:])
         for name, column in zip(names, (readings.values(*names) @ axes).T, strict=True)
     }
     return replace(readings, table=readings.table.assign(**turned))

@@ -1,12 +1,17 @@
 """How far two sweeps in space may disagree, with the reason for every limit."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING
 
 from analytic import InputError
-from analytic.space import SpatialReadings
 from compare.align.frames import COMPONENTS
 from compare.judge.tolerances import CONVENTION, Limit, as_limit
+
+if TYPE_CHECKING:  # limits are checked before pandas is needed
+    from analytic.space import SpatialReadings
 
 _KINDS = ("rms", "max")
 

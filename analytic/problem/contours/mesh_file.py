@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import pandas as pd
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.simplify import thinned
@@ -187,6 +186,8 @@ def _merged(points: Floats, faces: Integers) -> tuple[Floats, Integers]:
     """
     bits = np.ascontiguousarray(points + 0.0).view(np.uint64)  # + 0.0 turns -0.0 into 0.0
     bits ^= bits >> np.uint64(29)  # numbers of single precision end with so many zeros
+    import pandas as pd  # slow to load, and few cases have a mesh
+
     codes, numbers = pd.factorize((bits * _HASH).sum(axis=1))
     first = np.empty(len(numbers), dtype=np.intp)
     first[codes[::-1]] = np.arange(len(points))[::-1]
