@@ -237,6 +237,7 @@ def inspect_model(
     force: str | None = None,
     torque: str | None = None,
     geoms: str | None = None,
+    site: str | None = None,
 ) -> MeasuredBeam:
     """Measure what beam a user's own model is; its files are only read.
 
@@ -250,6 +251,8 @@ def inspect_model(
         The sensors at its clamp.
     geoms : str, optional
         The vibrissa's geoms: names or patterns as ``"whisker*"``, separated by commas.
+    site : str, optional
+        At the clamp; a force and a torque sensor are added there, in memory.
 
     Returns
     -------
@@ -263,7 +266,7 @@ def inspect_model(
     """
     from mujoco_models.inspect import measure, parts
 
-    return measure.inspect_model(Path(path), parts.Names(foot, force, torque, geoms))
+    return measure.inspect_model(Path(path), parts.Names(foot, force, torque, geoms, site))
 
 
 def simulate_model(

@@ -29,6 +29,10 @@ def inspect(
     geoms: Annotated[
         str | None, typer.Option(metavar="NAMES", help="The vibrissa's geoms, as 'whisker*,tip'.")
     ] = None,
+    site: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="A site at its clamp, where sensors are added."),
+    ] = None,
     beam: Annotated[
         Path | None,
         typer.Option(
@@ -55,7 +59,7 @@ def inspect(
     from compare.simulate.inspection import Inspection
     from mujoco_models import inspect_model
 
-    found = inspect_model(path, foot=foot, force=force, torque=torque, geoms=geoms)
+    found = inspect_model(path, foot=foot, force=force, torque=torque, geoms=geoms, site=site)
     inspection = Inspection(found, stated)
     for line in inspection.lines():
         terminal.print_line(line)

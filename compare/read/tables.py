@@ -122,6 +122,7 @@ class ModelTable(Table):
     force: str | None = None
     torque: str | None = None
     geoms: str | None = None
+    site: str | None = None
     contact: ContactKind = "own"
 
     def build(self, folder: Path) -> OwnModel:

@@ -125,6 +125,11 @@ def faults_of(model: OwnModel, stated: Beam) -> list[str]:
         A line each.
     """
     found = inspect_model(
-        model.file, foot=model.foot, force=model.force, torque=model.torque, geoms=model.geoms
+        model.file,
+        foot=model.foot,
+        force=model.force,
+        torque=model.torque,
+        geoms=model.geoms,
+        site=model.site,
     )
     return [str(one) for one in Inspection(found, stated).remarks if one.kind == "fault"]

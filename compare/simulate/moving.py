@@ -104,7 +104,12 @@ def measure_model_budget(
     from mujoco_models import inspect_model  # MuJoCo is imported only where it is used
 
     found = inspect_model(
-        model.file, foot=model.foot, force=model.force, torque=model.torque, geoms=model.geoms
+        model.file,
+        foot=model.foot,
+        force=model.force,
+        torque=model.torque,
+        geoms=model.geoms,
+        site=model.site,
     )
     # What is soft about the model's contacts is a part of its own.
     at_rest = replace(settings, segments=max(len(found.joints), 2))

@@ -18,13 +18,19 @@ _REMEDIES = (
 )
 
 
-def load(path: Path) -> mujoco.MjModel:
+FORCE, TORQUE = "vibrissa-force", "vibrissa-torque"
+"""Names of the sensors that are added at a site."""
+
+
+def load(path: Path, site: str | None = None) -> mujoco.MjModel:
     """Read and compile a model; nothing of its files is changed.
 
     Parameters
     ----------
     path : Path
         MJCF or URDF; includes, meshes and textures are found as MuJoCo finds them.
+    site : str, optional
+        Where to add a force and a torque sensor, in memory.
 
     Returns
     -------
@@ -34,8 +40,8 @@ def load(path: Path) -> mujoco.MjModel:
     Raises
     ------
     InputError
-        If it is named otherwise, there is no such file, or MuJoCo does not take it; its own words
-        are quoted.
+        If it is named otherwise, there is no such file or site, or MuJoCo does not take it; its own
+        words are quoted.
     """
     if path.suffix not in _SUFFIXES:
         raise InputError(
@@ -43,7 +49,11 @@ def load(path: Path) -> mujoco.MjModel:
         )
     regular_file(path, "model", _LARGEST)
     try:
-        return mujoco.MjModel.from_xml_path(str(path))
+        if site is None:
+            return mujoco.MjModel.from_xml_path(str(path))
+        return spec_of(path, site).compile()
+    except InputError:
+        raise
     except (ValueError, mujoco.FatalError) as error:
         said = " ".join(str(error).split())[:300]
         remedy = next(
@@ -53,3 +63,37 @@ def load(path: Path) -> mujoco.MjModel:
         raise InputError(
             "model", path, "a model that MuJoCo takes", f"{remedy} ({said})"
         ) from error
+
+
+def spec_of(path: Path, site: str | None = None) -> mujoco.MjSpec:
+    """A model as it can be added to, in memory.
+
+    Parameters
+    ----------
+    path : Path
+        MJCF or URDF that MuJoCo takes.
+    site : str, optional
+        Where to add a force and a torque sensor.
+
+    Returns
+    -------
+    mujoco.MjSpec
+        Not yet compiled.
+
+    Raises
+    ------
+    InputError
+        If it has no such site.
+    """
+    spec = mujoco.MjSpec.from_file(str(path))
+    if site is None:
+        return spec
+    known = [one.name for one in spec.sites if one.name]
+    if site not in known:
+        shown = ", ".join(known[:12]) or "none with a name"
+        raise InputError("--site", repr(site), "the name of a site of the model", f"it has {shown}")
+    for name, kind in (
+        (FORCE, mujoco.mjtSensor.mjSENS_FORCE), (TORQUE, mujoco.mjtSensor.mjSENS_TORQUE),
+    ):  # fmt: skip
+        spec.add_sensor(name=name, type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname=site)
+    return spec

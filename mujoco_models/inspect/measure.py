@@ -45,7 +45,7 @@ def inspect_model(path: Path, names: Names) -> MeasuredBeam:
     InputError
         If the model, a name of it or the vibrissa cannot be used.
     """
-    model = load(path)
+    model = load(path, names.site)
     with unlogged():
         return measure(model, find(model, names), path)
 

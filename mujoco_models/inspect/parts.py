@@ -10,6 +10,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.drive import holders as holders_of
+from mujoco_models.inspect.load import FORCE, TORQUE
 from mujoco_models.inspect.rod import Chain, Rod, flexes, rod_of
 
 _FEWEST = 3  # joints of a vibrissa; what has fewer is an arm
@@ -32,12 +33,15 @@ class Names:
         The sensors at its clamp.
     geoms : str or None
         The vibrissa's geoms: names or patterns as ``whisker*``, separated by commas.
+    site : str or None
+        At the clamp, where sensors were added; they count instead of the model's own.
     """
 
     foot: str | None = None
     force: str | None = None
     torque: str | None = None
     geoms: str | None = None
+    site: str | None = None
 
 
 @dataclass(frozen=True)
@@ -127,11 +131,12 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
     bodies = {*holders, *chain}
     if rod is not None:
         bodies |= {*holders_of(model, holders[-1])}
+    added = (None, None) if names.site is None else (FORCE, TORQUE)
     sensors = [
         _sensor(model, option, name, kind, bodies)
         for option, name, kind in (
-            ("--force", names.force, mujoco.mjtSensor.mjSENS_FORCE),
-            ("--torque", names.torque, mujoco.mjtSensor.mjSENS_TORQUE),
+            ("--force", names.force or added[0], mujoco.mjtSensor.mjSENS_FORCE),
+            ("--torque", names.torque or added[1], mujoco.mjtSensor.mjSENS_TORQUE),
         )
     ]
     force, torque = sensors

@@ -1,6 +1,5 @@
 """A user's model in motion, with the case's object in its world."""
 
-from pathlib import Path
 from typing import Any
 
 import mujoco
@@ -12,6 +11,7 @@ from analytic.problem.errors import InputError
 from mujoco_models.errors import DivergedError
 from mujoco_models.inspect.held import Held
 from mujoco_models.inspect.held_rod import HeldRod
+from mujoco_models.inspect.load import spec_of
 from mujoco_models.inspect.measure import sweep_axes
 from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.model.clamp import Clamp
@@ -80,7 +80,7 @@ class OwnModelInMotion:
         self._parts, self._beam, self._period = held.parts, beam, measured.period
         self._axes, self._start, self._origin = sweep_axes(held), foot_x, held.clamp
         self.label = obstacle.label
-        self.model = self._with_object(own.file, obstacle)
+        self.model = self._with_object(own, obstacle)
         self.data = mujoco.MjData(self.model)
         self._foot = self._parts.foot
         place, turn = self._pose(held.data)
@@ -109,9 +109,9 @@ class OwnModelInMotion:
         mujoco.mj_forward(self.model, self.data)
         self._still = self._skin.elastic_energy()
 
-    def _with_object(self, path: Path, obstacle: Prism) -> mujoco.MjModel:
+    def _with_object(self, own: OwnModel, obstacle: Prism) -> mujoco.MjModel:
         """The model with the object in its world, in memory."""
-        spec = mujoco.MjSpec.from_file(str(path))
+        spec = spec_of(own.file, own.site)
         length = self._beam.length
         polygon = np.vstack([obstacle.vertices, obstacle.outline[-1]])
         inner = np.append((polygon[len(polygon) // 2] + polygon.mean(axis=0)) / 2, 0.0)
@@ -127,7 +127,10 @@ class OwnModelInMotion:
         except (ValueError, mujoco.FatalError) as error:
             said = " ".join(str(error).split())[:200]
             raise InputError(
-                "model", path, "one that an object can be added to", f"rename what clashes ({said})"
+                "model",
+                own.file,
+                "one that an object can be added to",
+                f"rename what clashes ({said})",
             ) from error
 
     def _skin_of(self, held: Held | HeldRod, measured: MeasuredBeam) -> Skin:

@@ -15,7 +15,7 @@ class OwnModel:
     ----------
     file : Path
         MJCF or URDF, in the units of the case.
-    foot, force, torque, geoms : str or None
+    foot, force, torque, geoms, site : str or None
         As `mujoco_models.inspect_model` takes them; what is None is looked for.
     contact : str
         Whether contacts have the model's ``"own"`` parameters, or ``"ours"``: frictionless, and as
@@ -32,6 +32,7 @@ class OwnModel:
     force: str | None = None
     torque: str | None = None
     geoms: str | None = None
+    site: str | None = None
     contact: ContactKind = "own"
     timestep: float = 1.0
     damping: float = 1.0

@@ -48,8 +48,8 @@ def run_own(
     InputError, DivergedError
         As there.
     """
-    model = load(own.file)
-    parts = find(model, Names(own.foot, own.force, own.torque, own.geoms))
+    model = load(own.file, own.site)
+    parts = find(model, Names(own.foot, own.force, own.torque, own.geoms, own.site))
     with unlogged():
         measured = measure(model, parts, own.file)
         held = hold(model, parts)
@@ -105,7 +105,7 @@ def _check(case: Case, parts: Parts, measured: MeasuredBeam) -> None:
                 f"{word} sensor of the model",
                 "missing",
                 "one at the clamp",
-                f"add a site there and <{word} site=.../>, or name it",
+                f"add a site there and <{word} site=.../>, or name the sensor or a site",
             )
     for word, sensed in (("force", measured.force), ("torque", measured.torque)):
         if sensed is not None and not sensed.feels_contacts:

@@ -98,6 +98,21 @@ def test_a_heavy_foot_is_not_felt(tmp_path):
     assert np.sqrt(np.mean(off**2)) < 0.02
 
 
+def test_sensors_are_added_at_a_site(tmp_path):
+    """In memory, and they read what the model's own ones there would."""
+    plain = swept(tmp_path, Chain(), **OURS)
+    without = Chain(sensors="").write(tmp_path)
+    before = without.read_bytes()
+    found = inspect_model(without, site="clamp")
+    assert found.force.lever == pytest.approx([0, 0, 0], abs=1e-9)
+    added = simulate_model(UNIT, OwnModel(without, site="clamp", **OURS), FAST, COARSE)
+    for name in ("force_x", "force_y", "moment_z"):
+        assert added.values(name) == pytest.approx(plain.values(name), abs=1e-12)
+    assert without.read_bytes() == before
+    with pytest.raises(InputError, match=r"^--site = 'klamp'.*it has clamp$"):
+        inspect_model(without, site="klamp")
+
+
 def test_a_vibrissa_of_30_mm_is_as_good_as_one_of_a_metre(tmp_path):
     """In metres its object is so small that MuJoCo would refuse the volume of a part of it."""
     unit, small = Beam(), 0.03
