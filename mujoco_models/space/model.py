@@ -330,6 +330,31 @@ class SpaceModel:
             link -= max(1, int((distance - max(best, 0.0)) / longest))
         return best, found, at
 
+    def deeper_link(self, touch: Touch, depth: float) -> tuple[float, int, float]:
+        """The link nearest to the body, if one may be nearer than a contact.
+
+        A convex body is on one side of the plane that touches it at the contact, so that a link is
+        no nearer to the body than to that plane.
+
+        Parameters
+        ----------
+        touch : Touch
+            The contact.
+        depth : float
+            How near another link may be [L].
+
+        Returns
+        -------
+        distance, link, arc_length
+            As of `nearest_link`; `depth` and the last link if none is nearer.
+        """
+        height = touch.normal @ touch.centre - touch.distance
+        joints = self.data.xpos[self._links] @ touch.normal
+        tip = self.centre(len(self.ends) - 1, 1.0) @ touch.normal
+        if min(float(joints.min()), float(tip)) - height >= depth:
+            return depth, len(self.ends) - 1, 1.0
+        return self.nearest_link()
+
     def blocks(self) -> Floats:
         """Second derivative of each joint's energy, shape (n_joints, d, d) [EI/L]."""
         return self.beam.blocks(self.data.qpos)

@@ -151,11 +151,12 @@ class Rest:
         state = self._along(start, surface, begin, foot - begin)
         for _ in range(_SWITCHES):
             found = self._converge(state, surface, foot)
-            if found is None or found.force <= 0:
+            if found is None or found[0].force <= 0:
                 return None
-            state, system = self.look(found, surface, foot)
-            depth, link, s = model.nearest_link()
-            near = depth >= system.touch.distance - model.shape.inscribed - _OVERLOOKED
+            state, system = found
+            deepest = system.touch.distance - model.shape.inscribed - _OVERLOOKED
+            depth, link, s = model.deeper_link(system.touch, deepest)
+            near = depth >= deepest
             if isinstance(surface, Feature):
                 missed = surface.missed(state.link, state.s)
                 if near and missed < STAYS and missed * self._k > _SHARE * self._tolerance:
@@ -170,7 +171,9 @@ class Rest:
             return Settled(state, system.touch, system.turning, stability, softest, surface, near)
         return None
 
-    def _converge(self, state: State, surface: Surface, foot: Floats) -> State | None:
+    def _converge(
+        self, state: State, surface: Surface, foot: Floats
+    ) -> tuple[State, Linearised] | None:
         model = self.model
         for _ in range(_QUICK if isinstance(surface, Feature) else _ITERATIONS):
             state, system = self.look(state, surface, foot)
@@ -184,7 +187,7 @@ class Rest:
                 max(out_of_balance, skewed) < allowed + _ROUNDING * self._k
                 and missed < allowed + (_ROUNDING + model.shape.blur**2) * self._k
             ):
-                return state
+                return state, system
             step = self._step(state, system)
             if step is None:
                 return None

@@ -15,7 +15,7 @@ from analytic.problem.arrays import Floats
 from mujoco_models.space.descent import descend
 from mujoco_models.space.model import SpaceModel
 from mujoco_models.space.rest import Rest, Settled, State
-from mujoco_models.space.surface import STAYS, Feature, features_around, surface_at
+from mujoco_models.space.surface import STAYS, Feature, Surface, features_around, surface_at
 
 _TOUCH = 1e-10  # L of the way, to which the first contact is enclosed
 _BEGIN = 1e-6  # L beyond it, where a contact begins
@@ -178,17 +178,15 @@ class Walk:
         bool
             False if the vibrissa does not come to rest.
         """
-        # `left` is where the contact is known to have left its face or edge, `guess` about where it
-        # does; `stride` is how far Newton's method leads.
-        left, guess, stride = np.inf, np.inf, np.inf
+        # `left` is where the contact is known to have left its face or edge, `about` where it may
+        # do, and how well that is known; `stride` is how far Newton's method leads.
+        left, about, stride = np.inf, (np.inf, 0.0), np.inf
         while self._at < target:
             held = self._held
             assert held is not None
             goal = min(target, self._at + stride)
-            if left - self._at <= _CROSSED:
-                goal = min(goal, left)
-            elif left < np.inf:
-                goal = min(goal, guess if guess < left else (self._at + left) / 2)
+            if left < np.inf:
+                goal = min(goal, self._towards(left, *about))
             found = self._neighbour(held, goal)
             step = goal - self._at
             if found is None:
@@ -198,20 +196,35 @@ class Walk:
             elif found.stays:
                 self._note_phase(held, goal, found)
                 self._at, self._held = goal, found
-                left, guess = (end if end > goal else np.inf for end in (left, guess))
+                left = left if left > goal else np.inf
                 stride = max(_LONGER * step, stride)
             elif step > _CROSSED:
-                left, guess = (
-                    goal,
-                    self._at + max(self._left(held, found, goal) * step, _CROSSED / 2),
-                )
+                share, left = self._left(held, found, goal), goal
+                about = self._at + share * step, max(_BESIDE * step, _CROSSED / 2)
             else:
                 beyond = self._across(held, found, goal)
                 if beyond is None:
                     return self._fall(held, goal)
                 self._note_phase(held, goal, beyond)
-                self._at, self._held, left, guess = goal, beyond, np.inf, np.inf
+                self._at, self._held, left = goal, beyond, np.inf
         return True
+
+    def _towards(self, left: float, about: float, within: float) -> float:
+        """Where to look next for the place where the contact leaves: first before it, then beyond.
+
+        Parameters
+        ----------
+        left : float
+            Where it has left [L].
+        about, within : float
+            Where it may leave, and how well that is known [L].
+        """
+        if left - self._at <= _CROSSED:
+            return left
+        for goal in (about - within, about + within):
+            if self._at < goal < left:
+                return goal
+        return (self._at + left) / 2
 
     def _neighbour(self, held: Settled, goal: float) -> Settled | None:
         """The stable equilibrium on the same branch, of a mesh on the same face, edge or corner."""
@@ -225,7 +238,7 @@ class Walk:
 
     def _left(self, held: Settled, found: Settled, goal: float) -> float:
         """At about which share of a step the contact leaves its face, edge or corner."""
-        if not isinstance(held.surface, Feature) or found.state.link != held.state.link:
+        if not isinstance(held.surface, Feature):
             return 0.5
         model, link = self._model, found.state.link
         model.place(self._foot(goal), found.state.configuration)
@@ -233,13 +246,13 @@ class Walk:
             return 0.5  # another link is deeper
         by = found.touch.centre - held.touch.centre
         low, high = 0.0, 1.0
-        while high - low > _BESIDE / 4:
+        while high - low > _BESIDE / 2:
             middle = (low + high) / 2
             if held.surface.missed_at(link, held.touch.centre + middle * by) < STAYS:
                 low = middle
             else:
                 high = middle
-        return low * (1 - _BESIDE) if low > _BESIDE else min(2 * high, 0.5)
+        return (low + high) / 2
 
     def _across(self, held: Settled, found: Settled, goal: float) -> Settled | None:
         """On the next face, edge or corner, where the equilibrium goes on as it was."""
@@ -250,10 +263,25 @@ class Walk:
             _, link, s = model.nearest_link()  # another link is deeper
             state = state._replace(link=link, s=s, sliding=False)
             touch = model.touch(link, s)
-        beyond = self._rest.settle(state, surface_at(model, state.link, touch), foot, foot)
-        if beyond is None or not (beyond.stays and beyond.stability > 0):
+        beyond = self._goes_on(held, state, surface_at(model, state.link, touch), foot)
+        if beyond is not None or not (held.state.sliding and model.shape.faceted):
+            return beyond
+        # Next to a corner a side comes over several edges within a step.
+        model.place(foot, held.state.configuration)
+        for surface in features_around(model, held.state.link, held.touch.centre):
+            beyond = self._goes_on(held, held.state, surface, foot)
+            if beyond is not None:
+                return beyond
+        return None
+
+    def _goes_on(
+        self, held: Settled, state: State, surface: Surface, foot: Floats
+    ) -> Settled | None:
+        """The stable equilibrium on a face, an edge or a corner, if it is next to the one before."""
+        found = self._rest.settle(state, surface, foot, foot)
+        if found is None or not (found.stays and found.stability > 0):
             return None
-        return beyond if _apart(beyond, held) < _STEADY else None
+        return found if _apart(found, held) < _STEADY else None
 
     def _note_phase(self, held: Settled, goal: float, found: Settled) -> None:
         """Enclose a change between the tip and the side."""

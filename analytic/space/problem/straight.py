@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.body import Body, Spot
 from analytic.space.problem.path import FootPath
@@ -78,6 +80,7 @@ class Way:
         self.length = length
         self.radius = radius / length
         self.marks = path.marks / length
+        self._corners = path.corners / length
 
     def foot(self, travel: float) -> Floats:
         """A foot position.
@@ -92,7 +95,7 @@ class Way:
         array, shape (3,)
             [L]
         """
-        return self.path.at(travel * self.length) / self.length
+        return np.array([np.interp(travel, self.marks, column) for column in self._corners.T])
 
     def gap(self, travel: float) -> Gap:
         """How near the straight vibrissa is there.
