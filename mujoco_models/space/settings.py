@@ -27,7 +27,8 @@ class SpatialSettings:
     Parameters
     ----------
     beam : str
-        Rigid links with springs, ``"chain"``, or MuJoCo 4's one-dimensional flex, ``"rod"``.
+        Rigid links with springs, ``"chain"``, or MuJoCo 4's one-dimensional flex, ``"rod"``. MuJoCo
+        3's composite cable is the chain in space: the same moments at the same turns of its balls.
     joints : str
         Of the links: a ``"ball"`` bends alike in all directions and twists, with GJ = EI; a
         ``"universal"`` joint, two hinges, does not twist. The rod has universal joints only.
@@ -61,6 +62,13 @@ class SpatialSettings:
     tolerance: StrictFloat = 1e-8
 
     def __post_init__(self) -> None:
+        if self.beam == "cable":
+            raise InputError(
+                "mujoco.beam",
+                "'cable'",
+                "'chain' or 'rod' in space",
+                "the cable's joints are the chain's balls, whose moments are the same to 1e-14",
+            )
         for name, allowed in _WORDS.items():
             check_word(f"mujoco.{name}", getattr(self, name), allowed)
         if self.beam == "rod" and self.joints != "universal":

@@ -277,7 +277,7 @@ class Walk:
     def _goes_on(
         self, held: Settled, state: State, surface: Surface, foot: Floats
     ) -> Settled | None:
-        """The stable equilibrium on a face, an edge or a corner, if it is next to the one before."""
+        """The stable equilibrium on a face, edge or corner, if it is next to the one before."""
         found = self._rest.settle(state, surface, foot, foot)
         if found is None or not (found.stays and found.stability > 0):
             return None

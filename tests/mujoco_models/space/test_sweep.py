@@ -20,7 +20,9 @@ from analytic.space import (
     sphere,
 )
 from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT
-from mujoco_models import SpatialSettings, simulate_space
+from mujoco_models import Settings, SpatialSettings, simulate_space
+from mujoco_models.beams.cable import Cable
+from mujoco_models.space.beams import BallChain
 from mujoco_models.space.rest import Rest, State
 from mujoco_models.space.sweep import compiled
 
@@ -165,6 +167,29 @@ def test_balls_and_universal_joints_agree_and_so_does_the_rod():
         assert worst_rms(solve_space(case), rod) < 1e-3
 
 
+@pytest.mark.skipif(mujoco.__version__ >= "4", reason="MuJoCo 4 has no composite cable")
+def test_the_cable_is_the_chain_on_balls():
+    """Turned alike, its balls have the chain's moments, each over its own stiffness."""
+    turns = 0.05 * np.random.default_rng(0).normal(size=(30, 3))
+    found = []
+    # The cable's segments are along their own x axis, the chain's links along y.
+    for beam, swap in (
+        (
+            Cable(Settings(beam="cable", segments=40), np.inf),
+            np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1]]),
+        ),
+        (BallChain(Settings(segments=40), np.inf), np.eye(3)),
+    ):
+        model = beam.spec(0.005).compile()
+        data, velocity = mujoco.MjData(model), np.zeros((model.nv // 3, 3))
+        velocity[:30] = turns @ swap.T
+        mujoco.mj_integratePos(model, data.qpos, velocity.ravel(), 1.0)
+        mujoco.mj_forward(model, data)
+        moments = data.qfrc_passive.reshape(-1, 3)[:30] @ swap
+        found.append(moments * beam.layout.compliances[:30, None])
+    assert np.abs(found[0] - found[1]).max() < 1e-13 * np.abs(found[1]).max()
+
+
 @pytest.mark.slow
 def test_a_wrong_rigidity_is_found():
     case = case_of("sphere", 40)
@@ -192,7 +217,7 @@ def test_settings_that_cannot_be_are_refused_in_one_line():
         ({"joints": "hinge"}, "ball, universal"),
         ({"segments": 1}, "between 2 and 400"),
         ({"beam": "rod"}, "cannot resist twisting"),
-        ({"beam": "cable"}, "chain, rod"),
+        ({"beam": "cable"}, "'chain' or 'rod' in space"),
     ):
         with pytest.raises(InputError, match=says) as refused:
             SpatialSettings(**wrong)
