@@ -27,5 +27,6 @@ def test_a_mesh_has_no_silent_error(seed):
 def test_no_station_is_ok_and_on_another_branch(kind):
     outcomes = main(10, 1_000, kind)
     assert not any({"silent", "lost", "rms"} & set(outcome.flags) for outcome in outcomes)
-    # A side that slides over a corner may land in one model only: on 4 of 50 other ways.
-    assert sum("slip-off" in outcome.flags for outcome in outcomes) <= 3
+    assert sum(outcome.statuses.get("unsettled", 0) for outcome in outcomes) <= 6  # of 600
+    # Which facet a side comes to that slides over a corner may hang on the last 1e-4 L.
+    assert sum("slip-off" in outcome.flags for outcome in outcomes) <= 1

@@ -185,16 +185,14 @@ class _Walker:
 
     def _let_go(self, contact: Contact, travel: float) -> tuple[float | None, float]:
         """Where the vibrissa touches next, and from where on it is known to be free."""
-        if contact.force < _LOOSE:
-            self._note("release", travel)
-            return self._way.next_touch(travel + 10 * _CLOSE), travel
-        self._note("slip-off", travel)
-        if self._way.gap(travel).size > 0:
-            return self._way.next_touch(travel), travel
-        clear = self._way.next_clear(travel)
+        released = contact.force < _LOOSE
+        self._note("release" if released else "slip-off", travel)
+        clear: float | None = travel
+        if self._way.gap(travel).size <= 0:
+            clear = self._way.next_clear(travel)
         if clear is None:
-            return None, np.inf
-        return self._way.next_touch(clear + 10 * _CLOSE), clear
+            return None, travel if released else np.inf
+        return self._way.next_touch(clear + 10 * _CLOSE), travel if released else clear
 
     def _note(self, kind: str, travel: float) -> None:
         self._events.append(Event(kind, travel, self._way.foot(travel)))

@@ -3,7 +3,17 @@
 import numpy as np
 import pytest
 
-from analytic import Beam, Case, InputError, Sweep, catenary, circle, solve_contact, solve_sweep
+from analytic import (
+    Beam,
+    Case,
+    InputError,
+    Sweep,
+    catenary,
+    circle,
+    ellipse,
+    solve_contact,
+    solve_sweep,
+)
 from analytic.space import (
     FootPath,
     SmoothBody,
@@ -129,6 +139,19 @@ def test_on_a_sphere_the_foot_is_in_the_plane_of_contact_and_axis():
     assert kind == "slip-off"
     assert np.abs(foot).max() < 1e-11
     assert (central.table["status"] == "slipped off").sum() > 5
+
+
+def test_a_spheroid_gives_what_its_meridian_gives():
+    """Upright, passed beside its axis by an upright vibrissa."""
+    readings = swept(ellipsoid((1.0, 0.7, 1.0), (0.0, 1.1, 0.0)), [[1.3, 0.3], [-1.5, 0.3]], 50)
+    on = readings.touching & (np.linalg.norm(readings.values(*FORCE), axis=1) > 0.1)
+    assert on.sum() > 15
+    meridian = ellipse(semi_axes=(1.0, 0.7), lowest=(0.0, 0.4))
+    planar = solve_contact(meridian, readings.values("contact_angle")[on])
+    away = np.hypot(readings.values("foot_x"), readings.values("foot_z"))[on]
+    assert np.abs(planar["foot_x"] - away).max() < 1e-13
+    force = np.linalg.norm(readings.values(*FORCE)[on], axis=1)
+    assert np.allclose(force, np.hypot(planar["force_x"], planar["force_y"]), rtol=1e-12, atol=0)
 
 
 def test_a_mirror_image_reads_the_mirrored_components():
