@@ -62,7 +62,7 @@ class SpatialSettings:
     tolerance: StrictFloat = 1e-8
 
     def __post_init__(self) -> None:
-        if self.beam == "cable":
+        if str(self.beam) == "cable":  # as another beam of MuJoCo's is called
             raise InputError(
                 "mujoco.beam",
                 "'cable'",
