@@ -224,7 +224,7 @@ def _general_events(
         z = path.z[i : i + 1]
         found = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
         columns = general_columns(found, np.zeros(1, dtype=bool), beam)
-        if name == "first_contact":  # two rigid bodies: no force whose direction could be checked
+        if i == 0:  # first contact of two rigid bodies: no force whose direction could be checked
             return _only(columns)
         columns = without_inexact(columns, beam, vibrissa)
         if not is_clear(centreline, found)[0]:

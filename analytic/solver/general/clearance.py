@@ -19,6 +19,8 @@ _MARKS = np.linspace(0, 1, 33)  # of the places at which a vibrissa that varies 
 _STRAIGHT = 1e-12  # 1/L; rounding of a natural curvature that vanishes
 _TANGENTS = 65
 _CHUNK = 500  # contacts at a time, so that their places and tangents find room
+_BESIDE = 0.13  # L; twice as far as places are apart, and the cubic errs by 1e-5 L
+_AT_ONCE = 2_000_000  # corners beside contacts, so that they find room
 _INSIDE = 1e-9  # L; by how much a point may seem to lie in the object
 
 
@@ -43,7 +45,7 @@ def is_clear(centreline: Contour, contact: States) -> Booleans:
     if left.size:
         for some in np.array_split(left, 1 + left.size // _CHUNK):
             clear[some] = _is_outside(centreline, contact.at(some))
-    return clear & _starts_outside(contact)
+    return clear & _starts_outside(contact) & _passes_corners(centreline, contact)
 
 
 def _starts_outside(contact: States) -> Booleans:
@@ -56,6 +58,37 @@ def _starts_outside(contact: States) -> Booleans:
     below = contact.excess <= np.pi + _INSIDE
     flatter = natural * point.stretch <= point.turning * (1 + _INSIDE)
     return np.asarray(below & (flatter | ~contact.tangent))
+
+
+def _passes_corners(centreline: Contour, contact: States) -> Booleans:
+    """Whether a vibrissa curved towards the object stays off the corners next to its contact.
+
+    These may be closer to each other than the places that are looked at. There the vibrissa is a
+    cubic: curved as at rest, less what the force bends on the way to the clamp.
+    """
+    clear = np.ones(len(contact.force), dtype=bool)
+    s = contact.arc_length
+    natural = contact.vibrissa.unloaded.curvature(s)
+    breaks = centreline.breaks()
+    some = np.flatnonzero((natural > _STRAIGHT) & np.isfinite(contact.excess))
+    if not (breaks.size and some.size):
+        return clear
+    corners = centreline.at(breaks)
+    for few in np.array_split(some, 1 + some.size * breaks.size // _AT_ONCE):
+        one, curved = contact.at(few), natural[few, None]
+        felt, taper = one.felt, one.vibrissa.unloaded.taper(s[few])[:, None]
+        sin, cos = np.sin(felt.alpha)[:, None], np.cos(felt.alpha)[:, None]
+        x = corners.xi + taper * np.sin(corners.alpha) - felt.xi[:, None]
+        y = corners.eta - taper * np.cos(corners.alpha) - felt.eta[:, None]
+        along, into = x * cos + y * sin, y * cos - x * sin
+        near = (along > -_BESIDE) & (along < np.minimum(_BESIDE, 1 - s[few])[:, None])
+        back = np.maximum(-along, 0.0)
+        form, force = one.vibrissa.form, one.force
+        push = force if form is None else force * form.flexibility(s[few])
+        bent = curved * along**2 / 2 - push[:, None] * back**3 / 6
+        bent -= np.maximum(one.excess, 0.0)[:, None] * back
+        clear[few] = ~(near & (bent > into + _INSIDE)).any(axis=1)
+    return clear
 
 
 def _bends_one_way(contact: States) -> Booleans:

@@ -52,7 +52,9 @@ def residuals(columns: dict[str, Column], beam: Beam, vibrissa: Vibrissa) -> dic
     radius = vibrissa.radius_at(length)
     x, y = xi + radius * np.sin(alpha) - foot_x, eta - radius * np.cos(alpha)
     slope = tip_angle - vibrissa.unloaded.turn_between(length, 1.0)
-    force, direction = np.hypot(force_x, force_y), np.arctan2(-force_x, force_y)
+    force, lean = np.hypot(force_x, force_y), np.arctan(mu)
+    # Of no force, as where a tip leaves the object, any direction is right.
+    direction = np.where(force > 0, np.arctan2(-force_x, force_y), alpha + lean)
     couple = mu * radius * force / np.sqrt(1 + mu**2)
 
     clamp = np.pi / 2 - compliance * moment - direction, -moment
@@ -65,7 +67,7 @@ def residuals(columns: dict[str, Column], beam: Beam, vibrissa: Vibrissa) -> dic
         span.along * sin + span.across * cos - y,
         span.theta,
         span.m,
-        direction - np.arctan(mu) - alpha,
+        direction - lean - alpha,
         np.maximum(0.0, length - 1),
         np.maximum(0.0, along - slope),
         np.where(columns["phase"] == "tangent", slope - along, 0.0),

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from analytic import named_case
+from analytic import CASE_NAMES, named_case
 from compare.explain.budget import UNRESOLVED
 from compare.simulate.controlled import measure_budget
 from mujoco_models import Settings
@@ -29,15 +29,30 @@ VIBRISSAE = {
     ],
 )
 def test_it_closes(name, vibrissa):
+    assert_closed(name, vibrissa, segments=40, stations=120, least=95)
+
+
+@pytest.mark.trial
+@pytest.mark.parametrize("segments", [40, 80])
+@pytest.mark.parametrize("vibrissa", VIBRISSAE)
+@pytest.mark.parametrize("name", CASE_NAMES)
+def test_all_close(name, vibrissa, segments):
+    """Observed at most 4.1e-5 and 1.5e-5, the order 1.81 to 2."""
+    # A flat object is touched twice on most of its way by one that is curved towards it.
+    twice = vibrissa == "curved towards" and name.endswith("catenary")
+    assert_closed(name, vibrissa, segments, stations=60, least=10 if twice else 45)
+
+
+def assert_closed(name, vibrissa, segments, stations, least):
     case = named_case(name)
     beam = replace(case.beam, **VIBRISSAE[vibrissa])
     stiffness = 8.0 if vibrissa == "on a spring" else float("inf")
-    sweep = replace(case.sweep, stations=120)
+    sweep = replace(case.sweep, stations=stations)
     case = replace(case, beam=beam, clamp_stiffness=stiffness, sweep=sweep)
     # The closed form past as many corners, a check, takes long where the vibrissa varies.
-    found, _ = measure_budget(case, Settings(contour_points=1600))
+    found, _ = measure_budget(case, Settings(contour_points=1600, segments=segments))
     assert found.closes
-    assert found.stations > 95  # of 120, some of them free
+    assert found.stations >= least  # some are free, or within the window before the snap-off
     assert found.blame in ("discretisation", "facets")
     assert found.order > 1.8
     for part in found.parts["unexplained"].values():

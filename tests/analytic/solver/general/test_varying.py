@@ -408,3 +408,11 @@ def test_two_thousand_contacts_a_second(name):
     took = time.process_time() - begun
     assert (table["status"] == "ok").mean() > 0.9
     assert len(alpha) / took > 2000  # observed 4,000 and more
+
+
+@pytest.mark.parametrize("beam", [Beam(tip_radius=0.002), Beam(natural_curvature=bow(-0.4))])
+def test_phase_b_from_the_first_contact_on(beam):
+    """On the side of the object; there is no force yet whose direction could be wrong."""
+    found = find_events(circle(0.3, lowest=(0, 0.5)), beam)
+    assert found.phase_b_start == found.first_contact
+    assert found.first_contact.status == "ok" and found.first_contact.phase == "tangent"
