@@ -7,6 +7,7 @@ from mujoco_models.model.surface import CONTACT_GAP, SIDE_PREFIX
 from mujoco_models.obstacles.corners import LINKS
 from mujoco_models.obstacles.protocol import Obstacle
 
+CCD_TOLERANCE = 1e-12  # L, of MuJoCo's searches for the nearest points
 # Bytes. A vibrissa bent round an object may have 6,000 beads within its gap, and MuJoCo's own
 # choice has no room to solve for them; what is not used takes none.
 _MEMORY = 2**28
@@ -85,7 +86,7 @@ def add_options(spec: mujoco.MjSpec) -> None:
     option.gravity = [0, 0, 0]
     option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE  # 4.0.0: wrong Hessian with sparse ones
     option.tolerance = 1e-14
-    option.ccd_tolerance = 1e-12
+    option.ccd_tolerance = CCD_TOLERANCE
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
     # The midphase's tree tests every bead against every window: seven times the cost of a step.
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MIDPHASE

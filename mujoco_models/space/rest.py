@@ -185,7 +185,7 @@ class Rest:
             allowed = _SHARE * self._tolerance + model.shape.blur * state.force
             if (
                 max(out_of_balance, skewed) < allowed + _ROUNDING * self._k
-                and missed < allowed + (_ROUNDING + model.shape.blur**2) * self._k
+                and missed < allowed + (_ROUNDING + model.shape.off) * self._k
             ):
                 return state, system
             step = self._step(state, system)

@@ -167,7 +167,10 @@ def _row(model: SpaceModel, station: Station, foot: Floats, tolerance: float) ->
     row |= dict(zip(MOMENT, clamped.moment, strict=True))
     row["discrepancy"] = clamped.discrepancy
     force = 0.0 if found is None else found.state.force
-    if row["residual"] > tolerance * (1 + force) + 2 * model.shape.blur * force:
+    unavoidable = 2 * model.shape.blur * force
+    if found is not None:
+        unavoidable += model.shape.off * model.contact_stiffness
+    if row["residual"] > tolerance * (1 + force) + unavoidable:
         row["status"] = "unsettled"
     return row
 

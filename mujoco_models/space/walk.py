@@ -320,7 +320,8 @@ class Walk:
             return True
         if not landed.stability > 0:
             return False
-        self.events.append(Event("hop", self._at))
+        if _apart(landed, held) > _STEADY:  # or it was the same branch, where that is steep
+            self.events.append(Event("hop", self._at))
         self._held, self._at = landed, goal
         return True
 
