@@ -35,6 +35,7 @@ _ROUNDING = 4e-15  # L, of a distance
 _OVERLOOKED = 1e-8  # L; as deep as another link may be
 _SWITCHES = 6  # to another link that is deeper
 _POWER_STEPS = 8
+_STRAIGHT = 1e-14  # EI/L, of a spring: rounding
 
 
 class State(NamedTuple):
@@ -279,16 +280,17 @@ class Rest:
             First and second derivatives.
         """
         model, force, n = self.model, state.force, touch.normal
-        moved = self.moved(state.link, touch.centre)
-        swung = _cross(n[None], self._axes(state.link))
+        moved, carry = self.moved(state.link, touch.centre), self._carriers(state.link)
+        swung = _cross(n[None], model.axes[:carry])
+        near = moved[:carry]
         # n . (a_i x (a_k x r)) for joints i before k; of one joint's, the symmetric part.
-        both = swung @ moved.T
-        bent = self._before * both
+        bent = self._before[:carry, :carry] * (swung @ near.T)
         bent += bent.T
-        bent += moved @ turning @ moved.T
+        bent += near @ turning @ near.T
         tangent = model.direction(state.link)
-        rolling = moved @ turning @ tangent + swung @ tangent
-        stiffness = -force * bent
+        rolling, stiffness = np.zeros(len(moved)), np.zeros((len(moved), len(moved)))
+        rolling[:carry] = near @ (turning @ tangent) + swung @ tangent
+        stiffness[:carry, :carry] = -force * bent
         size = len(model.joint_of) // len(model.ends)
         blocks = stiffness.reshape(len(model.ends), size, len(model.ends), size)
         index = np.arange(len(model.ends))
@@ -320,32 +322,41 @@ class Rest:
         array, shape (nv, 3)
             [L]
         """
-        return _cross(self._axes(link), (centre - self.model.joints)[self.model.joint_of])
+        model, carry = self.model, self._carriers(link)
+        found = np.zeros((len(model.joint_of), 3))
+        found[:carry] = _cross(model.axes[:carry], (centre - model.joints)[model.joint_of[:carry]])
+        return found
 
-    def _axes(self, link: int) -> Floats:
-        """Of the joints that carry a link."""
-        return self.model.axes * (self.model.joint_of <= link)[:, None]
+    def _carriers(self, link: int) -> int:
+        """How many velocities move a link: those of the joints up to its own."""
+        return int(np.searchsorted(self.model.joint_of, link, side="right"))
 
     def _step(self, state: State, system: Linearised) -> State | None:
         """One step of Newton's method."""
         model, force = self.model, state.force
-        count = len(system.push)
+        # The joints beyond the contact feel their own springs only.
+        count = self._carriers(state.link)
+        push, springs = system.push[:count], system.springs
         size = count + 1 + state.sliding
         matrix, right = np.zeros((size, size)), np.zeros(size)
-        matrix[:count, :count] = system.stiffness
-        matrix[:count, count] = matrix[count, :count] = -system.push
+        matrix[:count, :count] = system.stiffness[:count, :count]
+        matrix[:count, count] = matrix[count, :count] = -push
         matrix[count, count] = -1 / self._k
-        right[:count] = system.springs + force * system.push
+        right[:count] = springs[:count] + force * push
         right[count] = system.touch.distance + force / self._k
         if state.sliding:
-            matrix[:count, -1] = matrix[-1, :count] = -force * system.rolling
+            rolling = system.rolling[:count]
+            matrix[:count, -1] = matrix[-1, :count] = -force * rolling
             matrix[count, -1] = matrix[-1, count] = -system.slope
             matrix[-1, -1] = -force * max(system.along, _FLATTEST)
             right[-1] = force * system.slope
         *_, found, failed = dgesv(matrix, right)
         if failed or not np.isfinite(found).all():
             return None
-        turns = found[:count]
+        turns = np.zeros(len(springs))
+        turns[:count] = found[:count]
+        if np.abs(springs[count:]).max(initial=0.0) > _STRAIGHT:
+            turns[count:] = np.linalg.solve(system.stiffness[count:, count:], springs[count:])
         share = min(1.0, _LARGEST_TURN / max(float(np.abs(turns).max()), 1e-300))
         configuration = state.configuration.copy()
         mujoco.mj_integratePos(model.model, configuration, share * turns, 1.0)
