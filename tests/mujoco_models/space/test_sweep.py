@@ -124,7 +124,6 @@ def test_forty_segments_are_within_3e_3_of_the_closed_form(name):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("semi_axes", [(0.5, 0.35, 0.8), (0.38, 0.06, 0.19)])
 def test_past_any_ellipsoid_it_rests_as_well_as_mujoco_has_distances(semi_axes):
     """Just after the touch their error is most of the force; a steep branch is no hop."""
@@ -137,6 +136,7 @@ def test_past_any_ellipsoid_it_rests_as_well_as_mujoco_has_distances(semi_axes):
     assert kinds[0] == kinds[1]
 
 
+@pytest.mark.slow
 def test_the_chain_is_of_second_order():
     case = case_of("sphere", 40)
     exact = solve_space(case)
