@@ -108,7 +108,8 @@ def test_a_first_edge_that_is_rigid_is_as_stiff_as_was_measured(tmp_path, name):
         path.write_text(text.replace('timestep="0.0005"', 'timestep="1e-4"'))
     moved = simulate_model(case_of(WIRE), own, Motion(speed=0.1), COARSE)
     exact = solve_sweep(case_of(WIRE))
-    touches = (exact.table["phase"] == "tangent").to_numpy() & moved.trusted
+    # The cable's contact chatters, as it is explicit; the means over a station's way hold.
+    touches = (exact.table["phase"] == "tangent").to_numpy()
     ratio = np.median(moved.values("moment_z")[touches] / exact.values("moment_z")[touches])
     off = by_its_clamp(found.found) / WIRE.flexural_rigidity
     assert off == pytest.approx(1.079, abs=1e-3)
