@@ -18,7 +18,7 @@ from analytic.space import (
     wrench_complaint,
     write_ply,
 )
-from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT, NORMAL
+from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE, MOMENT, NORMAL
 
 BODY = ellipsoid((2.0, 1.4, 3.2), (0.0, 2.2, 0.0))
 
@@ -71,6 +71,22 @@ def test_a_torsion_and_a_wrong_frame_are_named(readings):
     assert "along the clamp's tangent" in wrench_complaint(found)
     swapped = dict(zip(MOMENT, (moment[:, 2], moment[:, 1], moment[:, 0]), strict=True))
     assert "frame" in wrench_complaint(reconstruct_space(changed(readings, **swapped)))
+
+
+def test_friction_across_is_named(readings):
+    """A fifth of the force across the plane of bending, at the same contact."""
+    on = readings.touching
+    force, moment = readings.values(*FORCE), readings.values(*MOMENT)
+    axis = readings.values(*CONTACT_POINT) + readings.beam.radius * readings.values(*NORMAL)
+    size = np.linalg.norm(force, axis=1)[:, None]
+    with np.errstate(invalid="ignore"):
+        across = moment / np.linalg.norm(moment, axis=1)[:, None]
+    force = np.where(on[:, None], force + 0.2 * size * across, force)
+    moment = np.where(on[:, None], np.cross(axis - readings.values(*FOOT), force), moment)
+    columns = dict(zip((*FORCE, *MOMENT), np.hstack([force, moment]).T, strict=True))
+    found = reconstruct_space(changed(readings, **columns))
+    assert np.nanmax(np.abs(found["along_force"])) < 1e-12
+    assert "friction across" in wrench_complaint(found)
 
 
 def test_a_cloud_is_a_file_that_others_read(readings, tmp_path):
