@@ -76,8 +76,7 @@ class Newton:
             If the stiffness is not finite.
         """
         model, numerics = self._model, self._numerics
-        loaded = int(contacts.loaded.sum())
-        contacts = contacts.nearest(max(numerics.at_once, 2 * loaded))
+        contacts = contacts.nearest(max(numerics.at_once, 2 * len(state.forces)))
         curvature = self._curvature(contacts)
         along, across = levers(contacts, model.joint_positions())
         distance, force = contacts.distance, self._forces(state, contacts)
@@ -89,8 +88,8 @@ class Newton:
             comes[slides] = along[np.where(slides, distance, np.inf).argmin()]
 
         # Loaded contacts convexify the model; their slack is zero at rest, and so is the effect.
-        loads = force > 0
-        held, slack = comes[loads], (distance + force / model.contact_stiffness)[loads]
+        loaded = force > 0
+        held, slack = comes[loaded], (distance + force / model.contact_stiffness)[loaded]
         moments = of_links(model.elastic_moments()) - numerics.stiffening * slack @ held
         if slides.any():
             moments -= np.maximum(-model.contact_stiffness * distance, 0) @ (comes - along)
@@ -99,7 +98,7 @@ class Newton:
         solved = stiffness.solve(np.concatenate([moments[None], comes]))
         free, compliance = solved[0], solved[1:]
         softness = np.eye(len(force)) / model.contact_stiffness
-        forces = _unilateral(comes @ compliance.T + softness, distance + comes @ free, loads)
+        forces = _unilateral(comes @ compliance.T + softness, distance + comes @ free, loaded)
         step = free + forces @ compliance
         shorter = min(1.0, numerics.largest_turn / max(float(np.abs(step).max()), 1e-300))
         step[1:] -= step[:-1].copy()
