@@ -88,6 +88,8 @@ def first_touch(centreline: Contour, reach: tuple[float, float], rest: Unloaded)
     lengths[0] = 1.0 if at_tip else lengths[0]
     point = centreline.at(places)
     feet = point.xi + rest.taper(lengths) * np.sin(point.alpha) - rest.at(lengths)[0]
+    if not at_tip and steep[0] > 0:
+        feet[0] = -np.inf  # the contour's end, as far right as the corner that it is, is no tangent
     best = int(np.argmax(feet))
     excess = float(lengths[best] - 1)
     if best == 0 and at_tip:

@@ -416,3 +416,13 @@ def test_phase_b_from_the_first_contact_on(beam):
     found = find_events(circle(0.3, lowest=(0, 0.5)), beam)
     assert found.phase_b_start == found.first_contact
     assert found.first_contact.status == "ok" and found.first_contact.phase == "tangent"
+
+
+def test_a_thin_vibrissa_first_touches_the_corner_where_the_object_ends():
+    """At a corner every slope has one place: the contour's end is as far right as the touch."""
+    vertices = [(-0.6, 0.886), (-0.356, 0.498), (0.114, 0.409), (0.223, 0.436), (0.361, 0.501)]
+    for natural in (lambda s: -0.2 - 0.6 * s, bow(-0.6), -0.4):
+        beam = Beam(radius=0.0, natural_curvature=natural)
+        found = solve_sweep(Case(beam, polygon(vertices), Sweep(20), friction=0.3))
+        assert set(found.table["status"]) == {"ok"}
+        assert certify(found).max(axis=None) < 1e-10
