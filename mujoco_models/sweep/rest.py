@@ -57,7 +57,7 @@ def relax(
     lookout.watch(around(model, state.forces, numerics.ahead) or one_bead_a_link(model))
     if start.slope is not None:
         lookout.face(start.slope)
-    nearly, residual = numerics.nearly * tolerance, np.inf
+    nearly, residual, vain = numerics.nearly * tolerance, np.inf, 0
     at_once = start.foreseen and len(start.angles) <= numerics.light
     for _ in range(numerics.iterations):
         before, residual = residual, _largest(model.imbalance(foot_x, state.angles))
@@ -69,7 +69,10 @@ def relax(
             state = replace(state, imbalance=_largest(model.relieved()))
         else:
             state = replace(state, imbalance=residual)
-        best = min(best, state, key=lambda s: s.imbalance)
+        if state.imbalance < best.imbalance:
+            best, vain = state, 0
+        elif (vain := vain + 1) > numerics.in_vain:
+            break
         if state.imbalance < tolerance:
             if contacts.passed or lookout.is_crossed(model.joint_positions()):
                 break  # a corner has gone through a link
