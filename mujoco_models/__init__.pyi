@@ -12,5 +12,6 @@ from .simulate import simulate_model as simulate_model
 from .simulate import simulate_motion as simulate_motion
 from .simulate import simulate_space as simulate_space
 from .simulate import simulate_sweep as simulate_sweep
+from .simulate import simulate_there_and_back as simulate_there_and_back
 from .simulate import view_sweep as view_sweep
 from .space.settings import SpatialSettings as SpatialSettings

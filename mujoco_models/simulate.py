@@ -194,6 +194,50 @@ def simulate_motion(
     )
 
 
+def simulate_there_and_back(
+    case: Case,
+    motion: Motion | None = None,
+    settings: Settings | None = None,
+    advance: Callable[[], None] = lambda: None,
+    keep: Callable[[Readings], None] = lambda _: None,
+) -> tuple[Readings, Readings]:
+    """Sweep `case` in motion, turn round beyond the last station, and come back past all of them.
+
+    Speed and direction change evenly over twice `Motion.ramp`. With friction the contact sticks
+    while the foot turns, and then slides back: see `analytic.turn_back`. Past the snap-off the
+    vibrissa comes back to the object from its other side.
+
+    Parameters
+    ----------
+    case, motion, settings, advance, keep
+        As of `simulate_motion`; `keep` may be called for either way.
+
+    Returns
+    -------
+    on, back : Readings
+        As of `simulate_motion`; the stations of the way back in the order in which they are passed.
+        Its ``provenance["events"]`` say where the foot turned (``"turn"``) and where the last
+        contact ended (``"release"``).
+
+    Raises
+    ------
+    InputError, DivergedError
+        As `simulate_motion` does.
+    """
+    from mujoco_models.stepping.sweep import run_there_and_back
+
+    require("case", case, Case, "named_case('catenary') makes one")
+    leftward = case if case.sweep.direction == "left" else case.mirrored()
+    on, back = run_there_and_back(
+        leftward,
+        motion or Motion(),
+        settings or Settings(),
+        advance,
+        lambda found: keep(facing(case, found)),
+    )
+    return facing(case, on), facing(case, back)
+
+
 def load_tip(
     load: float,
     settings: Settings | None = None,

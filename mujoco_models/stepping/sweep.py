@@ -54,12 +54,52 @@ def run_motion(
     InputError, DivergedError
         As there.
     """
+    model, motion, record, about = _prepared(case, motion, settings)
+    return sweep_moving(model, case, motion, record, about, advance, keep)
+
+
+def run_there_and_back(
+    case: Case,
+    motion: Motion,
+    settings: Settings,
+    advance: Callable[[], None] = lambda: None,
+    keep: Callable[[Readings], None] = lambda _: None,
+) -> tuple[Readings, Readings]:
+    """Sweep the beam to the left and back; see `mujoco_models.simulate_there_and_back`.
+
+    Parameters
+    ----------
+    case, motion, settings, advance, keep
+        As there; the case is one of a sweep to the left.
+
+    Returns
+    -------
+    on, back : Readings
+        As there.
+
+    Raises
+    ------
+    InputError, DivergedError
+        As there.
+    """
+    model, motion, record, about = _prepared(case, motion, settings)
+    way = _Way(model, case, motion, about)
+    on = way.swept(record, way.on, advance, keep)
+    # As if it went on to the left past the mirrored stations.
+    returning = Record(-case.foot_x[::-1] / case.beam.length, motion.average)
+    return on, way.swept(returning, way.back, advance, keep, turn_at=way.turn_at)
+
+
+def _prepared(
+    case: Case, motion: Motion, settings: Settings
+) -> tuple[MovingModel, Motion, Record, dict[str, Any]]:
+    """The model at its start, the motion with the case's friction, and what takes its readings."""
     if motion.friction is None:
         motion = replace(motion, friction=case.friction)
     record = Record(case.foot_x / case.beam.length, motion.average)
     model = _set_out(case, motion, settings, start_of(record, motion))
     about = {"settings": asdict(settings), "source": f"mujoco {settings.beam} in motion"}
-    return sweep_moving(model, case, motion, record, about, advance, keep)
+    return model, motion, record, about
 
 
 def start_of(record: Record, motion: Motion) -> float:
@@ -116,23 +156,8 @@ def sweep_moving(
     DivergedError
         If the motion does not stay finite.
     """
-    begun = time.process_time()
-    try:
-        with threadpool_limits(1), unlogged():
-            _drive(model, motion, record, advance)
-    except BaseException as error:  # whatever it is, what there is must not be lost
-        if isinstance(error, DivergedError):
-            record.rows.append({"phase": "free", "status": "diverged"})
-        if len(record.rows) > 1:
-            keep(_readings(case, motion, about, model, record, begun))
-        if isinstance(error, DivergedError):
-            place_ = f"t = {model.time:.6g} T1"
-            remedy = (
-                f"shorten the time step ({motion.timestep:g} T1), add armature, or soften contacts"
-            )
-            raise DivergedError(f"diverged at {place_}: {error}; {remedy}") from error
-        raise
-    return _readings(case, motion, about, model, record, begun)
+    way = _Way(model, case, motion, about)
+    return way.swept(record, way.on, advance, keep)
 
 
 def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> MovingModel:
@@ -154,60 +179,128 @@ def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> Mo
     return MovingModel(beam, case.radius, obstacle, motion, start)
 
 
-def _drive(model: Moving, motion: Motion, record: Record, advance: Callable[[], None]) -> None:
-    """Step until the foot has passed all stations."""
-    filtered = np.array(model.clamp())
-    # The share of the difference that a filter of first order follows in a step.
-    follows = 1.0
-    if motion.cutoff is not None:
-        follows = -math.expm1(-2 * math.pi * motion.cutoff * motion.timestep)
-    before = Sample(0.0, model.foot_x, filtered, touches=False)
-    while not record.complete:
-        gone = model.now + motion.timestep
-        speed = motion.speed * (min(1.0, gone / motion.ramp) if motion.ramp > 0 else 1.0)
-        model.step(speed)
-        filtered = filtered + follows * (np.array(model.clamp()) - filtered)
-        after = Sample(model.time, model.foot_x, filtered, model.touches)
-        while True:
-            if record.crosses(before, after):
-                record.note(before, after, model.state(speed))
-            if not record.take(before, after):
-                break
-            advance()
-        before = after
+class _Way:
+    """The foot's way past the stations, and back, and the sensors' filter on it."""
 
+    def __init__(self, model: Moving, case: Case, motion: Motion, about: dict[str, Any]) -> None:
+        self._model, self._case, self._motion, self._about = model, case, motion, about
+        self._filtered = np.array(model.clamp())
+        # The share of the difference that a filter of first order follows in a step.
+        self._follows = 1.0
+        if motion.cutoff is not None:
+            self._follows = -math.expm1(-2 * math.pi * motion.cutoff * motion.timestep)
 
-def _readings(
-    case: Case,
-    motion: Motion,
-    about: dict[str, Any],
-    model: Moving,
-    record: Record,
-    begun: float,
-) -> Readings:
-    """In the units of the case's beam; the time stays in T1."""
-    table = pd.DataFrame(record.rows)
-    _mark_lost(table)
-    beam = case.beam
-    for name in ("force_x", "force_y", "moment_z"):
-        unit = beam.moment_unit if name == "moment_z" else beam.force_unit
-        table[[name, f"{name}_raw"]] *= unit
-    for name in ("contact_arc_length", "contact_x", "contact_y", "penetration"):
-        table[name] *= beam.length
-    table.insert(0, "foot_x", case.foot_x[: len(table)])
-    places = {"first_contact": record.first_touch, "snap_off": record.last_touch}
-    provenance = {
-        **case.provenance(),
-        "engine": f"MuJoCo {mujoco.__version__}, vibrissa-testbed {version('vibrissa-testbed')}",
-        "python": platform.python_version(),
-        **{name: value for name, value in about.items() if name != "source"},
-        "motion": asdict(motion),
-        "obstacle": model.label,
-        "seconds": round(time.process_time() - begun, 3),
-        "events": {n: None if x is None else x * beam.length for n, x in places.items()},
-    }
-    extra = [name for name in table if name not in COLUMNS]
-    return Readings(table[[*COLUMNS, *extra]], beam, about["source"], provenance)
+    @property
+    def turn_at(self) -> float:
+        """Where the foot is when it has come to a stop, from where it is now [L]."""
+        return self._model.foot_x - self._motion.speed * self._motion.ramp / 2
+
+    def on(self, record: Record, advance: Callable[[], None]) -> None:
+        """To the left, from a soft start."""
+        speed, ramp = self._motion.speed, self._motion.ramp
+        begun = self._model.now
+        self._drive(
+            record,
+            1.0,
+            lambda now: speed * (min(1.0, (now - begun) / ramp) if ramp > 0 else 1.0),
+            advance,
+        )
+
+    def back(self, record: Record, advance: Callable[[], None]) -> None:
+        """To the right, turning round as softly."""
+        speed, ramp = self._motion.speed, self._motion.ramp
+        begun = self._model.now
+        self._drive(
+            record,
+            -1.0,
+            lambda now: speed * (max(-1.0, 1 - (now - begun) / ramp) if ramp > 0 else -1.0),
+            advance,
+        )
+
+    def _drive(
+        self,
+        record: Record,
+        facing: float,
+        speed_at: Callable[[float], float],
+        advance: Callable[[], None],
+    ) -> None:
+        """Step until the foot has passed all stations, with positions as `facing` has them."""
+        model, motion = self._model, self._motion
+        touches = facing < 0 and model.touches
+        before = Sample(model.time, facing * model.foot_x, self._filtered, touches)
+        while not record.complete:
+            speed = speed_at(model.now + motion.timestep)
+            model.step(speed)
+            change = np.array(model.clamp()) - self._filtered
+            self._filtered = self._filtered + self._follows * change
+            after = Sample(model.time, facing * model.foot_x, self._filtered, model.touches)
+            while True:
+                if record.crosses(before, after):
+                    record.note(before, after, model.state(speed))
+                if not record.take(before, after):
+                    break
+                advance()
+            before = after
+
+    def swept(
+        self,
+        record: Record,
+        go: Callable[[Record, Callable[[], None]], None],
+        advance: Callable[[], None],
+        keep: Callable[[Readings], None],
+        turn_at: float | None = None,
+    ) -> Readings:
+        """The readings of one way; `turn_at` is where that back begins [L]."""
+        begun = time.process_time()
+        motion = self._motion
+        try:
+            with threadpool_limits(1), unlogged():
+                go(record, advance)
+        except BaseException as error:  # whatever it is, what there is must not be lost
+            if isinstance(error, DivergedError):
+                record.rows.append({"phase": "free", "status": "diverged"})
+            if len(record.rows) > 1:
+                keep(self._readings(record, begun, turn_at))
+            if isinstance(error, DivergedError):
+                place_ = f"t = {self._model.time:.6g} T1"
+                remedy = (
+                    f"shorten the time step ({motion.timestep:g} T1), add armature, "
+                    "or soften contacts"
+                )
+                raise DivergedError(f"diverged at {place_}: {error}; {remedy}") from error
+            raise
+        return self._readings(record, begun, turn_at)
+
+    def _readings(self, record: Record, begun: float, turn_at: float | None) -> Readings:
+        """In the units of the case's beam; the time stays in T1."""
+        case, table = self._case, pd.DataFrame(record.rows)
+        _mark_lost(table)
+        beam = case.beam
+        for name in ("force_x", "force_y", "moment_z"):
+            unit = beam.moment_unit if name == "moment_z" else beam.force_unit
+            table[[name, f"{name}_raw"]] *= unit
+        for name in ("contact_arc_length", "contact_x", "contact_y", "penetration"):
+            table[name] *= beam.length
+        passed = case.foot_x if turn_at is None else case.foot_x[::-1]
+        table.insert(0, "foot_x", passed[: len(table)])
+        places = {"first_contact": record.first_touch, "snap_off": record.last_touch}
+        if turn_at is not None:
+            left = record.last_touch
+            release = None if left is None else -left
+            places = {"turn": turn_at, "snap_off": None, "release": release}
+        provenance = {
+            **case.provenance(),
+            "engine": f"MuJoCo {mujoco.__version__}, "
+            f"vibrissa-testbed {version('vibrissa-testbed')}",
+            "python": platform.python_version(),
+            **{name: value for name, value in self._about.items() if name != "source"},
+            "motion": asdict(self._motion),
+            "obstacle": self._model.label,
+            "seconds": round(time.process_time() - begun, 3),
+            "events": {n: None if x is None else x * beam.length for n, x in places.items()},
+        }
+        extra = [name for name in table if name not in COLUMNS]
+        return Readings(table[[*COLUMNS, *extra]], beam, self._about["source"], provenance)
 
 
 def _mark_lost(table: pd.DataFrame) -> None:

@@ -1,0 +1,61 @@
+"""A sweep in motion that turns round: the way back, and what friction makes of it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import Case, Sweep, named_case, solve_sweep, turn_back
+from mujoco_models import Motion, Settings, simulate_there_and_back
+
+CATENARY = replace(named_case("catenary"), sweep=Sweep(30, stop=0.4))
+SETTINGS = Settings(segments=20, contour_points=800)
+RUBBING = Motion(speed=0.1, timestep=0.002, contact_stiffness=1e3, cone="elliptic", impratio=100.0)
+
+
+def rms(found, exact):
+    return float(np.sqrt(np.mean((found - exact) ** 2)) / np.abs(exact).max())
+
+
+def apart(speed):
+    """How far the way back is from the way on."""
+    on, back = simulate_there_and_back(CATENARY, Motion(speed=speed), SETTINGS)
+    assert back.values("foot_x")[::-1] == pytest.approx(on.values("foot_x"), abs=0)
+    assert back.provenance["events"]["turn"] < on.values("foot_x").min()
+    assert back.values("time")[0] > on.values("time")[-1]
+    return rms(back.values("force_x")[::-1], on.values("force_x"))
+
+
+def test_without_friction_the_way_back_is_the_way_on_as_the_speed_goes_to_zero():
+    """Observed 7.1e-3 and 3.4e-3: of first order in the speed, as damping is."""
+    fast, slow = apart(0.1), apart(0.05)
+    assert slow < 5e-3
+    assert 1.7 < fast / slow < 2.3
+
+
+@pytest.mark.slow
+def test_with_friction_it_sticks_and_slides_back_as_in_closed_form():
+    """Observed 5.2e-3 of the largest force on the way back, a fifth of that on the way on."""
+    case = replace(CATENARY, friction=0.2)
+    on, back = simulate_there_and_back(case, RUBBING, SETTINGS)
+    exact = turn_back(case, back.provenance["events"]["turn"], 2000)
+    there = back.values("foot_x")
+    expected = np.interp(there, exact["foot_x"], exact["force_x"])
+    assert rms(on.values("force_x"), solve_sweep(case).values("force_x")) < 3e-3
+    assert rms(back.values("force_x"), expected) < 8e-3
+    assert rms(on.values("force_x")[::-1], expected) > 0.3
+    assert back.provenance["events"]["release"] == pytest.approx(CATENARY.first_contact, abs=5e-3)
+
+
+def test_to_the_right_it_is_the_mirror_image():
+    body = CATENARY.profile
+    left = Case(profile=body, sweep=Sweep(12, stop=0.4))
+    ways = [
+        simulate_there_and_back(c, Motion(speed=0.2), SETTINGS) for c in (left, left.mirrored())
+    ]
+    for one, other in zip(*ways, strict=True):
+        assert other.values("foot_x") == pytest.approx(-one.values("foot_x"), abs=0)
+        assert other.values("force_x") == pytest.approx(-one.values("force_x"), abs=0)
+        assert other.values("force_y") == pytest.approx(one.values("force_y"), abs=0)
+        events = one.provenance["events"], other.provenance["events"]
+        assert {n: x and -x for n, x in events[0].items()} == events[1]
