@@ -1,24 +1,19 @@
 """What exceeds the limits of agreement in space: where, by how much and why so."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from compare.judge.failures import Failure
 from compare.judge.tolerances import Limit
-
-if TYPE_CHECKING:
-    from compare.spatial.comparison import SpatialComparison
+from compare.spatial.measured import SpatialMeasurement
 
 
-def failures(found: SpatialComparison) -> Iterator[Failure]:
+def failures(found: SpatialMeasurement) -> Iterator[Failure]:
     """Every limit that is exceeded.
 
     Parameters
     ----------
-    found : SpatialComparison
+    found : SpatialMeasurement
         What the sweeps differ by, and how far they may.
 
     Yields
@@ -50,7 +45,7 @@ def failures(found: SpatialComparison) -> Iterator[Failure]:
         )
 
 
-def _components(found: SpatialComparison) -> Iterator[Failure]:
+def _components(found: SpatialMeasurement) -> Iterator[Failure]:
     length = found.reference.beam.length
     for name, one in found.disagreement.items():
         for kind, size in (("rms", one.rms), ("max", one.max)):
@@ -68,7 +63,7 @@ def _components(found: SpatialComparison) -> Iterator[Failure]:
             )
 
 
-def _contacts(found: SpatialComparison) -> Iterator[Failure]:
+def _contacts(found: SpatialMeasurement) -> Iterator[Failure]:
     limits, one = found.tolerances.limits(), found.contact
     limit, compared = limits["contact"], int(found.compared.sum())
     if one.rms > limit:
@@ -99,7 +94,7 @@ def _contacts(found: SpatialComparison) -> Iterator[Failure]:
         )
 
 
-def _events(found: SpatialComparison) -> Iterator[Failure]:
+def _events(found: SpatialMeasurement) -> Iterator[Failure]:
     length = found.reference.beam.length
     limit = found.tolerances.limits()["event"]
     for name, pair in found.events.items():

@@ -1,0 +1,113 @@
+"""What two sweeps in space differ by, before it is judged."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from analytic.problem.arrays import Booleans, Floats
+from analytic.space import SpatialReadings
+from compare.align.frames import Frame
+from compare.judge.spatial import SpatialTolerances
+from compare.measure.disagreement import Occurrence
+
+
+@dataclass(frozen=True)
+class ComponentDisagreement:
+    """How far one component of the candidate is off, over the largest of its kind.
+
+    Attributes
+    ----------
+    rms, max : float
+        Over the compared stations; NaN if there are none.
+    at : float
+        Way of the foot where it is largest [length].
+    phase : str
+        The reference's phase there.
+    rms_by_phase : dict
+        By the reference's phases.
+    scale : float
+        The reference's largest component of force, or of moment, in the readings' unit.
+    """
+
+    rms: float
+    max: float
+    at: float
+    phase: str
+    rms_by_phase: dict[str, float]
+    scale: float
+
+
+@dataclass(frozen=True, eq=False)
+class ContactDisagreement:
+    """How far the contact points are apart [L], at the stations where both are known.
+
+    Attributes
+    ----------
+    rms, max : float
+        NaN if there is no such station.
+    stations : int
+        How many there are.
+    from_clamp : tuple of str
+        The sources that record no contacts: theirs are reconstructed from the clamp.
+    distance : array, shape (stations,)
+        Of each station of the sweeps; NaN where it is not known.
+    """
+
+    rms: float
+    max: float
+    stations: int
+    from_clamp: tuple[str, ...]
+    distance: Floats
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``comparison.json`` holds.
+
+        Returns
+        -------
+        dict
+            Without the single stations.
+        """
+        return {name: value for name, value in vars(self).items() if name != "distance"}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SpatialMeasurement:
+    """How far a candidate is off, and how far it may be.
+
+    Attributes
+    ----------
+    reference, candidate : SpatialReadings
+        The two.
+    frame : {"world", "clamp"}
+        Of the components.
+    travel : array, shape (stations,)
+        Way of the foot [length].
+    compared : array of bool, shape (stations,)
+        Where both touch and are trusted.
+    disagreement : dict of ComponentDisagreement
+        By component, ``"force_x"`` to ``"moment_z"``.
+    contact : ContactDisagreement
+        Between the contact points.
+    phase_agreement : float or None
+        Share of the compared stations that are in one phase; None where a source records none.
+    events : dict of Occurrence
+        Way of the foot to each touch, slip-off and release, in both sweeps [length].
+    statuses : dict of dict
+        How many stations have which status, of the ``"reference"`` and of the ``"candidate"``.
+    untrusted : int
+        Stations of the candidate without readings where the reference has them.
+    tolerances : SpatialTolerances
+        Limits.
+    """
+
+    reference: SpatialReadings
+    candidate: SpatialReadings
+    frame: Frame
+    travel: Floats
+    compared: Booleans
+    disagreement: dict[str, ComponentDisagreement]
+    contact: ContactDisagreement
+    phase_agreement: float | None
+    events: dict[str, Occurrence]
+    statuses: dict[str, dict[str, int]]
+    untrusted: int
+    tolerances: SpatialTolerances
