@@ -6,6 +6,7 @@ so that a change of ours shows in the ratio.
 """
 
 import json
+import platform
 import resource
 import statistics
 import subprocess
@@ -128,6 +129,24 @@ def last(path: Path = HISTORY) -> dict[str, float]:
     return {name: float(value["ratio"]) for name, value in entry["ratios"].items()}
 
 
+def processor() -> str:
+    """What it computes on: on another one Python may be faster and libraries not."""
+    described = Path("/proc/cpuinfo")
+    if not described.exists():
+        return platform.processor() or platform.machine()
+    lines = (line.partition(":") for line in described.read_text().splitlines())
+    found = {name.strip(): value.strip() for name, _, value in reversed(list(lines))}
+    return " ".join(
+        found[name] for name in ("model name", "cpu family", "model", "stepping") if name in found
+    )
+
+
+def measured_on() -> str | None:
+    """The processor of the last entry of the history."""
+    found: str | None = json.loads(HISTORY.read_text())[-1].get("processor")
+    return found
+
+
 def regressions(now: Mapping[str, Measured], before: Mapping[str, float]) -> list[str]:
     """What has become dearer, a line each."""
     return [
@@ -152,6 +171,7 @@ def main(quick: bool) -> None:
             "date": datetime.now(UTC).date().isoformat(),
             "mujoco": mujoco.__version__,
             "numpy": np.__version__,
+            "processor": processor(),
             "ratios": {
                 name: {"ratio": float(f"{x.ratio:.4g}"), "spread": float(f"{x.spread:.2g}")}
                 for name, x in found.items()
