@@ -48,6 +48,8 @@ Medians of seven pairs repeat within 10 % on a machine with other work to do.
 
 _PAIRS = 7
 _COUNT = 100_000  # contacts in an array
+_ON_CONE = 2_000  # of a cone, of which a tenth is beyond the end of the solved curve
+_OF_CONE = _ON_CONE / _COUNT
 _BATCH = 82  # sweeps: as many as `solve_sweeps` takes at once
 
 _COMMAND = "import sys; from compare.commands.main import main"
@@ -75,6 +77,7 @@ def costs() -> dict[str, Cost]:
     tangent = np.deg2rad(np.linspace(-14, 30, _COUNT))
     tip = np.deg2rad(np.linspace(-31, -15, _COUNT))
     readings = solve_sweep(case)
+    cone, cone_slopes = Beam(tip_radius=2.5e-4), np.deg2rad(np.linspace(-30, 40, _ON_CONE))
     amplitudes = np.linspace(0.1, 1.5, _COUNT)
     integrals = partial(ellipkinc, amplitudes, 0.3)
 
@@ -89,6 +92,9 @@ def costs() -> dict[str, Cost]:
         ),
         "contacts in Phase B, by SciPy's elliptic integrals": Cost(
             lambda: solve_contact(profile, tangent, thin), integrals
+        ),
+        "contacts of a cone of 0.05, by SciPy's elliptic integrals": Cost(
+            lambda: solve_contact(profile, cone_slopes, cone), integrals, _OF_CONE
         ),
         "a sweep in closed form, by SciPy's integration of a pendulum": Cost(
             lambda: solve_sweep(replace(case)), _pendulum

@@ -1,7 +1,6 @@
 """Vibrissae whose rigidity, radius or natural curvature vary, by collocation."""
 
 import math
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -400,14 +399,11 @@ def test_a_sharp_cone_lets_go_at_a_state_that_balances(ratio):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["taper 0.05", "cone and bow"])
-def test_two_thousand_contacts_a_second(name):
-    """Also where a tenth of them is beyond the curve's end: it was 100 a second there."""
+def test_an_array_of_which_a_tenth_is_beyond_the_curves_end(name):
+    """How fast, the bench says."""
     alpha = np.deg2rad(np.linspace(-30, 40, 8000))
-    begun = time.process_time()
     table = solve_contact(catenary(0.5, -0.8), alpha, BEAMS[name])
-    took = time.process_time() - begun
     assert (table["status"] == "ok").mean() > 0.9
-    assert len(alpha) / took > 2000  # observed 4,000 and more
 
 
 @pytest.mark.parametrize("beam", [Beam(tip_radius=0.002), Beam(natural_curvature=bow(-0.4))])
