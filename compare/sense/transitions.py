@@ -11,6 +11,7 @@ from compare.sense.phases import Classification
 TRANSITIONS = ("first_contact", "phase_b_start", "phase_b_end")
 _FIT = 3  # stations on either side that a parabola is laid through
 _TINY = 1e-290  # values that differ by less cannot be scaled for the fit
+_ALIKE = 1e-9  # of the span of all: two values that are nearer to each other are one
 
 
 def locate_transitions(readings: Readings, judged: Classification) -> Mapping[str, float | None]:
@@ -131,7 +132,10 @@ def _zero(foot_x: Floats, values: Floats, stations: Integers, one: int, other: i
     # Foot position as a polynomial in the value: its constant term is the zero.
     order = len(stations) - 1
     monotone = np.all(np.diff(values[stations]) > 0) or np.all(np.diff(values[stations]) < 0)
-    if order == 0 or not monotone or np.ptp(values[stations]) < _TINY:
+    span = np.ptp(values[stations])
+    if order == 0 or not monotone or span < _TINY:
+        return float(low + high) / 2
+    if np.abs(np.diff(values[stations])).min() < _ALIKE * span:  # no polynomial goes through them
         return float(low + high) / 2
     zero = np.polynomial.Polynomial.fit(values[stations], foot_x[stations], order)(0.0)
     return float(np.clip(zero, low, high))

@@ -1,6 +1,7 @@
 """The phases that the comparison judges by are those of the reconstruction."""
 
 import numpy as np
+import pytest
 from hypothesis import given, seed, settings
 from hypothesis import strategies as st
 
@@ -15,6 +16,7 @@ from analytic import (
     solve_sweep,
 )
 from compare import classify
+from compare.sense import transitions
 from compare.sense.noise import with_noise
 
 SIZES = st.floats(0.1, 3.0)
@@ -44,3 +46,10 @@ def test_untrusted_stations_have_no_phase():
     exact.table.loc[20, "status"] = "unsettled"
     assert classify(exact).phase[20] == ""
     assert reconstruct(exact)["phase"][20] == exact.table["phase"][20]
+
+
+@pytest.mark.parametrize("apart", [1e-16, 1e-12, 1e-3])
+def test_two_values_that_are_one_to_rounding_are_no_fault(apart):
+    """No polynomial goes through them; the limit is between the two stations all the same."""
+    foot_x, values = np.arange(3.0), np.array([-1.0, -1.0 + apart, 1.0])
+    assert 1 <= transitions._zero(foot_x, values, np.arange(3), 1, 2) <= 2
