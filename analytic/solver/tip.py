@@ -89,11 +89,11 @@ def tip_excess(alpha: Floats, eta: Floats) -> Floats:
         high = np.where(deviation > 0, p, high)
         new = p - step
         inside = (new >= low) & (new <= high)
-        new = np.where(inside, new, (low + high) / 2)
-        # After a small enough step the next would change round-off only; halving goes on. So it
-        # is where the height agrees to a rounding: hardly bent, steps would go to and fro.
-        done = np.abs(new - p) <= np.where(inside, _CLOSE, 1e-15) * new
-        done |= np.abs(deviation) * np.abs(deviation + 2 * sag) <= _ROUNDING
+        # Where the height agrees to a rounding it is done: hardly bent, steps would go to and fro.
+        agrees = np.abs(deviation) * np.abs(deviation + 2 * sag) <= _ROUNDING
+        new = np.where(inside, new, np.where(agrees, p, (low + high) / 2))
+        # After a small enough step the next would change round-off only; halving goes on.
+        done = agrees | (np.abs(new - p) <= np.where(inside, _CLOSE, 1e-15) * new)
         p = new
         if done.any():
             excess[active[done]] = 2 * np.arcsin(p[done] ** 2)
