@@ -217,7 +217,7 @@ def simulate_there_and_back(
     on, back : Readings
         As of `simulate_motion`; the stations of the way back in the order in which they are passed.
         Its ``provenance["events"]`` say where the foot turned (``"turn"``) and where the last
-        contact ended (``"release"``).
+        contact ended: by ``"release"``, or by ``"snap_off"`` if the way on has ended so, too.
 
     Raises
     ------

@@ -85,6 +85,7 @@ def run_there_and_back(
     model, motion, record, about = _prepared(case, motion, settings)
     way = _Way(model, case, motion, about)
     on = way.swept(record, way.on, advance, keep)
+    way.let_go = on.snap_off is not None
     # As if it went on to the left past the mirrored stations.
     returning = Record(-case.foot_x[::-1] / case.beam.length, motion.average)
     return on, way.swept(returning, way.back, advance, keep, turn_at=way.turn_at)
@@ -185,6 +186,7 @@ class _Way:
     def __init__(self, model: Moving, case: Case, motion: Motion, about: dict[str, Any]) -> None:
         self._model, self._case, self._motion, self._about = model, case, motion, about
         self._filtered = np.array(model.clamp())
+        self.let_go = False  # on the way on
         # The share of the difference that a filter of first order follows in a step.
         self._follows = 1.0
         if motion.cutoff is not None:
@@ -285,9 +287,12 @@ class _Way:
         table.insert(0, "foot_x", passed[: len(table)])
         places = {"first_contact": record.first_touch, "snap_off": record.last_touch}
         if turn_at is not None:
-            left = record.last_touch
-            release = None if left is None else -left
-            places = {"turn": turn_at, "snap_off": None, "release": release}
+            left = None if record.last_touch is None else -record.last_touch
+            # Held when the foot turned, it is released where it first touched; else it has passed
+            # the object, comes to its other side and lets go there.
+            places = {"turn": turn_at, "snap_off": None, "release": left}
+            if self.let_go:
+                places |= {"snap_off": left, "release": None}
         provenance = {
             **case.provenance(),
             "engine": f"MuJoCo {mujoco.__version__}, "
