@@ -14,6 +14,7 @@ from mujoco_models.model.balance import Balance
 from mujoco_models.model.stance import stance
 from mujoco_models.sweep.newton import Newton
 from mujoco_models.sweep.numerics import Numerics
+from mujoco_models.sweep.secant import Secant
 from mujoco_models.sweep.state import State, turned
 
 
@@ -52,7 +53,7 @@ def relax(
         Not settled if Newton's method did not get there; the caller takes smaller steps then.
     """
     lookout, obstacle = model.lookout, model.obstacle
-    newton = Newton(model, numerics)
+    newton, secant = Newton(model, numerics), Secant()
     state = best = State(start.angles, start.forces)
     lookout.watch(around(model, state.forces, numerics.ahead) or one_bead_a_link(model))
     if start.slope is not None:
@@ -93,7 +94,13 @@ def relax(
             depths = contacts.distance[contacts.loaded]
             slope = float(depths @ slopes / depths.sum()) if slopes.size else None
             return replace(state, settled=True, stance=stance(model, contacts), slope=slope)
-        state = newton.step(state, contacts)
+        stepped = newton.step(state, contacts)
+        if numerics.slow * before < residual < before:
+            step = secant.better(state.angles, stepped.angles - state.angles)
+            stepped = replace(stepped, angles=state.angles + step)
+        else:
+            secant = Secant()
+        state = stepped
         if leave is not None and turned(state.angles, leave.angles) > numerics.left_turn:
             break
         if not around(model, state.forces, numerics.margin) <= lookout.watched:

@@ -193,10 +193,10 @@ class Walk(Generic[Model]):
         model, numerics = self.model, self._numerics
         state = self._relax(foot_x, start, leave)
         flicker = numerics.flicker * (1 + self._state.load)
-        if not state.settled and state.imbalance < flicker:
+        if not state.settled and self._tolerance <= state.imbalance < flicker:
             near = descend(model, foot_x, state, numerics, numerics.flicker_steps)
             state = self._relax(foot_x, near)
-        if not state.settled and state.imbalance < flicker:
+        if not state.settled and self._tolerance <= state.imbalance < flicker:
             state = self._relax(foot_x, refine(model, foot_x, state, numerics))
         return state
 

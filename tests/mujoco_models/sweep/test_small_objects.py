@@ -1,5 +1,6 @@
 """No object is too small, or too near between two stations, to be touched."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -10,6 +11,7 @@ from mujoco_models import Settings, simulate_sweep
 from mujoco_models.beams.chain import Chain
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.sweep import run_sweep
+from tests.fuzz.sweeps import trial
 
 SMALL = [(0.1, 5), (0.05, 8)]
 SMALLER = [
@@ -83,3 +85,20 @@ def test_beads_slide_on_a_tip_sharper_than_they_are_dense():
     assert (found.table["status"] == "ok").all()
     # Observed 2.8e-3; 1.9e-2 with beads that stay where they are.
     assert np.sqrt(np.mean(error**2)) < 6e-3
+
+
+@pytest.mark.slow
+def test_a_beam_that_lies_on_a_facet_as_long_as_itself_rests_on_hundreds_of_beads():
+    """All of them are in the quadratic model: with a few at once it took 7,400 evaluations."""
+    case = Case(Beam(radius=7.97e-3), ellipse((4.6181, 0.225519), (0.0, 0.296665)))
+    settings = Settings(segments=18, contour_points=321, contact_stiffness=1.1e6)
+    found = simulate_sweep(replace(case, sweep=Sweep(stations=12)), settings)
+    assert (found.table["status"] == "ok").all()
+
+
+@pytest.mark.slow
+def test_a_soft_section_is_faced_where_it_carries(tmp_path):
+    """Two of 60 stations did not rest where its beads' slopes were averaged without their loads."""
+    drawn = trial(710030, tmp_path)
+    found = simulate_sweep(drawn.case, drawn.settings)
+    assert (found.table["status"] == "ok").all()
