@@ -29,11 +29,7 @@ class Numerics:
         the time; at 10 stations run out of their budget. From 1e2 to 1e6 the snap-off moves by less
         than 7e-5 L.
     nearly : float
-        Tolerances out of balance below which rounding of depths may be what is left, if another
-        Newton step has not helped: MuJoCo is asked for accelerations only then.
-    light : int
-        Joints up to which MuJoCo's accelerations cost less than another step: after a forecast they
-        are asked for at once then.
+        Tolerances out of balance below which rounding of depths may be what is left.
     forecasts : int
         The most steps of a forecast. Usually 2 or 3 suffice; where there is no state at rest near
         the last one, more are in vain.
@@ -116,7 +112,6 @@ class Numerics:
     slow: float = 0.2
     stiffening: float = 1e3
     nearly: float = 1e3
-    light: int = 150
     forecasts: int = 5
     foreseen: float = 1e-6
     largest_turn: float = 0.3

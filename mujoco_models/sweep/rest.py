@@ -58,15 +58,14 @@ def relax(
     lookout.watch(around(model, state.forces, numerics.ahead) or one_bead_a_link(model))
     if start.slope is not None:
         lookout.face(start.slope)
-    nearly, residual, vain = numerics.nearly * tolerance, np.inf, 0
-    at_once = start.foreseen and len(start.angles) <= numerics.light
+    nearly, vain = numerics.nearly * tolerance, 0
     for _ in range(numerics.iterations):
-        before, residual = residual, _largest(model.imbalance(foot_x, state.angles))
+        residual = _largest(model.imbalance(foot_x, state.angles))
         contacts = model.contacts()
         if not held and model.slide_beads(contacts):
             residual = _largest(model.imbalance(foot_x, state.angles))
             contacts = model.contacts()
-        if tolerance <= residual < nearly and (at_once or before < nearly):
+        if tolerance <= residual < nearly:
             state = replace(state, imbalance=_largest(model.relieved()))
         else:
             state = replace(state, imbalance=residual)

@@ -83,7 +83,7 @@ def sideways(model: BeamModel) -> Sideways:
         turn = np.zeros(count)
         turn[axis] = _TURN
         model.turn(rest, turn)
-        model.relieved()  # a contact is lifted by the square of a turn, times its stiffness
+        model.relieved(_TURN**2)  # by which a turn lifts a contact
         joints[:, column] = -model.moments()[axes] / _TURN
     model.turn(rest, np.zeros(count))
     joints = (joints + joints.T) / 2

@@ -57,7 +57,6 @@ def test_readings_do_not_depend_on(quantity, factor, usual, monkeypatch):
 VARIED = {
     "stiffening": (3e2, 1e5),
     "nearly": (1e2, 1e4),
-    "light": (0, 1000),
     "forecasts": (0, 10),
     "foreseen": (1e-8, 1e-4),
     "largest_turn": (0.1, 0.5),

@@ -6,6 +6,7 @@ import pytest
 
 from analytic import named_case
 from mujoco_models import Settings, available_beams
+from mujoco_models.model.model import ROUNDING
 from mujoco_models.sweep.sweep import set_out
 
 
@@ -37,11 +38,35 @@ def test_the_balance_is_that_of_mujocos_inverse_dynamics(resting, turn):
     np.testing.assert_allclose(model.data.sensordata, sensed, atol=1e-12 * np.abs(sensed).max())
 
 
-def test_what_is_relieved_is_what_mujocos_forward_dynamics_leaves(resting):
+def test_what_is_relieved_is_rounding_of_depths_and_no_more(resting):
+    """What turns by rounding make of depths is relieved; of a thousand times as much, that part."""
     model, foot_x, angles = resting
-    static = np.abs(model.imbalance(foot_x, angles - 1e-12)).max()
-    found, sensed = model.relieved().copy(), model.data.sensordata.copy()
-    assert np.abs(found).max() < static
+    most = model.contact_stiffness * ROUNDING
+    for turn, hidden in (1e-14, True), (1e-11, False):
+        static = model.imbalance(foot_x, angles - turn)
+        pressed, sensed = model.data.efc_force.copy(), model.data.sensordata.copy()
+        found = model.relieved()
+        assert (np.abs(found).max() < 1e-8) == hidden
+        loaded = model.data.efc_force > 0
+        assert (loaded == (pressed > 0)).all()
+        given = model.data.efc_force - pressed
+        assert np.abs(given).max() <= most * (1 + 1e-9) + 1e-15 * pressed.max()
+        np.testing.assert_allclose(
+            found, static + given @ model.data.efc_J.reshape(-1, len(angles)), atol=1e-12
+        )
+        # The clamp's forces are those of the relieved contacts.
+        assert 0 < np.abs(model.data.sensordata - sensed)[:2].max() <= most * loaded.sum()
+        assert model.discrepancy() < 1e-8 + len(angles) * np.abs(found).max()
+
+
+def test_mujocos_forward_dynamics_relieves_the_same(resting):
+    """It lets contacts give way to accelerations: what is out of balance at rest is no more."""
+    model, foot_x, angles = resting
+    model.imbalance(foot_x, angles - 1e-14)
+    static = np.abs(model.moments()).max()
     mujoco.mj_forward(model.model, model.data)
-    np.testing.assert_allclose(model.beam.moments(model.moments()), found, atol=1e-12)
-    np.testing.assert_allclose(model.data.sensordata, sensed, atol=1e-11)
+    assert np.abs(model.moments()).max() < static
+    forces = model.data.sensordata.copy()
+    model.imbalance(foot_x, angles - 1e-14)
+    model.relieved()
+    np.testing.assert_allclose(model.data.sensordata, forces, atol=static)
