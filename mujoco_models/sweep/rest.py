@@ -58,9 +58,9 @@ def relax(
     lookout.watch(around(model, state.forces, numerics.ahead) or one_bead_a_link(model))
     if start.slope is not None:
         lookout.face(start.slope)
-    nearly, vain = numerics.nearly * tolerance, 0
+    nearly, residual, vain = numerics.nearly * tolerance, np.inf, 0
     for _ in range(numerics.iterations):
-        residual = _largest(model.imbalance(foot_x, state.angles))
+        before, residual = residual, _largest(model.imbalance(foot_x, state.angles))
         contacts = model.contacts()
         if not held and model.slide_beads(contacts):
             residual = _largest(model.imbalance(foot_x, state.angles))
