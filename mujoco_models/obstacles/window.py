@@ -19,6 +19,9 @@ from mujoco_models.obstacles.protocol import GEOM
 # ends, and much more than a penetration, or depths come out wrong.
 HALF_DEPTH = 1.5
 _LEAST = 12  # vertices: with fewer, a hull of triangles would need less room than `_graph`
+# Corners of a prism that MuJoCo goes through one by one: its climb from neighbour to neighbour misses
+# 11 in 100 contacts on a prism of 3, 4 of one of 4, 1 in 10,000 of one of 5, and none of 6 to 80.
+_FEW = 8
 _GOLDEN = np.pi * (3 - np.sqrt(5))
 
 
@@ -77,6 +80,10 @@ def write_prism(model: mujoco.MjModel, geom: int, polygon: Floats, origin: Float
     model.geom_pos[geom] = [*origin, 0.0]
     model.geom_quat[geom] = [1, 0, 0, 0]
     model.geom_rbound[geom] = np.hypot(np.hypot(*(polygon - origin).T).max(), HALF_DEPTH)
+    if count <= _FEW:
+        model.mesh_graphadr[mesh] = -1
+        model.mesh_vertnum[mesh] = 2 * count
+        return
     graph = _graph(count)
     begin = model.mesh_graphadr[mesh]
     model.mesh_graph[begin : begin + len(graph)] = graph

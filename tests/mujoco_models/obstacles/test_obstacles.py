@@ -191,6 +191,17 @@ def test_errors_of_the_polygon_are_as_stated(profile):
     assert obstacle.normal_error == pytest.approx(turn.max() / 2)
 
 
+def with_a_bead(prism, radius):
+    """MuJoCo's model of the prism and a bead that is free to be put anywhere."""
+    spec = mujoco.MjSpec()
+    add_options(spec)
+    prism.add_to(spec)
+    bead = spec.worldbody.add_body()
+    bead.add_freejoint()
+    bead.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius, 0, 0], conaffinity=1, gap=0.01)
+    return spec.compile()
+
+
 @pytest.mark.parametrize(
     ("body", "points"),
     [(circle(0.0383, (0.0, 0.4476)), 1000), (ellipse((0.094, 10.4), (0.0, 0.339)), 800),
@@ -205,13 +216,7 @@ def test_mujocos_contacts_are_those_of_the_polygon(body, points):
     """
     radius, draw = 1.3e-3, np.random.default_rng(3)
     prism = Prism.of(Case(Beam(radius=radius), body), points)
-    spec = mujoco.MjSpec()
-    add_options(spec)
-    prism.add_to(spec)
-    bead = spec.worldbody.add_body()
-    bead.add_freejoint()
-    bead.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius, 0, 0], conaffinity=1, gap=0.01)
-    model = spec.compile()
+    model = with_a_bead(prism, radius)
     data, last = mujoco.MjData(model), len(prism.facet_angles) - 1
     turn = np.pad(np.diff(prism.facet_angles), (0, 1), mode="edge")
     for window in range(prism.windows):
@@ -232,6 +237,35 @@ def test_mujocos_contacts_are_those_of_the_polygon(body, points):
             found = data.contact.frame[deepest, :2]
             # Observed 0.017; 13 where windows were as long as the flank's facets are.
             assert abs(found[0] * normal[1] - found[1] * normal[0]) < 0.1 * turn[facet]
+
+
+@pytest.mark.parametrize("count", [2, 3, 4, 5])
+def test_no_contact_is_missed_on_a_body_of_few_corners(count):
+    """MuJoCo's climb from corner to corner finds none at 11 in 100 places on a prism of three."""
+    draw = np.random.default_rng(count)
+    slopes = np.sort(draw.uniform(-1, 1, size=count - 1))
+    edges = draw.uniform(0.1, 0.4, size=(count - 1, 1))
+    lower = np.cumsum(
+        np.vstack([[[-0.4, 0.5]], edges * np.column_stack([np.cos(slopes), np.sin(slopes)])]),
+        axis=0,
+    )
+    radius = 1e-3
+    prism = Prism(lower, (-1.2, 1.2), exact=True, radius=radius, corner_radius=1e-6)
+    model = with_a_bead(prism, radius)
+    data = mujoco.MjData(model)
+    for window in range(prism.windows):
+        prism.show(model, 0, window)
+        for _ in range(100):
+            edge = draw.integers(count - 1)
+            begin, end = lower[edge : edge + 2]
+            outward = np.array([end[1] - begin[1], begin[0] - end[0]]) / np.hypot(*(end - begin))
+            depth = 10 ** draw.uniform(-7, -3)
+            data.qpos[:2] = begin + draw.uniform(0.05, 0.95) * (end - begin)
+            data.qpos[:2] += (radius - depth) * outward
+            mujoco.mj_forward(model, data)
+            assert data.ncon > 0
+            # Single precision of places as far as 1 L.
+            assert data.contact.dist.min() == pytest.approx(-depth, abs=1e-6)
 
 
 def test_a_line_that_turns_passes_from_vertex_to_vertex_without_a_jump():
