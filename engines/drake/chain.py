@@ -84,7 +84,7 @@ class DrakeChain:
         self._angles = np.zeros(self._plant.num_positions())
         self._foot_x, self._contacts = 0.0, _nothing()
         self._read_places()
-        self.lookout = Lookout(self, obstacle, radius)
+        self.lookout = Lookout(self, obstacle, radius, self.layout)
 
     def _assemble(self) -> None:
         """Foot, links, springs, the obstacle and what touches it."""
@@ -141,10 +141,6 @@ class DrakeChain:
     def collide(self, beads: frozenset[int]) -> None:
         """By the way it touches."""
         self._touch.collide(self._root, beads)
-
-    def positions(self) -> Floats:
-        """By the poses of the links."""
-        return self._places
 
     def imbalance(self, foot_x: float, angles: Floats) -> Floats:
         """Drake's springs and contacts."""

@@ -27,14 +27,15 @@ class Chain(HingedLinks):
         edges = np.append(joints - 0.5 / n, joints[-1] + 0.5 / n)
         lengths = np.full(len(joints), 1 / n)
         super().__init__(Layout.of(joints, lengths, edges, spacing, vibrissa))
+        self._stiffness = 1 / self.layout.compliances
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """The links, and a spring in every hinge."""
         spec = super().spec(radius)
-        for joint, compliance in zip(spec.joints, self.layout.compliances, strict=True):
-            joint.stiffness[0] = 1 / compliance
+        for joint, stiffness in zip(spec.joints, self._stiffness, strict=True):
+            joint.stiffness[0] = stiffness
         return spec
 
     def stiffness(self, angles: Floats) -> Floats:
         """EI/h, and the clamp's."""
-        return 1 / self.layout.compliances
+        return self._stiffness

@@ -194,8 +194,9 @@ class Contacts(NamedTuple):
         bool
             A straight one bends away from the object, and touches in one.
         """
-        one_place = max(_APART, _LINKS * float(layout.lengths.max()))
-        return not layout.vibrissa.is_straight and self.apart > one_place
+        if layout.vibrissa.is_straight:
+            return False
+        return self.apart > max(_APART, _LINKS * float(layout.lengths.max()))
 
     @property
     def slope(self) -> Floats:

@@ -6,10 +6,12 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
+from mujoco_models.beams.layout import Layout
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.obstacles.protocol import GEOM, Obstacle
 
 _NEAR = 1e-6  # L; beads that are nearer to the obstacle must be watched at rest
+_CLEAR = 1e-9  # L; beads that are at least so far off carry no load
 _OVERLOOKED = 1e-6  # L; how deep an unloaded bead may be in the obstacle, or a depth be off
 
 
@@ -19,12 +21,17 @@ class Scene(Protocol):
     radii: Floats
     """Of the beads, shape (n_beads,) [L]."""
 
-    def positions(self) -> Floats:
-        """Where the beads are.
+    def bead_positions(self, beads: Integers) -> Floats:
+        """Where beads are.
+
+        Parameters
+        ----------
+        beads : array of int, shape (n,)
+            Their numbers.
 
         Returns
         -------
-        array, shape (n_beads, 2)
+        array, shape (n, 2)
             Positions of their centres [L].
         """
 
@@ -66,19 +73,25 @@ class MujocoScene:
         self._model, self._data, self._beads, self._obstacle = model, data, beads, obstacle
         self.radii = model.geom_size[beads, 0].copy()
         self._geom = model.geom(GEOM).id
+        self._chosen = np.arange(len(beads))
 
-    def positions(self) -> Floats:
+    def bead_positions(self, beads: Integers) -> Floats:
         """As MuJoCo has them."""
-        return np.asarray(self._data.geom_xpos[self._beads, :2])
+        return np.asarray(self._data.geom_xpos[self._beads[beads], :2])
 
     def show(self, window: int) -> None:
         """By the obstacle itself."""
         self._obstacle.show(self._model, self._geom, window)
 
     def collide(self, beads: frozenset[int]) -> None:
-        """By their masks."""
-        self._model.geom_conaffinity[self._beads] = 0
-        self._model.geom_conaffinity[self._beads[sorted(beads)]] = 1
+        """By their masks, and those of their bodies: MuJoCo looks at no other body's beads."""
+        model = self._model
+        for chosen, mask in (self._chosen, 0), (np.array(sorted(beads), dtype=int), 1):
+            geoms = self._beads[chosen]
+            bodies = model.geom_bodyid[geoms]
+            model.geom_conaffinity[geoms] = mask
+            model.body_conaffinity[bodies] = model.body_conaffinity[bodies] & ~1 | mask
+            self._chosen = chosen
 
 
 class Lookout:
@@ -92,6 +105,8 @@ class Lookout:
         What the beam is swept past.
     radius : float
         Of the vibrissa; the largest, of a cone [L].
+    layout : Layout
+        Which link has which beads.
 
     Attributes
     ----------
@@ -103,14 +118,17 @@ class Lookout:
         The beads that do.
     """
 
-    def __init__(self, scene: Scene, obstacle: Obstacle, radius: float) -> None:
+    def __init__(self, scene: Scene, obstacle: Obstacle, radius: float, layout: Layout) -> None:
         self._scene, self._obstacle, self._radius = scene, obstacle, radius
+        self._links, self._longest = layout.links, float(layout.lengths.max())
+        self._last = np.flatnonzero(np.diff(layout.links, append=len(layout.joints)))
         self.radii = scene.radii
-        self._count = len(scene.radii)
+        self._all = np.arange(len(scene.radii))
+        self._idle = np.zeros(len(scene.radii), dtype=bool)
         self.window = -1
         self.face(np.pi / 2)  # where a sweep to the left begins
         self.watched: frozenset[int] = frozenset()
-        self.watch(frozenset(range(self._count)))
+        self.watch(frozenset(self._all.tolist()))
 
     def use_window(self, window: int) -> None:
         """Let the engine see what the obstacle has for this window.
@@ -181,17 +199,29 @@ class Lookout:
         if beads != self.watched:
             self._scene.collide(beads)
             self.watched = beads
+            self._idle[:] = True
+            self._idle[list(beads)] = False
 
-    def near_the_obstacle(self) -> frozenset[int]:
-        """Beads that touch the obstacle or nearly do, whether or not the engine looks at them.
+    def unwatched(self) -> frozenset[int]:
+        """Beads that touch the obstacle, or may, while the engine does not look at them.
 
         Returns
         -------
         frozenset of int
             Their numbers.
         """
-        near = self._obstacle.near(self._scene.positions(), self._radius + _NEAR)
-        return frozenset(near.tolist())
+        scene, obstacle, distance = self._scene, self._obstacle, self._radius + _NEAR
+        # No bead is farther from the last one of its link than the link is long.
+        near = obstacle.near(scene.bead_positions(self._last), distance + self._longest)
+        links = np.zeros(len(self._last), dtype=bool)
+        links[near] = True
+        beads = np.flatnonzero(links[self._links] & self._idle)
+        points = scene.bead_positions(beads)
+        near = obstacle.near(points, distance)
+        beads, points = beads[near], points[near]
+        if len(beads) and (gap := obstacle.gap(self.window, points)) is not None:
+            beads = beads[gap[0] < self.radii[beads] + _CLEAR]
+        return frozenset(beads.tolist())
 
     def overlooked(self, contacts: Contacts) -> float | None:
         """Where a watched bead is in the obstacle and carries no load, nor does one in its place.
@@ -209,16 +239,12 @@ class Lookout:
         float or None
             The place along the contour, see `Obstacle.place`; None if there is no such bead.
         """
-        carries = contacts.touch[contacts.loaded | contacts.fused]
-        idle = np.zeros(self._count, dtype=bool)
-        idle[list(self.watched)] = True
-        idle[carries[carries < self._count]] = False
-        unloaded = np.flatnonzero(idle)
-        positions = self._scene.positions()[unloaded]
-        inside = self._scene.radii[unloaded] - _OVERLOOKED
+        carries = contacts.touch[contacts.loaded | contacts.fused].tolist()
+        unloaded = np.array(sorted(self.watched.difference(carries)), dtype=int)
+        positions = self._scene.bead_positions(unloaded)
         for suspect in self._obstacle.near(positions, self._radius - _OVERLOOKED):
             clearance, place = self._obstacle.clearance(positions[suspect])
-            if clearance < inside[suspect]:
+            if clearance < self.radii[unloaded[suspect]] - _OVERLOOKED:
                 return place
         return None
 
@@ -241,14 +267,16 @@ class Lookout:
         """
         if not self._obstacle.upright:
             return False
-        beads = contacts.loaded & (contacts.touch < self._count)
+        beads = contacts.loaded & (contacts.touch < len(self.radii))
         if not beads.any():
             return False
-        touch = contacts.touch[beads]
-        points = self._scene.positions()[touch]
+        points, depths = contacts.point[beads], contacts.distance[beads]
+        depths = depths + self.radii[contacts.touch[beads]]
+        gap = self._obstacle.gap(self.window, points)
+        if gap is not None and np.abs(gap[0] - depths).max() < _OVERLOOKED:
+            return False
         found = np.array([self._obstacle.clearance(point) for point in points])
-        off = np.abs(found[:, 0] - self._scene.radii[touch] - contacts.distance[beads])
-        if off.max() < _OVERLOOKED:
+        if np.abs(found[:, 0] - depths).max() < _OVERLOOKED:
             return False
         for other in (self.window - 1, self.window + 1):
             if 0 <= other < self._obstacle.windows and self._obstacle.is_inside(other, found[:, 1]):
@@ -271,4 +299,6 @@ class Lookout:
         """
         if len(self._obstacle.corners) == 0:
             return False
-        return self._obstacle.is_cut(np.vstack([joints, self._scene.positions()[-1]]))
+        return self._obstacle.is_cut(
+            np.vstack([joints, self._scene.bead_positions(self._all[-1:])])
+        )

@@ -80,7 +80,7 @@ class BeamModel:
         sharpest = obstacle.largest_curvature
         self._slides = self._sliding.needed(sharpest / (1 + radius * sharpest))
         scene = MujocoScene(model, self.data, self.beads, obstacle)
-        self.lookout = Lookout(scene, obstacle, radius)
+        self.lookout = Lookout(scene, obstacle, radius, self.layout)
 
     def _set_contact_stiffness(self) -> None:
         """The same stiffness at every contact, whatever the time step.

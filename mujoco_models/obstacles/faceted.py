@@ -111,10 +111,15 @@ class Faceted(Obstacle):
 
     def faces(self, slope: Floats) -> bool:
         """Whether these slope angles are among those at which it can be touched."""
-        turn = np.diff(self.facet_angles, append=self.facet_angles[-1]).max()
+        low, high = self._faced
+        return bool(((slope > low) & (slope < high)).all())
+
+    @cached_property
+    def _faced(self) -> tuple[float, float]:
+        """The least and the largest slope angle at which a bead or a facet is touched [rad]."""
+        turn = float(np.diff(self.facet_angles).max(initial=0.0))
         slack = min(turn, _SLACK) + 1e-9
-        low, high = self._slopes
-        return bool(((slope > low - slack) & (slope < high + slack)).all())
+        return self._slopes[0] - slack, self._slopes[1] + slack
 
     def near(self, points: Floats, distance: float) -> Integers:
         """Which of the points, shape (n, 2), may be nearer to the contour than `distance`.
@@ -122,30 +127,36 @@ class Faceted(Obstacle):
         The distance from the line of any one facet is not more than that from the polygon. The
         facet above a point gives a bound, and the one that is nearest by that a better one.
         """
-        left, right = self.vertices[[0, -1], 0]
-        found = np.flatnonzero((points[:, 0] > left - distance) & (points[:, 0] < right + distance))
-        foot = points[found, 0]
-        for _ in range(2):
-            bound, aside = self._below(points[found], foot)
-            close = bound < distance
-            found, foot = found[close], (points[found, 0] - bound * aside)[close]
-        return found
+        x = points[:, 0]
+        bound, aside = self._below(points, x)
+        found = np.flatnonzero(bound < distance)
+        points, foot = points[found], (x - bound * aside)[found]
+        close = self._below(points, foot)[0] < distance
+        left, right = self._sides
+        x = points[:, 0]
+        return found[close & (x > left - distance) & (x < right + distance)]
 
     def _below(self, points: Floats, x: Floats) -> tuple[Floats, Floats]:
         """How far the points are below the lines of the facets at `x`, and the slopes' sines."""
-        facet = np.searchsorted(self._inner, x)
-        offset, (sin, cos) = points - self.vertices[facet], self._directions[:, facet]
-        return offset[:, 0] * sin - offset[:, 1] * cos, sin
+        sin, cos, height = self._lines.take(np.searchsorted(self._inner, x), axis=1)
+        return sin * points[:, 0] - cos * points[:, 1] + height, sin
+
+    @cached_property
+    def _lines(self) -> Floats:
+        """Of each facet sine and cosine of its slope, and how far its line is above the origin."""
+        sin, cos = np.sin(self.facet_angles), np.cos(self.facet_angles)
+        x, y = self.vertices[:-1].T
+        return np.array([sin, cos, y * cos - x * sin])
+
+    @cached_property
+    def _sides(self) -> tuple[float, float]:
+        """Where its ends are [L]."""
+        return float(self.vertices[0, 0]), float(self.vertices[-1, 0])
 
     @cached_property
     def _inner(self) -> Floats:
         """Where the facets but the first begin, shape (n - 2,) [L]."""
         return self.vertices[1:-1, 0].copy()
-
-    @cached_property
-    def _directions(self) -> Floats:
-        """Sine and cosine of each facet's slope angle, shape (2, n - 1)."""
-        return np.array([np.sin(self.facet_angles), np.cos(self.facet_angles)])
 
     def clearance(self, point: Floats) -> tuple[float, float]:
         """From the nearest edge of the lower side, or of the roof over it; the facet's number."""

@@ -27,7 +27,7 @@ _TURN = 0.1  # rad; or by which they turn, if that is less: farther away single 
 _GRADED = 8  # vertices a level farther out; the spacing doubles from level to level
 _OF_TURN = 0.01  # of a facet's turn from the last one; so much may its vertices' rounding turn it
 _FINEST = 1e-12  # L
-_ABOUT = np.arange(-2, 3)  # facets; the nearest one is found to within the next one
+_ABOUT = np.arange(-2, 3)[:, None]  # facets; the nearest one is found to within the next one
 _BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
 
 
@@ -132,20 +132,22 @@ class Prism(Faceted):
         if len(self.corners):
             return None
         bound, aside = self._below(points, points[:, 0])
-        foot = points[:, 0] - bound * aside
-        nearest = np.searchsorted(self._inner, foot)[:, None]
-        facets = np.clip(nearest + _ABOUT, 0, len(self.facet_angles) - 1)
+        nearest = np.searchsorted(self._inner, points[:, 0] - bound * aside)
+        facets = np.minimum(np.maximum(nearest + _ABOUT, 0), len(self.facet_angles) - 1)
         origin = self._origin(window)
-        ends = self._gridded[np.stack([facets, facets + 1])] - origin
-        begin, end = ends.astype(np.float32).astype(float)  # as MuJoCo keeps them
-        run, offset = end - begin, (points - origin)[:, None] - begin
-        along = np.clip((run * offset).sum(axis=2) / (run**2).sum(axis=2), 0, 1)
-        away = offset - along[:, :, None] * run
-        distances = np.hypot(away[:, :, 0], away[:, :, 1])
-        inside = (run[:, :, 0] * offset[:, :, 1] > run[:, :, 1] * offset[:, :, 0]).all(axis=1)
-        best = np.arange(len(points)), np.argmin(distances, axis=1)
+        ends = self._columns.take([facets, facets + 1], axis=1) - origin[:, None, None, None]
+        (begin_x, end_x), (begin_y, end_y) = ends.astype(np.float32).astype(float)  # as in MuJoCo
+        run_x, run_y = end_x - begin_x, end_y - begin_y
+        x, y = (points - origin).T
+        x, y = x - begin_x, y - begin_y
+        along = (run_x * x + run_y * y) / (run_x**2 + run_y**2)
+        along = np.minimum(np.maximum(along, 0.0), 1.0)
+        inside = (run_x * y > run_y * x).all(axis=0)
+        x, y = x - along * run_x, y - along * run_y
+        distances = np.hypot(x, y)
+        best = np.argmin(distances, axis=0), np.arange(len(points))
         distance = np.where(inside, -distances[best], distances[best])
-        return distance, away[best] / distance[:, None]
+        return distance, np.array([x[best], y[best]]).T / distance[:, None]
 
     def place(self, slope: Floats) -> Floats:
         """The number of the vertex at which the slope angle is passed."""
@@ -230,6 +232,11 @@ class Prism(Faceted):
         shows = np.maximum(_OF_TURN * turn * shorter, _FINEST)
         grid = 2.0 ** np.ceil(np.log2(np.minimum(exact, shows)))[:, None]
         return np.asarray(np.round(self.vertices / grid) * grid)
+
+    @cached_property
+    def _columns(self) -> Floats:
+        """The same by columns, shape (2, n)."""
+        return np.ascontiguousarray(self._gridded.T)
 
     @cached_property
     def _arc_length(self) -> Floats:

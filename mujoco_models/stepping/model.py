@@ -95,7 +95,7 @@ class MovingModel:
         self._follows_inertia = motion.solref is None and motion.integrator == "discrete"
         self.time = 0.0
         scene = MujocoScene(self.model, self.data, self._surface.beads, obstacle)
-        self._lookout = Lookout(scene, obstacle, radius)
+        self._lookout = Lookout(scene, obstacle, radius, beam.layout)
         self._foot = self.model.body(FOOT).id
         self._joints = np.unique(self.model.jnt_bodyid[1:])
         mujoco.mj_forward(self.model, self.data)

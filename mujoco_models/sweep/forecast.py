@@ -70,8 +70,10 @@ class Picture:
         layout = self.layout
         heading = layout.headings + np.cumsum(angles)
         cos, sin = np.cos(heading), np.sin(heading)
-        ends = np.cumsum(layout.chords * np.array([-sin, cos]), axis=1).T
-        joints = np.concatenate([np.zeros((1, 2)), ends[:-1]]) + layout.base[0] + [foot_x, 0.0]
+        joints = np.zeros((len(angles), 2))
+        ends = layout.chords * np.array([-sin, cos])
+        np.cumsum(ends[:, :-1].T, axis=0, out=joints[1:])
+        joints += layout.base[0] + [foot_x, 0.0]
         # The springs' moments, from their stiffness at the nodes of Gauss and Legendre.
         part = [
             w * self.stiffness(angles * (1 + x) / 2) for x, w in zip(_NODES, _WEIGHTS, strict=True)

@@ -104,7 +104,7 @@ class Newton:
         step[1:] -= step[:-1].copy()
         return State(
             state.angles + shorter * step,
-            {int(i): float(f) for i, f in zip(contacts.touch, forces, strict=True) if f > 0},
+            {i: f for i, f in zip(contacts.touch.tolist(), forces.tolist(), strict=True) if f > 0},
             state.imbalance,
         )
 
@@ -138,9 +138,9 @@ class Newton:
             if size := float(np.linalg.norm(couple)):
                 link = np.zeros(len(couple))
                 link[own] = size
-                directions += [couple + link, couple - link]
+                directions += [(couple + link)[None], (couple - link)[None]]
                 weights.append(np.array([0.5, -0.5]) / size)
-        return Stiffness(springs, links, np.vstack(directions), np.concatenate(weights))
+        return Stiffness(springs, links, np.concatenate(directions), np.concatenate(weights))
 
     def _forces(self, state: State, contacts: Contacts) -> Floats:
         """The forces of `state` at these contacts, shape (n,) [EI/L^2].
@@ -213,16 +213,18 @@ def levers(contacts: Contacts, joints: Floats) -> tuple[Floats, Floats]:
     along, across : array, shape (n, n_links)
         Along the normals, and along the contour, negative if that is the way of its slope [L/rad].
     """
-    count, link = len(contacts.link), np.tile(contacts.link, 2)
+    link, normal = contacts.link, contacts.normal
     chord = np.zeros_like(joints)
     chord[:-1] = joints[1:] - joints[:-1]
-    normal = contacts.normal
-    ways = np.concatenate([normal[:, ::-1] * [1, -1], normal])
-    own = np.tile(contacts.point - joints[contacts.link], (2, 1))
-    found = ways @ chord.T
-    found *= np.arange(len(joints)) < link[:, None]
-    found[np.arange(2 * count), link] = (ways * own).sum(axis=1)
-    return found[:count], found[count:]
+    before = np.arange(len(joints)) < link[:, None]
+    rows, arm = np.arange(len(link)), contacts.point - joints[link]
+    found = []
+    for x, y in (normal[:, 1], -normal[:, 0]), (normal[:, 0], normal[:, 1]):
+        lever = np.array([x, y]).T @ chord.T
+        lever *= before
+        lever[rows, link] = x * arm[:, 0] + y * arm[:, 1]
+        found.append(lever)
+    return found[0], found[1]
 
 
 def of_links(moments: Floats) -> Floats:
@@ -247,7 +249,7 @@ def _unilateral(compliance: Floats, gap: Floats, guess: Booleans) -> Floats:
     """Contact forces f >= 0 that minimise f.compliance.f/2 + gap.f, shape (n,)."""
     force = np.zeros(len(gap))
     if guess.any():
-        _, force[guess], failed = dposv(compliance[np.ix_(guess, guess)], -gap[guess])
+        _, force[guess], failed = dposv(compliance[guess][:, guess], -gap[guess])
         if (
             not failed
             and force.min() >= 0

@@ -82,7 +82,7 @@ def relax(
             twice = contacts.touch_twice(model.layout)
             if lookout.move_window(obstacle.place(slopes)):
                 continue
-            if unwatched := lookout.near_the_obstacle() - lookout.watched:
+            if unwatched := lookout.unwatched():
                 lookout.watch(lookout.watched | unwatched)
                 continue
             if (missed := lookout.overlooked(contacts)) is not None:

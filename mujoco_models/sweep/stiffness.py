@@ -60,9 +60,9 @@ class Stiffness:
         DivergedError
             If the stiffness is not finite.
         """
-        if not np.isfinite(self.springs.sum() + self.links.sum() + self.directions.sum()):
-            raise DivergedError("the stiffness is not finite")
         count, rows = len(moments), np.concatenate([moments, self.directions])
+        if not np.isfinite(self.springs.sum() + self.links.sum() + rows.sum()):
+            raise DivergedError("the stiffness is not finite")
         shift, positive = 0.0, int((self.weights > 0).sum())
         while True:
             turns, negative = self._tridiagonal(shift, rows.T)
