@@ -19,7 +19,7 @@ from mujoco_models.obstacles.protocol import GEOM
 # ends, and much more than a penetration, or depths come out wrong.
 HALF_DEPTH = 1.5
 _LEAST = 12  # vertices: with fewer, a hull of triangles would need less room than `_graph`
-# Corners of a prism that MuJoCo goes through one by one: its climb from neighbour to neighbour misses
+# Corners of a prism that MuJoCo goes through one by one: climbing by `_graph`, it misses
 # 11 in 100 contacts on a prism of 3, 4 of one of 4, 1 in 10,000 of one of 5, and none of 6 to 80.
 _FEW = 8
 _GOLDEN = np.pi * (3 - np.sqrt(5))

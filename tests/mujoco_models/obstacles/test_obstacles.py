@@ -241,7 +241,7 @@ def test_mujocos_contacts_are_those_of_the_polygon(body, points):
 
 @pytest.mark.parametrize("count", [2, 3, 4, 5])
 def test_no_contact_is_missed_on_a_body_of_few_corners(count):
-    """MuJoCo's climb from corner to corner finds none at 11 in 100 places on a prism of three."""
+    """A climb from corner to corner finds none at 11 in 100 places on a prism of three."""
     draw = np.random.default_rng(count)
     slopes = np.sort(draw.uniform(-1, 1, size=count - 1))
     edges = draw.uniform(0.1, 0.4, size=(count - 1, 1))
