@@ -94,7 +94,8 @@ def relax(
             slope = float(depths @ slopes / depths.sum()) if slopes.size else None
             return replace(state, settled=True, stance=stance(model, contacts), slope=slope)
         stepped = newton.step(state, contacts)
-        if numerics.slow * before < residual < before:
+        near = min(before, numerics.learns * (1 + state.load))
+        if numerics.slow * before < residual < near:
             step = secant.better(state.angles, stepped.angles - state.angles)
             stepped = replace(stepped, angles=state.angles + step)
         else:
