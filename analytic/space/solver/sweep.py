@@ -5,6 +5,7 @@ from importlib.metadata import version
 
 import numpy as np
 import pandas as pd
+from threadpoolctl import threadpool_limits
 
 from analytic.from_clamp.contact import contact_bent_right
 from analytic.problem.arrays import Floats
@@ -58,7 +59,8 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
     way = case.way
     scene = Scene(way.body, case.path.clamp_tangent, way.radius)
     travel = case.path.travel
-    walked = walk(scene, way, travel / length)
+    with threadpool_limits(1):  # the matrices are small
+        walked = walk(scene, way, travel / length)
     rows = [
         _row(contact, way.foot(at / length), scene, beam) if contact else _free(fine)
         for contact, fine, at in zip(walked.contacts, walked.known, travel, strict=True)

@@ -8,9 +8,11 @@ from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import require
 from analytic.problem.numbers import positive
-from analytic.problem.roots import zero
 from analytic.space.problem.bodies.body import Body, Spot, across, grid_patches
 from analytic.space.problem.numbers import Vector, direction, vector
+
+_PLACES = 33  # of the contour, to begin with: NumPy takes hardly longer for them than for one
+_ROUNDING = float(np.finfo(float).eps)  # of a parameter, relative to its range
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,19 +108,32 @@ class Prism(Body):
 
     def _foot_of_perpendicular(self, x: float, y: float) -> float:
         """Parameter of the contour's point from which (x, y) lies along the normal."""
-        low, high = self.contour.t_range
+        places = np.linspace(*self.contour.t_range, _PLACES)
+        ahead, _ = self._ahead(places, x, y)
+        if ahead[0] <= 0:
+            return float(places[0])
+        if ahead[-1] >= 0:
+            return float(places[-1])
+        end = int(np.argmax(ahead <= 0))
+        low, high = float(places[end - 1]), float(places[end])
+        t = low + (high - low) * float(ahead[end - 1] / (ahead[end - 1] - ahead[end]))
+        rounding = _ROUNDING * float(places[-1] - places[0])
+        while high - low > rounding:  # Newton's method, and bisection where it leaves the bounds
+            value, falling = (float(found[0]) for found in self._ahead(np.array([t]), x, y))
+            low, high = (t, high) if value > 0 else (low, t)
+            step = value / falling if falling > 0 else np.inf
+            if abs(step) <= rounding:
+                return t + step
+            t = t + step if low < t + step < high else (low + high) / 2
+        return t
 
-        def ahead(t: Floats) -> Floats:
-            point = self.contour.at(t)
-            cosine, sine = np.cos(point.alpha), np.sin(point.alpha)
-            return (x - point.xi) * cosine + (y - point.eta) * sine
-
-        ends = ahead(np.array([low, high]))
-        if ends[0] <= 0:
-            return low
-        if ends[1] >= 0:
-            return high
-        return zero(ahead, low, high)
+    def _ahead(self, t: Floats, x: float, y: float) -> tuple[Floats, Floats]:
+        """How far (x, y) is ahead of the normals of these points, and how fast that falls."""
+        point = self.contour.at(t)
+        cosine, sine = np.cos(point.alpha), np.sin(point.alpha)
+        x_off, y_off = x - point.xi, y - point.eta
+        falling = point.stretch + point.turning * (x_off * sine - y_off * cosine)
+        return x_off * cosine + y_off * sine, falling
 
     def scaled(self, factor: float) -> "Prism":
         """With the same label."""
