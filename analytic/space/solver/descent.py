@@ -13,6 +13,7 @@ near to a state at rest that the closed form finds it.
 """
 
 from collections.abc import Iterator
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -69,7 +70,7 @@ def descend(scene: Scene, start: Contact, foot: Floats) -> Iterator[Touching]:
     free = 0
     for _ in range(_STEPS):
         near = list(_near(scene, foot, links))
-        sides = np.stack([across(u) for u in links])
+        sides = across(links)
         before = np.vstack([scene.tangent, links[:-1]])
         pull = np.zeros((_LINKS + 1, 3))
         pull[:-1] = stiffness[:, None] * (links - before)
@@ -153,12 +154,17 @@ def _near(scene: Scene, foot: Floats, links: Floats) -> Iterator[_Near]:
     """The nearest place of each link that is near the body."""
     length = 1 / _LINKS
     joints = foot + np.vstack([np.zeros(3), np.cumsum(links, axis=0) * length])
+
+    @cache
+    def at_joint(joint: int) -> Floats:
+        return scene.body.nearest(joints[joint], APART).normal
+
     link = _LINKS - 1
     while link >= 0:
         low, high = 0.0, length
-        if scene.body.nearest(joints[link + 1], APART).normal @ links[link] <= 0:
+        if at_joint(link + 1) @ links[link] <= 0:
             low = high
-        elif scene.body.nearest(joints[link], APART).normal @ links[link] >= 0:
+        elif at_joint(link) @ links[link] >= 0:
             high = low
         for _ in range(_HALVINGS):
             if high == low:

@@ -119,16 +119,15 @@ def across(normal: Floats) -> Floats:
 
     Parameters
     ----------
-    normal : array, shape (3,)
+    normal : array, shape (..., 3)
         Of length 1.
 
     Returns
     -------
-    array, shape (2, 3)
+    array, shape (..., 2, 3)
         The three are right-handed: second, third, normal.
     """
-    axis = np.zeros(3)
-    axis[np.argmin(np.abs(normal))] = 1.0
+    axis = np.eye(3)[np.argmin(np.abs(normal), axis=-1)]
     first = np.cross(axis, normal)
-    first /= np.linalg.norm(first)
-    return np.stack([first, np.cross(normal, first)])
+    first /= np.linalg.norm(first, axis=-1, keepdims=True)
+    return np.stack([first, np.cross(normal, first)], axis=-2)
