@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -25,6 +26,8 @@ from analytic.problem.contours.contour import Contour
 _STATIONS = 1000  # of the sweeps between which it is interpolated
 _BEYOND = 0.02  # L; what a slightly longer vibrissa would reach, beyond the contour that is known
 _SAME = 1e-3  # of the largest magnitude; the contour must reproduce the reference so well (rms)
+
+_KEPT = 64  # sweeps, 32 kB each: a reference is often compared with many candidates
 
 Fault: TypeAlias = Literal[
     "length", "radius", "clamp", "compliance", "friction", "natural_curvature", "taper"
@@ -78,7 +81,7 @@ class Resolved:
         stiff, friction = reference.support
         try:
             case = Case(beam, _smooth(points), sweep, clamp_stiffness=stiff, friction=friction)
-            solved = solve_sweep(case)
+            solved = _sweep(case)
         except (InputError, ArithmeticError):
             return None
         # At its own stations: between them it is not known to a thousandth.
@@ -108,15 +111,13 @@ class Resolved:
             NaN where one of the two sweeps is free; None if no such vibrissa can be solved.
         """
         try:
-            swept = solve_sweep(self._changed(fault, size))
+            there = _at(_sweep(self._changed(fault, size)), self.foot_x)
         except (InputError, ArithmeticError):
             return None
         if fault == "clamp":
             # Past the rigid part the clamp's force acts at its end, the moment is about its foot.
-            lever = size * self.case.beam.length
-            moment = swept.values("moment_z") - lever * swept.values("force_x")
-            swept = replace(swept, table=swept.table.assign(moment_z=moment))
-        return _at(swept, self.foot_x) - self.seen
+            there[2] -= size * self.case.beam.length * there[0]
+        return there - self.seen
 
     def _changed(self, fault: Fault, size: float) -> Case:
         case, beam, length = self.case, self.case.beam, self.case.beam.length
@@ -217,7 +218,23 @@ def _smooth(points: Floats) -> Contour:
     Its arcs differ by so little that the closed form need not halt where they meet: three times as
     fast, and the same to rounding.
     """
-    return replace(through_points(points), kinks=())
+    return _through(points.tobytes())
+
+
+@lru_cache(_KEPT)
+def _through(points: bytes) -> Contour:
+    """One and the same contour whenever the points are, by which `_sweep` knows its case."""
+    return replace(through_points(np.frombuffer(points).reshape(-1, 2)), kinks=())
+
+
+@lru_cache(_KEPT)
+def _sweep(case: Case) -> tuple[Floats, Floats]:
+    """Foot positions, ascending, and the clamp readings there, NaN where it is free."""
+    sweep = solve_sweep(case)
+    free = (sweep.table["phase"] == "free").to_numpy()
+    rows = np.stack([np.where(free, np.nan, sweep.values(name)) for name in CLAMP_READINGS])
+    order = np.argsort(sweep.values("foot_x"))
+    return sweep.values("foot_x")[order], rows[:, order]
 
 
 def _extended(points: Floats, beyond: float) -> Floats:
@@ -229,14 +246,7 @@ def _extended(points: Floats, beyond: float) -> Floats:
     return np.vstack([*before, points, *after])
 
 
-def _at(sweep: Readings, foot_x: Floats) -> Floats:
+def _at(sweep: tuple[Floats, Floats], foot_x: Floats) -> Floats:
     """The clamp readings at `foot_x`, NaN where free and next to it."""
-    x = sweep.values("foot_x")
-    free = (sweep.table["phase"] == "free").to_numpy()
-    rows = [np.where(free, np.nan, sweep.values(name)) for name in CLAMP_READINGS]
-    return np.stack([np.interp(foot_x, *_sorted(x, row)) for row in rows])
-
-
-def _sorted(x: Floats, values: Floats) -> tuple[Floats, Floats]:
-    order = np.argsort(x)
-    return x[order], values[order]
+    x, rows = sweep
+    return np.stack([np.interp(foot_x, x, row) for row in rows])
