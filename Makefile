@@ -7,6 +7,9 @@ BIN := .venv/bin
 BIN_MUJOCO3 := .venv-mujoco3/bin
 BIN_ENGINES := .venv-engines/bin
 
+# Neighbours stay on one core, which makes what they share once; a core that is done takes over.
+PARALLEL := -n auto --dist worksteal
+
 STUDIES := resolution contact-stiffness phase-b sweep-step sensor-noise methods-deflection methods-noise
 CASES := catenary parabola two-circles shallow-catenary tip-only
 
@@ -30,19 +33,19 @@ run: install     ## sweep CASE in both models and write results/CASE/report.html
 	$(BIN)/vibrissa run $(CASE) $(ARGS)
 
 test: develop    ## the fast tests, under two minutes
-	$(BIN)/python -m pytest -n auto $(ARGS)
+	$(BIN)/python -m pytest $(PARALLEL) $(ARGS)
 
 test-slow: develop   ## the slow tests alone
-	$(BIN)/python -m pytest -n auto -m slow $(ARGS)
+	$(BIN)/python -m pytest $(PARALLEL) -m slow $(ARGS)
 
 test-all: develop    ## all tests, the slow ones too
-	$(BIN)/python -m pytest -n auto -m "not trial" $(ARGS)
+	$(BIN)/python -m pytest $(PARALLEL) -m "not trial" $(ARGS)
 
 trials: develop      ## what intervals and causes promise, on hundreds of random cases each: minutes
-	$(BIN)/python -m pytest -n auto -m trial $(ARGS)
+	$(BIN)/python -m pytest $(PARALLEL) -m trial $(ARGS)
 
 coverage: develop    ## how much of the code the fast tests run; ARGS='-m "not trial"' for all tests
-	$(BIN)/python -m pytest -n auto --cov --cov-report=term --cov-report=html $(ARGS)
+	$(BIN)/python -m pytest $(PARALLEL) --cov --cov-report=term --cov-report=html $(ARGS)
 
 lint: develop    ## format, style, types, import rules
 	$(BIN)/ruff format --check .
@@ -94,12 +97,12 @@ studies: install ## all shipped studies at full size
 install-mujoco3: .venv-mujoco3/installed   ## build .venv-mujoco3 with MuJoCo 3.17
 
 test-mujoco3: install-mujoco3    ## the fast tests under MuJoCo 3.17
-	$(BIN_MUJOCO3)/python -m pytest -n auto $(ARGS)
+	$(BIN_MUJOCO3)/python -m pytest $(PARALLEL) $(ARGS)
 
 install-engines: .venv-engines/installed   ## build .venv-engines with Drake, Exudyn and MuJoCo Warp
 
 test-engines: install-engines    ## the tests of the other engines, on two cases each; ARGS="-m slow" for more
-	$(BIN_ENGINES)/python -m pytest -n auto tests/engines $(ARGS)
+	$(BIN_ENGINES)/python -m pytest $(PARALLEL) tests/engines $(ARGS)
 
 versions: install install-mujoco3    ## the beams of both MuJoCo versions and the closed form side by side
 	set -e; for beam in chain rod; do \

@@ -57,7 +57,10 @@ def test_exact_readings_show_it_exactly(friction, natural, stiffness, radius, di
 
 @pytest.mark.parametrize(
     ("friction", "tip", "natural", "stiffness", "direction"),
-    [(0.3, 0.4, 0.0, np.inf, "left"), (0.2, 0.1, 0.4, 6.0, "right")],
+    [
+        (0.3, 0.4, 0.0, np.inf, "left"),
+        pytest.param(0.2, 0.1, 0.4, 6.0, "right", marks=pytest.mark.slow),
+    ],
 )
 def test_a_cone_shows_it_too(friction, tip, natural, stiffness, direction):
     """What is wrong with the friction assumed moves the contact by the radius times that."""
