@@ -1,6 +1,7 @@
 """Where along the vibrissa its joints and its contact spheres sit."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -143,7 +144,12 @@ class Layout:
         float
             Angle from the foot line [rad].
         """
-        return np.pi / 2 + float(angles.sum()) + float(self.vibrissa.turn(np.array(1.0)))
+        return np.pi / 2 + float(angles.sum()) + self._tip_turn
+
+    @cached_property
+    def _tip_turn(self) -> float:
+        """Of the unloaded tip from the upright, to the left [rad]."""
+        return float(self.vibrissa.turn(np.array(1.0)))
 
     def step(self, link: int) -> tuple[Floats, float]:
         """From one link's frame to the next one's, unloaded.

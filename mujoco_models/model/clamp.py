@@ -36,13 +36,13 @@ def by_sensors(data: mujoco.MjData) -> Clamp:
     return Clamp(float(fx), float(fy), float(mz))
 
 
-def by_contacts(model: mujoco.MjModel, data: mujoco.MjData, foot: Floats, moves: Booleans) -> Clamp:
+def by_contacts(data: mujoco.MjData, foot: Floats, moves: Booleans) -> Clamp:
     """The wrench at the foot that holds all contact forces.
 
     Parameters
     ----------
-    model, data : mujoco.MjModel, mujoco.MjData
-        An evaluated configuration.
+    data : mujoco.MjData
+        An evaluated configuration; its contacts are frictionless.
     foot : array, shape (2,)
         Position of the foot [L].
     moves : array of bool, shape (ngeom,)
@@ -53,16 +53,13 @@ def by_contacts(model: mujoco.MjModel, data: mujoco.MjData, foot: Floats, moves:
     Clamp
         By equilibrium of the whole vibrissa.
     """
-    held = np.zeros(3)
-    wrench = np.zeros(6)
-    for i in np.flatnonzero(data.contact.efc_address >= 0).tolist():  # others carry nothing
-        mujoco.mj_contactForce(model, data, i, wrench)
-        contact = data.contact[i]
-        force = wrench[:3] @ contact.frame.reshape(3, 3)
-        force *= 1.0 if moves[contact.geom[1]] else -1.0
-        arm = contact.pos[:2] - foot
-        held += [force[0], force[1], arm[0] * force[1] - arm[1] * force[0]]
-    return Clamp(*(-held).tolist())
+    contact = data.contact
+    carries = contact.efc_address >= 0  # others carry nothing
+    force = data.efc_force[contact.efc_address[carries]]
+    force = np.where(moves[contact.geom[carries, 1]], force, -force)
+    x, y = (force[:, None] * contact.frame[carries, :2]).T
+    across, along = (contact.pos[carries, :2] - foot).T
+    return Clamp(*(-float(part.sum()) for part in (x, y, across * y - along * x)))
 
 
 def discrepancy(sensed: Clamp, required: Clamp, first_joint: Floats, moment: float) -> float:

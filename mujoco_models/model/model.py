@@ -422,7 +422,7 @@ class BeamModel:
             The worst of all [EI/L^2, EI/L].
         """
         foot = self.data.xpos[self._foot, :2]
-        by_contacts = clamp.by_contacts(self.model, self.data, foot, self._surface.moves)
+        by_contacts = clamp.by_contacts(self.data, foot, self._surface.moves)
         moment = float(self.elastic_moments()[0])
         return clamp.discrepancy(self.clamp(), by_contacts, self.layout.base[0], moment)
 

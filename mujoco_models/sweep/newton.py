@@ -18,6 +18,8 @@ from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.state import State
 from mujoco_models.sweep.stiffness import Stiffness
 
+_TRIALS = 5  # of sets of contacts that may be the loaded ones
+
 
 class Touch(NamedTuple):
     """Where beads are, and which way the obstacle faces them.
@@ -246,17 +248,20 @@ def of_links(moments: Floats) -> Floats:
 
 
 def _unilateral(compliance: Floats, gap: Floats, guess: Booleans) -> Floats:
-    """Contact forces f >= 0 that minimise f.compliance.f/2 + gap.f, shape (n,)."""
-    force = np.zeros(len(gap))
-    if guess.any():
-        _, force[guess], failed = dposv(compliance[guess][:, guess], -gap[guess])
-        if (
-            not failed
-            and force.min() >= 0
-            and (compliance @ force + gap)[~guess].min(initial=0.0) >= 0
-        ):
+    """Contact forces f >= 0 that minimise f.compliance.f/2 + gap.f, shape (n,).
+
+    What pulls is let go and what is cut is pressed, until nothing does; usually at once. If that
+    goes round in circles, an active-set method that never does finds them.
+    """
+    for _ in range(_TRIALS):
+        force = np.zeros(len(gap))
+        if guess.any():
+            _, force[guess], failed = dposv(compliance[guess][:, guess], -gap[guess])
+            if failed:
+                break
+        right = np.where(guess, force >= 0, compliance @ force + gap < 0)
+        if (right == guess).all():
             return force
-    elif gap.min(initial=0.0) >= 0:
-        return force
+        guess = right
     root = np.linalg.cholesky(compliance)
     return np.asarray(nnls(root.T, -np.linalg.solve(root, gap))[0])
