@@ -102,11 +102,11 @@ class Sides(NamedTuple):
         found &= (self.link > 0) | (self.s > 0)  # no bead is where the first link begins
         bead = surface.bead_of[contact.geom].max(axis=1)
         outward = np.where(surface.moves[contact.geom[:, :1]], -1.0, 1.0) * contact.frame[:, :3]
-        for i in np.flatnonzero(self.along):
-            neighbours = np.flatnonzero((bead >= 0) & (np.abs(bead - self.link[i] + 0.5) < 1))
-            centre = data.geom_xpos[surface.beads[bead[neighbours]]]
-            away = centre - surface.corners.nearest(int(self.edge[i]), centre)
-            away /= np.linalg.norm(away, axis=1, keepdims=True)
-            same = np.linalg.norm(away - outward[neighbours], axis=1) < _SAME
-            found[neighbours[same]] = True
+        ball, side = np.flatnonzero(bead >= 0), np.flatnonzero(self.along)
+        pair, of = np.nonzero(np.abs(bead[ball] - self.link[side][:, None] + 0.5) < 1)
+        ball, edge = ball[of], self.edge[side[pair]]
+        centre = data.geom_xpos[surface.beads[bead[ball]]]
+        away = centre - surface.corners.nearest(edge, centre)
+        away /= np.sqrt((away**2).sum(axis=1, keepdims=True))
+        found[ball[((away - outward[ball]) ** 2).sum(axis=1) < _SAME**2]] = True
         return found

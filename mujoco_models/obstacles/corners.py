@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 
 EDGE_PREFIX = "edge"
 LINKS = 2  # the bit of contype and conaffinity by which links and edges collide
@@ -78,25 +78,25 @@ class Corners:
     def __len__(self) -> int:
         return len(self.ends)
 
-    def nearest(self, edge: int, points: Floats) -> Floats:
-        """Where an edge is nearest to points.
+    def nearest(self, edge: Integers, points: Floats) -> Floats:
+        """Where edges are nearest to points.
 
         Parameters
         ----------
-        edge : int
-            Its number.
+        edge : array of int, shape (n,)
+            Each point's edge.
         points : array, shape (n, 3)
             Positions [L].
 
         Returns
         -------
         array, shape (n, 3)
-            Positions on the edge [L].
+            Positions on the edges [L].
         """
-        begin, end = self.ends[edge]
+        begin, end = self.ends[edge].transpose(1, 0, 2)
         run = end - begin
-        share = np.clip((points - begin) @ run / (run @ run), 0, 1)
-        return np.asarray(begin + share[:, None] * run)
+        share = ((points - begin) * run).sum(axis=1) / (run**2).sum(axis=1)
+        return np.asarray(begin + np.clip(share, 0, 1)[:, None] * run)
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """Add the edges to the world body.
