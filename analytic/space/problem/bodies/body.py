@@ -7,6 +7,8 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 
+_NEXT, _LAST = [1, 2, 0], [2, 0, 1]  # of x, y and z, in turn
+
 
 class Spot(NamedTuple):
     """A point of a body's surface with one of its normals.
@@ -128,6 +130,11 @@ def across(normal: Floats) -> Floats:
         The three are right-handed: second, third, normal.
     """
     axis = np.eye(3)[np.argmin(np.abs(normal), axis=-1)]
-    first = np.cross(axis, normal)
+    first = _cross(axis, normal)
     first /= np.linalg.norm(first, axis=-1, keepdims=True)
-    return np.stack([first, np.cross(normal, first)], axis=-2)
+    return np.stack([first, _cross(normal, first)], axis=-2)
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    """As `np.cross`, which takes five times as long to find out which axes are meant."""
+    return a[..., _NEXT] * b[..., _LAST] - a[..., _LAST] * b[..., _NEXT]

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -71,8 +72,8 @@ class SmoothBody(Body):
 
     def nearest(self, x: Floats, apart: float) -> Spot:
         """Newton's method for the normal along which the point lies off the surface."""
-        centre = np.mean([self._at(s * e) for e in np.eye(3) for s in (1, -1)], axis=0)
-        normal = (x - centre) / max(float(np.linalg.norm(x - centre)), 1e-300)
+        outward = x - self._centre
+        normal = outward / max(float(np.linalg.norm(outward)), 1e-300)
         best, missed = normal, np.inf
         for _ in range(_STEPS):
             away = x - self._at(normal)
@@ -96,6 +97,12 @@ class SmoothBody(Body):
         point, sides = self._at(best), across(best)
         turning = np.linalg.inv(self._radii(best, sides) + apart * np.eye(2))
         return Spot(point, best, float((x - point) @ best), sides.T @ turning @ sides)
+
+    @cached_property
+    def _centre(self) -> Floats:
+        """Somewhere in the middle."""
+        extremes = [self._at(s * e) for e in np.eye(3) for s in (1, -1)]
+        return np.asarray(np.mean(extremes, axis=0))
 
     def _at(self, normal: Floats) -> Floats:
         return self.factor * np.asarray(self.point(normal), dtype=float)
