@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from compare.read.space import SpaceJob
     from compare.spatial.comparison import SpatialComparison
     from mujoco_models import Settings
-    from mujoco_models.settings import BeamKind
+    from mujoco_models.allowed import BeamKind
 
     Sweeps = dict[tuple[str, Settings | None], Readings]
     EngineSweeps = dict[tuple[str, Settings, str], Readings]

@@ -1,8 +1,18 @@
-"""What settings may be: checks that those of every kind share, one line for what is wrong."""
+"""What settings may be: checks that those of every kind share, one line for what is wrong.
+
+The command line needs no more of the settings before it knows what to do.
+"""
 
 from numbers import Integral, Real
+from typing import Literal, TypeAlias, get_args
 
 from analytic.problem.errors import InputError
+
+BeamKind: TypeAlias = Literal["chain", "rod", "cable"]
+ClampKind: TypeAlias = Literal["second-order", "naive"]
+ObstacleKind: TypeAlias = Literal["mesh", "primitive"]
+BEAMS, CLAMPS, OBSTACLES = map(get_args, (BeamKind, ClampKind, ObstacleKind))
+CONTACT_STIFFNESSES = 1e3, 1e9  # EI/L^3; the least and the largest
 
 
 def check_word(name: str, value: object, allowed: tuple[str, ...]) -> None:

@@ -1,18 +1,21 @@
 """The numerics of a MuJoCo sweep: everything that is not physics."""
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias, get_args
 
 from pydantic import ConfigDict, StrictBool, StrictFloat, StrictInt
 
 from analytic.problem.errors import InputError
-from mujoco_models.allowed import check_number, check_word
-
-BeamKind: TypeAlias = Literal["chain", "rod", "cable"]
-ClampKind: TypeAlias = Literal["second-order", "naive"]
-ObstacleKind: TypeAlias = Literal["mesh", "primitive"]
-BEAMS, CLAMPS, OBSTACLES = map(get_args, (BeamKind, ClampKind, ObstacleKind))
-CONTACT_STIFFNESSES = 1e3, 1e9  # EI/L^3; the least and the largest
+from mujoco_models.allowed import (
+    BEAMS,
+    CLAMPS,
+    CONTACT_STIFFNESSES,
+    OBSTACLES,
+    BeamKind,
+    ClampKind,
+    ObstacleKind,
+    check_number,
+    check_word,
+)
 
 
 @dataclass(frozen=True)

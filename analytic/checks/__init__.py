@@ -2,10 +2,11 @@
 
 Slower and less exact than `analytic.solver`, with which they share nothing but the problem: they
 are what it is tested and timed against. Dimensionless, one contact at a time.
+
+The names are listed in ``__init__.pyi`` and loaded when first used: what else is in this folder
+needs none of SciPy's integrators to load.
 """
 
-from analytic.checks.boundary_value import boundary_value_problem
-from analytic.checks.quadrature import tip_angle_by_quadrature
-from analytic.checks.shooting import tip_angle_by_shooting
+import lazy_loader
 
-__all__ = ["boundary_value_problem", "tip_angle_by_quadrature", "tip_angle_by_shooting"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -5,7 +5,6 @@ from itertools import pairwise
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from analytic.problem.arrays import Floats
 
@@ -69,6 +68,8 @@ def integrate_span(
     End
         Positions relative to the foot [L].
     """
+    from scipy.integrate import solve_ivp  # slow to load, and a plain sweep needs none of it
+
     n = len(moment)
 
     def rate(share: float, state: Floats, begin: Floats, length: Floats) -> Floats:

@@ -13,7 +13,6 @@ from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
@@ -198,6 +197,7 @@ def _lowest(
     centreline: Contour, at: float, width: float, foot_x: float
 ) -> tuple[float, float, float]:
     """The snap-off's parameter, foot position and excess rotation, next to what was found."""
+    from scipy.optimize import minimize_scalar  # slow to load, and few contours need it
 
     def place(t: float) -> float:
         value = float(equilibria(centreline, np.array([t])).foot_x[0])

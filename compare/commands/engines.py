@@ -20,8 +20,9 @@ from compare.simulate.controlled import measure_budget
 from compare.simulate.fastest import Fastest, find_fastest
 from compare.simulate.moving import measure_model_budget, measure_motion_budget
 from mujoco_models import simulate_model, simulate_motion, simulate_sweep
+from mujoco_models.allowed import CONTACT_STIFFNESSES
 from mujoco_models.motion import Motion
-from mujoco_models.settings import CONTACT_STIFFNESSES, Settings
+from mujoco_models.settings import Settings
 
 
 def simulated(job: Job, folder: Path) -> Readings:

@@ -15,7 +15,7 @@ from compare.commands.options import (
     Stations,
 )
 from compare.commands.output import output_folder
-from mujoco_models.settings import CONTACT_STIFFNESSES
+from mujoco_models.allowed import CONTACT_STIFFNESSES
 
 _WARP = "mujoco-warp>=4.0,<5"
 

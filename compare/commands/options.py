@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from analytic.problem.errors import InputError
-from mujoco_models.motion import Motion
-from mujoco_models.settings import BeamKind, ObstacleKind
+from mujoco_models.allowed import BeamKind, ObstacleKind
 
 if TYPE_CHECKING:
     from compare.read.case import Job
+    from mujoco_models.motion import Motion
 
 AGREES, DISAGREES = 0, 1
 
@@ -206,11 +206,13 @@ class Changes:
             if value is not None:
                 raise InputError(option, value, "left out", "the case has a [model] of its own")
 
-    def _moved(self, motion: Motion | None) -> Motion | None:
+    def _moved(self, motion: "Motion | None") -> "Motion | None":
         named: dict[str, Any] = {"speed": self.speed, "timestep": self.timestep}
         given = {key: value for key, value in named.items() if value is not None}
         if motion is None and not (self.motion or given):
             return None
+        from mujoco_models.motion import Motion
+
         return replace(motion or Motion(), **given)
 
     def folder(self, out: Path | None, case: str) -> Path:

@@ -3,9 +3,6 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from rich.console import Console
-from rich.text import Text
-
 
 @contextmanager
 def waiting(what: str) -> Iterator[None]:
@@ -20,6 +17,9 @@ def waiting(what: str) -> Iterator[None]:
     ------
     None
     """
+    from rich.console import Console  # slow to load, and not every command waits
+    from rich.text import Text
+
     console = Console(stderr=True, highlight=False)
     if not console.is_terminal:
         yield

@@ -9,7 +9,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.space import SpatialReadings
 from analytic.space.problem.readings import FORCE, MOMENT
-from mujoco_models.settings import CONTACT_STIFFNESSES
+from mujoco_models.allowed import CONTACT_STIFFNESSES
 from mujoco_models.space.settings import SpatialSettings
 
 _ORDER = 2  # of the chain in 1/N

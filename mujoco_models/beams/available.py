@@ -3,7 +3,7 @@
 from importlib.metadata import version
 
 from analytic.problem.errors import InputError
-from mujoco_models.settings import BeamKind
+from mujoco_models.allowed import BeamKind
 
 
 class Beams(tuple[BeamKind, ...]):

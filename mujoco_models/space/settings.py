@@ -6,8 +6,7 @@ from typing import Literal, TypeAlias, get_args
 from pydantic import ConfigDict, StrictFloat, StrictInt
 
 from analytic.problem.errors import InputError
-from mujoco_models.allowed import check_number, check_word
-from mujoco_models.settings import CONTACT_STIFFNESSES, ClampKind
+from mujoco_models.allowed import CONTACT_STIFFNESSES, ClampKind, check_number, check_word
 
 SpatialBeamKind: TypeAlias = Literal["chain", "rod"]
 JointKind: TypeAlias = Literal["ball", "universal"]

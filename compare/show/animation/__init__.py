@@ -12,10 +12,9 @@ from analytic import InputError, Readings
 from compare.show.animation.gif import save_gif
 from compare.show.animation.motion import Motion
 from compare.show.animation.scene import Scene
+from compare.show.animation.stills import STILL_DPI, save_stills, shown
 
 __all__ = ["write_animation"]
-
-_STILLS = (0.1, 0.4, 0.7, 1.0)  # of the stations in contact; the last is just before the snap-off
 
 
 def write_animation(
@@ -61,8 +60,5 @@ def write_animation(
     last = len(reference.table) - 1
     chosen = np.linspace(0, last, min(frames, last + 1)).astype(int)
     images = list(scene.images(np.unique(chosen), advance))
-    written = [save_gif(images, folder / "animation.gif")]
-    for number, share in enumerate(_STILLS, start=1):
-        station = touching[round(share * (len(touching) - 1))]
-        written.append(scene.save_still(int(station), folder / f"still-{number}.png"))
-    return written
+    film = save_gif(images, folder / "animation.gif")
+    return [film, *save_stills(scene.images(shown(touching), dpi=STILL_DPI), folder)]

@@ -1,7 +1,6 @@
 """The whole picture: the object from afar, the vibrissa from near, and the clamp readings."""
 
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -11,10 +10,8 @@ from matplotlib.lines import Line2D
 from PIL import Image
 
 from analytic import CLAMP_READINGS
-from analytic.problem.arrays import Integers
 from compare.show.animation.motion import Motion
 from compare.show.animation.views import Curve, View
-from compare.show.page import save_figure
 from compare.show.style import CANDIDATE, INK, PHASE_COLOURS, PHASE_NAMES, REFERENCE, label
 
 _SIZE, _DPI = (8.0, 6.4), 100  # inches and pixels an inch
@@ -48,21 +45,29 @@ class Scene:
         self._phase = self._figure.text(0.985, 0.955, "", ha="right", fontsize=12, weight="bold")
         self._moving = [*(a for part in self._parts for a in part.moving), self._phase]
 
-    def images(self, stations: Integers, advance: Callable[[], None]) -> Iterator[Image.Image]:
+    def images(
+        self,
+        stations: Iterable[int],
+        advance: Callable[[], None] = lambda: None,
+        dpi: int = _DPI,
+    ) -> Iterator[Image.Image]:
         """A picture of each station.
 
         Parameters
         ----------
-        stations : array of int, shape (n,)
+        stations : iterable of int
             Of the reference.
         advance : callable
             Called after every picture.
+        dpi : int
+            Pixels an inch.
 
         Yields
         ------
         Image
             In colour.
         """
+        self._figure.set_dpi(dpi)
         for artist in self._moving:
             artist.set_animated(True)
         self._canvas.draw()
@@ -74,26 +79,6 @@ class Scene:
                 self._figure.draw_artist(artist)
             yield Image.fromarray(np.asarray(self._canvas.buffer_rgba())).convert("RGB")
             advance()
-
-    def save_still(self, station: int, path: Path) -> Path:
-        """Write a PNG of one station.
-
-        Parameters
-        ----------
-        station : int
-            Of the reference.
-        path : Path
-            The file.
-
-        Returns
-        -------
-        Path
-            `path`.
-        """
-        for artist in self._moving:
-            artist.set_animated(False)
-        self._show(station)
-        return save_figure(self._figure, path)
 
     def _show(self, station: int) -> None:
         for part in self._parts:

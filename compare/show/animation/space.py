@@ -1,6 +1,6 @@
 """A sweep in space in motion: both models' vibrissa at the body, and the clamp's components."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +14,12 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from PIL import Image
 
 from analytic import InputError
-from analytic.problem.arrays import Floats, Integers
+from analytic.problem.arrays import Floats
 from analytic.space import Body, SpatialReadings
 from analytic.space.problem.readings import FORCE, MOMENT
 from compare.show.animation.gif import save_gif
+from compare.show.animation.stills import STILL_DPI, save_stills, shown
 from compare.show.figures.space import draw_scene, upright
-from compare.show.page import save_figure
 from compare.show.scene import SweepScene
 from compare.show.style import (
     BLUE,
@@ -36,7 +36,6 @@ from compare.show.style import (
 from compare.spatial.comparison import way
 
 _SIZE, _DPI = (8.0, 6.4), 100  # inches and pixels an inch
-_STILLS = (0.1, 0.4, 0.7, 1.0)  # of the stations in contact
 _DOTS = 12  # of a dotted vibrissa
 
 
@@ -83,11 +82,8 @@ def write_space_animation(
     moving = _Moving(SweepScene.of(reference, body), SweepScene.of(candidate, None))
     last = len(reference.table) - 1
     chosen = np.unique(np.linspace(0, last, min(frames, last + 1)).astype(int))
-    written = [save_gif([*moving.images(chosen, advance)], folder / "animation.gif")]
-    for number, share in enumerate(_STILLS, start=1):
-        station = int(touching[round(share * (len(touching) - 1))])
-        written.append(moving.save_still(station, folder / f"still-{number}.png"))
-    return written
+    film = save_gif([*moving.images(chosen, advance)], folder / "animation.gif")
+    return [film, *save_stills(moving.images(shown(touching), dpi=STILL_DPI), folder)]
 
 
 class _Moving:
@@ -129,8 +125,14 @@ class _Moving:
             self._line, self._dots, self._contact, *(mark for mark, _ in self._marks), self._phase,
         ]  # fmt: skip
 
-    def images(self, stations: Integers, advance: Callable[[], None]) -> Iterator[Image.Image]:
+    def images(
+        self,
+        stations: Iterable[int],
+        advance: Callable[[], None] = lambda: None,
+        dpi: int = _DPI,
+    ) -> Iterator[Image.Image]:
         """A picture of each station."""
+        self._figure.set_dpi(dpi)
         for artist in self._artists:
             artist.set_animated(True)
         self._canvas.draw()
@@ -142,13 +144,6 @@ class _Moving:
                 self._figure.draw_artist(artist)
             yield Image.fromarray(np.asarray(self._canvas.buffer_rgba())).convert("RGB")
             advance()
-
-    def save_still(self, station: int, path: Path) -> Path:
-        """Write a PNG of one station."""
-        for artist in self._artists:
-            artist.set_animated(False)
-        self._show(station)
-        return save_figure(self._figure, path)
 
     def _add_curves(self, ax: Axes, names: tuple[str, ...], unit: float, title: str) -> None:
         for name, colour in zip(names, (BLUE, ORANGE, GREEN), strict=True):

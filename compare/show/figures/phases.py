@@ -14,6 +14,8 @@ from compare.show.figures.over_foot import (
 from compare.show.figures.thinning import draw
 from compare.show.style import CANDIDATE, GREY, PAGE_WIDTH, REFERENCE, SMALL, label
 
+_AXES = {"left": 0.095, "right": 0.99, "top": 0.98, "bottom": 0.15, "hspace": 0.08}
+
 
 def phase_criterion(comparison: Comparison) -> Figure:
     """Draw criterion (26) of the paper, zero in Phase B, and the contact, at the tip in Phase A.
@@ -28,8 +30,8 @@ def phase_criterion(comparison: Comparison) -> Figure:
     Figure
         The criterion above the contact's arc length.
     """
-    figure = Figure(figsize=(PAGE_WIDTH, 5.4), layout="constrained")
-    axes = figure.subplots(2, 1, sharex=True)
+    figure = Figure(figsize=(PAGE_WIDTH, 5.4))
+    axes = figure.subplots(2, 1, sharex=True, gridspec_kw=_AXES)
     for readings, which, style in (
         (comparison.reference, "reference", LINE),
         (comparison.candidate, "candidate", dots(comparison)),
@@ -51,5 +53,5 @@ def phase_criterion(comparison: Comparison) -> Figure:
             if where is not None:
                 for ax in axes:
                     ax.axvline(where / length, color=colour, linestyle=":", linewidth=1)
-    figure.legend(loc="outside lower center", ncols=2, fontsize=SMALL, frameon=False)
+    figure.legend(loc="lower center", ncols=2, fontsize=SMALL, frameon=False)
     return figure

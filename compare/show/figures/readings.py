@@ -36,6 +36,14 @@ from compare.show.style import (
 
 _ALONE = 3.0  # points; of dots that lie on no line
 _NEAR = 0.03  # of the sweep's length: what is shown on either side of the snap-off
+_PANEL = (4.8, 4.0)  # inches
+# With room for numbers of seven characters, or five beside a label: to measure the texts of each
+# picture would take longer than to draw it.
+_AXES = {"left": 0.155, "right": 0.98, "top": 0.93, "bottom": 0.25, "hspace": 0.2}
+_ROW_OF_AXES = {
+    "left": 0.064, "right": 0.992, "top": 0.94, "bottom": 0.15, "hspace": 0.16, "wspace": 0.25,
+}  # fmt: skip
+_LABEL = -0.135  # of the axes' width; where the label's right edge is
 
 
 def readings(comparison: Comparison) -> Figure:
@@ -51,17 +59,15 @@ def readings(comparison: Comparison) -> Figure:
     Figure
         The readings above, the differences below.
     """
-    figure = Figure(figsize=(12, 5.4), layout="constrained")
+    figure = Figure(figsize=(12, 5.4))
     upper, lower = figure.subplots(
-        2, 4, sharex=True, height_ratios=[2.2, 1], gridspec_kw={"hspace": 0.05}
+        2, 4, sharex=True, height_ratios=[2.2, 1], gridspec_kw=_ROW_OF_AXES
     )
     for i, name in enumerate(SYMBOLS):
         _draw_reading(upper[i], lower[i], comparison, name)
     lower[0].set_ylabel("difference\n(same unit)")
     handles, labels = key(upper[0])
-    figure.legend(
-        handles, labels, loc="outside lower center", ncols=4, fontsize=SMALL, frameon=False
-    )
+    figure.legend(handles, labels, loc="lower center", ncols=4, fontsize=SMALL, frameon=False)
     return figure
 
 
@@ -112,15 +118,13 @@ def snap_off_panels(comparison: Comparison) -> dict[str, Figure]:
 
 
 def _panel(comparison: Comparison, name: str) -> Figure:
-    figure = Figure(figsize=(4.8, 4.0), layout="constrained")
-    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.2, 1])
+    figure = Figure(figsize=_PANEL)
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.2, 1], gridspec_kw=_AXES)
     _draw_reading(upper, lower, comparison, name)
     lower.set_ylabel("difference")
-    figure.align_ylabels()
+    lower.yaxis.set_label_coords(_LABEL, 0.5)
     handles, labels = key(upper)
-    figure.legend(
-        handles, labels, loc="outside lower center", ncols=2, fontsize=SMALL, frameon=False
-    )
+    figure.legend(handles, labels, loc="lower center", ncols=2, fontsize=SMALL, frameon=False)
     return figure
 
 
