@@ -86,6 +86,34 @@ class Readings:
         object.__setattr__(self, "table", table)
 
     @classmethod
+    def solved(
+        cls, table: pd.DataFrame, beam: Beam, source: str, provenance: Mapping[str, Any]
+    ) -> "Readings":
+        """Readings of a solver's own table, which is not checked.
+
+        Parameters
+        ----------
+        table : pandas.DataFrame
+            As `Readings` would leave it: rows counted from 0, all numbers floats, none infinite.
+        beam : Beam
+            The vibrissa.
+        source : str
+            Who solved it.
+        provenance : mapping
+            Of the form that `Readings` asks for.
+
+        Returns
+        -------
+        Readings
+            What `Readings` of the same is, in a tenth of the time.
+        """
+        found = object.__new__(cls)
+        parts = {"table": table, "beam": beam, "source": source, "provenance": provenance}
+        for name, part in parts.items():
+            object.__setattr__(found, name, part)
+        return found
+
+    @classmethod
     def of(
         cls,
         data: pd.DataFrame | Mapping[str, ArrayLike],

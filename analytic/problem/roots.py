@@ -1,6 +1,7 @@
 """Zeros between bounds, many at a time, to the last digit."""
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 
@@ -37,8 +38,10 @@ def zeros(
         Of the two numbers that enclose each zero to rounding, the one with the smaller value.
     """
     low, high = np.array(low, dtype=float), np.array(high, dtype=float)
+    if not low.size:
+        return low
     found, which = np.empty_like(low), np.arange(low.size)
-    even = np.linspace(0, 1, 2 * _pairs(which.size) + 3)
+    even = _even(_pairs(which.size))
     x = low[:, None] + even * (high - low)[:, None]
     x[:, -1] = high
     f = _values(function, which, x)
@@ -57,7 +60,7 @@ def zeros(
         inside = _spread(np.clip(share, margin, 1 - margin), margin, smooth, _pairs(which.size))
         x = a[:, None] + inside * (b - a)[:, None]
         f = _values(function, which, x)
-        x, f = np.column_stack([a, x, b]), np.column_stack([f_a, f, f_b])
+        x, f = _between(a, x, b), _between(f_a, f, f_b)
     return found
 
 
@@ -124,5 +127,17 @@ def _spread(share: Floats, margin: Floats, smooth: Booleans, pairs: int) -> Floa
         return share[:, None]
     closer = margin[:, None] ** (np.arange(1, pairs + 1) / pairs)
     share = share[:, None]
-    about = np.hstack([share - share * closer, share, (share + (1 - share) * closer)[:, ::-1]])
-    return np.where(smooth[:, None], about, np.linspace(0, 1, 2 * pairs + 3)[1:-1])
+    about = _between(share - share * closer, share, (share + (1 - share) * closer)[:, ::-1])
+    return about if smooth.all() else np.where(smooth[:, None], about, _even(pairs)[1:-1])
+
+
+@cache
+def _even(pairs: int) -> Floats:
+    """As many places from 0 to 1 as are looked at first, evenly spaced."""
+    return np.linspace(0, 1, 2 * pairs + 3)
+
+
+def _between(before: Floats, values: Floats, after: Floats) -> Floats:
+    """Columns side by side; one may be given as shape (n,)."""
+    parts = [x[:, None] if x.ndim == 1 else x for x in (before, values, after)]
+    return np.concatenate(parts, axis=1)

@@ -141,13 +141,12 @@ def trace(many: Contours, reaches: Sequence[tuple[float, float]]) -> list[Branch
         _to_snap_off(*(values[begin:end] for values in (grid.t, samples.foot_x, samples.excess)))
         for begin, end in pairwise(ends)
     ]
-    parts = _refined(many, parts)
+    lowest = np.concatenate([contour.parameter(np.zeros(1)) for contour in many.contours])
+    parts, at_lowest = _refined(many, parts, lowest)
     counts = [len(t) - 1 for t, _, _ in parts]
     owner = np.repeat(np.arange(len(many)), counts)
     middles = np.concatenate([(t[1:] + t[:-1]) / 2 for t, _, _ in parts])
     tangent = surplus_and_rate(many.at(owner, middles))[0] < 0
-    lowest = np.concatenate([contour.parameter(np.zeros(1)) for contour in many.contours])
-    at_lowest = equilibria_at(many.at(np.arange(len(many)), lowest)).foot_x
     return [
         Branch(*part, cells, (float(t), float(foot_x)))
         for part, cells, t, foot_x in zip(
@@ -172,8 +171,8 @@ def _to_snap_off(t: Floats, foot_x: Floats, excess: Floats) -> _Part:
     return t[: least + 1].copy(), foot_x[: least + 1].copy(), excess[: least + 1].copy()
 
 
-def _refined(many: Contours, parts: list[_Part]) -> list[_Part]:
-    """The same with the snap-off where x0 is least.
+def _refined(many: Contours, parts: list[_Part], lowest: Floats) -> tuple[list[_Part], Floats]:
+    """The same with the snap-off where x0 is least; and x0 at the contours' lowest points.
 
     It is where the derivative of x0 vanishes, unless that is inexact, as without a radius of
     curvature: then x0 is lower next to it.
@@ -181,16 +180,18 @@ def _refined(many: Contours, parts: list[_Part]) -> list[_Part]:
     at = np.array([t[-1] for t, _, _ in parts])
     width = np.array([t[-2] for t, _, _ in parts]) - at
     foot_x = np.array([places[-1] for _, places, _ in parts])
-    owner = np.repeat(np.arange(len(many)), 2)
-    aside = (at[:, None] + _ASIDE * width[:, None] * np.array([-1, 1])).ravel()
-    beside = equilibria_at(many.at(owner, aside)).foot_x.reshape(-1, 2)
+    owner = np.repeat(np.arange(len(many)), 3)
+    aside = at[:, None] + _ASIDE * width[:, None] * np.array([-1, 1])
+    t = np.column_stack([aside, lowest]).ravel()
+    places = equilibria_at(many.at(owner, t)).foot_x.reshape(-1, 3)
+    beside, at_lowest = places[:, :2], places[:, 2]
     least = foot_x - _ROUNDING * np.maximum(1, np.abs(foot_x))
     for i in np.flatnonzero((width > 0) & (beside < least[:, None]).any(axis=1)):
         t, places, excess = parts[i]
         t[-1], places[-1], excess[-1] = _lowest(
             many.contours[i], float(at[i]), float(width[i]), float(foot_x[i])
         )
-    return parts
+    return parts, at_lowest
 
 
 def _lowest(

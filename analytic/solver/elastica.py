@@ -90,12 +90,8 @@ def tangent_span(alpha: Floats) -> Span:
     """
     v = np.pi / 2 - np.abs(alpha)
     root = np.sqrt(v)
-    z = v * v
-    z *= 2 / _WIDEST
-    z -= 1
-    q = _polynomial(_G, z)
+    q, S = _polynomials(v * v * (2 / _WIDEST) - 1)
     q *= root
-    S = _polynomial(_H, z)
     S *= root
     S *= v
     past = alpha < 0
@@ -131,13 +127,17 @@ def _span(C: Floats, k: Floats, k_: Floats, alpha: Floats) -> Span:
     return Span(q, C, 2 * (E - k * a * sine) - q)
 
 
-def _polynomial(coefficients: Floats, z: Floats) -> Floats:
-    """Horner's scheme in place; the highest power's coefficient is the last."""
-    value = np.full_like(z, coefficients[-1])
-    for coefficient in coefficients[-2::-1]:
-        value *= z
-        value += coefficient
-    return value
+def _polynomials(z: Floats) -> tuple[Floats, Floats]:
+    """sqrt(2) g and h, of -1 <= z <= 1: from all powers, that of 8 by three multiplications."""
+    powers = np.empty((_DEGREE + 1, z.size))
+    powers[0], powers[1] = 1.0, z.ravel()
+    known = 2
+    while known <= _DEGREE:
+        more = min(known, _DEGREE + 1 - known)
+        np.multiply(powers[:more], powers[1] * powers[known - 1], out=powers[known : known + more])
+        known += more
+    g, h = _COEFFICIENTS @ powers
+    return g.reshape(z.shape), h.reshape(z.shape)
 
 
 def _means(z: Floats) -> Floats:
@@ -151,14 +151,11 @@ def _means(z: Floats) -> Floats:
 
 _WIDEST = (np.pi / 2) ** 2  # of v^2
 _NODES = chebyshev.chebpts1(_DEGREE + 1)
-_G, _H = (
-    np.asarray(chebyshev.cheb2poly(chebyshev.chebfit(_NODES, values, _DEGREE)), dtype=float)
-    for values in _means(_NODES)
+_COEFFICIENTS = np.array(
+    [chebyshev.cheb2poly(chebyshev.chebfit(_NODES, x, _DEGREE)) for x in _means(_NODES)]
 )
-_UPRIGHT = (  # q and S up to theta = pi/2
-    np.sqrt(np.pi / 2) * float(_G.sum()),
-    (np.pi / 2) ** 1.5 * float(_H.sum()),
-)
+_UPRIGHT = np.array([np.sqrt(np.pi / 2), (np.pi / 2) ** 1.5]) * _COEFFICIENTS.sum(axis=1)
+"""q and S up to theta = pi/2."""
 
 
 def least_rotation(alpha: Floats) -> Floats:

@@ -35,11 +35,8 @@ class Equilibria(NamedTuple):
     span: Span
     root_f: Floats
     tangent: Booleans
-
-    @property
-    def frame(self) -> Frame:
-        """The contact as seen from the clamp, times sqrt(f)."""
-        return frame(self.span, self.point.alpha)
+    frame: Frame
+    """The contact as seen from the clamp, times sqrt(f)."""
 
     @property
     def arc_length(self) -> Floats:
@@ -132,8 +129,9 @@ def tangent_contact(point: ContourPoint) -> Equilibria:
     """
     excess = np.pi / 2 - np.abs(point.alpha)
     loaded = tangent_span(point.alpha)
-    root_f = frame(loaded, point.alpha).up / point.eta
-    return Equilibria(point, excess, loaded, root_f, np.ones_like(point.alpha, dtype=bool))
+    end = frame(loaded, point.alpha)
+    every = np.ones(point.alpha.shape, dtype=bool)
+    return Equilibria(point, excess, loaded, end.up / point.eta, every, end)
 
 
 def contact(point: ContourPoint, excess: Floats, tangent: Booleans) -> Equilibria:
@@ -155,9 +153,10 @@ def contact(point: ContourPoint, excess: Floats, tangent: Booleans) -> Equilibri
     """
     excess = np.where(tangent, np.pi / 2 - np.abs(point.alpha), excess)
     loaded = span(excess, point.alpha)
+    end = frame(loaded, point.alpha)
     with np.errstate(divide="ignore", invalid="ignore"):
-        root_f = np.where(tangent, frame(loaded, point.alpha).up / point.eta, loaded.q)
-    return Equilibria(point, excess, loaded, root_f, tangent)
+        root_f = np.where(tangent, end.up / point.eta, loaded.q)
+    return Equilibria(point, excess, loaded, root_f, tangent, end)
 
 
 def equilibria(centreline: Contour, t: Floats) -> Equilibria:
@@ -192,17 +191,20 @@ def equilibria_at(point: ContourPoint) -> Equilibria:
         Of n contacts.
     """
     found = tangent_contact(point)
-    excess, loaded, root_f, _ = found[1:]
+    excess, loaded, root_f, _, end = found[1:]
     # Beyond alpha = -52.906 deg no tangential contact exists above the foot line.
     tangent = (root_f > 0) & (loaded.q < root_f)
     tip = np.flatnonzero(~tangent)
     if tip.size:
         alpha = point.alpha[tip]
-        excess[tip] = tip_excess(alpha, point.eta[tip])
-        for values, at_tip in zip(loaded, span(excess[tip], alpha), strict=True):
+        with np.errstate(invalid="ignore"):  # straight, against an upright side: out of reach
+            lowest = end.up[tip] / loaded.q[tip]
+        excess[tip] = tip_excess(alpha, point.eta[tip], lowest)
+        of_tip = span(excess[tip], alpha)
+        for values, at_tip in zip((*loaded, *end), (*of_tip, *frame(of_tip, alpha)), strict=True):
             values[tip] = at_tip
-        root_f[tip] = loaded.q[tip]
-    return Equilibria(point, excess, loaded, root_f, tangent)
+        root_f[tip] = of_tip.q
+    return Equilibria(point, excess, loaded, root_f, tangent, end)
 
 
 Column: TypeAlias = Floats | Words

@@ -152,7 +152,9 @@ def _with_phase_changes(centrelines: Contours, grid: Grid) -> Grid:
             grid, (value, rate), new, surplus_and_rate(centrelines.at(*new))
         )
     new = _extrema(centrelines, grid, value, rate)
-    grid, (value,) = _merged(grid, (value,), new, surplus_and_rate(centrelines.at(*new))[:1])
+    if new.t.size:
+        found = surplus_and_rate(centrelines.at(*new))[:1]
+        grid, (value,) = _merged(grid, (value,), new, found)
     below = value < 0
     turns = np.flatnonzero(grid.cells & (below[1:] != below[:-1]))
     owner = grid.owner[turns]
@@ -214,16 +216,14 @@ def folded(centrelines: Contours, grid: Grid) -> tuple[Grid, Samples]:
     samples.foot_x[begins] = centrelines.at(grid.owner[begins], grid.t[begins]).xi
     samples.rate[begins], samples.excess[begins] = np.nan, 0.0
     for _ in range(_AT_END):
-        new = _end_of_reach(grid, samples)
-        grid, samples = _more(grid, samples, new, _sample(centrelines, new))
+        grid, samples = _more(centrelines, grid, samples, _end_of_reach(grid, samples))
     for _ in range(_LEVELS):
         chosen = grid.middles(doubtful(grid.t, samples.foot_x, samples.rate))
         new = _allowed(grid, chosen, most)
         if not new.t.size:
             break
-        grid, samples = _more(grid, samples, new, _sample(centrelines, new))
-    new = _folds(centrelines, grid, samples)
-    grid, samples = _more(grid, samples, new, _sample(centrelines, new))
+        grid, samples = _more(centrelines, grid, samples, new)
+    grid, samples = _more(centrelines, grid, samples, _folds(centrelines, grid, samples))
     # Nothing is within reach again behind the first point that is not.
     gone = np.isnan(samples.foot_x)
     so_far = np.cumsum(gone)
@@ -280,8 +280,10 @@ def _sample(centrelines: Contours, grid: Grid) -> Samples:
         return Samples(states.foot_x, states.foot_x_rate, states.excess)
 
 
-def _more(grid: Grid, samples: Samples, new: Grid, found: Samples) -> tuple[Grid, Samples]:
-    grid, values = _merged(grid, tuple(samples), new, tuple(found))
+def _more(centrelines: Contours, grid: Grid, samples: Samples, new: Grid) -> tuple[Grid, Samples]:
+    if not new.t.size:
+        return grid, samples
+    grid, values = _merged(grid, tuple(samples), new, tuple(_sample(centrelines, new)))
     return grid, Samples(*values)
 
 
@@ -289,8 +291,6 @@ def _merged(
     grid: Grid, values: tuple[Floats, ...], new: Grid, found: tuple[Floats, ...]
 ) -> tuple[Grid, tuple[Floats, ...]]:
     """Two grids as one, with what is known of their points; of points in both, the first's."""
-    if not new.t.size:
-        return grid, values
     owner, t = np.append(grid.owner, new.owner), np.append(grid.t, new.t)
     order = _order(owner, t)
     both = zip(values, found, strict=True)

@@ -58,11 +58,16 @@ def solve_plain(cases: Sequence[Case]) -> list[Readings]:
     checked = residuals(columns, ~touching, Units(*units))
     wrong = ~(np.maximum(*checked.values()) <= SOLVED)
     columns["status"][wrong] = STATUSES.index("diverged")
-    table = as_table({**columns, **checked})
+    columns |= checked
+    table = as_table(columns)
+    # Beyond the largest number in the case's units: an error says so.
+    make = Readings if any(np.isinf(x).any() for x in columns.values()) else Readings.solved
     found, begin = [], 0
     for case, count, branch in zip(cases, counts, branches, strict=True):
-        own = table.iloc[begin : begin + count].reset_index(drop=True)
-        found.append(Readings(own, case.beam, "analytic", provenance(case, branch.events())))
+        own = table
+        if len(cases) > 1:
+            own = table.iloc[begin : begin + count].reset_index(drop=True)
+        found.append(make(own, case.beam, "analytic", provenance(case, branch.events())))
         begin += count
     return found
 

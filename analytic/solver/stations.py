@@ -68,7 +68,9 @@ def solve_stations(
 
     def of_cells(name: str, ahead: int) -> Floats:
         parts = zip(branches, cells, strict=True)
-        return np.concatenate([getattr(branch, name)[cell + ahead] for branch, cell in parts])
+        return np.concatenate(
+            [getattr(branch, name)[np.maximum(cell + ahead, 0)] for branch, cell in parts]
+        )
 
     stations = _Stations(
         np.repeat(np.arange(len(branches)), [len(places) for places in foot_x]),
@@ -77,24 +79,35 @@ def solve_stations(
         of_cells("t", 0),
     )
     tangent = of_cells("tangent", 0).astype(bool)
-    begin, end = of_cells("foot_x", 0), of_cells("foot_x", 1)
-    ahead = (begin - stations.foot_x) / (begin - end)
-    t = stations.high + ahead * (stations.low - stations.high)
-    before, behind = of_cells("excess", 0), of_cells("excess", 1)
-    excess = before + ahead * (behind - before)
+    places = [of_cells("foot_x", i) for i in (-1, 0, 1)]
+    smooth = tangent == of_cells("tangent", -1)
+    t = _interpolated(places, [of_cells("t", i) for i in (-1, 0, 1)], stations.foot_x, smooth)
+    rotations = [of_cells("excess", i) for i in (-1, 0, 1)]
+    excess, behind = _interpolated(places, rotations, stations.foot_x, smooth), rotations[-1]
     found = _newton(centrelines, stations, tangent, (t, excess))
-    admissible = _admissible(centrelines, stations.owner, found, tangent)
-    poor = ~(admissible & (found.missed <= _EXACT))
+    states = contact(centrelines.at(stations.owner, found.t), found.excess, tangent)
+    poor = ~(_admissible(states) & (found.missed <= _EXACT))
     if poor.any():
         few = stations.part(poor)
         enclosed, tangent[poor] = _enclose(centrelines, few, behind[poor])
         start = enclosed.t, enclosed.excess
         refined = _newton(centrelines, few, tangent[poor], start)
-        better = _admissible(centrelines, few.owner, refined, tangent[poor])
-        better &= refined.missed < enclosed.missed
+        closer = contact(centrelines.at(few.owner, refined.t), refined.excess, tangent[poor])
+        better = _admissible(closer) & (refined.missed < enclosed.missed)
         for values, one, other in zip(found, refined, enclosed, strict=True):
             values[poor] = np.where(better, one, other)
-    return contact(centrelines.at(stations.owner, found.t), found.excess, tangent)
+        states = contact(centrelines.at(stations.owner, found.t), found.excess, tangent)
+    return states
+
+
+def _interpolated(x: list[Floats], y: list[Floats], at: Floats, smooth: Booleans) -> Floats:
+    """Between the last two of three points, by a parabola through all where `y` is smooth."""
+    slope = (y[2] - y[1]) / (x[2] - x[1])
+    with np.errstate(all="ignore"):  # the first cell has none before it
+        curved = (slope - (y[1] - y[0]) / (x[1] - x[0])) / (x[2] - x[0])
+    curved = np.where(smooth & np.isfinite(curved), curved, 0.0)
+    value = y[1] + (at - x[1]) * (slope + curved * (at - x[2]))
+    return np.clip(value, np.minimum(y[1], y[2]), np.maximum(y[1], y[2]))
 
 
 def _newton(
@@ -164,15 +177,11 @@ def _steps(states: Equilibria, too_high: Floats, too_far: Floats) -> tuple[Float
     )
 
 
-def _admissible(
-    centrelines: Contours, owner: Integers, found: _Iterate, tangent: Booleans
-) -> Booleans:
+def _admissible(states: Equilibria) -> Booleans:
     """Whether contacts are of the phase that they should be of."""
-    point = centrelines.at(owner, found.t)
-    states = contact(point, found.excess, tangent)
     fits = (states.root_f > 0) & (states.span.q <= states.root_f * (1 + _EXACT))
-    above = states.excess <= np.pi / 2 - np.abs(point.alpha) + _EXACT
-    return np.asarray(np.where(tangent, fits, above))
+    above = states.excess <= np.pi / 2 - np.abs(states.point.alpha) + _EXACT
+    return np.asarray(np.where(states.tangent, fits, above))
 
 
 def _enclose(

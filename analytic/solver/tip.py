@@ -52,10 +52,28 @@ def greatest_height(alpha: Floats) -> Floats:
     array, shape (n,)
         [L]
     """
-    return np.where(alpha < 0, np.cos(alpha) * (2 * ellipe(_m(alpha)) / ellipk(_m(alpha)) - 1), 1.0)
+    m = _m(alpha)
+    return np.where(alpha < 0, np.cos(alpha) * (2 * ellipe(m) / ellipk(m) - 1), 1.0)
 
 
-def tip_excess(alpha: Floats, eta: Floats) -> Floats:
+def tangent_height(alpha: Floats) -> Floats:
+    """Height of the tip in tangential contact: contour points below are touched by the side.
+
+    Parameters
+    ----------
+    alpha : array, shape (n,)
+        Slope angle of the contour [rad].
+
+    Returns
+    -------
+    array, shape (n,)
+        [L]
+    """
+    tangential = tangent_span(alpha)
+    return frame(tangential, alpha).up / tangential.q
+
+
+def tip_excess(alpha: Floats, eta: Floats, lowest: Floats | None = None) -> Floats:
     """Excess rotation w of the tip of a vibrissa that touches at slope `alpha` and height `eta`.
 
     The height falls steadily as the tip turns, from `greatest_height` to tangential contact, and
@@ -67,6 +85,8 @@ def tip_excess(alpha: Floats, eta: Floats) -> Floats:
     ----------
     alpha, eta : array, shape (n,)
         Slope angle [rad] and height of the contour points, not below tangential contact.
+    lowest : array, shape (n,), optional
+        `tangent_height`, where it is known.
 
     Returns
     -------
@@ -78,7 +98,8 @@ def tip_excess(alpha: Floats, eta: Floats) -> Floats:
     top = greatest_height(alpha)
     active = np.flatnonzero((eta < top) & (np.abs(alpha) < np.pi / 2))
     alpha, sag = alpha[active], np.sqrt(np.maximum(1 - eta[active], 0.0))
-    p, high = _start(alpha, sag, np.sqrt(1 - top[active]))
+    lowest = tangent_height(alpha) if lowest is None else lowest[active]
+    p, high = _start(alpha, sag, np.sqrt(1 - top[active]), np.sqrt(1 - lowest))
     low = np.zeros_like(alpha)
     for _ in range(_MAX_ITERATIONS):
         if active.size == 0:
@@ -104,16 +125,14 @@ def tip_excess(alpha: Floats, eta: Floats) -> Floats:
     return excess
 
 
-def _start(alpha: Floats, sag: Floats, first: Floats) -> tuple[Floats, Floats]:
+def _start(alpha: Floats, sag: Floats, first: Floats, last: Floats) -> tuple[Floats, Floats]:
     """Where to begin, within 10 % of p, and the largest p.
 
     The sag is taken for a quadratic function of p: from `first`, where the clamp moment vanishes,
-    with its slope there, first/(q sqrt(-sin(alpha))) for alpha < 0 and 0 else, to tangential
-    contact.
+    with its slope there, first/(q sqrt(-sin(alpha))) for alpha < 0 and 0 else, to `last`, in
+    tangential contact.
     """
     high = np.sqrt(np.sin((np.pi / 2 - np.abs(alpha)) / 2))
-    tangential = tangent_span(alpha)
-    last = np.sqrt(1 - frame(tangential, alpha).up / tangential.q)
     slope = np.zeros_like(alpha)
     bent = np.flatnonzero(alpha < 0)
     slope[bent] = first[bent] / (2 * ellipk(_m(alpha[bent])) * np.sqrt(-np.sin(alpha[bent])))

@@ -15,7 +15,7 @@ _FINE = 1024
 _SHORT = 1e-4  # rad, of the fine chords: waves of a larger period are seen one by one
 _SLACK = 1e-9  # rad
 _ROUNDING = 8 * np.finfo(float).eps  # of a difference of two coordinates, relative to their size
-_GOLDEN = (np.sqrt(5) - 1) / 2
+_SEQUENCE = np.arange(1, _FINE + 1) * ((np.sqrt(5) - 1) / 2) % 1  # of the golden section
 _LEAST_SIZE = 1e-10  # of the distance from the origin; below, rounding would be seen as corners
 
 
@@ -51,7 +51,7 @@ def check_convex(
     low, high = lowest + inset, highest - inset
     long = np.linspace(low, high, _COARSE)
     turn = min(_SHORT, (high - low) / _COARSE)
-    short = low + (high - low - turn) * (np.arange(1, _FINE + 1) * _GOLDEN % 1)
+    short = low + (high - low - turn) * _SEQUENCE
     alpha = np.concatenate([long, short, short + turn])
     x, y = (_values(curve, alpha, name, label) for curve, name in ((xi, "xi"), (eta, "eta")))
 
