@@ -9,6 +9,7 @@ from tests.bench import (
     mujoco_speed,
     plain_stepping,
     ratios,
+    space_speed,
     study_speed,
 )
 
@@ -16,6 +17,7 @@ PARTS = {
     "ratios": ratios.main,
     "analytic": analytic_speed.main,
     "mujoco": mujoco_speed.main,
+    "space": space_speed.main,
     "stepping": plain_stepping.main,
     "exudyn": exudyn_speed.main,
     "engines": engines_speed.main,
