@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from analytic import InputError, Readings
+from analytic import Readings
+from compare.show.animation.frames import framed
 from compare.show.animation.gif import save_gif
 from compare.show.animation.motion import Motion
 from compare.show.animation.scene import Scene
@@ -48,17 +49,9 @@ def write_animation(
     InputError
         If there are too few frames, or nothing is touched.
     """
-    if frames < 2:
-        raise InputError("--frames", frames, "2 or more", "60 is usual")
     moving = Motion.of(reference), Motion.of(candidate)
     touching = np.flatnonzero(np.isin(moving[0].phase, ("tip", "tangent")))
-    if not touching.size:
-        raise InputError(
-            f"stations in contact ({reference.source})", 0, "one or more", "sweep farther"
-        )
+    chosen = framed(touching, len(reference.table), frames, reference.source)
     scene = Scene(*moving)
-    last = len(reference.table) - 1
-    chosen = np.linspace(0, last, min(frames, last + 1)).astype(int)
-    images = list(scene.images(np.unique(chosen), advance))
-    film = save_gif(images, folder / "animation.gif")
+    film = save_gif(list(scene.images(chosen, advance)), folder / "animation.gif")
     return [film, *save_stills(scene.images(shown(touching), dpi=STILL_DPI), folder)]

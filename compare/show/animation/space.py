@@ -13,10 +13,10 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 from PIL import Image
 
-from analytic import InputError
 from analytic.problem.arrays import Floats
 from analytic.space import Body, SpatialReadings
 from analytic.space.problem.readings import FORCE, MOMENT
+from compare.show.animation.frames import framed
 from compare.show.animation.gif import save_gif
 from compare.show.animation.stills import STILL_DPI, save_stills, shown
 from compare.show.figures.space import draw_scene, upright
@@ -72,16 +72,9 @@ def write_space_animation(
     InputError
         If there are too few frames, or nothing is touched.
     """
-    if frames < 2:
-        raise InputError("--frames", frames, "2 or more", "60 is usual")
     touching = np.flatnonzero(reference.touching)
-    if not touching.size:
-        raise InputError(
-            f"stations in contact ({reference.source})", 0, "one or more", "sweep farther"
-        )
+    chosen = framed(touching, len(reference.table), frames, reference.source)
     moving = _Moving(SweepScene.of(reference, body), SweepScene.of(candidate, None))
-    last = len(reference.table) - 1
-    chosen = np.unique(np.linspace(0, last, min(frames, last + 1)).astype(int))
     film = save_gif([*moving.images(chosen, advance)], folder / "animation.gif")
     return [film, *save_stills(moving.images(shown(touching), dpi=STILL_DPI), folder)]
 
