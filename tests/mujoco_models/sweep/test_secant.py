@@ -1,4 +1,4 @@
-"""What Newton's steps tell of a stiffness that is not what the solver takes it for."""
+"""What Newton's steps show of a stiffness that is not what the solver takes it for."""
 
 import numpy as np
 import pytest
