@@ -10,7 +10,7 @@ Applications 1, 1968).
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg.lapack import dgesv, dgttrf, dgttrs, dpttrf, dpttrs, dstebz, dsyev
+from scipy.linalg.lapack import dgesv, dgttrf, dgttrs, dposv, dpttrf, dpttrs, dstebz, dsyev
 
 from analytic.problem.arrays import Floats
 from mujoco_models.errors import DivergedError
@@ -63,6 +63,8 @@ class Stiffness:
         count, rows = len(moments), np.concatenate([moments, self.directions])
         if not np.isfinite(self.springs.sum() + self.links.sum() + rows.sum()):
             raise DivergedError("the stiffness is not finite")
+        if len(self.weights) > len(self.springs):
+            return self._solve_whole(moments)
         shift, positive = 0.0, int((self.weights > 0).sum())
         while True:
             turns, negative = self._tridiagonal(shift, rows.T)
@@ -70,17 +72,35 @@ class Stiffness:
             within = np.diag(1 / self.weights) + self.directions @ low
             if negative + _positive(within) == positive:
                 break
-            shift = max(2 * shift, _LEAST_SHIFT * len(self.springs))
+            shift = self._next(shift)
         if len(within) == 0:
             return plain.T
         return np.asarray((plain - low @ dgesv(within, self.directions @ plain)[2]).T)
 
-    def _tridiagonal(self, shift: float, moments: Floats) -> tuple[Floats, int]:
-        """What the tridiagonal part makes of moments, and how many negative eigenvalues it has."""
+    def _next(self, shift: float) -> float:
+        return max(2 * shift, _LEAST_SHIFT * len(self.springs))
+
+    def _solve_whole(self, moments: Floats) -> Floats:
+        """The same where contacts outnumber links: of low rank is then nothing."""
+        contacts = (self.directions.T * self.weights) @ self.directions
+        shift, failed = 0.0, 1
+        while failed:
+            diagonal, beside = self._bands(shift)
+            whole = contacts + np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1)
+            _, turns, failed = dposv(whole, moments.T)
+            shift = self._next(shift)
+        return np.asarray(turns.T)
+
+    def _bands(self, shift: float) -> tuple[Floats, Floats]:
+        """Of the tridiagonal part: the diagonal, and what is beside it."""
         springs = self.springs + shift
         diagonal = springs + self.links
         diagonal[:-1] += springs[1:]
-        beside = -springs[1:]
+        return diagonal, -springs[1:]
+
+    def _tridiagonal(self, shift: float, moments: Floats) -> tuple[Floats, int]:
+        """What the tridiagonal part makes of moments, and how many negative eigenvalues it has."""
+        diagonal, beside = self._bands(shift)
         if len(diagonal) < _LEAST_COUNT:
             whole = np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1)
             negative = int((np.linalg.eigvalsh(whole) < 0).sum())

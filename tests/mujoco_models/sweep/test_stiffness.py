@@ -17,10 +17,11 @@ def dense(stiffness, shift=0.0):
 def drawn(draw, count):
     """As at rest: springs N, a load that presses or pulls, contacts held and turning.
 
-    Pressed by more than pi^2/4, the clamped beam alone buckles; what holds it prevents that.
+    Pressed by more than pi^2/4, the clamped beam alone buckles; what holds it prevents that. One in
+    four lies on more beads than it has links.
     """
     load = draw.choice([-4.0, -2.0, 2.0]) * draw.uniform(0.8, 1.2, count)
-    held = draw.uniform(0.5, 1.0, (int(draw.integers(1, 4)), count)) / count
+    held = draw.uniform(0.5, 1.0, (int(draw.choice([1, 2, 3, 2 * count])), count)) / count
     turning = draw.normal(size=(int(draw.integers(3)), count)) / count
     weights = [np.full(len(held), 1e3), draw.choice([5.0, -5.0, -1e4], len(turning))]
     springs = count * draw.uniform(0.8, 1.2, count)
