@@ -7,7 +7,9 @@ stiffness. Balls have springs that resist all turns alike, GJ = EI, where a roun
 EI/(1 + nu); universal joints do not twist at all.
 """
 
-from typing import Protocol
+import math
+from collections.abc import Callable
+from typing import Protocol, TypeAlias
 
 import mujoco
 import numpy as np
@@ -23,12 +25,18 @@ from mujoco_models.space.settings import SpatialSettings
 
 _SLIGHT = 1e-3  # rad, below which a series is taken
 
+Law: TypeAlias = Callable[[Floats, Floats], tuple[Floats, Floats]]
+"""Maps sines and cosines of the joints' angles to the first two derivatives of their energies by
+the cosine, over EI/h."""
+
 
 class SpaceBeam(Protocol):
     """A straight beam of rigid links on a foot, and the second derivative of its energy."""
 
     layout: Layout
     """Where its joints are."""
+    law: Law | None
+    """Of joints that bend alike in all directions; None of others."""
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """The foot and the beam on it, with all collisions off.
@@ -58,9 +66,84 @@ class SpaceBeam(Protocol):
             By the d velocities of a joint, symmetric [EI/L].
         """
 
+    def turned(self, sides: Floats, tangents: Floats) -> Floats:
+        """The configuration whose links have these directions, without twist.
+
+        Parameters
+        ----------
+        sides : array, shape (2, 3)
+            The foot's x and z axes in the world.
+        tangents : array, shape (n_joints, 3)
+            The links' y axes.
+
+        Returns
+        -------
+        array, shape (nq,)
+            MuJoCo's coordinates.
+        """
+
+
+def _bent(sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
+    """Of theta^2/2.
+
+    Parameters
+    ----------
+    sine, cosine : array, shape (n_joints,)
+        Of the angles.
+
+    Returns
+    -------
+    first, second : array, shape (n_joints,)
+        Derivatives by the cosine.
+    """
+    angle = np.arctan2(sine, cosine)
+    slight = angle < _SLIGHT
+    within = np.where(slight, 1.0, sine)
+    first = np.where(slight, -1 - angle**2 / 6 - 7 * angle**4 / 360, -angle / within)
+    second = np.where(slight, 1 / 3 + 2 * angle**2 / 15, (sine - angle * cosine) / within**3)
+    return first, second
+
+
+def _straddled(sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
+    """Of 2 tan^2(theta/2).
+
+    Parameters
+    ----------
+    sine, cosine : array, shape (n_joints,)
+        Of the angles.
+
+    Returns
+    -------
+    first, second : array, shape (n_joints,)
+        Derivatives by the cosine.
+    """
+    return -4 / (1 + cosine) ** 2, 8 / (1 + cosine) ** 3
+
 
 class BallChain(SpatialChain):
     """Balls with springs of k = EI/h."""
+
+    law: Law | None = staticmethod(_bent)
+
+    def turned(self, sides: Floats, tangents: Floats) -> Floats:
+        """Each ball turns about an axis across both links."""
+        (x, y, z), (u, v, w) = sides.tolist()
+        p, q, r = np.cross(sides[1], sides[0]).tolist()
+        found: list[float] = []
+        for a, b, c in tangents.tolist():
+            across, along, aside = (
+                x * a + y * b + z * c,
+                p * a + q * b + r * c,
+                u * a + v * b + w * c,
+            )
+            size = math.sqrt(2 * (1 + along))
+            found += size / 2, aside / size, 0.0, -across / size
+            p, q, r = p + a, q + b, r + c
+            one, other = across / (1 + along), aside / (1 + along)
+            x, y, z = x - one * p, y - one * q, z - one * r
+            u, v, w = u - other * p, v - other * q, w - other * r
+            p, q, r = a, b, c
+        return np.array(found)
 
     def blocks(self, configuration: Floats) -> Floats:
         """Of k theta^2/2, theta the ball's rotation vector."""
@@ -78,8 +161,34 @@ class BallChain(SpatialChain):
         )
 
 
-class UniversalChain(Chain):
+class Universal:
     """Two hinges at every joint, about z and about the x axis that the first one turns."""
+
+    def turned(self, sides: Floats, tangents: Floats) -> Floats:
+        """The first hinge turns the link to the left, the second one up."""
+        x, z = sides.tolist()
+        before, found = np.cross(sides[1], sides[0]).tolist(), []
+        for t in tangents.tolist():
+            across = x[0] * t[0] + x[1] * t[1] + x[2] * t[2]
+            along = before[0] * t[0] + before[1] * t[1] + before[2] * t[2]
+            aside = z[0] * t[0] + z[1] * t[1] + z[2] * t[2]
+            flat = math.hypot(across, along)
+            found += [math.atan2(-across, along), math.atan2(aside, flat)]
+            cos, sin = along / flat, -across / flat
+            x = [cos * x[i] + sin * before[i] for i in range(3)]
+            z = [
+                x[1] * t[2] - x[2] * t[1],
+                x[2] * t[0] - x[0] * t[2],
+                x[0] * t[1] - x[1] * t[0],
+            ]
+            before = t
+        return np.array(found)
+
+
+class UniversalChain(Universal, Chain):
+    """Balls' springs at two hinges each, which resist a turn about both a little more."""
+
+    law: Law | None = None
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """The links with a second hinge and spring each."""
@@ -96,8 +205,10 @@ class UniversalChain(Chain):
         return np.asarray(np.eye(2) / self.layout.compliances[:, None, None])
 
 
-class UniversalRod(SpatialRod):
+class UniversalRod(Universal, SpatialRod):
     """The one-dimensional flex, on universal joints."""
+
+    law: Law | None = staticmethod(_straddled)
 
     def blocks(self, configuration: Floats) -> Floats:
         """Of (2 EI/h) tan^2(theta/2), with cos(theta) = cos(a) cos(b)."""

@@ -64,10 +64,11 @@ def descend(rest: Rest, start: Settled, foot: Floats, far: float) -> Settled | N
     -------
     Settled or None
         None if it loses its contact, or the contact gets farther than `far`. If it was still on its
-        way after the last step, or hardly moved, `stability` is not a number.
+        way after the last step, or hardly moved, it is not `stable`.
     """
     model, state, inertia, unloaded, slow = rest.model, start.state, _INERTIA, 0, 0
     begin = model.contact(start.touch)
+    _, softest = rest.softest(start, foot)
     for number in range(_STEPS):
         model.place(foot, state.configuration)
         near = _near(model)
@@ -84,7 +85,7 @@ def descend(rest: Rest, start: Settled, foot: Floats, far: float) -> Settled | N
         model.place(foot, state.configuration)
         turns, forces, inertia = _turns(rest, system, system.curvature(state), near, inertia)
         if not number:
-            turns = turns + _nudge(start, turns)
+            turns = turns + _nudge(softest, turns)
         size = float(np.abs(turns).max())
         unloaded = 0 if forces.any() else unloaded + 1
         slow = slow + 1 if size < _SLOW else 0
@@ -97,7 +98,7 @@ def descend(rest: Rest, start: Settled, foot: Floats, far: float) -> Settled | N
         mujoco.mj_integratePos(model.model, configuration, share * turns, 1.0)
         state = _pressed(model, configuration, near, forces)
         inertia = max(inertia * float(np.clip(size / _GENTLE, 0.5, 2.0)), _LEAST)
-    return start._replace(stability=np.nan)
+    return start._replace(stable=False)
 
 
 def _near(model: SpaceModel) -> list[_Near]:
@@ -122,7 +123,7 @@ def _landed(
     if np.abs(system.springs + state.force * system.push).max() > _NEARLY:
         return None
     found = rest.settle(state, surface, foot, foot)
-    if found is None or not (found.stays and found.stability > 0):
+    if found is None or not (found.stays and found.stable):
         return None
     moved = float(np.linalg.norm(found.touch.centre - system.touch.centre))
     return found if moved < _LANDED else None
@@ -142,13 +143,13 @@ def _turns(
 ) -> tuple[Floats, Floats, float]:
     """Turns of the joints, forces of the links near by, and the inertia that it took."""
     model = rest.model
-    springs = np.concatenate([np.diag(block) for block in model.blocks()])
+    springs = np.einsum("ijj->ij", model.blocks()).ravel()
     while True:
         factor, failed = dpotrf(curvature + inertia * np.diag(springs), lower=1)
         if not failed:
             break
         inertia *= 2.0  # or it would go up to the saddle
-    rows = np.array([rest.moved(one.link, one.touch.centre) @ one.touch.normal for one in near])
+    rows = _pushes(model, near)
     moved = dpotrs(factor, rows.T, lower=1)[0]
     turns = dpotrs(factor, system.springs, lower=1)[0]
     gaps = np.array([one.touch.distance for one in near]) + rows @ turns
@@ -157,6 +158,15 @@ def _turns(
     root = np.linalg.cholesky(own + _SINGULAR * np.trace(own) * np.eye(len(near)))
     forces, _ = nnls(root.T, -np.linalg.solve(root, gaps))
     return turns + moved @ forces, forces, inertia
+
+
+def _pushes(model: SpaceModel, near: list[_Near]) -> Floats:
+    """How the links' distances change with the joints' turns, shape (n_links, nv) [L]."""
+    normals = np.array([one.touch.normal for one in near])
+    moments = np.cross([one.touch.centre for one in near], normals)
+    joints = model.joints[model.joint_of]
+    found = moments @ model.axes.T - normals @ np.cross(model.axes, joints).T
+    return np.where(model.joint_of <= np.array([[one.link] for one in near]), found, 0.0)
 
 
 def _pressed(model: SpaceModel, configuration: Floats, near: list[_Near], forces: Floats) -> State:
@@ -168,7 +178,7 @@ def _pressed(model: SpaceModel, configuration: Floats, near: list[_Near], forces
     return State(configuration, link, s, force, False)
 
 
-def _nudge(start: Settled, turns: Floats) -> Floats:
+def _nudge(softest: Floats, turns: Floats) -> Floats:
     """Off an equilibrium that is not stable, to the side to which it is pulled anyway."""
-    side = np.sign(start.softest @ turns) or 1.0
-    return np.asarray(side * _NUDGE / np.abs(start.softest).max() * start.softest)
+    side = np.sign(softest @ turns) or 1.0
+    return np.asarray(side * _NUDGE / np.abs(softest).max() * softest)

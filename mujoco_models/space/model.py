@@ -1,5 +1,6 @@
 """The compiled beam and body: what MuJoCo says of a configuration at rest in space."""
 
+import math
 from typing import NamedTuple
 
 import mujoco
@@ -138,6 +139,16 @@ class SpaceModel:
         """Where the joints are, shape (n_joints, 3) [L]."""
         return np.asarray(self.data.xanchor[self._first])
 
+    @property
+    def tangents(self) -> Floats:
+        """Unit vectors along the links, shape (n_links, 3)."""
+        return np.array(self.data.xmat[self._links, 1::3])
+
+    @property
+    def sides(self) -> Floats:
+        """The foot's x and z axes in the world, shape (2, 3)."""
+        return np.array(self.data.xmat[self._foot].reshape(3, 3).T[[0, 2]])
+
     def direction(self, link: int) -> Floats:
         """Of a link's axis.
 
@@ -239,22 +250,14 @@ class SpaceModel:
         array, shape (3, 3)
             Symmetric, no eigenvalue below 0: the body is convex [1/L].
         """
-        n = touch.normal
-        one = np.cross(n, np.eye(3)[np.argmin(np.abs(n))])
-        one /= np.linalg.norm(one)
-        sides = np.stack([one, np.cross(n, one)])
-        rates = [
-            (
-                self._nearest(link, touch.centre + step * side)[0]
-                - self._nearest(link, touch.centre - step * side)[0]
-            )
-            / (2 * step)
-            for side in sides
-        ]
-        found = sides @ np.array(rates).T
+        sides, rates = across(touch.normal), np.empty((2, 3))
+        for side, rate in zip(sides, rates, strict=True):
+            rate[:] = self._nearest(link, touch.centre + step * side)[0]
+            rate -= self._nearest(link, touch.centre - step * side)[0]
+        found = rates @ sides.T / (2 * step)
         values, ways = np.linalg.eigh((found + found.T) / 2)
         ways = ways.T @ sides
-        return np.asarray(ways.T @ np.diag(np.maximum(values, 0.0)) @ ways)
+        return np.asarray((ways.T * np.maximum(values, 0.0)) @ ways)
 
     def probe(self, link: int, centre: Floats) -> Touch:
         """The nearest point to a bead wherever it is.
@@ -412,6 +415,30 @@ class SpaceModel:
             held += [push, np.cross(contact.pos - foot, push)]
         miss = np.abs(np.stack([force, moment]) + held).max()
         return Clamped(force, moment, float(miss))
+
+
+def across(normal: Floats) -> Floats:
+    """Two unit vectors across one and across each other.
+
+    Parameters
+    ----------
+    normal : array, shape (3,)
+        Unit vector.
+
+    Returns
+    -------
+    array, shape (2, 3)
+        Right-handed with the first.
+    """
+    x, y, z = normal.tolist()
+    if abs(z) < max(abs(x), abs(y)):
+        size = math.hypot(x, y)
+        one = -y / size, x / size, 0.0
+    else:
+        size = math.hypot(y, z)
+        one = 0.0, -z / size, y / size
+    u, v, w = one
+    return np.array([one, (y * w - z * v, z * u - x * w, x * v - y * u)])
 
 
 def _assembled(spec: mujoco.MjSpec, links: int, tangent: Floats, radius: float) -> mujoco.MjSpec:

@@ -9,8 +9,13 @@ at the tip or at a joint that protrudes, s:
 The last line says that the bead is the point of its link nearest to the body, so that the rigid
 link touches tangentially. Eliminating f and s leaves the second derivative of the energy of the
 vibrissa and its elastic contact; where that is positive the equilibrium is stable.
+
+On a mesh a forecast knows where that leads, and mostly one look at MuJoCo's balance confirms it;
+universal joints of the chain, which do not bend alike in all directions, and smooth bodies have
+none.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import mujoco
@@ -19,6 +24,7 @@ from scipy.linalg import eigh
 from scipy.linalg.lapack import dgesv, dpotrf, dpotrs
 
 from analytic.problem.arrays import Floats
+from mujoco_models.space.forecast import Bow, Forecast
 from mujoco_models.space.model import SpaceModel, Touch
 from mujoco_models.space.surface import STAYS, Feature, Surface, surface_at
 
@@ -35,6 +41,7 @@ _ROUNDING = 4e-15  # L, of a distance
 _OVERLOOKED = 1e-8  # L; as deep as another link may be
 _SWITCHES = 6  # to another link that is deeper
 _POWER_STEPS = 8
+_DRIFT = 1e-10  # L off the mesh, from which on a face, edge or corner is found anew
 _STRAIGHT = 1e-14  # EI/L, of a spring: rounding
 
 
@@ -58,16 +65,13 @@ class Settled(NamedTuple):
 
     state: State
     touch: Touch
-    turning: Floats
-    """How the body's normal turns there, shape (3, 3) [1/L]."""
-    stability: float
-    """Least eigenvalue of the stiffness over that of the joints' springs; positive if stable."""
-    softest: Floats
-    """The turns that are resisted least, shape (nv,)."""
+    stable: bool
     surface: Surface
     """What it touches."""
     stays: bool
     """Whether that is where the body is, and no other link is deeper."""
+    bow: Bow | None
+    """What a forecast starts from; None past what there is none for."""
 
 
 class Linearised(NamedTuple):
@@ -128,8 +132,20 @@ class Rest:
         if model.shared:
             before[joint[:, None] == joint] = 0.5
         self._before = before
+        self._forecast = None
+        if model.beam.law is not None:
+            self._forecast = Forecast(
+                model.layout, model.beam.law, model.tangent, model.radius, model.contact_stiffness
+            )
 
-    def settle(self, start: State, surface: Surface, begin: Floats, foot: Floats) -> Settled | None:
+    def settle(
+        self,
+        start: State,
+        surface: Surface,
+        begin: Floats,
+        foot: Floats,
+        sought: Callable[[int, Floats], bool] = lambda link, centre: True,
+    ) -> Settled | None:
         """The equilibrium to which Newton's method leads.
 
         Its first step is one along the branch: of the linearised equations at the start.
@@ -142,45 +158,200 @@ class Rest:
             What is touched.
         begin, foot : array, shape (3,)
             Where the foot was at `start`, and where it is now [L].
+        sought : callable
+            Whether a contact by that link, with the bead's centre there, is of any use.
 
         Returns
         -------
         Settled or None
             None if it leads nowhere, or to where nothing presses.
         """
+        if self._forecast is None or not self._foresees(start, surface):
+            along = self._along(start, surface, begin, foot - begin)
+            return self._settled(along, None, surface, foot)
+        bow = self.foresee(self.bow(start, surface, begin), surface, foot)
+        if bow is None or not sought(bow.link, self._forecast.centre(bow, foot)):
+            return None
+        return self.confirm(bow, surface, foot)
+
+    def follow(self, held: Settled, begin: Floats, foot: Floats) -> Settled | None:
+        """The equilibrium on the same surface to which Newton's method leads.
+
+        Parameters
+        ----------
+        held : Settled
+            Where it begins.
+        begin, foot : array, shape (3,)
+            Where the foot was, and where it is now [L].
+
+        Returns
+        -------
+        Settled or None
+            As of `settle`.
+        """
+        if held.bow is None:
+            return self.settle(held.state, held.surface, begin, foot)
+        bow = self.foresee(held.bow, held.surface, foot)
+        return None if bow is None else self.confirm(bow, held.surface, foot)
+
+    def foresee(self, bow: Bow, surface: Surface, foot: Floats) -> Bow | None:
+        """Where it will rest, as far as is known without MuJoCo.
+
+        Parameters
+        ----------
+        bow : Bow
+            Where it begins.
+        surface : Surface
+            What is touched.
+        foot : array, shape (3,)
+            Position of the foot [L].
+
+        Returns
+        -------
+        Bow or None
+            None if Newton's method leads nowhere.
+        """
+        assert self._forecast is not None and isinstance(surface, Feature)
+        return self._forecast.rest(bow, surface, foot)
+
+    def confirm(self, bow: Bow, surface: Surface, foot: Floats) -> Settled | None:
+        """The equilibrium by MuJoCo's own balance, next to a forecast.
+
+        Parameters
+        ----------
+        bow : Bow
+            The forecast.
+        surface : Surface
+            What is touched.
+        foot : array, shape (3,)
+            Position of the foot [L].
+
+        Returns
+        -------
+        Settled or None
+            As of `settle`.
+        """
+        return self._settled(self._bent(bow), bow, surface, foot)
+
+    def _foresees(self, state: State, surface: Surface) -> bool:
+        return self._forecast is not None and isinstance(surface, Feature) and state.force > 0
+
+    def _settled(
+        self, state: State, bow: Bow | None, surface: Surface, foot: Floats
+    ) -> Settled | None:
+        """The equilibrium next to a state, where nothing is deeper."""
         model = self.model
-        state = self._along(start, surface, begin, foot - begin)
         for _ in range(_SWITCHES):
             found = self._converge(state, surface, foot)
             if found is None or found[0].force <= 0:
                 return None
-            state, system = found
-            deepest = system.touch.distance - model.shape.inscribed - _OVERLOOKED
-            depth, link, s = model.deeper_link(system.touch, deepest)
+            forecast, (state, touch) = state, found
+            deepest = touch.distance - model.shape.inscribed - _OVERLOOKED
+            depth, link, s = model.deeper_link(touch, deepest)
             near = depth >= deepest
             if isinstance(surface, Feature):
                 missed = surface.missed(state.link, state.s)
-                if near and missed < STAYS and missed * self._k > _SHARE * self._tolerance:
-                    touch = model.touch(state.link, state.s)
-                    surface = surface_at(model, state.link, touch)  # exactly here
-                    continue
+                if near and _DRIFT < missed < STAYS:
+                    surface = surface_at(model, state.link, model.touch(state.link, state.s))
+                    continue  # found anew, here
                 near = near and missed < STAYS
             elif not near:
                 state = state._replace(link=link, s=s, force=0.0, sliding=False)
                 continue
-            stability, softest = self._stability(state, system)
-            return Settled(state, system.touch, system.turning, stability, softest, surface, near)
+            if bow is None or state is not forecast:
+                system = self._derivatives(state, touch, surface)
+                stable = not dpotrf(self._whole(state, system)[0], lower=1)[1]
+            else:
+                stable = bow.stable
+            if self._foresees(state, surface):
+                force = state.force * touch.normal
+                bow = Bow(model.tangents, state.link, state.s, force, state.sliding, stable)
+            return Settled(state, touch, stable, surface, near, bow)
         return None
 
-    def _converge(
-        self, state: State, surface: Surface, foot: Floats
-    ) -> tuple[State, Linearised] | None:
+    def softest(self, found: Settled, foot: Floats) -> tuple[float, Floats]:
+        """How stable an equilibrium is.
+
+        Parameters
+        ----------
+        found : Settled
+            The equilibrium.
+        foot : array, shape (3,)
+            Position of the foot [L].
+
+        Returns
+        -------
+        stability : float
+            Least eigenvalue of the stiffness over that of the joints' springs; positive if stable.
+        turns : array, shape (nv,)
+            That are resisted least.
+        """
+        self.model.place(foot, found.state.configuration)
+        return self._stability(
+            found.state, self._derivatives(found.state, found.touch, found.surface)
+        )
+
+    def exactly(self, found: Settled, foot: Floats) -> Settled | None:
+        """The same where the mesh has it to rounding: a face's direction is known to less.
+
+        Parameters
+        ----------
+        found : Settled
+            On a mesh or not.
+        foot : array, shape (3,)
+            Position of the foot [L].
+
+        Returns
+        -------
+        Settled or None
+            As of `settle`.
+        """
+        model, state = self.model, found.state
+        if not isinstance(found.surface, Feature):
+            return found
+        model.place(foot, state.configuration)
+        missed = found.surface.missed(state.link, state.s)
+        if missed * self._k <= _SHARE * self._tolerance:
+            return found
+        surface = surface_at(model, state.link, model.touch(state.link, state.s))
+        return self._settled(state, found.bow, surface, foot)
+
+    def bow(self, state: State, surface: Surface, foot: Floats) -> Bow:
+        """What a forecast needs of a state.
+
+        Parameters
+        ----------
+        state : State
+            The state.
+        surface : Surface
+            What is touched.
+        foot : array, shape (3,)
+            Position of the foot [L].
+
+        Returns
+        -------
+        Bow
+            Directions of its links, and its force.
+        """
+        self.model.place(foot, state.configuration)
+        force = state.force * surface.touch(state.link, state.s).normal
+        return Bow(self.model.tangents, state.link, state.s, force, state.sliding)
+
+    def _bent(self, bow: Bow) -> State:
+        """A forecast in MuJoCo's coordinates."""
+        configuration = self.model.beam.turned(self.model.sides, bow.tangents)
+        force = float(np.linalg.norm(bow.force))
+        return State(configuration, bow.link, bow.s, force, bow.sliding)
+
+    def _converge(self, state: State, surface: Surface, foot: Floats) -> tuple[State, Touch] | None:
         model = self.model
         for _ in range(_QUICK if isinstance(surface, Feature) else _ITERATIONS):
-            state, system = self.look(state, surface, foot)
-            out_of_balance = np.abs(system.springs + state.force * system.push).max()
-            missed = self._k * abs(system.touch.distance + state.force / self._k)
-            skewed = abs(system.slope) * state.force if state.sliding else 0.0
+            state, touch = self._seen(state, surface, foot)
+            slope = float(touch.normal @ model.direction(state.link))
+            push = self.moved(state.link, touch.centre) @ touch.normal
+            out_of_balance = float(np.abs(model.springs + state.force * push).max())
+            missed = self._k * abs(touch.distance + state.force / self._k)
+            skewed = abs(slope) * state.force if state.sliding else 0.0
             if not np.isfinite(out_of_balance + missed + skewed):
                 return None
             allowed = _SHARE * self._tolerance + model.shape.blur * state.force
@@ -188,8 +359,8 @@ class Rest:
                 max(out_of_balance, skewed) < allowed + _ROUNDING * self._k
                 and missed < allowed + (_ROUNDING + model.shape.off) * self._k
             ):
-                return state, system
-            step = self._step(state, system)
+                return state, touch
+            step = self._step(state, self._derivatives(state, touch, surface))
             if step is None:
                 return None
             state = step
@@ -229,16 +400,22 @@ class Rest:
         system : Linearised
             Balance and its derivatives.
         """
-        model = self.model
-        model.place(foot, state.configuration)
+        state, touch = self._seen(state, surface, foot)
+        return state, self._derivatives(state, touch, surface)
+
+    def _seen(self, state: State, surface: Surface, foot: Floats) -> tuple[State, Touch]:
+        """Where the bead is, sliding or held."""
+        self.model.place(foot, state.configuration)
         state = self._inward(state)
         touch = surface.touch(state.link, state.s)
-        slope = float(touch.normal @ model.direction(state.link))
         if abs(touch.distance + state.force / self._k) < _NEAR and state.force > 0:
+            slope = float(touch.normal @ self.model.direction(state.link))
             state = self._slid_or_held(state, touch, slope)
-            slope = float(touch.normal @ model.direction(state.link))
-        turning = surface.turning(state.link, touch)
-        return state, self.linearised(state, touch, slope, turning)
+        return state, touch
+
+    def _derivatives(self, state: State, touch: Touch, surface: Surface) -> Linearised:
+        slope = float(touch.normal @ self.model.direction(state.link))
+        return self.linearised(state, touch, slope, surface.turning(state.link, touch))
 
     def _slid_or_held(self, state: State, touch: Touch, slope: float) -> State:
         """Whether the bead slides: not at the tip, nor at a joint that protrudes."""
@@ -378,7 +555,7 @@ class Rest:
     def _whole(self, state: State, system: Linearised) -> tuple[Floats, Floats]:
         """The energy's second derivative, shape (nv, nv), and that of the springs, shape (nv,)."""
         whole = system.curvature(state) + self._k * np.outer(system.push, system.push)
-        return whole, np.concatenate([np.diag(block) for block in self.model.blocks()])
+        return whole, np.einsum("ijj->ij", self.model.blocks()).ravel()
 
     def _stability(self, state: State, system: Linearised) -> tuple[float, Floats]:
         """The least eigenvalue of the energy's second derivative over the springs', its vector."""

@@ -11,7 +11,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from mujoco_models.space.model import SpaceModel, Touch
+from mujoco_models.space.model import SpaceModel, Touch, across
 
 _STEPS = (
     1e-6,
@@ -24,6 +24,7 @@ STAYS = 1e-8
 """How far a feature and the mesh may be apart where they are one [L]: its place and direction are
 found to that, over its length; what has left it by less has hardly moved."""
 _SAME_NORMAL = 1e-5  # rad, of two edges that are one
+_SAME_FACE = 1e-12  # rad; next to a face an edge has another normal
 
 
 class Surface(Protocol):
@@ -88,6 +89,14 @@ class Feature(NamedTuple):
     """Projects on the directions that its normals have, shape (3, 3)."""
     flat: bool
     """Whether it is a face."""
+
+    @property
+    def basis(self) -> Floats:
+        """Unit vectors along the directions that its normals have, shape (1 to 3, 3)."""
+        if self.flat:
+            return self.normal[None]
+        values, ways = np.linalg.eigh(self.span)
+        return np.asarray(ways.T[values > 1 / 2])
 
     def touch(self, link: int, s: float) -> Touch:
         """The foot of the perpendicular."""
@@ -197,6 +206,8 @@ def features_around(model: SpaceModel, link: int, centre: Floats) -> list[Featur
     for size in _RINGS:
         for way in _ring(model.probe(link, centre).normal):
             touch = model.probe(link, centre + size * model.radius * way)
+            if any(np.abs(touch.normal - one.normal).max() < _SAME_FACE for one in faces):
+                continue
             found = surface_at(model, link, touch)
             assert isinstance(found, Feature)
             known = faces if found.flat else edges
@@ -207,7 +218,5 @@ def features_around(model: SpaceModel, link: int, centre: Floats) -> list[Featur
 
 def _ring(normal: Floats) -> Floats:
     """Ways along a surface, shape (8, 3)."""
-    one = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
-    one /= np.linalg.norm(one)
     angle = np.arange(8) * np.pi / 4
-    return np.outer(np.cos(angle), one) + np.outer(np.sin(angle), np.cross(normal, one))
+    return np.column_stack([np.cos(angle), np.sin(angle)]) @ across(normal)

@@ -72,7 +72,8 @@ def run_space(
     begun = time.process_time()
     model = compiled(case, settings)
     way = case.way
-    walk = Walk(model, Rest(model, settings.tolerance), way.foot, way.marks)
+    rest = Rest(model, settings.tolerance)
+    walk = Walk(model, rest, way.foot, way.marks)
     rows: list[dict[str, Any]] = []
 
     def readings() -> SpatialReadings:
@@ -99,7 +100,7 @@ def run_space(
         with threadpool_limits(1):  # the matrices are small
             for travel in case.path.travel / case.beam.length:
                 station = walk.go_to(float(travel))
-                rows.append(_row(model, station, way.foot(float(travel)), settings.tolerance))
+                rows.append(_row(rest, station, way.foot(float(travel)), settings.tolerance))
                 rows[-1]["travel"] = travel
                 advance()
     except BaseException as error:  # whatever it is, what there is must not be lost
@@ -145,8 +146,9 @@ def compiled(case: SpatialCase, settings: SpatialSettings) -> SpaceModel:
     )
 
 
-def _row(model: SpaceModel, station: Station, foot: Floats, tolerance: float) -> dict[str, Any]:
+def _row(rest: Rest, station: Station, foot: Floats, tolerance: float) -> dict[str, Any]:
     """One station; lengths in L, forces and moments in EI/L^2 and EI/L."""
+    model = rest.model
     row: dict[str, Any] = dict.fromkeys(
         (*FORCE, *MOMENT, *CONTACT_POINT, *NORMAL, *_NUMBERS), np.nan
     )
@@ -158,7 +160,7 @@ def _row(model: SpaceModel, station: Station, foot: Floats, tolerance: float) ->
         model.place(foot, model.straight)
         row["residual"] = model.rest(None, 1.0)
     else:
-        model.place(foot, found.state.configuration)
+        row["stability"], _ = rest.softest(found, foot)
         model.touch(found.state.link, found.state.s)  # which a prism's cylinder follows
         row["residual"] = _rest(model, found)
         row |= _contact(model, found)
@@ -193,7 +195,6 @@ def _contact(model: SpaceModel, found: Settled) -> dict[str, Any]:
         **dict(zip(NORMAL, touch.normal, strict=True)),
         "contact_angle": float(np.arctan2(across, -along)),
         "contact_arc_length": state.s,
-        "stability": found.stability,
         "penetration": -touch.distance,
         "phase": "tip" if state.s == 1.0 and not state.sliding else "tangent",
     }

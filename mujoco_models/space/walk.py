@@ -30,7 +30,10 @@ _AHEAD = 0.0, 1e-3, 4e-3  # L, of the foot, for a way down that does not begin
 _CROSSED = 1e-4  # L, to which it is enclosed where a contact leaves a face, an edge or a corner
 _STEADY = 2e-3  # L, of the contact that goes on as it was beyond
 _SHORTER, _LONGER = 4.0, 2.0  # times the step where Newton's method fails, and where not
-_BESIDE = 0.02  # of the way to where it leaves: so much before and beyond it is looked for
+# How far before and beyond the place where a line says it leaves it is looked for, in turn; None
+# is half-way.
+_BESIDE = 0.0, -0.45, 0.45, -0.45, 0.45, None
+_SHARE = 1e-3  # of a step, to which that place is found on the line
 _FACES = 40  # of a mesh over which a vibrissa hops at once
 _GIVEN_UP = 3  # unsettled stations in a row: from then on all are, until the vibrissa comes clear
 _LOOSE = 1e-3  # EI/L^2; a contact that ends with less has been released
@@ -106,8 +109,10 @@ class Walk:
         if self._held is None:
             return Station("slipped off" if self._lost else "ok", None)
         self._failures = 0 if settled else self._failures + 1
-        if not settled:
+        exactly = self._rest.exactly(self._held, self._foot(target)) if settled else None
+        if exactly is None:
             return Station("unsettled", None)
+        self._held = exactly
         return Station("ok", self._held)
 
     def _gap(self, travel: float) -> float:
@@ -178,66 +183,83 @@ class Walk:
         bool
             False if the vibrissa does not come to rest.
         """
-        # `left` is where the contact is known to have left its face or edge, `about` where it may
-        # do, and how well that is known; `stride` is how far Newton's method leads.
-        left, about, stride = np.inf, (np.inf, 0.0), np.inf
+        stride = np.inf  # how far Newton's method leads
         while self._at < target:
-            held = self._held
-            assert held is not None
             goal = min(target, self._at + stride)
-            if left < np.inf:
-                goal = min(goal, self._towards(left, *about))
-            found = self._neighbour(held, goal)
-            step = goal - self._at
+            found = self._neighbour(goal)
+            if found is not None and not found.stays:
+                goal, found = self._to_the_edge(found, goal)
+            held, step = self._held, goal - self._at
+            assert held is not None
             if found is None:
                 stride = step / _SHORTER
                 if step <= _SMALLEST:
                     return self._fall(held, goal)
             elif found.stays:
-                self._note_phase(held, goal, found)
-                self._at, self._held = goal, found
-                left = left if left > goal else np.inf
+                self._go_on(found, goal)
                 stride = max(_LONGER * step, stride)
-            elif step > _CROSSED:
-                share, left = self._left(held, found, goal), goal
-                about = self._at + share * step, max(_BESIDE * step, _CROSSED / 2)
             else:
                 beyond = self._across(held, found, goal)
                 if beyond is None:
                     return self._fall(held, goal)
-                self._note_phase(held, goal, beyond)
-                self._at, self._held, left = goal, beyond, np.inf
+                self._go_on(beyond, goal)
         return True
 
-    def _towards(self, left: float, about: float, within: float) -> float:
-        """Where to look next for the place where the contact leaves: first before it, then beyond.
+    def _go_on(self, found: Settled, goal: float) -> None:
+        """To the next state of the same branch."""
+        assert self._held is not None
+        self._note_phase(self._held, goal, found)
+        self._at, self._held = goal, found
+
+    def _to_the_edge(self, found: Settled, goal: float) -> tuple[float, Settled | None]:
+        """Up to the place where the contact leaves its face, edge or corner.
 
         Parameters
         ----------
-        left : float
-            Where it has left [L].
-        about, within : float
-            Where it may leave, and how well that is known [L].
-        """
-        if left - self._at <= _CROSSED:
-            return left
-        for goal in (about - within, about + within):
-            if self._at < goal < left:
-                return goal
-        return (self._at + left) / 2
+        found : Settled
+            Where it has left.
+        goal : float
+            Where that is [L].
 
-    def _neighbour(self, held: Settled, goal: float) -> Settled | None:
+        Returns
+        -------
+        goal : float
+            Where it has left, at most 1e-4 L on [L].
+        found : Settled or None
+            There; None if Newton's method leads nowhere.
+        """
+        tries = 0
+        while goal - self._at > _CROSSED:
+            step, beside = goal - self._at, _BESIDE[tries % len(_BESIDE)]
+            at = self._at + step / 2
+            if beside is not None:
+                about = self._at + self._left(found, goal) * step + beside * _CROSSED
+                at = about if self._at < about < goal else at
+            between = self._neighbour(at)
+            if between is None:
+                return at, None
+            if between.stays:
+                self._go_on(between, at)
+            else:
+                goal, found = at, between
+            tries += 1
+        return goal, found
+
+    def _neighbour(self, goal: float) -> Settled | None:
         """The stable equilibrium on the same branch, of a mesh on the same face, edge or corner."""
-        step = goal - self._at
-        found = self._rest.settle(held.state, held.surface, self._foot(self._at), self._foot(goal))
-        if found is None or found.stability <= 0:
+        held, step = self._held, goal - self._at
+        assert held is not None
+        found = self._rest.follow(held, self._foot(self._at), self._foot(goal))
+        if found is None or not found.stable:
             return None
         on_face = isinstance(held.surface, Feature) and held.surface.flat
         farthest = _LEAP_ON_FACE if on_face else max(_LEAP * step, _LEAST_LEAP)
         return found if _apart(found, held) <= farthest else None
 
-    def _left(self, held: Settled, found: Settled, goal: float) -> float:
+    def _left(self, found: Settled, goal: float) -> float:
         """At about which share of a step the contact leaves its face, edge or corner."""
+        held = self._held
+        assert held is not None
         if not isinstance(held.surface, Feature):
             return 0.5
         model, link = self._model, found.state.link
@@ -246,7 +268,7 @@ class Walk:
             return 0.5  # another link is deeper
         by = found.touch.centre - held.touch.centre
         low, high = 0.0, 1.0
-        while high - low > _BESIDE / 2:
+        while high - low > _SHARE:
             middle = (low + high) / 2
             if held.surface.missed_at(link, held.touch.centre + middle * by) < STAYS:
                 low = middle
@@ -278,8 +300,15 @@ class Walk:
         self, held: Settled, state: State, surface: Surface, foot: Floats
     ) -> Settled | None:
         """The stable equilibrium on a face, edge or corner, if it is next to the one before."""
-        found = self._rest.settle(state, surface, foot, foot)
-        if found is None or not (found.stays and found.stability > 0):
+
+        def sought(link: int, centre: Floats) -> bool:
+            near = float(np.linalg.norm(centre - held.touch.centre)) < _STEADY
+            return near and not (
+                isinstance(surface, Feature) and surface.missed_at(link, centre) >= STAYS
+            )
+
+        found = self._rest.settle(state, surface, foot, foot, sought)
+        if found is None or not (found.stays and found.stable):
             return None
         return found if _apart(found, held) < _STEADY else None
 
@@ -290,9 +319,7 @@ class Walk:
             return
         while high - low > _EVENT:
             middle = (low + high) / 2
-            between = self._rest.settle(
-                held.state, held.surface, self._foot(low), self._foot(middle)
-            )
+            between = self._rest.follow(held, self._foot(low), self._foot(middle))
             if between is None or not between.stays:
                 break
             if _at_tip(between) == _at_tip(held):
@@ -318,7 +345,7 @@ class Walk:
             self.events.append(Event("slip-off", self._at))
             self._held, self._lost, self._at = None, self._gap(goal) <= 0, goal
             return True
-        if not landed.stability > 0:
+        if not landed.stable:
             return False
         if _apart(landed, held) > _STEADY:  # or it was the same branch, where that is steep
             self.events.append(Event("hop", self._at))
@@ -335,12 +362,12 @@ class Walk:
             landed = descend(self._rest, held, self._foot(at), _LANDING)
             if landed is None:
                 return None
-            if landed.stability > 0:
+            if landed.stable:
                 foot = self._foot(goal)
                 back = self._rest.settle(landed.state, landed.surface, self._foot(at), foot)
-                if back is not None and back.stays and back.stability > 0:
+                if back is not None and back.stays and back.stable:
                     return back
-        return held._replace(stability=np.nan)
+        return held._replace(stable=False)
 
     def _over_faces(self, held: Settled, goal: float) -> Settled | None:
         """Where the vibrissa goes over an edge of a mesh, from face to face.
@@ -357,7 +384,7 @@ class Walk:
             left = None
             for surface in features_around(model, state.link, centre):
                 found = self._rest.settle(state, surface, foot, foot)
-                if found is None or found.stability <= 0:
+                if found is None or not found.stable:
                     continue
                 by = found.touch.centre - centre
                 if found.stays:
