@@ -21,6 +21,7 @@ _OCTAHEDRON = (
     (1, 5, 3),
 )
 _FLAT = 1e-5  # rad; MuJoCo's normal of a facet is as good as that
+_SINGLE = 2.0**-23  # L; or as rounding of its ends in single precision lets it be
 _POINTED = 1e12  # 1/L
 _RAMP = 0.05  # of a facet's turn, on either side of its slope angle
 # rad; a facet that straddles the end of reach is touched at its own slope, a corner there with a
@@ -71,8 +72,13 @@ class Faceted(Obstacle):
         """
         if len(self.corners) == 0:
             return np.asarray(self._curvature[self.vertex(slope)])
-        near = np.abs(np.subtract.outer(slope, self.facet_angles)).min(axis=1)
-        return np.where(near < _FLAT, 0.0, _POINTED)
+        apart = np.abs(np.subtract.outer(slope, self.facet_angles))
+        return np.where((apart < self._flat).any(axis=1), 0.0, _POINTED)
+
+    @cached_property
+    def _flat(self) -> Floats:
+        """How far MuJoCo's normal of each facet may be off, shape (n - 1,) [rad]."""
+        return np.asarray(np.maximum(_FLAT, _SINGLE / np.hypot(*np.diff(self.vertices, axis=0).T)))
 
     def vertex(self, slope: Floats) -> Integers:
         """Number of the vertex at which each slope angle is passed.

@@ -11,6 +11,7 @@ from compare import compare
 from mujoco_models import Settings, available_beams, simulate_sweep
 from mujoco_models.obstacles.kinds import place
 from mujoco_models.sweep.sweep import set_out
+from tests.fuzz.sweeps import trial
 
 
 def regular(corners, radius=0.5, lowest=0.4):
@@ -179,3 +180,11 @@ def test_the_tip_comes_round_an_edge_that_leans(beam, tmp_path):
     found = simulate_sweep(case, Settings(segments=11, beam=beam, contact_stiffness=1.4e4))
     assert (found.table["status"] == "ok").all()
     assert found.snap_off == pytest.approx(solve_sweep(case).snap_off, abs=0.02)  # 3/N^2
+
+
+@pytest.mark.slow
+def test_a_facet_of_a_thousandth_is_flat_however_single_precision_turns_it(tmp_path):
+    """Taken for a corner, 1.2e-5 rad off, it let Newton's steps swing: one station did not rest."""
+    drawn = trial(880018, tmp_path)
+    found = simulate_sweep(drawn.case, drawn.settings)
+    assert (found.table["status"] == "ok").all()
