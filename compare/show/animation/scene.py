@@ -11,6 +11,7 @@ from PIL import Image
 
 from analytic import CLAMP_READINGS
 from compare.show.animation.motion import Motion
+from compare.show.animation.moving import pictures
 from compare.show.animation.views import Curve, View
 from compare.show.style import CANDIDATE, INK, PHASE_COLOURS, PHASE_NAMES, REFERENCE, label
 
@@ -62,23 +63,13 @@ class Scene:
         dpi : int
             Pixels an inch.
 
-        Yields
-        ------
-        Image
+        Returns
+        -------
+        iterator of Image
             In colour.
         """
-        self._figure.set_dpi(dpi)
-        for artist in self._moving:
-            artist.set_animated(True)
-        self._canvas.draw()
-        still = self._canvas.copy_from_bbox(self._figure.bbox)
-        for station in stations:
-            self._show(int(station))
-            self._canvas.restore_region(still)
-            for artist in sorted(self._moving, key=lambda a: a.zorder):
-                self._figure.draw_artist(artist)
-            yield Image.fromarray(np.asarray(self._canvas.buffer_rgba())).convert("RGB")
-            advance()
+        moving = sorted(self._moving, key=lambda artist: artist.zorder)
+        return pictures(self._canvas, moving, self._show, stations, advance, dpi)
 
     def _show(self, station: int) -> None:
         for part in self._parts:

@@ -18,6 +18,7 @@ from analytic.space import Body, SpatialReadings
 from analytic.space.problem.readings import FORCE, MOMENT
 from compare.show.animation.frames import framed
 from compare.show.animation.gif import save_gif
+from compare.show.animation.moving import pictures
 from compare.show.animation.stills import STILL_DPI, save_stills, shown
 from compare.show.figures.space import draw_scene, upright
 from compare.show.scene import SweepScene
@@ -125,18 +126,7 @@ class _Moving:
         dpi: int = _DPI,
     ) -> Iterator[Image.Image]:
         """A picture of each station."""
-        self._figure.set_dpi(dpi)
-        for artist in self._artists:
-            artist.set_animated(True)
-        self._canvas.draw()
-        still = self._canvas.copy_from_bbox(self._figure.bbox)
-        for station in stations:
-            self._show(int(station))
-            self._canvas.restore_region(still)
-            for artist in self._artists:
-                self._figure.draw_artist(artist)
-            yield Image.fromarray(np.asarray(self._canvas.buffer_rgba())).convert("RGB")
-            advance()
+        return pictures(self._canvas, self._artists, self._show, stations, advance, dpi)
 
     def _add_curves(self, ax: Axes, names: tuple[str, ...], unit: float, title: str) -> None:
         for name, colour in zip(names, (BLUE, ORANGE, GREEN), strict=True):
