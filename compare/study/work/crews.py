@@ -11,8 +11,9 @@ from compare.study.work.perform import perform, perform_alone, perform_together
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
-# What they log when the scheduler goes, this module says in a line.
-_CHATTY = ("distributed.client", "distributed.core", "tornado.application", "asyncio")
+# What they log when the scheduler goes, this module says in a line. Dask gives the client's logger
+# a level of its own; the others take that of their parent.
+_CHATTY = ("distributed", "distributed.client", "tornado.application", "asyncio")
 
 
 def local_crew(workers: int) -> Crew:
