@@ -16,6 +16,7 @@ from mujoco_models.sweep.state import State, turned
 
 Model = TypeVar("Model", bound=Balance)
 _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
+_DEEP = 0.25  # of the radius; two sweeps of 390 were lost past polygons, at 0.5 of it and more
 # What may follow one state at rest without a snap-off.
 _NEIGHBOURS = {
     (Stance.AHEAD, Stance.AHEAD),
@@ -135,7 +136,7 @@ class Walk(Generic[Model]):
         gone = descend(self.model, foot_x, last, numerics, numerics.descent_steps)
         rest = self._thoroughly(foot_x, gone)
         if not rest.settled:
-            return "no state at rest was found near the last one, and no snap-off"
+            return self._lost_from(last)
         let_go = last.stance is Stance.NEAR and rest.stance in (Stance.FAR, Stance.PASSED)
         let_go |= self._pokes(last) and rest.stance is Stance.PASSED
         # From corner to corner a contact jumps; on a smooth contour it moves.
@@ -151,6 +152,15 @@ class Walk(Generic[Model]):
         self._accept(foot_x, rest)
         self._before = None
         return None
+
+    def _lost_from(self, last: State) -> str:
+        """Why no state at rest follows: corners go through a vibrissa pressed in too far."""
+        if last.load > _DEEP * self.model.contact_stiffness * self.model.lookout.radii.max():
+            return (
+                "no state at rest was found: the contact is so soft that its load presses it in "
+                "by over a quarter of the vibrissa's radius; take a stiffer one"
+            )
+        return "no state at rest was found near the last one, and no snap-off"
 
     def _accept(self, foot_x: float, state: State) -> None:
         if foot_x != self._foot_x:

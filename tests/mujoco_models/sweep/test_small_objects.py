@@ -102,3 +102,11 @@ def test_a_soft_section_is_faced_where_it_carries(tmp_path):
     drawn = trial(710030, tmp_path)
     found = simulate_sweep(drawn.case, drawn.settings)
     assert (found.table["status"] == "ok").all()
+
+
+@pytest.mark.slow
+def test_a_contact_too_soft_for_the_vibrissa_is_named(tmp_path):
+    """Corners come through a beam of 1e-3 L that is pressed in as far as that."""
+    drawn = trial(900001, tmp_path)
+    found = simulate_sweep(drawn.case, drawn.settings)
+    assert any("so soft" in reason for reason in found.provenance["unsettled"])
