@@ -169,6 +169,13 @@ def _load(file: Path) -> _Read:
     mesh.merge_vertices()  # with an absolute tolerance: hence in units of its size
     one, two, three = mesh.faces.T  # slivers close it
     mesh.update_faces((one != two) & (two != three) & (three != one))
+    if len(mesh.faces) < 4:  # a vertex far away makes all others one
+        raise InputError(
+            f"mesh {file}",
+            f"of size {size:.3g} with {len(mesh.faces)} faces that are not next to nothing",
+            "a solid of four or more",
+            "check its vertices",
+        )
     return _Read(mesh, middle, size)
 
 

@@ -56,6 +56,14 @@ def test_seams_are_merged(tmp_path):
     assert_square(mesh_section(tmp_path / "split.glb"), 0.5)
 
 
+def test_a_vertex_far_away_leaves_no_faces(tmp_path):
+    """As one damaged byte of an exponent does: beside it, all others are at one place."""
+    box = trimesh.creation.box((1, 1, 1))
+    box.vertices[0] = 1e33
+    box.export(tmp_path / "box.stl")
+    assert "0 faces that are not next to nothing: must be" in refusal(tmp_path / "box.stl")
+
+
 @pytest.mark.parametrize("size", [1e-38, 1e-9, 1e9, 1e37])
 @pytest.mark.parametrize("suffix", ["stl", "ply"])
 def test_any_unit_of_length(tmp_path, suffix, size):
