@@ -258,7 +258,7 @@ class Rest:
             elif not near:
                 state = state._replace(link=link, s=s, force=0.0, sliding=False)
                 continue
-            if bow is None or state is not forecast:
+            if bow is None or state.configuration is not forecast.configuration:
                 system = self._derivatives(state, touch, surface)
                 stable = not dpotrf(self._whole(state, system)[0], lower=1)[1]
             else:
