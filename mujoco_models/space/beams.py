@@ -25,9 +25,8 @@ from mujoco_models.space.settings import SpatialSettings
 
 _SLIGHT = 1e-3  # rad, below which a series is taken
 
-Law: TypeAlias = Callable[[Floats, Floats], tuple[Floats, Floats]]
-"""Maps sines and cosines of the joints' angles to the first two derivatives of their energies by
-the cosine, over EI/h."""
+Law: TypeAlias = Callable[[Floats], tuple[Floats, Floats]]
+"""Maps the joints' angles to the first two derivatives of their energies, over EI/h."""
 
 
 class SpaceBeam(Protocol):
@@ -35,8 +34,10 @@ class SpaceBeam(Protocol):
 
     layout: Layout
     """Where its joints are."""
-    law: Law | None
-    """Of joints that bend alike in all directions; None of others."""
+
+    @property
+    def law(self) -> Law | None:
+        """Of joints that bend alike in all directions; None of others."""
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """The foot and the beam on it, with all collisions off.
@@ -66,15 +67,17 @@ class SpaceBeam(Protocol):
             By the d velocities of a joint, symmetric [EI/L].
         """
 
-    def turned(self, sides: Floats, tangents: Floats) -> Floats:
-        """The configuration whose links have these directions, without twist.
+    def bent(self, frame: Floats, side: Floats, angles: Floats) -> Floats:
+        """The configuration whose links lie in a plane with the clamp, without twist.
 
         Parameters
         ----------
-        sides : array, shape (2, 3)
-            The foot's x and z axes in the world.
-        tangents : array, shape (n_joints, 3)
-            The links' y axes.
+        frame : array, shape (3, 3)
+            The foot's axes in the world, in columns; the second one is the clamp's tangent.
+        side : array, shape (3,)
+            Unit vector across that, to which the links turn.
+        angles : array, shape (n_joints,)
+            Of the links from the clamp's tangent [rad].
 
         Returns
         -------
@@ -83,67 +86,34 @@ class SpaceBeam(Protocol):
         """
 
 
-def _bent(sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
-    """Of theta^2/2.
-
-    Parameters
-    ----------
-    sine, cosine : array, shape (n_joints,)
-        Of the angles.
-
-    Returns
-    -------
-    first, second : array, shape (n_joints,)
-        Derivatives by the cosine.
-    """
-    angle = np.arctan2(sine, cosine)
-    slight = angle < _SLIGHT
-    within = np.where(slight, 1.0, sine)
-    first = np.where(slight, -1 - angle**2 / 6 - 7 * angle**4 / 360, -angle / within)
-    second = np.where(slight, 1 / 3 + 2 * angle**2 / 15, (sine - angle * cosine) / within**3)
-    return first, second
+def _bent(angle: Floats) -> tuple[Floats, Floats]:
+    """Of theta^2/2."""
+    return angle, np.ones_like(angle)
 
 
-def _straddled(sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
-    """Of 2 tan^2(theta/2).
-
-    Parameters
-    ----------
-    sine, cosine : array, shape (n_joints,)
-        Of the angles.
-
-    Returns
-    -------
-    first, second : array, shape (n_joints,)
-        Derivatives by the cosine.
-    """
-    return -4 / (1 + cosine) ** 2, 8 / (1 + cosine) ** 3
+def _straddled(angle: Floats) -> tuple[Floats, Floats]:
+    """Of 2 tan^2(theta/2)."""
+    half = np.tan(angle / 2)
+    stretch = 1 + half**2
+    return 2 * half * stretch, stretch * (1 + 3 * half**2)
 
 
 class BallChain(SpatialChain):
     """Balls with springs of k = EI/h."""
 
-    law: Law | None = staticmethod(_bent)
+    @property
+    def law(self) -> Law | None:
+        """Of theta^2/2."""
+        return _bent
 
-    def turned(self, sides: Floats, tangents: Floats) -> Floats:
-        """Each ball turns about an axis across both links."""
-        (x, y, z), (u, v, w) = sides.tolist()
-        p, q, r = np.cross(sides[1], sides[0]).tolist()
-        found: list[float] = []
-        for a, b, c in tangents.tolist():
-            across, along, aside = (
-                x * a + y * b + z * c,
-                p * a + q * b + r * c,
-                u * a + v * b + w * c,
-            )
-            size = math.sqrt(2 * (1 + along))
-            found += size / 2, aside / size, 0.0, -across / size
-            p, q, r = p + a, q + b, r + c
-            one, other = across / (1 + along), aside / (1 + along)
-            x, y, z = x - one * p, y - one * q, z - one * r
-            u, v, w = u - other * p, v - other * q, w - other * r
-            p, q, r = a, b, c
-        return np.array(found)
+    def bent(self, frame: Floats, side: Floats, angles: Floats) -> Floats:
+        """Each ball turns about the same axis, across the plane."""
+        x, _, z = side @ frame
+        half = np.diff(angles, prepend=0.0) / 2
+        return (
+            np.multiply.outer(np.cos(half), [1.0, 0, 0, 0]).ravel()
+            + np.multiply.outer(np.sin(half), [0.0, z, 0.0, -x]).ravel()
+        )
 
     def blocks(self, configuration: Floats) -> Floats:
         """Of k theta^2/2, theta the ball's rotation vector."""
@@ -164,10 +134,11 @@ class BallChain(SpatialChain):
 class Universal:
     """Two hinges at every joint, about z and about the x axis that the first one turns."""
 
-    def turned(self, sides: Floats, tangents: Floats) -> Floats:
+    def bent(self, frame: Floats, side: Floats, angles: Floats) -> Floats:
         """The first hinge turns the link to the left, the second one up."""
-        x, z = sides.tolist()
-        before, found = np.cross(sides[1], sides[0]).tolist(), []
+        x, before, z = frame.T.tolist()
+        tangents = np.outer(np.cos(angles), frame[:, 1]) + np.outer(np.sin(angles), side)
+        found: list[float] = []
         for t in tangents.tolist():
             across = x[0] * t[0] + x[1] * t[1] + x[2] * t[2]
             along = before[0] * t[0] + before[1] * t[1] + before[2] * t[2]
@@ -188,7 +159,10 @@ class Universal:
 class UniversalChain(Universal, Chain):
     """Balls' springs at two hinges each, which resist a turn about both a little more."""
 
-    law: Law | None = None
+    @property
+    def law(self) -> Law | None:
+        """None: they resist a turn about both axes a little more than one about either."""
+        return None
 
     def spec(self, radius: float) -> mujoco.MjSpec:
         """The links with a second hinge and spring each."""
@@ -208,7 +182,10 @@ class UniversalChain(Universal, Chain):
 class UniversalRod(Universal, SpatialRod):
     """The one-dimensional flex, on universal joints."""
 
-    law: Law | None = staticmethod(_straddled)
+    @property
+    def law(self) -> Law | None:
+        """Of 2 tan^2(theta/2)."""
+        return _straddled
 
     def blocks(self, configuration: Floats) -> Floats:
         """Of (2 EI/h) tan^2(theta/2), with cos(theta) = cos(a) cos(b)."""

@@ -1,11 +1,13 @@
 """Where a vibrissa will rest on a face, an edge or a corner, before MuJoCo is asked.
 
 Joints that bend alike in all directions store energy by the angle between two links, and one
-frictionless contact does not twist them: the directions of the links say everything. In these the
-springs couple neighbours only, and the lever of a force turns with one link at a time. Unknown
-beside them is the force, a vector across the edge or at the corner,
+frictionless contact does not twist them. So a chain at rest lies in the plane of its clamp's
+tangent t0 and the force F on it: the angles of its links in that plane, in which springs couple
+neighbours only, and the force say everything. Across the plane nothing pulls; turning F about t0
+turns the chain with it. Unknown are the angles, F across the edge or at the corner, and the bead's
+arc length where it slides,
 
-    springs(t) = F . dc/dt,    P (c - p) = (r/|F| - 1/k) F,    F . t = 0 where the bead slides,
+    springs(angles) = F . dc/d angles,    P (c - p) = (r/|F| - 1/k) F,    F . t = 0 if it slides,
 
 with c the bead's centre, p a point of what is touched and P the projection across it: no normal,
 which turns within the radius r of the vibrissa, takes part. Nothing of this is in a reading: it is
@@ -16,8 +18,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import eigvals_banded
-from scipy.linalg.lapack import dgbsv, dgesv, dpbtrf, dsyev
+from scipy.linalg import eigvalsh_tridiagonal
+from scipy.linalg.lapack import dgesv, dgtsv, dpttrf, dsyev
 
 from analytic.problem.arrays import Floats
 from mujoco_models.beams.layout import Layout
@@ -30,59 +32,29 @@ _LONGEST_SLIDE = 0.1  # L, of the bead in one step
 _FOUND = 1e-7  # rad and L, of a step: the next one would be of rounding's size
 _OUTWARD = 1e-12  # cosine; rounding of what is tangential
 _SAME = 1e-13  # L
-_BESIDE = 3  # diagonals on either side of the main one
 _LEAST_FORCE = 1e-9  # EI/L^2; with less the force has no direction to start from
-_ABOUT = np.cross(np.eye(3)[None], np.eye(3)[:, None])  # t @ _ABOUT[i] is t x e_i
+_SLIGHT = 1e-6  # rad, below which a joint bends across the plane as it does within
+HEAD_ON = 1e-6
+"""Cosine of a force with the way across the clamp, below which it has no plane with it."""
 
 
 class Bow(NamedTuple):
-    """Directions of the links and a contact; lengths in L."""
+    """A chain in a plane with its clamp, and a contact; lengths in L."""
 
-    tangents: Floats
-    """Shape (n_links, 3)."""
+    angles: Floats
+    """Of the links from the clamp's tangent, shape (n_links,) [rad]."""
+    side: Floats
+    """To which they turn: a unit vector across the clamp's tangent, shape (3,)."""
     link: int
     """The link that carries the bead."""
     s: float
     """Arc length of the bead [L]."""
     force: Floats
-    """Of the body on the vibrissa, shape (3,) [EI/L^2]."""
+    """Of the body on the vibrissa, in the plane, shape (3,) [EI/L^2]."""
     sliding: bool
     """Whether the bead is where its link is tangential."""
     stable: bool = False
     """Whether it is at rest, and the energy of vibrissa and contact is least there."""
-
-
-class _Chain(NamedTuple):
-    """Derivatives of the energy by the turns of m links across themselves."""
-
-    levers: Floats
-    """Of the force, shape (m,) [L]."""
-    frames: Floats
-    """Each link's direction and two ways across it, shape (m, 3, 3)."""
-    own: Floats
-    """Second derivatives by a link's turns, shape (m, 2, 2) [EI/L]."""
-    beside: Floats
-    """By a link's and the next one's, shape (m - 1, 2, 2) [EI/L]."""
-    imbalance: Floats
-    """First derivatives less the force's, shape (2 m,) [EI/L]."""
-
-    def band(self) -> Floats:
-        """The second derivatives as LAPACK's general band."""
-        own, beside, main = self.own, self.beside, 2 * _BESIDE
-        found = np.zeros((3 * _BESIDE + 1, len(self.imbalance)), order="F")
-        found[main, 0::2], found[main, 1::2] = own[:, 0, 0], own[:, 1, 1]
-        found[main - 1, 1::2] = found[main + 1, 0::2] = own[:, 0, 1]
-        for i in range(2):
-            for j in range(2):  # turn i of a link, j of the next one
-                gap = 2 + j - i
-                found[main - gap, 2 + j :: 2] = found[main + gap, i:-2:2] = beside[:, i, j]
-        return found
-
-    def negative(self, band: Floats) -> int:
-        """How many eigenvalues are negative, mostly none."""
-        if not dpbtrf(band[_BESIDE : 2 * _BESIDE + 1])[1]:
-            return 0
-        return int((eigvals_banded(band[_BESIDE : 2 * _BESIDE + 1]) < 0).sum())
 
 
 class Forecast:
@@ -129,10 +101,11 @@ class Forecast:
             None if it leads nowhere, or to where nothing presses.
         """
         bow, basis = start, surface.basis
+        first = basis @ (foot + self._joints[0] * self._tangent - surface.point)
         for _ in range(_ITERATIONS):
             if bow.force @ bow.force < _LEAST_FORCE**2:
                 return None
-            stepped = self._step(bow, basis, surface.point, foot)
+            stepped = self._step(bow, basis, first)
             if stepped is None:
                 return None
             bow, size = stepped
@@ -140,6 +113,31 @@ class Forecast:
                 return bow
             bow = self._slid_or_held(bow)
         return None
+
+    def bow(
+        self, tangents: Floats, link: int, s: float, force: Floats, sliding: bool
+    ) -> Bow | None:
+        """A chain, turned into the plane of its clamp and of the force on it.
+
+        Parameters
+        ----------
+        tangents : array, shape (n_links, 3)
+            Unit vectors along the links.
+        link, s, force, sliding
+            As of `Bow`.
+
+        Returns
+        -------
+        Bow or None
+            None if the force is along the clamp's tangent.
+        """
+        across = force - (force @ self._tangent) * self._tangent
+        size = float(np.linalg.norm(across))
+        if size <= HEAD_ON * np.linalg.norm(force):
+            return None
+        side = across / size
+        angles = np.arctan2(tangents @ side, tangents @ self._tangent)
+        return Bow(angles, side, link, s, force, sliding)
 
     def centre(self, bow: Bow, foot: Floats) -> Floats:
         """Of the bead.
@@ -156,123 +154,137 @@ class Forecast:
         array, shape (3,)
             [L]
         """
-        start = foot + self._joints[0] * self._tangent
-        start = start + self._lengths[: bow.link] @ bow.tangents[: bow.link]
-        return np.asarray(start + (bow.s - self._joints[bow.link]) * bow.tangents[bow.link])
+        levers = self._levers(bow)
+        angles = bow.angles[: len(levers)]
+        along = self._joints[0] + float(levers @ np.cos(angles))
+        across = float(levers @ np.sin(angles))
+        return np.asarray(foot + along * self._tangent + across * bow.side)
 
-    def _step(
-        self, bow: Bow, basis: Floats, point: Floats, foot: Floats
-    ) -> tuple[Bow, float] | None:
+    def _levers(self, bow: Bow) -> Floats:
+        """Of the force, of the links up to the contact, and two at least: LAPACK asks for it."""
+        levers = self._lengths[: max(bow.link, 1) + 1].copy()
+        levers[bow.link :] = 0.0
+        levers[bow.link] = bow.s - self._joints[bow.link]
+        return levers
+
+    def _step(self, bow: Bow, basis: Floats, first: Floats) -> tuple[Bow, float] | None:
         """One step, and its size."""
-        count, parts, flat = bow.link + 1, len(basis), len(basis) == 1
-        chain = self._chain(bow)
-        t, levers, across = bow.tangents[:count], chain.levers, chain.frames[:, 1:]
-        away = basis @ (foot + self._joints[0] * self._tangent + levers @ t - point)
-        force = basis @ bow.force
-        size = math.sqrt(force @ force)
-        if flat:
-            gap = away - (self._radius - force / self._k)
-            matrix = np.full((1, 1), -1 / self._k)
-        else:
-            gap = away - (self._radius / size - 1 / self._k) * force
-            matrix = (self._radius / size - 1 / self._k) * np.eye(parts)
-            matrix -= self._radius / size**3 * np.outer(force, force)
-        # Right-hand sides: the imbalance, the levers of the force's components, the link's own.
-        slides = int(bow.sliding)
-        right = np.zeros((2 * count, 1 + parts + slides), order="F")
-        right[:, 0] = -chain.imbalance
-        right[:, 1 : 1 + parts] = (across @ basis.T * levers[:, None, None]).reshape(-1, parts)
+        parts, slides, link, side = len(basis), int(bow.sliding), bow.link, bow.side
+        levers = self._levers(bow)
+        count = len(levers)
+        angles = bow.angles[:count]
+        cos, sin = np.cos(angles), np.sin(angles)
+        bends = angles.copy()
+        bends[1:] -= angles[:-1]
+        slope, second = self._law(bends)
+        springs = self._springs[:count]
+        slope, second = slope * springs, second * springs
+        along, across = float(bow.force @ self._tangent), float(bow.force @ side)
+        if abs(across) <= HEAD_ON * abs(along):
+            return None
+        # Right-hand sides: the imbalance, the levers of the force's parts, the link's own.
+        right = np.zeros((3 + slides, count))
+        np.multiply(levers, -sin, out=right[1])
+        np.multiply(levers, cos, out=right[2])
+        right[0] = along * right[1] + across * right[2] - slope
+        right[0, :-1] += slope[1:]
         if slides:
-            right[-2:, -1] = across[-1] @ bow.force
-        pulls = right[:, 1:].copy()
-        band = chain.band()
-        *_, found, failed = dgbsv(_BESIDE, _BESIDE, band, right, overwrite_b=1)
+            right[-1, link] = across * cos[link] - along * sin[link]
+        beside = -second[1:]
+        pressed = along * right[2] - across * right[1]
+        own = second + pressed
+        own[:-1] -= beside
+        *_, found, failed = dgtsv(beside, own, beside, right.T)
         if failed:
             return None
-        # u = free + bent (dF, ds): into the rows of the contact.
-        products = pulls.T @ found
-        rows, rest = -products[:, 1:], products[:, 0]
-        rows[:parts, :parts] += matrix
-        rest[:parts] += gap
+        # Their turns are free + bent (force's parts, slide): into the rows of the contact.
+        onto = np.zeros((2 + slides, parts + slides))
+        onto[0, :parts], onto[1, :parts] = basis @ self._tangent, basis @ side
         if slides:
-            slope = basis @ t[-1]
-            rows[:parts, -1] -= slope
-            rows[-1, :parts] -= slope
-            rest[-1] += force @ slope
+            onto[2, -1] = 1.0
+        products = onto.T @ (right[1:] @ found)
+        rows, rest = products[:, 1:] @ -onto, products[:, 0]
+        force = basis @ bow.force
+        size = math.sqrt(force @ force)
+        reach, aside = right[2].sum(), -right[1].sum()
+        held = self._radius / size - 1 / self._k
+        plane = onto[:2, :parts]
+        # With a force that turns about the clamp's tangent the whole chain turns.
+        swing = aside / across
+        own_rows = rows[:parts, :parts]
+        own_rows += swing * (plane.T @ plane)
+        own_rows -= (self._radius / size**3 * force)[:, None] * force
+        own_rows.flat[:: parts + 1] += held - swing
+        rest[:parts] += first + reach * plane[0] + aside * plane[1] - held * force
+        if slides:
+            tilt = cos[link] * plane[0] + sin[link] * plane[1]
+            rows[:parts, -1] -= tilt
+            rows[-1, :parts] -= tilt
+            rest[-1] += along * cos[link] + across * sin[link]
         *_, change, failed = dgesv(rows, rest)
         if failed:
             return None
-        turns = found[:, 0] + found[:, 1:] @ change
-        most = float(np.abs(turns).max())
+        parted = onto @ change
+        turns = found[:, 0] + found[:, 1:] @ parted
+        more = change[:parts]
+        aslant = math.sqrt(max(more @ more - parted[:2] @ parted[:2], 0.0))
+        swung = aslant / abs(across) * max(float(sin.max()), -float(sin.min()))
+        most = max(float(turns.max()), -float(turns.min()), swung)
         slide = float(change[-1]) if slides else 0.0
-        slid = abs(slide)
-        if not math.isfinite(most + slid):
+        largest = max(most, abs(slide))
+        if not math.isfinite(largest):
             return None
-        largest = max(most, slid)
         stable = False
         if largest < _FOUND:
             # Only the contact's row and that of a bead that slides, to where the distance is
             # least, are negative then (Haynsworth's inertia).
-            negative = chain.negative(band) + int((dsyev(rows, compute_v=0)[0] < 0).sum())
+            negative = _negative(own, beside) + self._negative_across(slope, bends, pressed)
+            negative += int((dsyev(rows, compute_v=0)[0] < 0).sum())
             stable = negative == 1 + slides
-        share = min(1.0, _LARGEST_TURN / max(most, 1e-300), _LONGEST_SLIDE / max(slid, 1e-300))
-        pushed = bow.force + share * (change[:parts] @ basis)
-        if flat and pushed @ bow.force <= 0:
+        share = min(
+            1.0, _LARGEST_TURN / max(most, 1e-300), _LONGEST_SLIDE / max(abs(slide), 1e-300)
+        )
+        pushed = bow.force + (share * more) @ basis
+        if parts == 1 and pushed @ bow.force <= 0:
             return None
-        tangents = bow.tangents.copy()
-        turned = t + share * (turns.reshape(count, 1, 2) @ across)[:, 0]
-        turned /= np.sqrt(np.einsum("ij,ij->i", turned, turned))[:, None]
-        tangents[:count], tangents[count:] = turned, turned[-1]
-        bow = Bow(tangents, bow.link, bow.s, pushed, bow.sliding, stable)
-        return self._moved(bow, share * slide) if slides else bow, largest
+        turned = bow.angles.copy()
+        turned[:count] += share * turns
+        turned[count:] = turned[count - 1]
+        link, s = self._slid(bow, share * slide) if slides else (link, bow.s)
+        turned_to = self._side(pushed, side)
+        return Bow(turned, turned_to, link, s, pushed, bow.sliding, stable), largest
 
-    def _chain(self, bow: Bow) -> "_Chain":
-        """Stiffness of the links up to the contact, and what is out of balance."""
-        count = bow.link + 1
-        t = bow.tangents[:count]
-        levers = self._lengths[:count].copy()
-        levers[-1] = bow.s - self._joints[bow.link]
-        # Each link's own frame: its direction, and two ways across it.
-        frames = np.empty((count, 3, 3))
-        axis = int(np.abs(t).max(axis=0).argmin())
-        along = t[:, axis]
-        frames[:, 0] = t
-        frames[:, 1] = t @ _ABOUT[axis]
-        frames[:, 2] = t * along[:, None]
-        frames[:, 2, axis] -= 1.0
-        frames[:, 1:] /= np.sqrt(1 - along**2)[:, None, None]
-        before = np.concatenate([self._tangent[None], t[:-1]])
-        behind = (frames @ before[:, :, None])[:, :, 0]
-        ahead = (frames[:-1, 1:] @ t[1:, :, None])[:, :, 0]
-        cosine, back = behind[:, 0], behind[:, 1:]
-        springs = self._springs[:count]
-        first, second = self._law(np.hypot(back[:, 0], back[:, 1]), cosine)
-        first, second = first * springs, second * springs
-        pull = levers[:, None] * (frames @ bow.force)
-        tension = first * cosine
-        tension[:-1] += tension[1:]
-        tension -= pull[:, 0]
-        imbalance = first[:, None] * back - pull[:, 1:]
-        imbalance[:-1] += first[1:, None] * ahead
-        own = (second[:, None] * back)[:, :, None] * back[:, None, :]
-        bent = (second[1:, None] * ahead)[:, :, None]
-        own[:-1] += bent * ahead[:, None, :]
-        own[:, 0, 0] -= tension
-        own[:, 1, 1] -= tension
-        beside = frames[:-1, 1:] @ frames[1:, 1:].transpose(0, 2, 1)
-        beside *= first[1:, None, None]
-        beside += bent * back[1:, None, :]
-        return _Chain(levers, frames, own, beside, imbalance.ravel())
+    def _side(self, force: Floats, before: Floats) -> Floats:
+        """Of the plane of a force, turned as little as may be."""
+        across = force - (force @ self._tangent) * self._tangent
+        return np.asarray(across / math.copysign(math.sqrt(across @ across), across @ before))
+
+    def _negative_across(self, slope: Floats, bends: Floats, pressed: Floats) -> int:
+        """How many ways across its plane the chain, under its force, would leave it."""
+        straight = np.abs(bends) < _SLIGHT
+        tension = np.where(straight, self._springs[: len(bends)], slope)
+        tension = tension / np.where(straight, 1.0, np.sin(bends))
+        own = tension * np.cos(bends)
+        own[:-1] += own[1:]
+        return _negative(own + pressed, -tension[1:])
 
     def _slid_or_held(self, bow: Bow) -> Bow:
         """Whether the bead slides, or is at the tip, and held there."""
         if self._ends[-1] - bow.s < _SAME:
-            slope = bow.tangents[-1] @ bow.force
+            last = float(bow.angles[-1])
+            slope = math.cos(last) * (bow.force @ self._tangent)
+            slope += math.sin(last) * (bow.force @ bow.side)
             return bow._replace(sliding=bool(slope > _OUTWARD * np.linalg.norm(bow.force)))
         return bow._replace(sliding=bow.s > self._joints[0])
 
-    def _moved(self, bow: Bow, by: float) -> Bow:
+    def _slid(self, bow: Bow, by: float) -> tuple[int, float]:
         """Along the vibrissa, whose links beyond the contact are straight."""
         s = max(min(bow.s + by, 1.0), float(self._joints[0]))
-        link = int(self._ends[:-1].searchsorted(s))
-        return bow._replace(link=link, s=s)
+        return int(self._ends[:-1].searchsorted(s)), s
+
+
+def _negative(own: Floats, beside: Floats) -> int:
+    """How many eigenvalues of a tridiagonal matrix are negative, mostly none."""
+    if not dpttrf(own, beside)[-1]:
+        return 0
+    return int((eigvalsh_tridiagonal(own, beside) < 0).sum())

@@ -145,9 +145,9 @@ class SpaceModel:
         return np.array(self.data.xmat[self._links, 1::3])
 
     @property
-    def sides(self) -> Floats:
-        """The foot's x and z axes in the world, shape (2, 3)."""
-        return np.array(self.data.xmat[self._foot].reshape(3, 3).T[[0, 2]])
+    def frame(self) -> Floats:
+        """The foot's axes in the world, in columns, shape (3, 3)."""
+        return np.array(self.data.xmat[self._foot].reshape(3, 3))
 
     def direction(self, link: int) -> Floats:
         """Of a link's axis.

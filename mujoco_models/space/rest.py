@@ -166,10 +166,13 @@ class Rest:
         Settled or None
             None if it leads nowhere, or to where nothing presses.
         """
-        if self._forecast is None or not self._foresees(start, surface):
-            along = self._along(start, surface, begin, foot - begin)
+        self.model.place(begin, start.configuration)
+        bow = self._bow(start, surface)
+        if bow is None:
+            along = self._along(start, surface, foot - begin)
             return self._settled(along, None, surface, foot)
-        bow = self.foresee(self.bow(start, surface, begin), surface, foot)
+        assert self._forecast is not None
+        bow = self.foresee(bow, surface, foot)
         if bow is None or not sought(bow.link, self._forecast.centre(bow, foot)):
             return None
         return self.confirm(bow, surface, foot)
@@ -233,9 +236,6 @@ class Rest:
         """
         return self._settled(self._bent(bow), bow, surface, foot)
 
-    def _foresees(self, state: State, surface: Surface) -> bool:
-        return self._forecast is not None and isinstance(surface, Feature) and state.force > 0
-
     def _settled(
         self, state: State, bow: Bow | None, surface: Surface, foot: Floats
     ) -> Settled | None:
@@ -261,11 +261,10 @@ class Rest:
             if bow is None or state.configuration is not forecast.configuration:
                 system = self._derivatives(state, touch, surface)
                 stable = not dpotrf(self._whole(state, system)[0], lower=1)[1]
+                bow = self._bow(state, surface)
             else:
                 stable = bow.stable
-            if self._foresees(state, surface):
-                force = state.force * touch.normal
-                bow = Bow(model.tangents, state.link, state.s, force, state.sliding, stable)
+                bow = bow._replace(link=state.link, s=state.s, sliding=state.sliding)
             return Settled(state, touch, stable, surface, near, bow)
         return None
 
@@ -316,30 +315,17 @@ class Rest:
         surface = surface_at(model, state.link, model.touch(state.link, state.s))
         return self._settled(state, found.bow, surface, foot)
 
-    def bow(self, state: State, surface: Surface, foot: Floats) -> Bow:
-        """What a forecast needs of a state.
-
-        Parameters
-        ----------
-        state : State
-            The state.
-        surface : Surface
-            What is touched.
-        foot : array, shape (3,)
-            Position of the foot [L].
-
-        Returns
-        -------
-        Bow
-            Directions of its links, and its force.
-        """
-        self.model.place(foot, state.configuration)
+    def _bow(self, state: State, surface: Surface) -> Bow | None:
+        """What a forecast needs of a state in which the model is; None where there is none."""
+        forecast = self._forecast
+        if forecast is None or not isinstance(surface, Feature) or state.force <= 0:
+            return None
         force = state.force * surface.touch(state.link, state.s).normal
-        return Bow(self.model.tangents, state.link, state.s, force, state.sliding)
+        return forecast.bow(self.model.tangents, state.link, state.s, force, state.sliding)
 
     def _bent(self, bow: Bow) -> State:
         """A forecast in MuJoCo's coordinates."""
-        configuration = self.model.beam.turned(self.model.sides, bow.tangents)
+        configuration = self.model.beam.bent(self.model.frame, bow.side, bow.angles)
         force = float(np.linalg.norm(bow.force))
         return State(configuration, bow.link, bow.s, force, bow.sliding)
 
@@ -366,10 +352,9 @@ class Rest:
             state = step
         return None
 
-    def _along(self, state: State, surface: Surface, begin: Floats, by: Floats) -> State:
+    def _along(self, state: State, surface: Surface, by: Floats) -> State:
         """The first step, as the foot moves, by the equations at the start."""
         model = self.model
-        model.place(begin, state.configuration)
         touch = surface.touch(state.link, state.s)
         slope = float(touch.normal @ model.direction(state.link))
         system = self.linearised(state, touch, slope, surface.turning(state.link, touch))

@@ -85,18 +85,16 @@ class Feature(NamedTuple):
     """One of it, shape (3,) [L]."""
     normal: Floats
     """Of a face, shape (3,)."""
+    basis: Floats
+    """Unit vectors along the directions that its normals have, across each other, shape (1 to 3,
+    3)."""
     span: Floats
-    """Projects on the directions that its normals have, shape (3, 3)."""
-    flat: bool
-    """Whether it is a face."""
+    """Projects on these, shape (3, 3)."""
 
     @property
-    def basis(self) -> Floats:
-        """Unit vectors along the directions that its normals have, shape (1 to 3, 3)."""
-        if self.flat:
-            return self.normal[None]
-        values, ways = np.linalg.eigh(self.span)
-        return np.asarray(ways.T[values > 1 / 2])
+    def flat(self) -> bool:
+        """Whether it is a face."""
+        return len(self.basis) == 1
 
     def touch(self, link: int, s: float) -> Touch:
         """The foot of the perpendicular."""
@@ -179,9 +177,8 @@ def surface_at(model: SpaceModel, link: int, touch: Touch) -> Surface:
         values = values * apart
         if ((values < _FLAT) | (values > _SHARP)).all():
             break
-    turns = ways[:, values > (_FLAT + _SHARP) / 2]
-    span = np.outer(n, n) + turns @ turns.T
-    return Feature(model, touch.centre - apart * n, n, span, not turns.size)
+    basis = np.concatenate([n[None], ways.T[values > (_FLAT + _SHARP) / 2]])
+    return Feature(model, touch.centre - apart * n, n, basis, basis.T @ basis)
 
 
 def features_around(model: SpaceModel, link: int, centre: Floats) -> list[Feature]:
