@@ -164,8 +164,8 @@ class Held(NamedTuple):
         xi = sensed[0] + self.way * place.x
         return Contact(self.way * place.alpha, place.arc_length, xi, place.y)
 
-    def criterion(self, sensed: Floats) -> Floats:
-        """What vanishes in Phase B and is positive in Phase A.
+    def arc_length_and_criterion(self, sensed: Floats) -> tuple[Floats, Floats]:
+        """Where stations touch, and what vanishes in Phase B and is positive in Phase A.
 
         Parameters
         ----------
@@ -174,15 +174,20 @@ class Held(NamedTuple):
 
         Returns
         -------
-        array, shape (...)
+        arc_length : array, shape (...)
+            Of the contacts; NaN where no elastica has such readings [L].
+        criterion : array, shape (...)
             (2 F_y - M^2)/(2 f) = sin(phi1 - alpha) of eq. 26; with friction sin(phi1 - alpha -
             arctan(mu)) + sin(arctan(mu)).
         """
         if self.plain:
             _, force_x, force_y, moment = sensed
-            return np.asarray((2 * force_y - moment**2) / (2 * np.hypot(force_x, force_y)))
+            criterion = (2 * force_y - moment**2) / (2 * np.hypot(force_x, force_y))
+            return self.contact(sensed).arc_length, np.asarray(criterion)
+        clamped = self.clamped(sensed)
         parallel = self.vibrissa.lean - np.arctan(self.vibrissa.friction)
-        return np.asarray(self.clamped(sensed).sine_at_contact() - np.sin(parallel))
+        criterion = clamped.sine_at_contact() - np.sin(parallel)
+        return clamped.contact_arc_length(), np.asarray(criterion)
 
 
 def located(readings: Readings) -> Contact:

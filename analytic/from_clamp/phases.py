@@ -7,7 +7,7 @@ import numpy as np
 
 from analytic.from_clamp.contact import LONGEST, UNLOADED, Held, dimensionless
 from analytic.from_clamp.noise import MEDIAN_OF_NORMAL, checked_noise, largest, reading_noise
-from analytic.problem.arrays import Booleans, Floats, Words
+from analytic.problem.arrays import Floats, Words
 from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.readings import Readings
 
@@ -93,26 +93,25 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
     f = np.hypot(force_x, force_y)
     felt = f > UNLOADED
     held = Held.of(readings)
-    criterion = np.where(felt, held.criterion(sensed), np.nan)
-    by_x = criterion * force_x / f**2
-    by_y = 1 / f - criterion * force_y / f**2
-    by_m = moment / f
-    criterion_tolerance = np.sqrt(
-        (by_x * noise_x) ** 2 + (by_y * noise_y) ** 2 + (by_m * noise_m) ** 2
-    )
-    shortfall = _shortfall(held, sensed, felt)
-    variance, spread = np.zeros_like(shortfall), np.zeros_like(shortfall)
-    for row, size in enumerate((noise_x, noise_y, noise_m), start=1):
-        step = min(1.0, _STEP * magnitudes[row - 1] / size) if size else 1.0
-        moved = sensed.copy()
-        moved[row] += step * size
-        there = _shortfall(held, moved, np.hypot(moved[1], moved[2]) > UNLOADED)
-        variance += (np.nan_to_num(there - shortfall) / step) ** 2
-        if not held.plain:
-            spread += (np.nan_to_num(held.criterion(moved) - criterion) / step) ** 2
-    shortfall_tolerance = np.sqrt(variance)
-    if not held.plain:
-        criterion_tolerance = np.sqrt(spread)
+    # What each reading's noise does, all in one solution: the readings, and each of them moved.
+    noises = np.array([noise_x, noise_y, noise_m])
+    step = np.where(noises > 0, np.minimum(1.0, _STEP * magnitudes / noises), 1.0)[:, None]
+    every = np.repeat(sensed[:, None], 4, axis=1)
+    every[[1, 2, 3], [1, 2, 3]] += step * noises[:, None]
+    touching = np.where(np.hypot(every[1], every[2]) > UNLOADED, every, np.nan)
+    arc_length, criteria = held.arc_length_and_criterion(touching)
+    shortfalls, criterion = _shortfall(arc_length), criteria[0]
+    shortfall = shortfalls[0]
+    shortfall_tolerance = _spread(shortfalls, step)
+    if held.plain:
+        by_x = criterion * force_x / f**2
+        by_y = 1 / f - criterion * force_y / f**2
+        by_m = moment / f
+        criterion_tolerance = np.sqrt(
+            (by_x * noise_x) ** 2 + (by_y * noise_y) ** 2 + (by_m * noise_m) ** 2
+        )
+    else:
+        criterion_tolerance = _spread(criteria, step)
 
     of_criterion = np.abs(criterion) / criterion_tolerance
     of_shortfall = np.abs(shortfall) / shortfall_tolerance
@@ -134,8 +133,12 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
     )
 
 
-def _shortfall(held: Held, sensed: Floats, felt: Booleans) -> Floats:
+def _shortfall(arc_length: Floats) -> Floats:
     """NaN where no elastica has such readings; a contact beyond the tip is short by less than 0."""
-    arc_length = held.contact(np.where(felt, sensed, np.nan)).arc_length
     short = np.where(arc_length >= 0, 1 - arc_length, np.nan)
     return np.where(arc_length > LONGEST, _BEYOND_TIP, short)
+
+
+def _spread(of: Floats, step: Floats) -> Floats:
+    """Standard deviation of what is given for the readings and for each of three moved."""
+    return np.asarray(np.sqrt((np.nan_to_num((of[1:] - of[0]) / step) ** 2).sum(axis=0)))

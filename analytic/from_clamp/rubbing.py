@@ -107,9 +107,12 @@ def _spread(readings: Readings, noise: Mapping[str, float] | None) -> Floats:
 
 
 def _mean(held: Held, sensed: Floats, spread: Floats) -> FrictionFound:
-    sine = _sine(held, sensed)
-    usable = np.isfinite(sine) & (np.abs(sine) < _MOST)
-    sensed, sine = sensed[:, usable], sine[usable]
+    # The readings, and each of them moved by a part of its noise, all in one solution.
+    every = np.repeat(sensed[:, None], 4, axis=1)
+    every[[1, 2, 3], [1, 2, 3]] += _STEP * spread[:, None]
+    sines = _sine(held, every)
+    usable = np.isfinite(sines[0]) & (np.abs(sines[0]) < _MOST)
+    sine, moved = sines[0, usable], sines[1:, usable]
     if len(sine) < _FEWEST:
         raise InputError(
             "stations of Phase B",
@@ -117,11 +120,7 @@ def _mean(held: Held, sensed: Floats, spread: Floats) -> FrictionFound:
             f"{_FEWEST} or more, from which the friction coefficient is estimated",
             "let the vibrissa touch along its side: a lower object, or more stations",
         )
-    variance = np.zeros_like(sine)
-    for row, size in enumerate(spread, start=1):
-        moved = sensed.copy()
-        moved[row] += _STEP * size
-        variance += (np.nan_to_num(_sine(held, moved) - sine) / _STEP) ** 2
+    variance = (np.nan_to_num((moved - sine) / _STEP) ** 2).sum(axis=0)
     weight = 1 / _beside(variance)
     mean = float(np.sum(weight * sine) / weight.sum())
     excess = float(np.sum(weight * (sine - mean) ** 2)) / (len(sine) - 1)

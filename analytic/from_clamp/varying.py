@@ -6,6 +6,8 @@ contact is where the moment has fallen to what friction's couple leaves of it. T
 is the one at the clamp less the force times the way along its direction, m(s) = m(0) + F x(s).
 """
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +24,8 @@ _NEAR_TIP = 0.2  # L; the place may be that far beyond the tip, as far as the mo
 _LONGEST = 2.0  # L; so far the straight continuation of the tip is followed
 
 
-class Marched(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Marched:
     """The clamp's end of vibrissae that vary, in a sweep to the left; arrays of one shape."""
 
     clamped: Clamped
@@ -70,6 +73,10 @@ class Marched(NamedTuple):
         array, shape of the readings
             [L]; NaN where no such vibrissa has the readings.
         """
+        return self._contact
+
+    @cached_property
+    def _contact(self) -> Floats:
         shape = np.shape(self.clamped.force)
         best = np.full(shape, np.nan).ravel()
         known = np.isfinite(self.clamped.force + self.clamped.moment).ravel()
