@@ -28,11 +28,14 @@ _CARRIAGE = 1e9  # times the vibrissa's mass: nothing the vibrissa does moves th
 _TOLERANCE = 1e-16
 _STUB = 1e-4  # L, of a foot on which the vibrissa turns; it must have some mass
 _AHEAD = 0.01  # L; beads that are nearer to the obstacle take part in collisions
-_BAD_STATES = (
-    mujoco.mjtWarning.mjWARN_BADQPOS,
-    mujoco.mjtWarning.mjWARN_BADQVEL,
-    mujoco.mjtWarning.mjWARN_BADQACC,
-)
+_BAD_STATES = [
+    int(bad)
+    for bad in (
+        mujoco.mjtWarning.mjWARN_BADQPOS,
+        mujoco.mjtWarning.mjWARN_BADQVEL,
+        mujoco.mjtWarning.mjWARN_BADQACC,
+    )
+]
 _INTEGRATORS = {
     "discrete": mujoco.mjtIntegrator.mjINT_DISCRETE,
     "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
@@ -175,23 +178,24 @@ class MovingModel:
         change = -speed - float(self.data.qvel[0])
         self.data.qfrc_applied[0] = _CARRIAGE * _MASS * change / self.model.opt.timestep
         mujoco.mj_step(self.model, self.data)
-        if any(self.data.warning[bad].number for bad in _BAD_STATES):
+        if self.data.warning.number.take(_BAD_STATES).any():
             raise DivergedError("MuJoCo's motion does not stay finite")
         if self._follows_inertia and self.data.nefc:
             self._follow_inertia()
-        if np.abs(self._positions() - self._seen).max() > _AHEAD / 4:
+        moved = self._positions() - self._seen
+        if max(moved.max(), -moved.min()) > _AHEAD / 4:
             self._look()
 
     def _look(self) -> None:
         """Let what may touch before long, and nothing else, take part in collisions."""
         self._seen = self._positions()
-        near = self.obstacle.near(self._seen, self._radius + _AHEAD)
+        near = self.obstacle.near(self._seen[:, :2], self._radius + _AHEAD)
         self._lookout.watch(frozenset(near.tolist()))
         self._lookout.follow_contact(self.contacts())
 
     def _positions(self) -> Floats:
-        """Of the beads, shape (n_beads, 2) [L]."""
-        return np.asarray(self.data.geom_xpos[self._surface.beads, :2])
+        """Of the beads, shape (n_beads, 3) [L]."""
+        return np.asarray(self.data.geom_xpos.take(self._surface.beads, axis=0))
 
     def contacts(self) -> Contacts:
         """What MuJoCo reports of the last step, loaded or not.
@@ -227,6 +231,10 @@ class MovingModel:
     @property
     def touches(self) -> bool:
         """Whether a contact is loaded."""
+        if self.data.ncon == 0:
+            return False
+        if len(self._surface.sides) == 0:
+            return bool(self.data.contact.dist.min() < 0)
         return bool(self.contacts().loaded.any())
 
     def state(self, speed: float) -> dict[str, Any]:

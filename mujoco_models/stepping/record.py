@@ -57,7 +57,7 @@ class Record:
     """
 
     def __init__(self, stations: Floats, average: float) -> None:
-        self._stations = stations
+        self._stations: list[float] = stations.tolist()
         self._half = average * float(np.abs(np.diff(stations)).min()) / 2
         self.rows: list[dict[str, Any]] = []
         self.first_touch: float | None = None
@@ -74,7 +74,7 @@ class Record:
     @property
     def first(self) -> float:
         """Foot position at which the first station's way begins [L]."""
-        return float(self._stations[0] + self._half)
+        return self._stations[0] + self._half
 
     @property
     def complete(self) -> bool:
