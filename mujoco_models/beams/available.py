@@ -1,5 +1,6 @@
 """Which beams the installed MuJoCo has; apart from them, so that asking does not load MuJoCo."""
 
+from functools import cache
 from importlib.metadata import version
 
 from analytic.problem.errors import InputError
@@ -18,6 +19,7 @@ class Beams(tuple[BeamKind, ...]):
     missing: dict[str, str]
 
 
+@cache  # the metadata are a long file
 def available_beams() -> Beams:
     """The beams that the installed MuJoCo has, and why not the others.
 

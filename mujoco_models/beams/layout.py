@@ -121,6 +121,11 @@ class Layout:
         """Length of each link, shape (n_joints,)."""
         return np.diff(self.joints, append=1.0)
 
+    @cached_property
+    def arched(self) -> float:
+        """By how much all links are longer than their chords [L]."""
+        return float((self.lengths - self.chords).sum())
+
     @property
     def thickness(self) -> Floats:
         """Radius of each link in its middle over that at the clamp, shape (n_joints,)."""
@@ -130,6 +135,20 @@ class Layout:
     def clamp_turns(self) -> bool:
         """Whether the first joint is the clamp's."""
         return self.vibrissa.clamp_compliance > 0
+
+    @cached_property
+    def spacing(self) -> float:
+        """The largest distance of neighbouring beads [L]."""
+        return float(np.diff(self.beads).max(initial=0.0))
+
+    @cached_property
+    def from_links(self) -> Floats:
+        """Where the beads are in the frames of their links, shape (2, n_beads) [L].
+
+        Across and along the chords.
+        """
+        there = self.vibrissa.at(self.beads) - self.base[self.links]
+        return turned(there.T, -self.headings[self.links])
 
     def tip_angle(self, angles: Floats) -> float:
         """Slope angle of the tip.
@@ -193,14 +212,14 @@ class Layout:
         return turned(there.T, -float(self.headings[link]))
 
 
-def turned(vector: Floats, angle: float) -> Floats:
+def turned(vector: Floats, angle: float | Floats) -> Floats:
     """A vector, turned to the left.
 
     Parameters
     ----------
     vector : array, shape (2, ...)
         One, or several.
-    angle : float
+    angle : float, or array, shape (...)
         Angle [rad].
 
     Returns

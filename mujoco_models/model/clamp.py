@@ -57,9 +57,9 @@ def by_contacts(data: mujoco.MjData, foot: Floats, moves: Booleans) -> Clamp:
     carries = contact.efc_address >= 0  # others carry nothing
     force = data.efc_force[contact.efc_address[carries]]
     force = np.where(moves[contact.geom[carries, 1]], force, -force)
-    x, y = (force[:, None] * contact.frame[carries, :2]).T
+    x, y = contact.frame[carries, :2].T
     across, along = (contact.pos[carries, :2] - foot).T
-    return Clamp(*(-float(part.sum()) for part in (x, y, across * y - along * x)))
+    return Clamp(*(-float(force @ part) for part in (x, y, across * y - along * x)))
 
 
 def discrepancy(sensed: Clamp, required: Clamp, first_joint: Floats, moment: float) -> float:
@@ -80,7 +80,7 @@ def discrepancy(sensed: Clamp, required: Clamp, first_joint: Floats, moment: flo
     float
         Largest difference [EI/L^2, EI/L].
     """
-    by_contact = np.abs(np.subtract(sensed, required)).max()
-    x, y = first_joint
+    by_contact = max(abs(a - b) for a, b in zip(sensed, required, strict=True))
+    x, y = first_joint.tolist()
     at_joint = sensed.moment_z + y * sensed.force_x - x * sensed.force_y
     return float(max(by_contact, abs(at_joint - moment)))

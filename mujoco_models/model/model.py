@@ -398,10 +398,10 @@ class BeamModel:
         float
             Difference in length [L].
         """
-        ends = np.vstack([self.data.xanchor, self.data.geom_xpos[self.beads[-1]]])
-        bent = np.sqrt(((ends[1:] - ends[:-1]) ** 2).sum(axis=1)).sum()
-        arched = (self.layout.lengths - self.layout.chords).sum()
-        return float(bent + self.layout.joints[0] - 1 + arched)
+        ends = np.concatenate([self.data.xanchor, self.data.geom_xpos[self.beads[-1:]]])
+        chords = ends[1:] - ends[:-1]
+        bent = np.sqrt(np.einsum("ij,ij->i", chords, chords)).sum()
+        return float(bent + self.layout.joints[0] - 1 + self.layout.arched)
 
     def clamp(self) -> clamp.Clamp:
         """The clamp's action on the vibrissa, by MuJoCo's sensors.

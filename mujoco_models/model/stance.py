@@ -38,14 +38,13 @@ def stance(model: Balance, contacts: Contacts) -> Stance:
         By the sides of the links that are loaded, or by where the object's lowest point is.
     """
     tip = model.bead_positions(np.array([len(model.layout.beads) - 1]))
-    axis = np.vstack([model.joint_positions(), tip])
-    loaded = contacts.loaded
-    if loaded.any():
-        heading = np.diff(axis, axis=0)[contacts.link[loaded]]
-        heading /= np.hypot(*heading.T)[:, None]
-        right = np.column_stack([heading[:, 1], -heading[:, 0]])
-        load = contacts.distance[loaded] / contacts.distance[loaded].sum()
-        side = load @ (contacts.normal[loaded] * right).sum(axis=1)
+    axis = np.concatenate([model.joint_positions(), tip])
+    loaded = np.flatnonzero(contacts.loaded)
+    if loaded.size:
+        link, load = contacts.link[loaded], contacts.distance[loaded]
+        x, y = (axis[link + 1] - axis[link]).T
+        normal_x, normal_y = contacts.normal[loaded].T
+        side = load @ ((normal_x * y - normal_y * x) / np.hypot(x, y)) / load.sum()
         return Stance.NEAR if side > _POKES else Stance.FAR
     x, y = model.obstacle.lowest
     beside = float(np.interp(y, np.maximum.accumulate(axis[:, 1]), axis[:, 0]))

@@ -155,7 +155,7 @@ class Prism(Faceted):
 
     def window_of(self, place: float) -> int:
         """The window in whose middle a vertex is most."""
-        return int(np.argmin(np.abs(self._centres - place) / self._fine[self._centres]))
+        return int((np.abs(self._centres - place) / self._fine_there).argmin())
 
     def is_inside(self, window: int, places: Floats) -> bool:
         """Whether `window` has all of the contour around these vertices."""
@@ -207,6 +207,11 @@ class Prism(Faceted):
         return np.append(np.searchsorted(passed, np.arange(passed[-1])), len(passed) - 1)
 
     @cached_property
+    def _fine_there(self) -> Integers:
+        """How many at the centre of each window, see `_fine`, shape (n_windows,)."""
+        return self._fine[self._centres]
+
+    @cached_property
     def _fine(self) -> Integers:
         """How many vertices a window has at full resolution on either side of each, shape (n,)."""
         s, number = self._arc_length, np.arange(len(self.vertices))
@@ -254,17 +259,26 @@ class Prism(Faceted):
 
     def _offsets(self, fine: int) -> Integers:
         """Which vertices a window keeps of a long polygon, counted from its centre."""
-        n = len(self.vertices)
-        levels = math.ceil(math.log2(1 + n / _GRADED))
-        out = fine + np.cumsum(np.repeat(2 ** np.arange(1, levels + 1), _GRADED))
+        out = fine + self._graded
         return np.concatenate([-out[::-1], np.arange(-fine, fine + 1), out])
+
+    @cached_property
+    def _graded(self) -> Integers:
+        """Where those beyond full resolution are, counted from where that ends."""
+        levels = math.ceil(math.log2(1 + len(self.vertices) / _GRADED))
+        return np.cumsum(np.repeat(2 ** np.arange(1, levels + 1), _GRADED))
 
     def _kept(self, centre: int) -> Integers:
         """Those within the polygon, its ends, and the next ones until there are enough."""
         n, count = len(self.vertices), self._count - 1
         kept = centre + self._offsets(int(self._fine[centre]))
-        kept = np.union1d(kept[(kept > 0) & (kept < n - 1)], [0, n - 1])
-        near = np.arange(max(0, centre - count), min(n, centre + count + 1))
-        spare = np.setdiff1d(near, kept, assume_unique=True)
-        nearest = np.argsort(np.abs(spare - centre), kind="stable")[: count - len(kept)]
-        return np.sort(np.append(kept, spare[nearest]))
+        kept = kept[(kept > 0) & (kept < n - 1)]
+        missing = count - 2 - len(kept)
+        if missing:
+            begin = max(1, centre - count)
+            near = np.ones(min(n - 1, centre + count + 1) - begin, dtype=bool)
+            near[kept[(kept >= begin) & (kept < begin + len(near))] - begin] = False
+            spare = begin + np.flatnonzero(near)
+            nearest = np.argsort(np.abs(spare - centre), kind="stable")[:missing]
+            kept = np.sort(np.append(kept, spare[nearest]))
+        return np.concatenate([[0], kept, [n - 1]])

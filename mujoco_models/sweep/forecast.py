@@ -13,7 +13,7 @@ import numpy as np
 from analytic.problem.arrays import Booleans, Floats, Integers
 from mujoco_models.beams.layout import OF_CURVATURE
 from mujoco_models.model.balance import Balance
-from mujoco_models.model.contacts import Contacts
+from mujoco_models.model.contacts import Contacts, slope_angle
 from mujoco_models.sweep.newton import Newton
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.state import State, turned
@@ -43,14 +43,12 @@ class Picture:
         self.contact_curvature = model.contact_curvature
         self.stiffness = model.stiffness
         self._beads: Integers = np.array(sorted(beads), dtype=int)
-        layout = self.layout
-        self._links = layout.links[self._beads]
-        from_link = layout.vibrissa.at(layout.beads[self._beads]) - layout.base[self._links]
-        cos, sin = np.cos(layout.headings[self._links]), np.sin(layout.headings[self._links])
-        x, y = from_link.T
-        self._from_link = np.array([cos * x + sin * y, cos * y - sin * x])
+        self._links = self.layout.links[self._beads]
+        self._places = self.layout.beads[self._beads]
+        self._from_link = self.layout.from_links[:, self._beads]
         self.radii = model.lookout.radii[self._beads]
-        self._joints, self._elastic = layout.base, np.zeros(len(layout.joints))
+        self._none = np.zeros(len(self._beads), dtype=bool)
+        self._joints, self._elastic = self.layout.base, np.zeros(len(self.layout.joints))
 
     def look(self, foot_x: float, angles: Floats) -> Contacts | None:
         """Where a configuration touches; what else is asked is of that.
@@ -68,29 +66,28 @@ class Picture:
             Of the beads; None if the obstacle says nothing of that.
         """
         layout = self.layout
-        heading = layout.headings + np.cumsum(angles)
-        cos, sin = np.cos(heading), np.sin(heading)
-        joints = np.zeros((len(angles), 2))
-        ends = layout.chords * np.array([-sin, cos])
-        np.cumsum(ends[:, :-1].T, axis=0, out=joints[1:])
-        joints += layout.base[0] + [foot_x, 0.0]
+        heading = layout.headings + angles.cumsum()
+        along = np.array([-np.sin(heading), np.cos(heading)])
+        joints = layout.chords * along
+        joints[:, 1:] = joints[:, :-1].cumsum(axis=1)
+        joints[:, 0] = 0.0
+        joints += (layout.base[0] + [foot_x, 0.0])[:, None]
         # The springs' moments, from their stiffness at the nodes of Gauss and Legendre.
         part = [
             w * self.stiffness(angles * (1 + x) / 2) for x, w in zip(_NODES, _WEIGHTS, strict=True)
         ]
         self._elastic = -angles * sum(part) / 2
-        across, along = self._from_link
-        cos, sin = cos[self._links], sin[self._links]
-        points = joints[self._links]
-        points += np.array([cos * across - sin * along, sin * across + cos * along]).T
-        gap = self.obstacle.gap(self._model.lookout.window, points)
+        ahead, aside = along[:, self._links], self._from_link
+        points = joints[:, self._links] + aside[1] * ahead
+        points += aside[0] * np.array([ahead[1], -ahead[0]])
+        gap = self.obstacle.gap(self._model.lookout.window, points.T)
         if gap is None:
             return None
         distance, normal = gap
-        self._joints, no = joints, np.zeros(len(points), dtype=bool)
-        place = layout.beads[self._beads]
+        self._joints, no = joints.T, self._none
+        distance = distance - self.radii
         return Contacts(
-            self._beads, self._links, no, points, place, normal, distance - self.radii, no, False
+            self._beads, self._links, no, points.T, self._places, normal, distance, no, False
         )
 
     def joint_positions(self) -> Floats:
@@ -103,7 +100,7 @@ class Picture:
 
     def slides(self, contacts: Contacts) -> Booleans:
         """No bead does."""
-        return np.zeros(len(contacts.link), dtype=bool)
+        return self._none[: len(contacts.link)]
 
 
 def forecast(model: Balance, foot_x: float, start: State, numerics: Numerics) -> State | None:
@@ -126,7 +123,7 @@ def forecast(model: Balance, foot_x: float, start: State, numerics: Numerics) ->
         Not known to be at rest; None if nothing is found, or it is of no use: past sharp corners,
         where beads slide, or inside the object. The lookout faces what is touched.
     """
-    obstacle, spacing = model.obstacle, float(np.diff(model.layout.beads).max(initial=0.0))
+    obstacle, spacing = model.obstacle, model.layout.spacing
     if len(obstacle.corners) or obstacle.largest_curvature * spacing > 2 * OF_CURVATURE:
         return None
     count, reach = len(model.layout.beads), numerics.ahead
@@ -137,7 +134,7 @@ def forecast(model: Balance, foot_x: float, start: State, numerics: Numerics) ->
         contacts = picture.look(foot_x, state.angles)
         if contacts is None or not (contacts.distance > -picture.radii / 2).all():
             return None
-        slope = float(contacts.slope[contacts.distance.argmin()])
+        slope = float(slope_angle(contacts.normal[[contacts.distance.argmin()]])[0])
         model.lookout.face(slope)  # each window rounds the obstacle's vertices anew
         before, state = state, newton.step(state, contacts)
         if turned(state.angles, before.angles) < numerics.foreseen:

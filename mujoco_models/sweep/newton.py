@@ -81,10 +81,11 @@ class Newton:
         contacts = contacts.nearest(max(numerics.at_once, 2 * len(state.forces)))
         curvature = self._curvature(contacts)
         along, across = levers(contacts, model.joint_positions())
-        distance, force = contacts.distance, self._forces(state, contacts)
         slides = model.slides(contacts)
+        sliding = bool(slides.any())
+        distance, force = contacts.distance, self._forces(state, contacts, slides)
         comes = along
-        if slides.any():
+        if sliding:
             # Beads that slide stay about the point of tangency: all come nearer as it does.
             comes = along.copy()
             comes[slides] = along[np.where(slides, distance, np.inf).argmin()]
@@ -93,15 +94,15 @@ class Newton:
         loaded = force > 0
         held, slack = comes[loaded], (distance + force / model.contact_stiffness)[loaded]
         moments = of_links(model.elastic_moments()) - numerics.stiffening * slack @ held
-        if slides.any():
+        if sliding:
             moments -= np.maximum(-model.contact_stiffness * distance, 0) @ (comes - along)
         springs = (1 + inertia) * model.stiffness(state.angles)
-        stiffness = self._stiffness(springs, contacts, force, curvature, across, held)
-        solved = stiffness.solve(np.concatenate([moments[None], comes]))
-        free, compliance = solved[0], solved[1:]
-        softness = np.eye(len(force)) / model.contact_stiffness
-        forces = _unilateral(comes @ compliance.T + softness, distance + comes @ free, loaded)
-        step = free + forces @ compliance
+        stiffness = self._stiffness(springs, contacts, slides, force, curvature, across, held)
+        turns = stiffness.solve(np.concatenate([moments[None], comes]))
+        nearer = comes @ turns.T  # by the moments, and by a unit of force at each contact
+        compliance = nearer[:, 1:] + np.eye(len(force)) / model.contact_stiffness
+        forces = _unilateral(compliance, distance + nearer[:, 0], loaded)
+        step = turns[0] + forces @ turns[1:]
         shorter = min(1.0, numerics.largest_turn / max(float(np.abs(step).max()), 1e-300))
         step[1:] -= step[:-1].copy()
         return State(
@@ -114,13 +115,13 @@ class Newton:
         self,
         springs: Floats,
         contacts: Contacts,
+        slides: Booleans,
         force: Floats,
         curvature: Floats,
         across: Floats,
         held: Floats,
     ) -> Stiffness:
         """That of the springs, of turning levers and normals, and of what is held in contact."""
-        slides = self._model.slides(contacts)
         on_side = contacts.on_side | slides
         # The lever of a force turns with each link ...
         links = force @ across
@@ -144,7 +145,7 @@ class Newton:
                 weights.append(np.array([0.5, -0.5]) / size)
         return Stiffness(springs, links, np.concatenate(directions), np.concatenate(weights))
 
-    def _forces(self, state: State, contacts: Contacts) -> Floats:
+    def _forces(self, state: State, contacts: Contacts, slides: Booleans) -> Floats:
         """The forces of `state` at these contacts, shape (n,) [EI/L^2].
 
         As the beam slides, a corner passes from link to joint to link: what has lost it leaves its
@@ -152,7 +153,6 @@ class Newton:
         """
         touch = np.where(contacts.fused, -1, contacts.touch)
         force = np.array([state.forces.get(i, 0.0) for i in touch.tolist()])
-        slides = self._model.slides(contacts)
         if (slides & contacts.loaded).any() and not force[slides].any():
             force[np.where(slides, contacts.distance, np.inf).argmin()] = state.load
         if len(self._model.obstacle.corners) == 0:
@@ -186,17 +186,20 @@ class Newton:
         if not self._model.obstacle.faceted or len(self._model.obstacle.corners):
             return found
         before = self._last
-        now = self._last = Touch(contacts.touch, angles, contacts.point.copy())
+        now = self._last = Touch(contacts.touch, angles, contacts.point)
         if before is None or len(before.bead) == 0:
             return found
-        row = {bead: i for i, bead in enumerate(before.bead.tolist())}
-        old = np.array([row.get(bead, -1) for bead in now.bead.tolist()], dtype=int)
-        turn = np.abs(angles - before.normal_angle[old])
-        slid = np.hypot(*(now.position - before.position[old]).T)
-        moved = (old >= 0) & (slid > 0)  # or another window shows the same place
-        same = moved & (turn < self._numerics.same_normal)
-        found[moved] = turn[moved] / slid[moved]
-        found[same] = 0.0
+        if now.bead is before.bead:
+            same = np.ones(len(angles), dtype=bool)
+        else:
+            row = {bead: i for i, bead in enumerate(before.bead.tolist())}
+            old = np.array([row.get(bead, -1) for bead in now.bead.tolist()], dtype=int)
+            same, before = old >= 0, Touch(*(part[old] for part in before))
+        turn = np.abs(angles - before.normal_angle)
+        slid = np.hypot(*(now.position - before.position).T)
+        moved = same & (slid > 0)  # or another window shows the same place
+        turn[turn < self._numerics.same_normal] = 0.0
+        np.divide(turn, slid, out=found, where=moved)
         return found
 
 
@@ -215,18 +218,14 @@ def levers(contacts: Contacts, joints: Floats) -> tuple[Floats, Floats]:
     along, across : array, shape (n, n_links)
         Along the normals, and along the contour, negative if that is the way of its slope [L/rad].
     """
-    link, normal = contacts.link, contacts.normal
+    link, (x, y) = contacts.link, contacts.normal.T
     chord = np.zeros_like(joints)
     chord[:-1] = joints[1:] - joints[:-1]
-    before = np.arange(len(joints)) < link[:, None]
-    rows, arm = np.arange(len(link)), contacts.point - joints[link]
-    found = []
-    for x, y in (normal[:, 1], -normal[:, 0]), (normal[:, 0], normal[:, 1]):
-        lever = np.array([x, y]).T @ chord.T
-        lever *= before
-        lever[rows, link] = x * arm[:, 0] + y * arm[:, 1]
-        found.append(lever)
-    return found[0], found[1]
+    ways = np.array([[y, -x], [x, y]])
+    lever = ways.transpose(0, 2, 1) @ chord.T
+    lever *= np.arange(len(joints)) < link[:, None]
+    lever[:, np.arange(len(link)), link] = (ways * (contacts.point - joints[link]).T).sum(axis=1)
+    return lever[0], lever[1]
 
 
 def of_links(moments: Floats) -> Floats:
@@ -254,9 +253,9 @@ def _unilateral(compliance: Floats, gap: Floats, guess: Booleans) -> Floats:
     goes round in circles, an active-set method that never does finds them.
     """
     for _ in range(_TRIALS):
-        force = np.zeros(len(gap))
-        if guess.any():
-            _, force[guess], failed = dposv(compliance[guess][:, guess], -gap[guess])
+        force, held = np.zeros(len(gap)), np.flatnonzero(guess)
+        if held.size:
+            _, force[held], failed = dposv(compliance[held[:, None], held], -gap[held])
             if failed:
                 break
         right = np.where(guess, force >= 0, compliance @ force + gap < 0)

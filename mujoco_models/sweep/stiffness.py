@@ -7,6 +7,7 @@ is positive definite follows from the inertia of the two (E. V. Haynsworth, Line
 Applications 1, 1968).
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,21 +62,23 @@ class Stiffness:
             If the stiffness is not finite.
         """
         count, rows = len(moments), np.concatenate([moments, self.directions])
-        if not np.isfinite(self.springs.sum() + self.links.sum() + rows.sum()):
+        if not math.isfinite(self.springs.sum() + self.links.sum() + rows.sum()):
             raise DivergedError("the stiffness is not finite")
         if len(self.weights) > len(self.springs):
             return self._solve_whole(moments)
-        shift, positive = 0.0, int((self.weights > 0).sum())
+        shift, positive = 0.0, np.count_nonzero(self.weights > 0)
         while True:
             turns, negative = self._tridiagonal(shift, rows.T)
-            plain, low = turns[:, :count], turns[:, count:]
-            within = np.diag(1 / self.weights) + self.directions @ low
+            within = self.directions @ turns
+            met, within = within[:, :count], within[:, count:]
+            within.flat[:: len(within) + 1] += 1 / self.weights
             if negative + _positive(within) == positive:
                 break
             shift = self._next(shift)
+        plain, low = turns[:, :count], turns[:, count:]
         if len(within) == 0:
             return plain.T
-        return np.asarray((plain - low @ dgesv(within, self.directions @ plain)[2]).T)
+        return np.asarray((plain - low @ dgesv(within, met)[2]).T)
 
     def _next(self, shift: float) -> float:
         return max(2 * shift, _LEAST_SHIFT * len(self.springs))
