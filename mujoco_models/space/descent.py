@@ -105,12 +105,11 @@ def _near(model: SpaceModel) -> list[_Near]:
     """The links near the body, each at its nearest place."""
     found: list[tuple[float, int, float]] = []
     link = len(model.ends) - 1
-    longest = float(model.layout.lengths.max())
     while link >= 0:
         distance, s = model.distance_of_link(link)
         if distance < _NEAR:
             found.append((distance, link, s))
-        link -= max(1, int(distance / longest))
+        link -= max(1, int(distance / model.longest))
     if not model.shape.faceted:
         found = [min(found)] if found else []
     return [_Near(link, s, model.touch(link, s)) for _, link, s in found]

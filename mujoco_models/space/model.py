@@ -93,6 +93,10 @@ class SpaceModel:
         self._beads = np.array([model.geom(f"bead{i}").id for i in numbers])
         self._sides = np.array([model.geom(f"side{i}").id for i in numbers])
         self._ends = np.zeros(6)
+        self._begins: list[float] = self.layout.joints.tolist()
+        self._widths: list[float] = model.geom_size[self._sides, 0].tolist()
+        self.longest = float(self.layout.lengths.max())
+        """Length of the longest link [L]."""
         self.joint_of = np.repeat(np.arange(len(self.ends)), model.nv // len(self.ends))
         """Number of the joint that each velocity belongs to."""
         self.shared = model.jnt_type[0] == mujoco.mjtJoint.mjJNT_BALL
@@ -180,7 +184,7 @@ class SpaceModel:
             [L]
         """
         start = self.data.xpos[self._links[link]]
-        return np.asarray(start + (s - self.layout.joints[link]) * self.direction(link))
+        return np.asarray(start + (s - self._begins[link]) * self.direction(link))
 
     def touch(self, link: int, s: float) -> Touch:
         """MuJoCo's nearest point of the body to a bead on a link.
@@ -282,7 +286,7 @@ class SpaceModel:
         distance = mujoco.mj_geomDistance(self.model, self.data, bead, self._body, _FAR, self._ends)
         away = centre - self._ends[3:]
         outward = 1.0 if distance > -self.radius else -1.0  # the centre itself may be inside
-        return outward * away / np.linalg.norm(away), float(distance)
+        return away * (outward / math.sqrt(away @ away)), float(distance)
 
     def distance_of_link(self, link: int) -> tuple[float, float]:
         """How far a link is from the body, and where on it that is.
@@ -304,9 +308,9 @@ class SpaceModel:
             self.model, self.data, side, self._outline, _FAR, self._ends
         )
         apart = self._ends[:3] - self.data.xpos[self._links[link]]
-        low, high = self.layout.joints[link], self.ends[link]
-        s = low + float(np.clip(apart @ self.direction(link), 0, high - low))
-        return float(distance) + float(self.model.geom_size[side, 0]) - self.radius, s
+        s = self._begins[link] + float(apart @ self.direction(link))
+        s = min(max(s, self._begins[link]), float(self.ends[link]))
+        return float(distance) + self._widths[link] - self.radius, s
 
     def nearest_link(self) -> tuple[float, int, float]:
         """The link nearest to the body.
@@ -325,12 +329,11 @@ class SpaceModel:
         """
         best, found, at = np.inf, len(self.ends) - 1, 1.0
         link = len(self.ends) - 1
-        longest = float(self.layout.lengths.max())
         while link >= 0:
             distance, s = self.distance_of_link(link)
             if distance < best:
                 best, found, at = distance, link, s
-            link -= max(1, int((distance - max(best, 0.0)) / longest))
+            link -= max(1, int((distance - max(best, 0.0)) / self.longest))
         return best, found, at
 
     def deeper_link(self, touch: Touch, depth: float) -> tuple[float, int, float]:
