@@ -20,6 +20,7 @@ from compare.commands.waiting import waiting
 if TYPE_CHECKING:
     import pandas as pd
 
+    from analytic.problem.arrays import Floats
     from analytic.space import Body, SpatialCase, SpatialReadings
     from compare.align.frames import Frame
     from compare.read.space import SpaceJob
@@ -172,7 +173,7 @@ def _compared(
     parts = split_space(exact, candidate, job.settings, sweep) if with_budget else None
     with terminal.progress("frames", _FRAMES) as advance:
         write_space_animation(exact, candidate, folder, case.body, _FRAMES, advance)
-    _report(comparison, case.body, folder, parts, Film.of(folder))
+    write_report(comparison, case.body, folder, parts, Film.of(folder))
     return comparison
 
 
@@ -229,21 +230,27 @@ def compare_in_space(
     default = Path("results") / f"{called}-{distinct_name(candidate)}"
     with output_folder(out or default) as folder:
         film = Film.of(folder) if candidate.parent.resolve() == folder.resolve() else None
-        _report(comparison, body, folder, film=film)
+        write_report(comparison, body, folder, film=film)
         complaint = wrench_complaint(reconstruct_space(measured))
     if complaint is not None:
         terminal.print_line(f"{measured.source}: {complaint}")
     return AGREES if comparison.agrees else DISAGREES
 
 
-def _report(
+def write_report(
     comparison: "SpatialComparison",
-    body: "Body | None",
+    body: "Body | Floats | None",
     folder: Path,
     parts: "Parts | None" = None,
     film: "Film | None" = None,
 ) -> None:
-    """Write the report and print the verdict."""
+    """Write the report and print the verdict.
+
+    Parameters
+    ----------
+    comparison, body, folder, parts, film
+        As `compare.show.spatial.write_spatial_report` takes them.
+    """
     from compare.commands import terminal
     from compare.show.spatial import write_spatial_report
 

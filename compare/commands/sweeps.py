@@ -9,7 +9,6 @@ from typing import Annotated
 
 import typer
 
-from analytic.problem.errors import InputError
 from compare.commands.options import (
     AGREES,
     DISAGREES,
@@ -110,7 +109,7 @@ def report(
         Path, typer.Argument(metavar="DIR", help="Folder of a run, as `vibrissa run` makes it.")
     ],
 ) -> int:
-    """Write the report of a run again, from the sweeps that it stored.
+    """Write the report of a run, in the plane or in space, again from the sweeps that it stored.
 
     Also where there is none yet, after `analytic` and `simulate` of a case with one --out.
     """
@@ -121,13 +120,9 @@ def report(
     from compare.read.space_readings import is_spatial
 
     if is_spatial(reference):
-        raise InputError(
-            "DIR",
-            folder,
-            "the folder of a run in the plane",
-            f"in space: vibrissa compare CASE.toml {candidate} --out {folder}",
-        )
+        from compare.commands.space_folder import report_in_space
 
+        return report_in_space(folder, reference, candidate)
     stored = read_run(folder)
     with output_folder(folder):
         from compare.commands import terminal

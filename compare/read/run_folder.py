@@ -3,7 +3,7 @@
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import pandas as pd
 from pydantic import TypeAdapter
@@ -11,12 +11,15 @@ from pydantic import TypeAdapter
 from analytic import InputError, Readings
 from analytic.problem.files import regular_file
 from compare.explain.budget import Budget
+from compare.judge.spatial import GENERAL_IN_SPACE, SpatialTolerances
 from compare.judge.tolerances import GENERAL, Limit, Tolerances
 from compare.read.sweep_files import sweep_files
 from compare.validate.validation import Validation
 
+AnyTolerances = TypeVar("AnyTolerances", Tolerances, SpatialTolerances)
+
 _LARGEST = 64_000_000  # bytes of a JSON file
-_REMEDY = "run it again: vibrissa run CASE --out DIR"
+_REMEDY = "run it again, with --out DIR"
 
 
 @dataclass(frozen=True)
@@ -65,27 +68,49 @@ def read_run(folder: Path) -> StoredRun:
     return StoredRun(
         Readings.read(reference),
         Readings.read(candidate),
-        _tolerances(folder / "comparison.json"),
+        read_limits(folder / "comparison.json", Tolerances),
         read_budget(folder / "budget.json") if (folder / "budget.json").exists() else None,
         _validation(folder),
     )
 
 
-def _tolerances(file: Path) -> Tolerances:
+def read_limits(file: Path, kind: type[AnyTolerances]) -> AnyTolerances:
+    """The limits that a run was judged by.
+
+    Parameters
+    ----------
+    file : Path
+        Its ``comparison.json``.
+    kind : type
+        `Tolerances`, or `SpatialTolerances` of a run in space.
+
+    Returns
+    -------
+    Tolerances or SpatialTolerances
+        The defaults if there is no such file.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
     if not file.exists():
-        return Tolerances()
-    found = _json(file)
+        return kind()
+    found = read_json(file)
+    in_plane = kind is Tolerances
     try:
         reasons = found["tolerance_reasons"]
         limits = {
             str(name): Limit(float(value), str(reasons[name]))
             for name, value in found["tolerances"].items()
         }
-        limits.setdefault("lateness", Limit(0.0, "not asked"))  # of older runs
-        general = {name: limits.pop(name) for name in GENERAL}
-        return Tolerances(**general, special=limits)
+        if in_plane:
+            limits.setdefault("lateness", Limit(0.0, "not asked"))  # of older runs
+        names = GENERAL if in_plane else GENERAL_IN_SPACE
+        general = {name: limits.pop(name) for name in names}
+        return kind(**general, special=limits)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise _damaged(file, error) from error
+        raise damaged(file, error) from error
 
 
 def read_budget(file: Path) -> Budget:
@@ -107,16 +132,16 @@ def read_budget(file: Path) -> Budget:
         If it cannot be read.
     """
     try:
-        return TypeAdapter(Budget).validate_python(_json(file))
+        return TypeAdapter(Budget).validate_python(read_json(file))
     except ValueError as error:
-        raise _damaged(file, error) from error
+        raise damaged(file, error) from error
 
 
 def _validation(folder: Path) -> Validation | None:
     file, table = folder / "comparison.json", folder / "validation.csv"
     if not (file.exists() and table.exists()):
         return None
-    found = _json(file)
+    found = read_json(file)
     if not isinstance(found, dict) or "validation" not in found:
         return None
     try:
@@ -125,17 +150,48 @@ def _validation(folder: Path) -> Validation | None:
             {**found["validation"], "table": pd.read_csv(table)}
         )
     except (OSError, ValueError, TypeError) as error:
-        raise _damaged(table, error) from error
+        raise damaged(table, error) from error
 
 
-def _json(file: Path) -> Any:  # noqa: ANN401  # whatever the file holds
+def read_json(file: Path) -> Any:  # noqa: ANN401  # whatever the file holds
+    """The content of a JSON file.
+
+    Parameters
+    ----------
+    file : Path
+        Of a run.
+
+    Returns
+    -------
+    object
+        Whatever it holds.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
     regular_file(file, "file", _LARGEST)
     try:
         return json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError) as error:
-        raise _damaged(file, error) from error
+        raise damaged(file, error) from error
 
 
-def _damaged(file: Path, error: Exception) -> InputError:
+def damaged(file: Path, error: Exception) -> InputError:
+    """What to say of a file that cannot be read.
+
+    Parameters
+    ----------
+    file : Path
+        Of a run.
+    error : Exception
+        What was wrong with it.
+
+    Returns
+    -------
+    InputError
+        To be raised.
+    """
     reason = " ".join(f"{type(error).__name__}: {error}".split())[:160]
     return InputError(f"file {file}", f"damaged ({reason})", "as the run wrote it", _REMEDY)

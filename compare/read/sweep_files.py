@@ -31,6 +31,6 @@ def sweep_files(folder: Path) -> tuple[Path, Path]:
             "DIR",
             f"{folder} ({there[:200]})",
             "the folder of one run, with analytic.parquet and one mujoco-BEAM.parquet",
-            "make one: vibrissa run CASE --out DIR",
+            "make one: vibrissa run CASE --out DIR, in space vibrissa space CASE --engine mujoco",
         )
     return folder / "analytic.parquet", sweeps[0]

@@ -49,15 +49,15 @@ class SweepScene:
     high: Floats
 
     @classmethod
-    def of(cls, readings: SpatialReadings, body: Body | None) -> "SweepScene":
+    def of(cls, readings: SpatialReadings, body: Body | Floats | None) -> "SweepScene":
         """The scene of a sweep.
 
         Parameters
         ----------
         readings : SpatialReadings
             The sweep; contacts are found from its clamp.
-        body : Body, optional
-            In the unit of length of the readings.
+        body : Body or array, shape (triangles, 3, 3), optional
+            In the unit of length of the readings; or what an earlier scene showed of it.
 
         Returns
         -------
@@ -76,7 +76,9 @@ class SweepScene:
         lines, foot = deflected_rods(readings) / length, readings.values(*FOOT) / length
         low, high = _box(np.concatenate([lines[np.isfinite(lines).all(axis=2)], foot]))
         faces = np.empty((0, 3, 3))
-        if body is not None:
+        if isinstance(body, np.ndarray):
+            faces = body / length
+        elif body is not None:
             middle, reach = (low + high) / 2, 0.6 * float((high - low).max())
             patches = body.scaled(1 / length).patches(middle, reach)
             faces = faces_within(patches.reshape(-1, 3), low, high)

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from analytic.problem.arrays import Floats
 from analytic.problem.files import write_whole
 from analytic.space import Body
 from compare.align.frames import COMPONENTS
@@ -17,6 +18,7 @@ from compare.show.figures.space import (
 from compare.show.page import document, embedded, inline_svg, png, render
 from compare.show.report import Film
 from compare.show.scene import SweepScene
+from compare.show.solid import solid_ply
 from compare.show.turning import turning
 from compare.spatial.comparison import SpatialComparison
 from compare.spatial.parts import Parts
@@ -33,19 +35,20 @@ _SHOWN = {
 
 def write_spatial_report(
     comparison: SpatialComparison,
-    body: Body | None,
+    body: Body | Floats | None,
     folder: Path,
     parts: Parts | None = None,
     film: Film | None = None,
 ) -> Path:
-    """Write ``comparison.json``, the figures and ``report.html`` into `folder`.
+    """Write ``comparison.json``, the figures, what they show of the body, and ``report.html``.
 
     Parameters
     ----------
     comparison : SpatialComparison
         What is reported.
-    body : Body, optional
-        In the unit of length of the readings; without it the vibrissa and its contacts are shown.
+    body : Body or array, shape (triangles, 3, 3), optional
+        In the unit of length of the readings: the body, or what ``body.ply`` has of it. Without it
+        the vibrissa and its contacts are shown.
     folder : Path
         Made if it is not there.
     parts : Parts, optional
@@ -68,6 +71,8 @@ def write_spatial_report(
     if parts is not None:
         drawn["parts"] = parts_in_space(parts)
     contents: dict[str, str | bytes] = {f"{name}.png": png(one) for name, one in drawn.items()}
+    if len(scene.faces):
+        contents["body.ply"] = solid_ply(scene.faces * candidate.beam.length)
     contents["comparison.json"] = document(comparison.to_dict())
     if parts is not None:
         contents["budget.json"] = document(parts.to_dict())

@@ -8,7 +8,14 @@ import pytest
 from PIL import Image
 
 from analytic import Beam, InputError
-from analytic.space import FootPath, SpatialCase, SpatialReadings, solve_space, sphere
+from analytic.space import (
+    FootPath,
+    SpatialCase,
+    SpatialReadings,
+    convex_mesh,
+    solve_space,
+    sphere,
+)
 from analytic.space.problem.readings import FORCE, MOMENT, SENSED_IN_SPACE
 from compare import SpatialTolerances, assert_agreement, compare_space, split_space
 from compare.align.frames import clamp_axes, components, from_frame
@@ -219,10 +226,66 @@ def test_the_command_compares_and_ends_with_the_right_code(tmp_path):
         assert done.returncode == code, done.stdout + done.stderr
         assert says in done.stdout + done.stderr
         assert len(done.stderr.strip().splitlines()) == (code == 2)
-    done = vibrissa("report", "of-40", cwd=tmp_path)
-    assert done.returncode == 2
-    assert "vibrissa compare CASE.toml of-40/mujoco-chain.parquet --out of-40" in done.stderr
     for wrong in (["--engine", "drake"], ["--budget"]):
         done = vibrissa("space", "case.toml", *wrong, cwd=tmp_path)
         assert done.returncode == 2
+        assert len(done.stderr.strip().splitlines()) == 1
+
+
+RUN = """
+[beam]
+length = "50 mm"
+flexural_rigidity = "2e-6 N m^2"
+radius = "0.25 mm"
+[body]
+kind = "sphere"
+radius = "50 mm"
+centre = ["0 mm", "70 mm", "0 mm"]
+[path]
+points = [["55 mm", "15 mm"], ["10 mm", "15 mm"]]
+tangent = [0.1, 1, 0]
+stations = 20
+[mujoco]
+segments = 10
+[tolerances]
+rms = { limit = 1e-3, reason = "stricter than ten segments are" }
+force_x.max = { limit = 0.3, reason = "for the controller" }
+"""
+
+
+@pytest.mark.slow
+def test_the_report_of_a_run_again(tmp_path):
+    """Limits with their reasons, frame, parts, body and animation are those of the run."""
+    (tmp_path / "case.toml").write_text(RUN)
+    words = ("--engine", "mujoco", "--budget", "--frame", "clamp", "--out", "out")
+    done = vibrissa("space", "case.toml", *words, cwd=tmp_path)
+    before = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
+    for name in ("report.html", "contacts.png"):
+        (tmp_path / "out" / name).unlink()
+    again = vibrissa("report", "out", cwd=tmp_path)
+    assert (again.returncode, again.stderr) == (done.returncode, "")
+    assert "disagrees with" in again.stdout
+    after = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
+    page = after.pop("report.html").splitlines()
+    lost = set(page).symmetric_difference(before.pop("report.html").splitlines())
+    assert all(b">date<" in line or b"command<" in line for line in lost), lost
+    assert after == before
+    body = convex_mesh(tmp_path / "out" / "body.ply", hull=True)
+    apart = np.linalg.norm(body.vertices - [0, 0.07, 0], axis=1)
+    assert apart.max() == pytest.approx(0.05, rel=1e-2)
+    assert body.vertices[:, 1].min() == pytest.approx(0.02, rel=0.05)
+    # Without what the run wrote beside the sweeps there is a report, too.
+    for name in ("comparison.json", "budget.json", "body.ply", "animation.gif"):
+        (tmp_path / "out" / name).unlink()
+    assert vibrissa("report", "out", cwd=tmp_path).returncode == 0
+    for name, content in (
+        ("body.ply", b"ply\n"),
+        ("budget.json", b'{"whole": []}'),
+        ("comparison.json", b'{"frame": "clamp"}'),
+        ("mujoco-chain.parquet", b""),
+    ):
+        (tmp_path / "out" / name).write_bytes(content)
+        done = vibrissa("report", "out", cwd=tmp_path)
+        assert done.returncode == 2
+        assert name in done.stderr
         assert len(done.stderr.strip().splitlines()) == 1
