@@ -79,7 +79,10 @@ def _methods(of: type) -> Iterator[str]:
 
 def _is_command(function: FunctionType) -> bool:
     """Whether all parameters of `function` are options and arguments of the command line."""
-    hints = get_type_hints(function, include_extras=True)
+    try:
+        hints = get_type_hints(function, include_extras=True)
+    except NameError:  # of what only type checkers import: no command asks for that
+        return False
     kinds = (OptionInfo, ArgumentInfo)
     return all(
         any(isinstance(x, kinds) for x in getattr(hint, "__metadata__", ()))
