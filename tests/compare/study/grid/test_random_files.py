@@ -47,7 +47,14 @@ def random_file(chance):
     return "\n".join(f"{key} = {value}" for key, value in lines.items())
 
 
-@pytest.mark.parametrize("trials", [15, pytest.param(3000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "trials",
+    [
+        15,
+        pytest.param(500, marks=pytest.mark.slow),
+        pytest.param(3000, marks=pytest.mark.trial),
+    ],
+)
 def test_a_random_file_is_a_plan_or_one_line(tmp_path, trials):
     chance = random.Random("study files")
     plans = 0

@@ -31,11 +31,12 @@ def start(folder, *more, out="out"):
     )
 
 
-def test_killed_twenty_times(folder):
+@pytest.mark.parametrize("times", [6, pytest.param(20, marks=pytest.mark.trial)])
+def test_killed_many_times(folder, times):
     vibrissa("study", "grid.toml", "--out", "undisturbed", cwd=folder)
     chance = random.Random(6)
     seen: set[str] = set()
-    for _ in range(20):
+    for _ in range(times):
         process = start(folder)
         time.sleep(chance.uniform(1.0, 4.0))
         process.send_signal(signal.SIGKILL)
