@@ -150,6 +150,19 @@ class Layout:
         there = self.vibrissa.at(self.beads) - self.base[self.links]
         return turned(there.T, -self.headings[self.links])
 
+    def move(self, beads: Integers, places: Floats) -> None:
+        """Let beads be elsewhere on their links.
+
+        Parameters
+        ----------
+        beads : array of int, shape (n,)
+            Their numbers.
+        places : array, shape (n,)
+            Their arc lengths [L].
+        """
+        self.beads[beads] = places
+        self.__dict__.pop("from_links", None)
+
     def tip_angle(self, angles: Floats) -> float:
         """Slope angle of the tip.
 

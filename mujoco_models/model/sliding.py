@@ -159,4 +159,4 @@ class SlidingBeads:
         geoms = self._beads[beads]
         self._model.geom_pos[geoms] *= scale[:, None]
         self._model.geom_sameframe[geoms] = _ITS_OWN  # or MuJoCo ignores the place of a middle one
-        layout.beads[beads] = places
+        layout.move(beads, places)

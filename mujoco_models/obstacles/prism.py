@@ -28,6 +28,7 @@ _GRADED = 8  # vertices a level farther out; the spacing doubles from level to l
 _OF_TURN = 0.01  # of a facet's turn from the last one; so much may its vertices' rounding turn it
 _FINEST = 1e-12  # L
 _ABOUT = np.arange(-2, 3)[:, None]  # facets; the nearest one is found to within the next one
+_FEET = 8  # two are usual, five at the tip of a needle
 _BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
 
 
@@ -131,9 +132,9 @@ class Prism(Faceted):
         """From the facets about the nearest one; sharp corners are touched by links, not points."""
         if len(self.corners):
             return None
-        bound, aside = self._below(points, points[:, 0])
-        nearest = np.searchsorted(self._inner, points[:, 0] - bound * aside)
-        facets = np.minimum(np.maximum(nearest + _ABOUT, 0), len(self.facet_angles) - 1)
+        facets = np.minimum(
+            np.maximum(self._nearest(points) + _ABOUT, 0), len(self.facet_angles) - 1
+        )
         origin = self._origin(window)
         ends = self._columns.take([facets, facets + 1], axis=1) - origin[:, None, None, None]
         (begin_x, end_x), (begin_y, end_y) = ends.astype(np.float32).astype(float)  # as in MuJoCo
@@ -148,6 +149,23 @@ class Prism(Faceted):
         best = np.argmin(distances, axis=0), np.arange(len(points))
         distance = np.where(inside, -distances[best], distances[best])
         return distance, np.array([x[best], y[best]]).T / distance[:, None]
+
+    def _nearest(self, points: Floats) -> Integers:
+        """The facets nearest to the points, shape (n,), to within the next one.
+
+        By Newton's method on the foot of the perpendicular; where the contour is sharper than a
+        point is far away, a step would go past it without the contour's turn.
+        """
+        x, facet = points[:, 0], np.full(len(points), -1)
+        for _ in range(_FEET):
+            before, facet = facet, np.searchsorted(self._inner, x)
+            if (np.abs(facet - before) < 2).all():
+                break
+            bound, aside = self._below(points, x)
+            begin = self.vertices[facet, 0]
+            across = points[:, 0] - bound * aside - begin
+            x = begin + across / (1 + self._curvature[facet] * np.maximum(bound, 0))
+        return facet
 
     def place(self, slope: Floats) -> Floats:
         """The number of the vertex at which the slope angle is passed."""

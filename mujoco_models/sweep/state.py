@@ -26,8 +26,6 @@ class State:
         Where the beam is then relative to the object.
     slope : float or None
         Slope angle of the contour at the contact, once settled, if there is one [rad].
-    foreseen : bool
-        Whether the solver's own picture is at rest there, and only the engine's word is missing.
     """
 
     angles: Floats
@@ -36,7 +34,6 @@ class State:
     settled: bool = False
     stance: Stance = Stance.AHEAD
     slope: float | None = None
-    foreseen: bool = False
 
     @classmethod
     def straight(cls, joints: int) -> "State":

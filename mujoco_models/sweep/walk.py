@@ -4,18 +4,22 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from mujoco_models.beams.layout import OF_CURVATURE
 from mujoco_models.errors import ClampError
 from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import NOWHERE
 from mujoco_models.model.stance import Stance
 from mujoco_models.sweep.descent import descend
 from mujoco_models.sweep.forecast import forecast
+from mujoco_models.sweep.minimum import minimum
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.rest import refine, relax
 from mujoco_models.sweep.state import State, turned
 
 Model = TypeVar("Model", bound=Balance)
 _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
+# L; two states at rest that rounding alone puts apart do not tell where the branch goes.
+_SAME_PLACE = 1e-12
 _DEEP = 0.25  # of the radius; two sweeps of 390 were lost past polygons, at 0.5 of it and more
 # What may follow one state at rest without a snap-off.
 _NEIGHBOURS = {
@@ -69,6 +73,8 @@ class Walk(Generic[Model]):
         self._lost: str | None = None
         self._smooth = True  # no step was taken in vain at this station and the last one
         self._curved = not model.layout.vibrissa.is_straight
+        turn = model.obstacle.largest_curvature * model.layout.spacing
+        self._sharp = turn > 2 * OF_CURVATURE
         self.snap_off: float | None = None
         self.doubt: str | None = None
 
@@ -105,7 +111,8 @@ class Walk(Generic[Model]):
         step, let_go, in_vain = target - self._foot_x, False, False
         while True:
             end = target if wall is None else wall
-            trial = end if abs(step) >= abs(end - self._foot_x) else self._foot_x + step
+            rest = abs(end - self._foot_x) - abs(step)
+            trial = end if rest < _SAME_PLACE else self._foot_x + step
             state = self._near_rest(trial)
             if self._follows(state):
                 self._accept(trial, state)
@@ -213,9 +220,10 @@ class Walk(Generic[Model]):
     def _forecast(self, foot_x: float) -> State:
         """Where the beam should come to rest, by the solver's own picture or as it went so far."""
         guess = self._guess(foot_x)
-        if not (self._smooth and guess.forces):
+        if not guess.forces or not (self._sharp or self._smooth):
             return guess
-        return forecast(self.model, foot_x, guess, self._numerics) or guess
+        foreseen = minimum if self._sharp else forecast
+        return foreseen(self.model, foot_x, guess, self._numerics) or guess
 
     def _guess(self, foot_x: float) -> State:
         """The last state, carried on along the branch; so is the place of its load."""

@@ -7,8 +7,8 @@ import pytest
 
 from analytic import Beam, named_case
 from mujoco_models import Settings, available_beams
-from mujoco_models.sweep.forecast import Picture
 from mujoco_models.sweep.numerics import Numerics
+from mujoco_models.sweep.picture import Picture
 from mujoco_models.sweep.sweep import set_out
 
 CONE = Beam(tip_radius=0.002)

@@ -1,0 +1,91 @@
+"""Where a beam will rest whose beads share the load of a sharp contour.
+
+There the beam slides along the contour almost freely, and each facet has a state at rest of its
+own: Newton's method goes past one after the other. The solver's own picture knows its energy, and
+so what is a step down.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from mujoco_models.model.balance import Balance
+from mujoco_models.model.contacts import Contacts
+from mujoco_models.sweep.newton import Newton
+from mujoco_models.sweep.numerics import Numerics
+from mujoco_models.sweep.picture import Picture
+from mujoco_models.sweep.secant import Secant
+from mujoco_models.sweep.state import State, turned
+
+_STEPS = 40  # twelve are usual, and more than forty as dear as the engine's own way
+_AT_REST = 1e-11  # rad; the step is what the energy still asks for, and rounding is 1e-15
+_ON_A_FACET = 1e-5  # rad; nearer than that, steps change from facet to facet no more
+_SHORTER = (1.0, 0.25, 0.0625)  # steps that are tried in turn
+_ROUNDING = 4e-16  # of the energy
+_NOT_AT_ALL = 1e-3  # EI/L^3; forces are those of the depths here: there is no slack to convexify
+
+
+class _OnFacets(Newton):
+    """Newton's method as if the facets that beads are on went on for ever.
+
+    At a vertex the energy is less than that: a step that goes down there goes down here.
+    """
+
+    def _curvature(self, contacts: Contacts) -> Floats:
+        return np.zeros(len(contacts.distance))
+
+
+def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> State | None:
+    """The minimum of the energy that is down from `start`, with the foot at `foot_x`.
+
+    Parameters
+    ----------
+    model : Balance
+        The beam and the obstacle.
+    foot_x : float
+        Foot position [L].
+    start : State
+        Where to start from.
+    numerics : Numerics
+        Constants of the way there.
+
+    Returns
+    -------
+    State or None
+        Not known to be at rest; None if fewer than two beads share the load, past sharp corners,
+        inside the object, or if nothing is found. The lookout faces what is touched.
+    """
+    if len(start.forces) < 2 or len(model.obstacle.corners):
+        return None
+    picture = Picture(model, start.forces, numerics.ahead)
+    newton, secant = _OnFacets(picture, replace(numerics, stiffening=_NOT_AT_ALL)), Secant()
+    angles = start.angles
+    for _ in range(_STEPS):
+        contacts = picture.look(foot_x, angles)
+        if contacts is None or picture.is_inside(contacts):
+            return None
+        model.lookout.follow_contact(contacts)
+        pressed = np.flatnonzero(contacts.loaded)
+        force = (-picture.contact_stiffness * contacts.distance[pressed]).tolist()
+        state = State(angles, dict(zip(contacts.touch[pressed].tolist(), force, strict=True)))
+        step = newton.step(state, contacts).angles - angles
+        turn = turned(step, np.zeros(len(step)))
+        if turn < _AT_REST:
+            return replace(state, slope=float(contacts.slope[contacts.distance.argmin()]))
+        steps = [scale * step for scale in _SHORTER]
+        if turn < _ON_A_FACET:
+            steps.insert(0, secant.better(angles, step))
+        most = picture.energy(contacts) * (1 + _ROUNDING)
+        lower = next((s for s in steps if _energy(picture, foot_x, angles + s) <= most), None)
+        if lower is None:
+            return None
+        angles = angles + lower
+        if turned(angles, start.angles) > numerics.left_turn:
+            return State(angles, {})  # it lets go, if the engine says so
+    return None
+
+
+def _energy(picture: Picture, foot_x: float, angles: Floats) -> float:
+    contacts = picture.look(foot_x, angles)
+    return np.inf if contacts is None else picture.energy(contacts)
