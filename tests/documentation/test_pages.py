@@ -99,11 +99,21 @@ def test_commands_and_options_exist(page):
 
 
 @pytest.mark.parametrize("page", PAGES, **IDS)
-def test_links_lead_to_files(page):
-    text = re.sub(r"```.*?```", "", (ROOT / page).read_text(encoding="utf-8"), flags=re.S)
-    links = re.findall(r"\]\(([^)#\s]+)", text)
-    lost = [x for x in links if "://" not in x and not (ROOT / page.parent / x).exists()]
-    assert not lost
+def test_links_lead_to_files_and_to_their_headings(page):
+    links = re.findall(r"\]\(([^)\s#]*)(?:#([^)\s]+))?", _without_code(page))
+    ours = [(page.parent / name if name else page, at) for name, at in links if "://" not in name]
+    assert not [name for name, _ in ours if not (ROOT / name).exists()]
+    assert not [(name, at) for name, at in ours if at and at not in _anchors(name)]
+
+
+def _without_code(page: Path) -> str:
+    return re.sub(r"```.*?```", "", (ROOT / page).read_text(encoding="utf-8"), flags=re.S)
+
+
+def _anchors(page: Path) -> set[str]:
+    """What the headings of a page are called in links."""
+    headings = re.findall(r"^#+ (.*)", _without_code(page), re.M)
+    return {re.sub(r"[^\w\- ]", "", one.lower()).replace(" ", "-") for one in headings}
 
 
 def test_every_kind_of_contour_and_its_keys_are_described():
