@@ -21,8 +21,9 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 from scipy.optimize import nnls
 
 from analytic.problem.arrays import Floats
+from mujoco_models.space.balance import Linearised, State
 from mujoco_models.space.model import SpaceModel, Touch
-from mujoco_models.space.rest import Linearised, Rest, Settled, State
+from mujoco_models.space.rest import Rest, Settled
 from mujoco_models.space.surface import Feature, Surface, surface_at
 
 _NUDGE = 1e-4  # rad, of the joint that turns most, where it begins
@@ -130,10 +131,10 @@ def _landed(
 
 def _look(rest: Rest, state: State, surface: Surface, foot: Floats) -> tuple[State, Linearised]:
     """At the contact that presses most; a tip or a joint goes on from face to face."""
-    state, system = rest.look(state, surface, foot)
+    state, system = rest.balance.look(state, surface, foot)
     if isinstance(surface, Feature) and (surface.flat or not state.sliding):
         state = state._replace(sliding=False)
-        system = rest.linearised(state, system.touch, system.slope, np.zeros((3, 3)))
+        system = rest.balance.linearised(state, system.touch, system.slope, np.zeros((3, 3)))
     return state, system
 
 

@@ -12,9 +12,10 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from analytic.problem.arrays import Floats
+from mujoco_models.space.balance import State
 from mujoco_models.space.descent import descend
 from mujoco_models.space.model import SpaceModel
-from mujoco_models.space.rest import Rest, Settled, State
+from mujoco_models.space.rest import Rest, Settled
 from mujoco_models.space.surface import STAYS, Feature, Surface, features_around, surface_at
 
 _TOUCH = 1e-10  # L of the way, to which the first contact is enclosed

@@ -22,8 +22,8 @@ from analytic.space import (
 from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT
 from mujoco_models import Settings, SpatialSettings, simulate_space
 from mujoco_models.beams.cable import Cable
+from mujoco_models.space.balance import Balance, State
 from mujoco_models.space.beams import BallChain
-from mujoco_models.space.rest import Rest, State
 from mujoco_models.space.sweep import compiled
 
 BALL = sphere(1.0, (0.0, 1.4, 0.0))
@@ -64,7 +64,7 @@ def test_the_stiffness_is_the_derivative_of_mujocos_own_moments(beam, joints):
     if beam == "rod" and mujoco.__version__ < "4":
         pytest.skip("MuJoCo 3 has no elastic one-dimensional flex")
     model = compiled(case_of("sphere"), SpatialSettings(beam=beam, joints=joints, segments=12))
-    rest, random = Rest(model, 1e-8), np.random.default_rng(0)
+    balance, random = Balance(model, 1e-8), np.random.default_rng(0)
     size, foot, force = model.model.nv, np.array([0.6, 0.0, 0.25]), 3.0
     bent = model.straight.copy()
     mujoco.mj_integratePos(model.model, bent, 0.05 * random.normal(size=size), 1.0)
@@ -74,7 +74,7 @@ def test_the_stiffness_is_the_derivative_of_mujocos_own_moments(beam, joints):
         tip = len(model.ends) - 1
         state = State(configuration, tip, 0.98, force, True)
         touch = model.touch(tip, 0.98)
-        return rest.linearised(state, touch, 0.0, model.turning(tip, touch, 1e-5))
+        return balance.linearised(state, touch, 0.0, model.turning(tip, touch, 1e-5))
 
     step, columns = 1e-5, []
     for i in range(size):
