@@ -7,16 +7,14 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.errors import InputError
 from mujoco_models.beams.links import link_name
 from mujoco_models.beams.protocol import FOOT
 from mujoco_models.errors import DivergedError
-from mujoco_models.model.spec import add_options
+from mujoco_models.space.assembly import assembled
 from mujoco_models.space.beams import SpaceBeam
 from mujoco_models.space.bodies import GEOM, OUTLINE, Shape
 
 _IMPEDANCE = 0.9  # MuJoCo's d; with the stiffness set below it cancels out of the law at rest
-_CCD_ITERATIONS = 500  # of MuJoCo's search for the nearest point of an ellipsoid: 35 leave 1e-5
 _THINNEST = 1e-4  # L; MuJoCo's least radius of a link's capsule
 _FOLLOWED, _SAME_NORMAL = 20, 1e-13  # rounds in which a cylinder finds the circle of curvature
 _FAR = 10.0  # L; beyond, MuJoCo need not say how far
@@ -80,7 +78,7 @@ class SpaceModel:
         self.tangent = tangent
         self.ends = np.append(self.layout.joints[1:], 1.0)
         """Arc length of each link's end."""
-        self.model = _compiled(_assembled(spec, len(self.ends), tangent, radius))
+        self.model = assembled(spec, len(self.ends), tangent, radius)
         self.data = mujoco.MjData(self.model)
         model = self.model
         self.evaluations = 0
@@ -442,51 +440,3 @@ def across(normal: Floats) -> Floats:
         one = 0.0, -z / size, y / size
     u, v, w = one
     return np.array([one, (y * w - z * v, z * u - x * w, x * v - y * u)])
-
-
-def _assembled(spec: mujoco.MjSpec, links: int, tangent: Floats, radius: float) -> mujoco.MjSpec:
-    """With a bead on each link, the clamp's sensors, and the foot along the clamp's tangent."""
-    add_options(spec)
-    spec.option.ccd_iterations = _CCD_ITERATIONS
-    foot = spec.body(FOOT)
-    foot.quat = _to(tangent)
-    for i in range(links):
-        body = spec.body(link_name(i))
-        (side,) = (g for g in body.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE)
-        side.name = f"side{i}"
-        body.add_geom(
-            name=f"bead{i}",
-            type=mujoco.mjtGeom.mjGEOM_SPHERE,
-            pos=[0, 1e-3, 0],  # at the origin MuJoCo takes it that it never leaves it
-            size=[radius, 0, 0],
-            contype=0,
-            conaffinity=1,  # MuJoCo leaves out bodies that had none when it compiled them
-            condim=1,
-            density=0,
-            priority=1,
-        )
-    foot.add_site(name="clamp")
-    for kind in (mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE):
-        spec.add_sensor(type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="clamp")
-    return spec
-
-
-def _to(tangent: Floats) -> Floats:
-    """The shortest turn from y to a direction, as a quaternion."""
-    axis = np.cross([0.0, 1.0, 0.0], tangent)
-    if np.linalg.norm(axis) < 1e-12:
-        return np.array([1.0, 0, 0, 0] if tangent[1] > 0 else [0.0, 1, 0, 0])
-    turn = np.array([1 + tangent[1], *axis])
-    return np.asarray(turn / np.linalg.norm(turn))
-
-
-def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
-    try:
-        return spec.compile()
-    except (ValueError, mujoco.FatalError) as error:
-        raise InputError(
-            "MuJoCo's model",
-            f"impossible ({' '.join(str(error).split())[:150]})",
-            "of a vibrissa and a body that are neither too thin nor too small for MuJoCo",
-            "give a larger radius or body: some 1e-4 L is the least",
-        ) from error

@@ -14,6 +14,7 @@ from scipy.optimize import brentq, minimize_scalar
 from analytic.problem.arrays import Floats
 from mujoco_models.space.balance import State
 from mujoco_models.space.descent import descend
+from mujoco_models.space.hop import over_faces
 from mujoco_models.space.model import SpaceModel
 from mujoco_models.space.rest import Rest, Settled
 from mujoco_models.space.surface import STAYS, Feature, Surface, features_around, surface_at
@@ -21,7 +22,7 @@ from mujoco_models.space.surface import STAYS, Feature, Surface, features_around
 _TOUCH = 1e-10  # L of the way, to which the first contact is enclosed
 _BEGIN = 1e-6  # L beyond it, where a contact begins
 _SMALLEST = 1e-5  # L; an equilibrium that steps as small as this do not find has ended
-_EVENT = 5e-4  # L, to which a change of phase and a hop are enclosed
+_EVENT = 5e-4  # L, to which a change of phase is enclosed
 # Of the contact in a step: more is another branch. Next to its end a branch is steep, so that steps
 # are halved there.
 _LEAP, _LEAST_LEAP = 5.0, 0.02  # of the step; L
@@ -35,7 +36,6 @@ _SHORTER, _LONGER = 4.0, 2.0  # times the step where Newton's method fails, and 
 # is half-way.
 _BESIDE = 0.0, -0.45, 0.45, -0.45, 0.45, None
 _SHARE = 1e-3  # of a step, to which that place is found on the line
-_FACES = 40  # of a mesh over which a vibrissa hops at once
 _GIVEN_UP = 3  # unsettled stations in a row: from then on all are, until the vibrissa comes clear
 _LOOSE = 1e-3  # EI/L^2; a contact that ends with less has been released
 
@@ -335,7 +335,7 @@ class Walk:
             self.events.append(Event("release", self._at))
             self._held, self._lost, self._at = None, self._gap(goal) <= 0, goal
             return True
-        hopped = self._over_faces(held, goal)
+        hopped = over_faces(self._rest, held, self._foot(goal), _LANDING)
         if hopped is not None:
             self.events.append(Event("hop", self._at))
             self._note_phase(held, goal, hopped)
@@ -369,53 +369,6 @@ class Walk:
                 if back is not None and back.stays and back.stable:
                     return back
         return held._replace(stable=False)
-
-    def _over_faces(self, held: Settled, goal: float) -> Settled | None:
-        """Where the vibrissa goes over an edge of a mesh, from face to face.
-
-        Damped by its material it goes straight towards the state that would be at rest if the face
-        it comes to had no end; at the next edge the next face says where that is.
-        """
-        if not self._model.shape.faceted:
-            return None
-        model, foot = self._model, self._foot(goal)
-        state, centre, begin = held.state, held.touch.centre, self._model.contact(held.touch)
-        for _ in range(_FACES):
-            model.place(foot, state.configuration)
-            left = None
-            for surface in features_around(model, state.link, centre):
-                found = self._rest.settle(state, surface, foot, foot)
-                if found is None or not found.stable:
-                    continue
-                by = found.touch.centre - centre
-                if found.stays:
-                    far = float(np.linalg.norm(model.contact(found.touch) - begin))
-                    return found if far <= _LANDING else None
-                share = self._room(surface, found.state.link, centre, by)
-                if share > 0 and left is None:
-                    left = found.state, centre + share * by
-            if left is None:
-                return None
-            state, centre = left
-            if float(np.linalg.norm(centre - held.touch.centre)) > _LANDING:
-                return None
-        return None
-
-    def _room(self, surface: Feature, link: int, centre: Floats, by: Floats) -> float:
-        """How much of a way is along a face."""
-        size = float(np.linalg.norm(by))
-        first = min(1.0, 2 * self._model.radius / max(size, 1e-300))
-
-        def stays(share: float) -> bool:
-            return surface.missed_at(link, centre + share * by) < STAYS
-
-        if not surface.flat or not stays(first):
-            return 0.0
-        low, high = first, 1.0
-        while (high - low) * size > _EVENT:
-            middle = (low + high) / 2
-            low, high = (middle, high) if stays(middle) else (low, middle)
-        return low
 
 
 def _apart(one: Settled, other: Settled) -> float:

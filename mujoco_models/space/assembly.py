@@ -1,0 +1,82 @@
+"""MuJoCo's model of a vibrissa and a body: beads that touch, and sensors at the clamp."""
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from analytic.problem.errors import InputError
+from mujoco_models.beams.links import link_name
+from mujoco_models.beams.protocol import FOOT
+from mujoco_models.model.spec import add_options
+
+_CCD_ITERATIONS = 500  # of MuJoCo's search for the nearest point of an ellipsoid: 35 leave 1e-5
+
+
+def assembled(spec: mujoco.MjSpec, links: int, tangent: Floats, radius: float) -> mujoco.MjModel:
+    """Beam and body with a bead on each link, the clamp's sensors, and the foot along its tangent.
+
+    Parameters
+    ----------
+    spec : mujoco.MjSpec
+        Of the beam, with the body in it; changed in place.
+    links : int
+        How many the beam has.
+    tangent : array, shape (3,)
+        Of the vibrissa at its clamp.
+    radius : float
+        Of the vibrissa [L].
+
+    Returns
+    -------
+    mujoco.MjModel
+        Compiled.
+
+    Raises
+    ------
+    InputError
+        If that is impossible.
+    """
+    add_options(spec)
+    spec.option.ccd_iterations = _CCD_ITERATIONS
+    foot = spec.body(FOOT)
+    foot.quat = _to(tangent)
+    for i in range(links):
+        body = spec.body(link_name(i))
+        (side,) = (g for g in body.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE)
+        side.name = f"side{i}"
+        body.add_geom(
+            name=f"bead{i}",
+            type=mujoco.mjtGeom.mjGEOM_SPHERE,
+            pos=[0, 1e-3, 0],  # at the origin MuJoCo takes it that it never leaves it
+            size=[radius, 0, 0],
+            contype=0,
+            conaffinity=1,  # MuJoCo leaves out bodies that had none when it compiled them
+            condim=1,
+            density=0,
+            priority=1,
+        )
+    foot.add_site(name="clamp")
+    for kind in (mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE):
+        spec.add_sensor(type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="clamp")
+    return _compiled(spec)
+
+
+def _to(tangent: Floats) -> Floats:
+    """The shortest turn from y to a direction, as a quaternion."""
+    axis = np.cross([0.0, 1.0, 0.0], tangent)
+    if np.linalg.norm(axis) < 1e-12:
+        return np.array([1.0, 0, 0, 0] if tangent[1] > 0 else [0.0, 1, 0, 0])
+    turn = np.array([1 + tangent[1], *axis])
+    return np.asarray(turn / np.linalg.norm(turn))
+
+
+def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    try:
+        return spec.compile()
+    except (ValueError, mujoco.FatalError) as error:
+        raise InputError(
+            "MuJoCo's model",
+            f"impossible ({' '.join(str(error).split())[:150]})",
+            "of a vibrissa and a body that are neither too thin nor too small for MuJoCo",
+            "give a larger radius or body: some 1e-4 L is the least",
+        ) from error
