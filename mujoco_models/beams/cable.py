@@ -14,7 +14,7 @@ from analytic.problem.arrays import Floats
 from mujoco_models.beams.coordinates import Balls
 from mujoco_models.beams.layout import Layout, turned, vertices
 from mujoco_models.beams.links import about_z
-from mujoco_models.beams.protocol import FOOT
+from mujoco_models.beams.protocol import FOOT, Furnish, bare
 from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.settings import Settings
 
@@ -70,7 +70,7 @@ class Cable(Balls):
         lengths = np.full(len(joints), self._cell)
         self.layout = Layout.of(joints, lengths, edges, spacing, vibrissa)
 
-    def spec(self, radius: float) -> mujoco.MjSpec:
+    def spec(self, radius: float, furnish: Furnish = bare) -> mujoco.MjSpec:
         """The foot and the cable on it; only XML makes a composite."""
         area_moment = np.pi * radius**4 / 4
         xml = _XML.format(
@@ -87,6 +87,8 @@ class Cable(Balls):
             spec.body(self._name(i)).pos = [self._cell, 0, 0]  # was in single precision
         if not self.layout.vibrissa.is_plain:
             self._shape(spec, radius)
+        for i in range(len(self.layout.joints)):
+            furnish(self.body(spec, i), i)
         return spec
 
     def _shape(self, spec: mujoco.MjSpec, radius: float) -> None:
@@ -122,12 +124,16 @@ class Cable(Balls):
             return "B_first"
         return "B_last" if link == len(self.layout.joints) - 1 else f"B_{segment}"
 
-    def mount(self, spec: mujoco.MjSpec, link: int, s: Floats) -> tuple[mujoco.MjsBody, Floats]:
+    def body(self, spec: mujoco.MjSpec, link: int) -> mujoco.MjsBody:
         """The segment itself, whose chord is along its own x axis."""
+        return spec.body(self._name(link))
+
+    def within(self, link: int, s: Floats) -> Floats:
+        """In the frame of the segment."""
         across, along = self.layout.within(link, s)
         if link < self._turning:
             along = along - self._vertices[0]
-        return spec.body(self._name(link)), np.column_stack([along, -across, np.zeros(len(s))])
+        return np.column_stack([along, -across, np.zeros(len(s))])
 
     def stiffness(self, angles: Floats) -> Floats:
         """EI/h, and the clamp's."""

@@ -11,6 +11,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.links import HingedLinks
+from mujoco_models.beams.protocol import Furnish, bare
 from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.settings import Settings
 
@@ -29,9 +30,9 @@ class Chain(HingedLinks):
         super().__init__(Layout.of(joints, lengths, edges, spacing, vibrissa))
         self._stiffness = 1 / self.layout.compliances
 
-    def spec(self, radius: float) -> mujoco.MjSpec:
+    def spec(self, radius: float, furnish: Furnish = bare) -> mujoco.MjSpec:
         """The links, and a spring in every hinge."""
-        spec = super().spec(radius)
+        spec = super().spec(radius, furnish)
         for joint, stiffness in zip(spec.joints, self._stiffness, strict=True):
             joint.stiffness[0] = stiffness
         return spec

@@ -1,5 +1,6 @@
 """What the beams have in common, and the few things in which they differ."""
 
+from collections.abc import Callable
 from typing import Protocol
 
 import mujoco
@@ -10,6 +11,19 @@ from mujoco_models.beams.layout import Layout
 # Moved by its place in the model. Not a mocap body: 3.17's cable measures its segments before the
 # places of mocap bodies are known, and its stiffness is then off, or not a number, at random.
 FOOT = "foot"
+Furnish = Callable[[mujoco.MjsBody, int], None]
+
+
+def bare(body: mujoco.MjsBody, link: int) -> None:
+    """A link that carries nothing.
+
+    Parameters
+    ----------
+    body : mujoco.MjsBody
+        The link's.
+    link : int
+        Its number.
+    """
 
 
 class Beam(Protocol):
@@ -23,13 +37,15 @@ class Beam(Protocol):
     layout: Layout
     """Where its joints and beads are."""
 
-    def spec(self, radius: float) -> mujoco.MjSpec:
+    def spec(self, radius: float, furnish: Furnish = bare) -> mujoco.MjSpec:
         """The foot and the beam on it, with all collisions off.
 
         Parameters
         ----------
         radius : float
             Of the vibrissa [L].
+        furnish : callable, optional
+            Given each link's body and number, adds what the link carries.
 
         Returns
         -------
@@ -37,8 +53,8 @@ class Beam(Protocol):
             Not yet compiled.
         """
 
-    def mount(self, spec: mujoco.MjSpec, link: int, s: Floats) -> tuple[mujoco.MjsBody, Floats]:
-        """The body that moves with a link, and where on it arc lengths are.
+    def body(self, spec: mujoco.MjSpec, link: int) -> mujoco.MjsBody:
+        """The body that moves with a link.
 
         Parameters
         ----------
@@ -46,14 +62,26 @@ class Beam(Protocol):
             Made by `spec`.
         link : int
             Number of the link.
+
+        Returns
+        -------
+        mujoco.MjsBody
+            The link's.
+        """
+
+    def within(self, link: int, s: Floats) -> Floats:
+        """Where on the body of a link arc lengths are.
+
+        Parameters
+        ----------
+        link : int
+            Number of the link.
         s : array, shape (n,)
             Arc lengths [L].
 
         Returns
         -------
-        body : mujoco.MjsBody
-            The link's.
-        position : array, shape (n, 3)
+        array, shape (n, 3)
             In the body's frame [L].
         """
 

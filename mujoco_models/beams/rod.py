@@ -16,7 +16,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from mujoco_models.beams.layout import Layout, turned, vertices
 from mujoco_models.beams.links import HingedLinks, link_name
-from mujoco_models.beams.protocol import FOOT
+from mujoco_models.beams.protocol import FOOT, Furnish, bare
 from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.settings import Settings
 
@@ -38,9 +38,9 @@ class Rod(HingedLinks):
         edges = (self._vertices[1:] + self._vertices[:-1]) / 2
         super().__init__(Layout.of(self._vertices[1:-1], cells, edges, spacing, vibrissa))
 
-    def spec(self, radius: float) -> mujoco.MjSpec:
+    def spec(self, radius: float, furnish: Furnish = bare) -> mujoco.MjSpec:
         """Links without springs, and the flex that bends them."""
-        spec = super().spec(radius)
+        spec = super().spec(radius, furnish)
         flex = spec.add_flex(name="rod", dim=1, radius=radius, contype=0, conaffinity=0)
         flex.selfcollide = False
         flex.young = 1 / (np.pi * radius**4 / 4)

@@ -13,6 +13,7 @@ from analytic.problem.arrays import Floats
 from mujoco_models.beams.chain import Chain
 from mujoco_models.beams.coordinates import Balls
 from mujoco_models.beams.links import link_name
+from mujoco_models.beams.protocol import Furnish, bare
 from mujoco_models.beams.rod import Rod
 
 
@@ -23,9 +24,9 @@ class SpatialChain(Balls, Chain):
     GJ = EI; of a round section it is EI/(1 + nu), three quarters of that.
     """
 
-    def spec(self, radius: float) -> mujoco.MjSpec:
+    def spec(self, radius: float, furnish: Furnish = bare) -> mujoco.MjSpec:
         """The links, with a ball and its spring for every hinge."""
-        spec = super().spec(radius)
+        spec = super().spec(radius, furnish)
         for joint in spec.joints:
             joint.type = mujoco.mjtJoint.mjJNT_BALL
         return spec
@@ -38,9 +39,9 @@ class SpatialRod(Rod):
     not let it twist at all, and put no link's axis out of reach.
     """
 
-    def spec(self, radius: float) -> mujoco.MjSpec:
+    def spec(self, radius: float, furnish: Furnish = bare) -> mujoco.MjSpec:
         """The links with a second hinge each, about the x axis that the first one turns."""
-        spec = super().spec(radius)
+        spec = super().spec(radius, furnish)
         for i, joint in enumerate(tuple(spec.joints)):
             body = spec.body(link_name(i))
             body.add_joint(

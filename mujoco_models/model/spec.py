@@ -35,14 +35,12 @@ def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
     mujoco.MjSpec
         The beads are its only spheres, in the order of the layout.
     """
-    spec = beam.spec(radius)
-    add_options(spec)
-    obstacle.add_to(spec)
     layout = beam.layout
     radii = radius * layout.vibrissa.thickness(layout.beads)
-    for link in range(len(layout.joints)):
+
+    def furnish(body: mujoco.MjsBody, link: int) -> None:
         own = layout.links == link
-        body, places = beam.mount(spec, link, layout.beads[own])
+        places = beam.within(link, layout.beads[own])
         for place, size in zip(places, radii[own], strict=True):
             body.add_geom(
                 type=mujoco.mjtGeom.mjGEOM_SPHERE,
@@ -55,6 +53,10 @@ def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
                 gap=CONTACT_GAP,
                 priority=1,
             )
+
+    spec = beam.spec(radius, furnish)
+    add_options(spec)
+    obstacle.add_to(spec)
     if len(obstacle.corners):
         obstacle.corners.add_to(spec)
         _let_links_collide(beam, spec)
@@ -67,8 +69,8 @@ def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
 def _let_links_collide(beam: Beam, spec: mujoco.MjSpec) -> None:
     """With the edges of the obstacle's corners."""
     for link in range(len(beam.layout.joints)):
-        body, _ = beam.mount(spec, link, beam.layout.joints[:1])
-        (capsule,) = (g for g in body.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE)
+        geoms = beam.body(spec, link).geoms
+        (capsule,) = (g for g in geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE)
         capsule.name, capsule.conaffinity = f"{SIDE_PREFIX}{link}", LINKS
         capsule.condim, capsule.priority, capsule.gap = 1, 1, CONTACT_GAP
 

@@ -19,6 +19,7 @@ from mujoco_models.beams.available import require
 from mujoco_models.beams.chain import Chain
 from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.links import link_name
+from mujoco_models.beams.protocol import Furnish, bare
 from mujoco_models.beams.spatial import SpatialChain, SpatialRod
 from mujoco_models.settings import Settings
 from mujoco_models.space.settings import SpatialSettings
@@ -39,13 +40,15 @@ class SpaceBeam(Protocol):
     def law(self) -> Law | None:
         """Of joints that bend alike in all directions; None of others."""
 
-    def spec(self, radius: float) -> mujoco.MjSpec:
+    def spec(self, radius: float, furnish: Furnish = bare) -> mujoco.MjSpec:
         """The foot and the beam on it, with all collisions off.
 
         Parameters
         ----------
         radius : float
             Of the vibrissa [L].
+        furnish : callable, optional
+            Given each link's body and number, adds what the link carries.
 
         Returns
         -------
@@ -164,9 +167,9 @@ class UniversalChain(Universal, Chain):
         """None: they resist a turn about both axes a little more than one about either."""
         return None
 
-    def spec(self, radius: float) -> mujoco.MjSpec:
+    def spec(self, radius: float, furnish: Furnish = bare) -> mujoco.MjSpec:
         """The links with a second hinge and spring each."""
-        spec = super().spec(radius)
+        spec = super().spec(radius, furnish)
         for i, joint in enumerate(tuple(spec.joints)):
             second = spec.body(link_name(i)).add_joint(
                 type=mujoco.mjtJoint.mjJNT_HINGE, axis=[1, 0, 0], armature=joint.armature

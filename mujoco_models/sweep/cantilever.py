@@ -54,8 +54,8 @@ def load_tip(
     layout = beam.layout
     spec = beam.spec(Beam().radius)
     add_options(spec)
-    body, (place,) = beam.mount(spec, len(layout.joints) - 1, np.ones(1))
-    body.add_site(name=_TIP, pos=place)
+    last = len(layout.joints) - 1
+    beam.body(spec, last).add_site(name=_TIP, pos=beam.within(last, np.ones(1))[0])
     spec.worldbody.add_site(name="world")
     actuator = spec.add_actuator(
         trntype=mujoco.mjtTrn.mjTRN_SITE, target=_TIP, refsite="world", gear=[load, 0, 0, 0, 0, 0]

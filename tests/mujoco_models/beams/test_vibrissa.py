@@ -87,8 +87,8 @@ def test_unloaded_it_is_the_arc(beam):
     add_options(spec)
     beads = made.layout.beads
     for i, (s, link) in enumerate(zip(beads, made.layout.links.tolist(), strict=True)):
-        body, (place,) = made.mount(spec, link, np.array([s]))
-        body.add_site(name=f"bead{i}", pos=place)
+        place = made.within(link, np.array([s]))[0]
+        made.body(spec, link).add_site(name=f"bead{i}", pos=place)
     model = spec.compile()
     data = mujoco.MjData(model)
     made.place(data, np.zeros(len(made.layout.joints)))
