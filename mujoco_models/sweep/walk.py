@@ -18,7 +18,7 @@ from mujoco_models.sweep.state import State, turned
 
 Model = TypeVar("Model", bound=Balance)
 _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
-# L; two states at rest that rounding alone puts apart do not tell where the branch goes.
+# L; from two states at rest that rounding alone puts apart, nothing can be carried on.
 _SAME_PLACE = 1e-12
 _DEEP = 0.25  # of the radius; two sweeps of 390 were lost past polygons, at 0.5 of it and more
 # What may follow one state at rest without a snap-off.
