@@ -9,6 +9,9 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 
 _MAX_ITERATIONS = 120  # bisection alone needs 53, and 64 more to pass from 1 to 1e-19
 _ROUNDING = 2 * float(np.finfo(float).eps)  # of a zero, relative
+_NODES = np.cos(np.pi * (np.arange(13) + 0.5) / 13)  # of a polynomial's, about a likely place
+_NEAR = 0.1  # of the width between the bounds: up to so far from that place
+_AGREED = 1e-13  # of that width: polynomials of one degree less and of this one agree
 _AT_ONCE, _ASIDE = 64, 15  # so many numbers take hardly longer than one; at most, on either side
 
 
@@ -61,6 +64,51 @@ def zeros(
         x = a[:, None] + inside * (b - a)[:, None]
         f = _values(function, which, x)
         x, f = _between(a, x, b), _between(f_a, f, f_b)
+    return found
+
+
+def smooth_zeros(
+    function: Callable[[Integers, Floats], Floats], low: Floats, high: Floats, likely: Floats
+) -> Floats:
+    """`zeros` of functions that are smooth but of few, and whose zeros are nearly known.
+
+    Inverse interpolation by Neville's scheme, through values about the likely place, takes one call
+    of the function. Where the sign does not change there, or the last two polynomials differ, it is
+    `zeros`.
+
+    Parameters
+    ----------
+    function : callable
+        As `zeros` has it.
+    low, high : array, shape (n,)
+        Bounds, at which the function has different signs.
+    likely : array, shape (n,)
+        Where the zeros are, nearly; anything where that is not known.
+
+    Returns
+    -------
+    array, shape (n,)
+        The zeros.
+    """
+    if not low.size:
+        return low
+    width = high - low
+    centre = np.clip(likely, low + _NEAR * width, high - _NEAR * width)
+    centre = np.where(np.isfinite(centre), centre, low + width / 2)
+    x = centre[:, None] + (_NEAR * width)[:, None] * _NODES
+    f = _values(function, np.arange(low.size), x)
+    with np.errstate(all="ignore"):  # values that coincide: no polynomial
+        found = x
+        for degree in range(1, _NODES.size):
+            ahead, behind = f[:, degree:], f[:, :-degree]
+            before = found
+            found = (ahead * found[:, :-1] - behind * found[:, 1:]) / (ahead - behind)
+        found, before = found[:, 0], before.T
+        doubt = np.abs(before - found).max(axis=0)
+    crosses = np.signbit(f[:, 0]) != np.signbit(f[:, -1])
+    left = np.flatnonzero(~(crosses & (doubt <= _AGREED * np.abs(width))))
+    if left.size:
+        found[left] = zeros(lambda which, at: function(left[which], at), low[left], high[left])
     return found
 
 

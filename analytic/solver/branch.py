@@ -18,10 +18,10 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.many import Contours
 from analytic.solver.contact_length import surplus_and_rate
-from analytic.solver.equilibria import equilibria, equilibria_at
-from analytic.solver.grid import along, folded
+from analytic.solver.equilibria import equilibria
+from analytic.solver.grid import Grid, Samples, along, folded
 
-_ASIDE = 1e-3  # of a cell: next to a fold x0 is higher by far more than rounding there
+_ASIDE = 1e-3  # of a cell: next to a minimum x0 is higher by far more than rounding there
 _ROUNDING = 8 * float(np.finfo(float).eps)
 
 
@@ -33,20 +33,24 @@ class Branch:
     ----------
     t : array, shape (n,)
         Contour parameters, decreasing along the sweep; the last is the snap-off.
-    foot_x, excess : array, shape (n,)
-        Foot position [L] and excess rotation of the tip [rad] there.
+    samples : Samples
+        The states there.
     tangent : array of bool, shape (n - 1,)
         Whether the cell between two parameters is in Phase B.
-    lowest : tuple of float
-        Contour parameter of the contour's lowest point, and the foot position with the contact
-        there [L], NaN out of reach.
+    lowest : float
+        Contour parameter of the contour's lowest point, which is one of `t` if it comes before the
+        snap-off.
     """
 
     t: Floats
-    foot_x: Floats
-    excess: Floats
+    samples: Samples
     tangent: Booleans
-    lowest: tuple[float, float]
+    lowest: float
+
+    @property
+    def foot_x(self) -> Floats:
+        """Foot positions at the parameters [L]."""
+        return self.samples.foot_x
 
     @property
     def first_contact(self) -> float:
@@ -65,13 +69,10 @@ class Branch:
         It is at the contour's lowest point, or what a sweep along a polygon visits last before it
         passes that in a jump; see `analytic.from_clamp.sideways`. None if all are stable.
         """
-        lowest, foot_x = self.lowest
-        if lowest <= self.snap_off:
+        if self.lowest <= self.snap_off:
             return None
-        before = self.t > lowest
-        t, places = np.append(self.t[before], lowest), np.append(self.foot_x[before], foot_x)
-        last = np.argmin(places)
-        return float(t[last]), float(places[last])
+        last = np.argmin(np.where(self.t >= self.lowest, self.foot_x, np.inf))
+        return float(self.t[last]), float(self.foot_x[last])
 
     @property
     def phase_changes(self) -> Floats:
@@ -135,63 +136,56 @@ def trace(many: Contours, reaches: Sequence[tuple[float, float]]) -> list[Branch
         reached.
     """
     last, first = np.array(reaches).T
-    grid, samples = folded(many, along(many, first, last))
+    grid, samples, folds = folded(many, along(many, first, last))
     ends = np.searchsorted(grid.owner, np.arange(len(many) + 1))
     parts = [
-        _to_snap_off(*(values[begin:end] for values in (grid.t, samples.foot_x, samples.excess)))
+        _to_snap_off(grid.t[begin:end], Samples(*(values[begin:end] for values in samples)))
         for begin, end in pairwise(ends)
     ]
-    lowest = np.concatenate([contour.parameter(np.zeros(1)) for contour in many.contours])
-    parts, at_lowest = _refined(many, parts, lowest)
-    counts = [len(t) - 1 for t, _, _ in parts]
+    _refine(many, parts, folds)
+    counts = [len(t) - 1 for t, _ in parts]
     owner = np.repeat(np.arange(len(many)), counts)
-    middles = np.concatenate([(t[1:] + t[:-1]) / 2 for t, _, _ in parts])
+    middles = np.concatenate([(t[1:] + t[:-1]) / 2 for t, _ in parts])
     tangent = surplus_and_rate(many.at(owner, middles))[0] < 0
     return [
-        Branch(*part, cells, (float(t), float(foot_x)))
-        for part, cells, t, foot_x in zip(
-            parts,
-            np.split(tangent, np.cumsum(counts)[:-1]),
-            lowest,
-            at_lowest,
-            strict=True,
+        Branch(*part, cells, float(lowest))
+        for part, cells, lowest in zip(
+            parts, np.split(tangent, np.cumsum(counts)[:-1]), many.lowest, strict=True
         )
     ]
 
 
-_Part: TypeAlias = tuple[Floats, Floats, Floats]
-"""Contour parameters, foot positions and excess rotations along a branch."""
+_Part: TypeAlias = tuple[Floats, Samples]
+"""Contour parameters and states along a branch."""
 
 
-def _to_snap_off(t: Floats, foot_x: Floats, excess: Floats) -> _Part:
-    """Up to the least foot position, at least two points."""
-    least = int(np.argmin(foot_x))
-    if least == 0:
-        return np.repeat(t[:1], 2), np.repeat(foot_x[:1], 2), np.repeat(excess[:1], 2)
-    return t[: least + 1].copy(), foot_x[: least + 1].copy(), excess[: least + 1].copy()
+def _to_snap_off(t: Floats, samples: Samples) -> _Part:
+    """Up to the least foot position, at least two points.
+
+    Where x0 turns at a phase limit, as on a polygon, that is found twice: the first one is it.
+    """
+    snap_off = t[np.argmin(samples.foot_x)]
+    least = int(np.argmax(t <= snap_off + _ROUNDING * max(1.0, abs(snap_off))))
+    which = np.arange(least + 1) if least else np.zeros(2, dtype=int)
+    return t[which], Samples(*(values[which] for values in samples))
 
 
-def _refined(many: Contours, parts: list[_Part], lowest: Floats) -> tuple[list[_Part], Floats]:
-    """The same with the snap-off where x0 is least; and x0 at the contours' lowest points.
+def _refine(many: Contours, parts: list[_Part], folds: Grid) -> None:
+    """Put the snap-off where x0 is least, where that is not known.
 
     It is where the derivative of x0 vanishes, unless that is inexact, as without a radius of
     curvature: then x0 is lower next to it.
     """
-    at = np.array([t[-1] for t, _, _ in parts])
-    width = np.array([t[-2] for t, _, _ in parts]) - at
-    foot_x = np.array([places[-1] for _, places, _ in parts])
-    owner = np.repeat(np.arange(len(many)), 3)
-    aside = at[:, None] + _ASIDE * width[:, None] * np.array([-1, 1])
-    t = np.column_stack([aside, lowest]).ravel()
-    places = equilibria_at(many.at(owner, t)).foot_x.reshape(-1, 3)
-    beside, at_lowest = places[:, :2], places[:, 2]
-    least = foot_x - _ROUNDING * np.maximum(1, np.abs(foot_x))
-    for i in np.flatnonzero((width > 0) & (beside < least[:, None]).any(axis=1)):
-        t, places, excess = parts[i]
-        t[-1], places[-1], excess[-1] = _lowest(
-            many.contours[i], float(at[i]), float(width[i]), float(foot_x[i])
-        )
-    return parts, at_lowest
+    folded = set(zip(folds.owner.tolist(), folds.t.tolist(), strict=True))
+    for i, (t, samples) in enumerate(parts):
+        at, width, foot_x = float(t[-1]), float(t[-2] - t[-1]), float(samples.foot_x[-1])
+        if width > 0 and (i, at) not in folded:
+            beside = at + _ASIDE * width * np.array([-1, 1])
+            places = equilibria(many.contours[i], beside).foot_x
+            if (places < foot_x - _ROUNDING * max(1.0, abs(foot_x))).any():
+                t[-1], samples.foot_x[-1], samples.excess[-1] = _lowest(
+                    many.contours[i], at, width, foot_x
+                )
 
 
 def _lowest(

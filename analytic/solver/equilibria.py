@@ -3,6 +3,8 @@
 Dimensionless throughout, on the contour that the centreline feels.
 """
 
+from collections.abc import Iterator
+from itertools import chain
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -21,7 +23,7 @@ from analytic.solver.elastica import (
     span_by_excess,
     tangent_span,
 )
-from analytic.solver.tip import tip_excess
+from analytic.solver.tip import has_tip_state, tip_excess
 
 
 class Equilibria(NamedTuple):
@@ -37,6 +39,46 @@ class Equilibria(NamedTuple):
     tangent: Booleans
     frame: Frame
     """The contact as seen from the clamp, times sqrt(f)."""
+
+    def part(self, chosen: Booleans | Integers) -> "Equilibria":
+        """Some of them.
+
+        Parameters
+        ----------
+        chosen : array of bool or of int
+            Which.
+
+        Returns
+        -------
+        Equilibria
+            Copies.
+        """
+        point, excess, loaded, root_f, tangent, end = self
+        return Equilibria(
+            ContourPoint(*(values[chosen] for values in point)),
+            excess[chosen],
+            Span(*(values[chosen] for values in loaded)),
+            root_f[chosen],
+            tangent[chosen],
+            Frame(*(values[chosen] for values in end)),
+        )
+
+    def replace(self, where: Integers, new: "Equilibria") -> None:
+        """Put others in the place of some.
+
+        Parameters
+        ----------
+        where : array of int, shape (m,)
+            The numbers of those that go.
+        new : Equilibria
+            Of m contacts.
+        """
+        for old, values in zip(self._arrays(), new._arrays(), strict=True):
+            old[where] = values
+
+    def _arrays(self) -> Iterator[np.ndarray]:
+        point, excess, loaded, root_f, tangent, end = self
+        return chain(point, (excess,), loaded, (root_f, tangent), end)
 
     @property
     def arc_length(self) -> Floats:
@@ -61,20 +103,44 @@ class Equilibria(NamedTuple):
     @property
     def foot_x_rate(self) -> Floats:
         """d(x0)/dt along the contour, in closed form; zero where the vibrissa snaps off."""
-        return np.where(self.tangent, self._tangent_rate(), self._tip_rate())
+        return np.where(self.tangent, self.tangent_rate(), self.tip_rate().foot_x)
 
-    def _tangent_rate(self) -> Floats:
+    def tangent_rate(self) -> Floats:
+        """d(x0)/dt in Phase B; at its limits too, whichever phase is there.
+
+        Returns
+        -------
+        array, shape (n,)
+            [L by the contour's parameter].
+        """
         alpha, _, eta, turning, stretch = self.point
         up, across = self.frame
         lean = across / up
         rise = 1 + lean**2 - lean / (self.span.C * up)
         return stretch * (np.cos(alpha) - np.sin(alpha) * lean) + turning * eta * rise
 
-    def _tip_rate(self) -> Floats:
+    def tip_rate(self) -> "TipRate":
+        """The derivatives in Phase A; at its limits too, whichever phase is there.
+
+        Returns
+        -------
+        TipRate
+            By the contour's parameter.
+        """
         alpha, _, _, turning, stretch = self.point
         height, reach = tip_rates(self.excess, self.span, alpha)
         excess_rate = (stretch * np.sin(alpha) - turning * height.by_alpha) / height.by_excess
-        return stretch * np.cos(alpha) - turning * reach.by_alpha - reach.by_excess * excess_rate
+        along = stretch * np.cos(alpha) - turning * reach.by_alpha
+        return TipRate(along - reach.by_excess * excess_rate, excess_rate)
+
+
+class TipRate(NamedTuple):
+    """How states change along the contour in Phase A; arrays of shape (n,)."""
+
+    foot_x: Floats
+    """[L by the contour's parameter]."""
+    excess: Floats
+    """[rad by the contour's parameter]."""
 
 
 class Rates(NamedTuple):
@@ -192,8 +258,7 @@ def equilibria_at(point: ContourPoint) -> Equilibria:
     """
     found = tangent_contact(point)
     excess, loaded, root_f, _, end = found[1:]
-    # Beyond alpha = -52.906 deg no tangential contact exists above the foot line.
-    tangent = (root_f > 0) & (loaded.q < root_f)
+    tangent = _fits(found)
     tip = np.flatnonzero(~tangent)
     if tip.size:
         alpha = point.alpha[tip]
@@ -205,6 +270,32 @@ def equilibria_at(point: ContourPoint) -> Equilibria:
             values[tip] = at_tip
         root_f[tip] = of_tip.q
     return Equilibria(point, excess, loaded, root_f, tangent, end)
+
+
+def within_reach(point: ContourPoint) -> Booleans:
+    """Whether a vibrissa can rest against contour points.
+
+    Parameters
+    ----------
+    point : ContourPoint
+        Where the centreline's contour is touched; arrays of shape (n,).
+
+    Returns
+    -------
+    array of bool, shape (n,)
+        Where `equilibria_at` has a state.
+    """
+    found = tangent_contact(point)
+    return np.asarray(_fits(found) | has_tip_state(point.alpha, point.eta))
+
+
+def _fits(tangential: Equilibria) -> Booleans:
+    """Whether tangential contacts are within the vibrissa's length.
+
+    Beyond alpha = -52.906 deg no tangential contact exists above the foot line.
+    """
+    root_f = tangential.root_f
+    return np.asarray((root_f > 0) & (tangential.span.q < root_f))
 
 
 Column: TypeAlias = Floats | Words

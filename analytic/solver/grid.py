@@ -9,15 +9,15 @@ The grids of many contours are made at once, one after the other in the same arr
 whose a point is. What is done to one grid does not depend on the others.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.many import Contours
-from analytic.problem.roots import zeros
+from analytic.problem.roots import smooth_zeros, zeros
 from analytic.solver.contact_length import surplus_and_rate
-from analytic.solver.equilibria import equilibria_at
+from analytic.solver.equilibria import equilibria_at, within_reach
 
 _COARSE = 65  # samples of the whole contour to begin with
 _TURN = 0.1  # rad; the largest change of the slope angle between neighbours
@@ -25,8 +25,11 @@ _RISE = 0.15  # the largest change of the height, relative
 _TRUST = 0.05  # by how much a mean slope may lie outside those at the ends, of the larger one
 _FLAT = 1e-12  # L; changes of the foot position and the surplus that are rounding, or nearly
 _LEVELS = 40  # of halving: a cell is rounding then
+_ASIDE = 1e-3  # of a cell: next to a fold x0 is higher by far more than rounding there
 _AT_END, _INSIDE = 2, 16  # times that so many points are put where the reach ends
 _MOST = 2000  # points more: beyond, derivatives are lost in rounding, as next to an upright side
+
+_Values = TypeVar("_Values", Floats, Booleans)
 
 
 class Grid(NamedTuple):
@@ -56,6 +59,26 @@ class Grid(NamedTuple):
     def cells(self) -> Booleans:
         """Whether a point and the next one are of one contour, shape (n - 1,)."""
         return np.asarray(self.owner[1:] == self.owner[:-1])
+
+    @property
+    def begins(self) -> Integers:
+        """The number of each contour's first point."""
+        return np.flatnonzero(np.append(True, ~self.cells))
+
+    def part(self, chosen: Booleans) -> "Grid":
+        """Some of the points.
+
+        Parameters
+        ----------
+        chosen : array of bool, shape (n,)
+            Which.
+
+        Returns
+        -------
+        Grid
+            In their order.
+        """
+        return Grid(self.owner[chosen], self.t[chosen])
 
     def middles(self, chosen: Booleans) -> "Grid":
         """The middles of the chosen cells, but for those that have none.
@@ -89,7 +112,7 @@ def along(centrelines: Contours, first: Floats, last: Floats) -> Grid:
     Returns
     -------
     Grid
-        With the zeros of the surplus and the points next to each break of a contour.
+        With the zeros of the surplus, the lowest point and those next to each break of a contour.
     """
     # Dense at both ends: x0 starts like a square root at first contact and folds before the last.
     fraction = (1 - np.cos(np.linspace(0, np.pi, _COARSE))) / 2
@@ -98,6 +121,7 @@ def along(centrelines: Contours, first: Floats, last: Floats) -> Grid:
     grid = Grid(owner[:0], first[:0]).with_points(
         owner, np.clip(coarse, last[:, None], first[:, None]).ravel()
     )
+    grid = grid.with_points(np.arange(len(centrelines)), centrelines.lowest)
     for i, contour in enumerate(centrelines.contours):
         breaks = contour.breaks()
         breaks = breaks[(breaks > last[i]) & (breaks < first[i])]
@@ -158,11 +182,13 @@ def _with_phase_changes(centrelines: Contours, grid: Grid) -> Grid:
     below = value < 0
     turns = np.flatnonzero(grid.cells & (below[1:] != below[:-1]))
     owner = grid.owner[turns]
+    high, low = grid.t[turns], grid.t[turns + 1]
 
     def surplus(turn: Integers, t: Floats) -> Floats:
         return surplus_and_rate(centrelines.at(owner[turn], t))[0]
 
-    return grid.with_points(owner, zeros(surplus, grid.t[turns + 1], grid.t[turns]))
+    likely = low + (high - low) * value[turns + 1] / (value[turns + 1] - value[turns])
+    return grid.with_points(owner, smooth_zeros(surplus, low, high, likely))
 
 
 def _extrema(centrelines: Contours, grid: Grid, value: Floats, rate: Floats) -> Grid:
@@ -185,7 +211,7 @@ def _extrema(centrelines: Contours, grid: Grid, value: Floats, rate: Floats) -> 
 
 
 class Samples(NamedTuple):
-    """Foot position along grids, arrays of shape (n,); NaN out of reach."""
+    """States along grids, arrays of shape (n,); NaN out of reach."""
 
     foot_x: Floats
     """[L]."""
@@ -193,9 +219,15 @@ class Samples(NamedTuple):
     """Its derivative along the contour."""
     excess: Floats
     """Excess rotation of the tip [rad]."""
+    tangent_rate: Floats
+    """Derivative of the foot position in Phase B."""
+    tip_rate: Floats
+    """Derivative of the foot position in Phase A."""
+    excess_rate: Floats
+    """Derivative of the excess rotation in Phase A."""
 
 
-def folded(centrelines: Contours, grid: Grid) -> tuple[Grid, Samples]:
+def folded(centrelines: Contours, grid: Grid) -> tuple[Grid, Samples, Grid]:
     """Foot positions along the grids, with more points of them where it folds.
 
     Parameters
@@ -207,64 +239,96 @@ def folded(centrelines: Contours, grid: Grid) -> tuple[Grid, Samples]:
 
     Returns
     -------
-    Grid, Samples
+    grid : Grid
         Of each contour up to where the vibrissa cannot reach any more.
+    samples : Samples
+        The states there.
+    folds : Grid
+        Those of its points that are folds; each has two more close by.
     """
+    grid = _to_end_of_reach(centrelines, grid)
     samples = _sample(centrelines, grid)
     most = np.bincount(grid.owner, minlength=len(centrelines)) + _MOST
-    begins = np.flatnonzero(np.append(True, ~grid.cells))  # the first contact, without a load
+    begins = grid.begins  # the first contact, without a load
     samples.foot_x[begins] = centrelines.at(grid.owner[begins], grid.t[begins]).xi
     samples.rate[begins], samples.excess[begins] = np.nan, 0.0
-    for _ in range(_AT_END):
-        grid, samples = _more(centrelines, grid, samples, _end_of_reach(grid, samples))
     for _ in range(_LEVELS):
         chosen = grid.middles(doubtful(grid.t, samples.foot_x, samples.rate))
         new = _allowed(grid, chosen, most)
         if not new.t.size:
             break
         grid, samples = _more(centrelines, grid, samples, new)
-    grid, samples = _more(centrelines, grid, samples, _folds(centrelines, grid, samples))
-    # Nothing is within reach again behind the first point that is not.
-    gone = np.isnan(samples.foot_x)
-    so_far = np.cumsum(gone)
-    begins = np.flatnonzero(np.append(True, ~grid.cells))
-    before = (so_far - gone)[begins]
-    reached = so_far == np.repeat(before, np.diff(np.append(begins, grid.t.size)))
-    return (
-        Grid(grid.owner[reached], grid.t[reached]),
-        Samples(*(values[reached] for values in samples)),
-    )
+    folds, beside = _folds(centrelines, grid, samples)
+    grid, samples = _more(centrelines, grid, samples, beside)
+    reached = _before_first(grid, np.isnan(samples.foot_x))
+    return grid.part(reached), Samples(*(values[reached] for values in samples)), folds
 
 
-def _end_of_reach(grid: Grid, samples: Samples) -> Grid:
-    """Places between the last sample within reach and the next one; none if all are within reach.
+def _to_end_of_reach(centrelines: Contours, grid: Grid) -> Grid:
+    """Up to the first point out of reach of each contour, with more points before that.
 
-    Past a nearly sharp edge x0 may dip a last time there, within a small part of a cell.
+    Nothing is within reach again behind it. Past a nearly sharp edge x0 may dip a last time before
+    it, within a small part of a cell.
     """
-    gone = np.flatnonzero(np.isnan(samples.foot_x))
-    gone = gone[np.unique(grid.owner[gone], return_index=True)[1]]  # the first of each contour
-    fraction = np.linspace(0, 1, _INSIDE + 2)[1:-1]
-    last, next_ = grid.t[gone - 1, None], grid.t[gone, None]
-    return Grid(np.repeat(grid.owner[gone], _INSIDE), (last + (next_ - last) * fraction).ravel())
+    gone = ~within_reach(centrelines.at(*grid))
+    gone[grid.begins] = False
+    for _ in range(_AT_END):
+        first = np.flatnonzero(gone)
+        if not first.size:
+            return grid
+        first = first[np.unique(grid.owner[first], return_index=True)[1]]
+        fraction = np.linspace(0, 1, _INSIDE + 2)[1:-1]
+        t = grid.t[first - 1, None] + (grid.t[first] - grid.t[first - 1])[:, None] * fraction
+        new = Grid(np.repeat(grid.owner[first], _INSIDE), t.ravel())
+        grid, (gone,) = _merged(grid, (gone,), new, (~within_reach(centrelines.at(*new)),))
+    return grid.part(_before_first(grid, np.append(False, gone[:-1] & grid.cells)))
 
 
-def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> Grid:
-    """Where the foot position is least between neighbours, if it may be less than all before."""
-    foot_x, rate, _ = samples
+def _before_first(grid: Grid, chosen: Booleans) -> Booleans:
+    """The points before the first chosen one of each contour."""
+    so_far: Integers = np.cumsum(chosen)
+    begins = grid.begins
+    before = so_far[begins] - chosen[begins]
+    return np.asarray(so_far == np.repeat(before, np.diff(np.append(begins, grid.t.size))))
+
+
+def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> tuple[Grid, Grid]:
+    """Where the foot position is least between neighbours, if it may be less than all before.
+
+    The second grid has the points on either side of them, too: if x0 is lower there, the derivative
+    was inexact.
+    """
+    foot_x, rate = samples.foot_x, samples.rate
     before = np.where(np.isnan(rate[:-1]), 1.0, rate[:-1])
     after = np.where(np.isnan(rate[1:]), -1.0, rate[1:])
     reached = ~np.isnan(foot_x[:-1])
     least = _least_so_far(grid, foot_x)[:-1]
     lowest = foot_x[:-1] - before * (grid.t[:-1] - grid.t[1:])
     turns = np.flatnonzero(grid.cells & reached & (before > 0) & (after < 0) & (lowest < least))
-    owner = grid.owner[turns]
-    first = grid.t[np.flatnonzero(np.append(True, ~grid.cells))][owner]
+    owner, high, low = grid.owner[turns], grid.t[turns], grid.t[turns + 1]
+    first = grid.t[grid.begins][owner]
 
     def rates(turn: Integers, at: Floats) -> Floats:
         found = _sample(centrelines, Grid(owner[turn], at)).rate
         return np.where(at == first[turn], 1.0, np.where(np.isnan(found), -1.0, found))
 
-    return Grid(owner, zeros(rates, grid.t[turns + 1], grid.t[turns]))
+    likely = _least_of_cubic(low, high, *(x[turns + i] for x in samples[:2] for i in (1, 0)))
+    t = smooth_zeros(rates, low, high, likely)
+    aside = _ASIDE * (high - t)
+    every = np.append(t, [np.maximum(t - aside, low), np.minimum(t + aside, high)])
+    return Grid(owner, t), Grid(np.tile(owner, 3), every)
+
+
+def _least_of_cubic(
+    low: Floats, high: Floats, at_low: Floats, at_high: Floats, slope: Floats, last: Floats
+) -> Floats:
+    """Where cubics with given values and derivatives at the ends are least between."""
+    width = high - low
+    slope, last, rise = slope * width, last * width, at_high - at_low
+    second, third = 3 * rise - 2 * slope - last, slope + last - 2 * rise
+    with np.errstate(invalid="ignore", divide="ignore"):
+        root = np.sqrt(second * second - 3 * third * slope)
+        return low + width * -slope / (second + root)
 
 
 def _least_so_far(grid: Grid, foot_x: Floats) -> Floats:
@@ -277,7 +341,9 @@ def _least_so_far(grid: Grid, foot_x: Floats) -> Floats:
 def _sample(centrelines: Contours, grid: Grid) -> Samples:
     states = equilibria_at(centrelines.at(*grid))
     with np.errstate(divide="ignore", invalid="ignore"):  # where the clamp's moment vanishes
-        return Samples(states.foot_x, states.foot_x_rate, states.excess)
+        in_b, in_a = states.tangent_rate(), states.tip_rate()
+        rate = np.where(states.tangent, in_b, in_a.foot_x)
+        return Samples(states.foot_x, rate, states.excess, in_b, *in_a)
 
 
 def _more(centrelines: Contours, grid: Grid, samples: Samples, new: Grid) -> tuple[Grid, Samples]:
@@ -288,8 +354,8 @@ def _more(centrelines: Contours, grid: Grid, samples: Samples, new: Grid) -> tup
 
 
 def _merged(
-    grid: Grid, values: tuple[Floats, ...], new: Grid, found: tuple[Floats, ...]
-) -> tuple[Grid, tuple[Floats, ...]]:
+    grid: Grid, values: tuple[_Values, ...], new: Grid, found: tuple[_Values, ...]
+) -> tuple[Grid, tuple[_Values, ...]]:
     """Two grids as one, with what is known of their points; of points in both, the first's."""
     owner, t = np.append(grid.owner, new.owner), np.append(grid.t, new.t)
     order = _order(owner, t)

@@ -10,34 +10,32 @@ from analytic.problem.contours.many import Contours
 from analytic.problem.roots import zeros
 from analytic.solver.branch import Branch
 from analytic.solver.equilibria import Equilibria, contact, equilibria_at, tip_rates
+from analytic.solver.starts import Stations, located
 
 _EPS = float(np.finfo(float).eps)
-_ITERATIONS = 25  # of Newton's method; 4 to 8 are usual, some 20 close to a fold
-_CLOSE = 1e-9  # of a step, relative; the next one would change rounding only
+_ITERATIONS = 25  # of Newton's method; 2 or 3 are usual, some 20 close to a fold
+_CLOSE = 1e-6  # of a step, relative; after it the misses are seen, not only what they should be
+_LAST = 1e-9  # of a step, relative; another one would change rounding only
 _MOST_TURNED = np.pi / 2  # rad of excess; from there the end would point back at the clamp
 _FINEST = 4 * _EPS  # of the misses: another step would only try other roundings
+_ROUNDED = 16 * _EPS  # of the misses after such a step
 _EXACT = 64 * _EPS  # of the misses, in units of the extent: some roundings of the closed forms
 
 
 class _Iterate(NamedTuple):
-    """Unknowns of all stations, shape (n,), and by how much they miss."""
+    """Stations, shape (n,), as far as they are solved."""
 
     t: Floats
-    excess: Floats
     missed: Floats
+    states: Equilibria
 
+    def part(self, chosen: Booleans | Integers) -> "_Iterate":
+        return _Iterate(self.t[chosen], self.missed[chosen], self.states.part(chosen))
 
-class _Stations(NamedTuple):
-    """Stations of many branches, shape (n,): whose, where, and between which contour parameters."""
-
-    owner: Integers
-    foot_x: Floats
-    low: Floats
-    high: Floats
-
-    def part(self, chosen: Booleans | Integers) -> "_Stations":
-        owner, foot_x, low, high = self
-        return _Stations(owner[chosen], foot_x[chosen], low[chosen], high[chosen])
+    def replace(self, where: Integers, new: "_Iterate") -> None:
+        """Put others in the place of some."""
+        self.t[where], self.missed[where] = new.t, new.missed
+        self.states.replace(where, new.states)
 
 
 def solve_stations(
@@ -45,8 +43,8 @@ def solve_stations(
 ) -> Equilibria:
     """The states at foot positions on branches.
 
-    Newton's method starts from the branch's grid and may not leave the station's cell. What it
-    leaves with a miss, or in the wrong phase, is enclosed instead: the foot position of the
+    Newton's method starts from cubics on the branch's grid and may not leave the station's cell.
+    What it leaves with a miss, or in the wrong phase, is enclosed instead: the foot position of the
     equilibrium at a contour point changes steadily along the cell, whatever its phase.
 
     Parameters
@@ -64,55 +62,23 @@ def solve_stations(
         Of all, one branch after the other, as exact as rounding allows; whether that is exact
         enough, `residuals` says.
     """
-    cells = [branch.cells(places) for branch, places in zip(branches, foot_x, strict=True)]
-
-    def of_cells(name: str, ahead: int) -> Floats:
-        parts = zip(branches, cells, strict=True)
-        return np.concatenate(
-            [getattr(branch, name)[np.maximum(cell + ahead, 0)] for branch, cell in parts]
-        )
-
-    stations = _Stations(
-        np.repeat(np.arange(len(branches)), [len(places) for places in foot_x]),
-        np.concatenate(foot_x),
-        of_cells("t", 1),
-        of_cells("t", 0),
-    )
-    tangent = of_cells("tangent", 0).astype(bool)
-    places = [of_cells("foot_x", i) for i in (-1, 0, 1)]
-    smooth = tangent == of_cells("tangent", -1)
-    t = _interpolated(places, [of_cells("t", i) for i in (-1, 0, 1)], stations.foot_x, smooth)
-    rotations = [of_cells("excess", i) for i in (-1, 0, 1)]
-    excess, behind = _interpolated(places, rotations, stations.foot_x, smooth), rotations[-1]
+    stations, (tangent, t, excess, behind) = located(centrelines, branches, foot_x)
     found = _newton(centrelines, stations, tangent, (t, excess))
-    states = contact(centrelines.at(stations.owner, found.t), found.excess, tangent)
-    poor = ~(_admissible(states) & (found.missed <= _EXACT))
-    if poor.any():
+    poor = np.flatnonzero(~(_admissible(found.states) & (found.missed <= _EXACT)))
+    if poor.size:
         few = stations.part(poor)
-        enclosed, tangent[poor] = _enclose(centrelines, few, behind[poor])
-        start = enclosed.t, enclosed.excess
-        refined = _newton(centrelines, few, tangent[poor], start)
-        closer = contact(centrelines.at(few.owner, refined.t), refined.excess, tangent[poor])
-        better = _admissible(closer) & (refined.missed < enclosed.missed)
-        for values, one, other in zip(found, refined, enclosed, strict=True):
-            values[poor] = np.where(better, one, other)
-        states = contact(centrelines.at(stations.owner, found.t), found.excess, tangent)
-    return states
-
-
-def _interpolated(x: list[Floats], y: list[Floats], at: Floats, smooth: Booleans) -> Floats:
-    """Between the last two of three points, by a parabola through all where `y` is smooth."""
-    slope = (y[2] - y[1]) / (x[2] - x[1])
-    with np.errstate(all="ignore"):  # the first cell has none before it
-        curved = (slope - (y[1] - y[0]) / (x[1] - x[0])) / (x[2] - x[0])
-    curved = np.where(smooth & np.isfinite(curved), curved, 0.0)
-    value = y[1] + (at - x[1]) * (slope + curved * (at - x[2]))
-    return np.clip(value, np.minimum(y[1], y[2]), np.maximum(y[1], y[2]))
+        enclosed = _enclose(centrelines, few, behind[poor])
+        start = enclosed.t, enclosed.states.excess
+        refined = _newton(centrelines, few, enclosed.states.tangent, start)
+        better = _admissible(refined.states) & (refined.missed < enclosed.missed)
+        found.replace(poor, enclosed)
+        found.replace(poor[better], refined.part(better))
+    return found.states
 
 
 def _newton(
     centrelines: Contours,
-    stations: _Stations,
+    stations: Stations,
     tangent: Booleans,
     start: tuple[Floats, Floats],
 ) -> _Iterate:
@@ -123,7 +89,7 @@ def _newton(
     the force.
     """
     t, excess = start
-    best = _Iterate(t.copy(), excess.copy(), np.full_like(t, np.inf))
+    best: _Iterate | None = None
     step = np.full_like(t, np.inf)
     going = np.arange(t.size)
     for _ in range(_ITERATIONS):
@@ -132,20 +98,28 @@ def _newton(
             states = contact(centrelines.at(owner, t), excess, tangent[going])
             too_high, too_far, extent = _misses(states, foot_x, t)
             missed = np.fmax(np.abs(too_high), np.abs(too_far)) / extent
-            step_t, step_w = _steps(states, too_high, too_far)
-        less = missed <= best.missed[going]
-        for values, new in zip(best, (t, excess, missed), strict=True):
-            values[going[less]] = new[less]
-        enough = (missed <= _FINEST) | (~less & (missed <= _EXACT))
-        more = ~((enough & (step <= _CLOSE)) | (missed == 0))
-        if not more.any():
+        missed = np.where(np.isnan(missed), np.inf, missed)
+        now = _Iterate(t, missed, states)
+        if best is None:
+            best, less = now, missed < np.inf
+        else:
+            less = missed <= best.missed[going]
+            best.replace(going[less], now.part(less))
+        fine = np.where(step <= _LAST, _ROUNDED, _FINEST)
+        enough = (missed <= fine) | (~less & (missed <= _EXACT))
+        more = np.flatnonzero(~((enough & (step <= _CLOSE)) | (missed == 0)))
+        if not more.size:
             break
+        going, now = going[more], now.part(more)
+        t, excess = now.t, now.states.excess
+        with np.errstate(all="ignore"):
+            step_t, step_w = _steps(now.states, too_high[more], too_far[more])
         step_t = np.where(np.isfinite(step_t), step_t, 0.0)
         step_w = np.where(np.isfinite(step_w), step_w, 0.0)
-        new_t = np.clip(t - step_t, low, high)
-        step = np.maximum(np.abs(new_t - t), np.abs(step_w) / excess)[more]
-        excess = np.clip(excess - step_w, excess / 10, _MOST_TURNED)[more]
-        t, going = new_t[more], going[more]
+        new_t = np.clip(t - step_t, low[more], high[more])
+        step = np.maximum(np.abs(new_t - t), np.abs(step_w) / excess)
+        t, excess = new_t, np.clip(excess - step_w, excess / 10, _MOST_TURNED)
+    assert best is not None
     return best
 
 
@@ -184,10 +158,8 @@ def _admissible(states: Equilibria) -> Booleans:
     return np.asarray(np.where(states.tangent, fits, above))
 
 
-def _enclose(
-    centrelines: Contours, stations: _Stations, behind: Floats
-) -> tuple[_Iterate, Booleans]:
-    """Stations enclosed along the contour, and whether they are in Phase B.
+def _enclose(centrelines: Contours, stations: Stations, behind: Floats) -> _Iterate:
+    """Stations enclosed along the contour, in whichever phase they are.
 
     `behind` is the excess rotation where each one's cell ends.
     """
@@ -207,4 +179,4 @@ def _enclose(
     states = contact(centrelines.at(owner, t), excess, states.tangent)
     too_high, too_far, extent = _misses(states, foot_x, t)
     missed = np.fmax(np.abs(too_high), np.abs(too_far)) / extent
-    return _Iterate(t, excess, missed), states.tangent
+    return _Iterate(t, missed, states)

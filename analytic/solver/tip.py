@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.special import ellipe, ellipk
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Booleans, Floats
 from analytic.solver.elastica import (
     Span,
     frame,
@@ -71,6 +71,22 @@ def tangent_height(alpha: Floats) -> Floats:
     """
     tangential = tangent_span(alpha)
     return frame(tangential, alpha).up / tangential.q
+
+
+def has_tip_state(alpha: Floats, eta: Floats) -> Booleans:
+    """Whether a tip can rest on contour points that are not below tangential contact.
+
+    Parameters
+    ----------
+    alpha, eta : array, shape (n,)
+        Slope angle [rad] and height of the contour points.
+
+    Returns
+    -------
+    array of bool, shape (n,)
+        False where no vibrissa that bends one way ends there.
+    """
+    return np.asarray((eta < greatest_height(alpha)) & (np.abs(alpha) < np.pi / 2))
 
 
 def tip_excess(alpha: Floats, eta: Floats, lowest: Floats | None = None) -> Floats:

@@ -1,7 +1,7 @@
 """Many contours at once: points of each in one call."""
 
 from collections.abc import Iterator, Sequence
-from functools import partial
+from functools import cached_property, partial
 from types import MethodType
 from typing import Any
 
@@ -43,6 +43,12 @@ class Contours:
 
     def __len__(self) -> int:
         return len(self.contours)
+
+    @cached_property
+    def lowest(self) -> Floats:
+        """Parameters of the lowest points, shape (contours,)."""
+        level = np.zeros(1)
+        return np.concatenate([contour.parameter(level) for contour in self.contours])
 
     def at(self, owner: Integers, t: Floats) -> ContourPoint:
         """Points of the contours.

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 
-from analytic.problem.roots import zero, zeros
+from analytic.problem.roots import smooth_zeros, zero, zeros
 
 EPS = float(np.finfo(float).eps)
 
@@ -39,3 +40,32 @@ def test_one_zero_of_a_smooth_function_takes_five_calls() -> None:
 
     assert zero(cosine, 0.0, 1.5) == pytest.approx(0.7390851332151607, rel=4 * EPS)
     assert len(calls) <= 5
+
+
+def _nearly_known(likely: ArrayLike, jump: bool = False) -> tuple[np.ndarray, int]:
+    """The zeros of two functions at 0.3 and 0.6, and how many calls they took."""
+    calls = []
+
+    def function(which: np.ndarray, x: np.ndarray) -> np.ndarray:
+        calls.append(x.size)
+        smooth = np.expm1(x - np.array([0.3, 0.6])[which])
+        return np.asarray(np.sign(smooth) - 0.5 if jump else smooth)
+
+    found = smooth_zeros(function, np.zeros(2), np.ones(2), np.array(likely))
+    return found, len(calls)
+
+
+def test_zeros_that_are_nearly_known_take_one_call() -> None:
+    found, calls = _nearly_known([0.32, 0.55])
+    np.testing.assert_allclose(found, [0.3, 0.6], rtol=16 * EPS)
+    assert calls == 1
+
+
+@pytest.mark.parametrize(("likely", "jump"), [((0.9, 0.6), False), ((0.3, 0.6), True)])
+@pytest.mark.parametrize("unknown", [False, True])
+def test_a_wrong_guess_and_a_jump_cost_calls_and_no_digits(
+    likely: tuple[float, float], jump: bool, unknown: bool
+) -> None:
+    found, calls = _nearly_known([np.nan, likely[1]] if unknown else likely, jump)
+    np.testing.assert_allclose(found, [0.3, 0.6], rtol=16 * EPS)
+    assert calls > 1

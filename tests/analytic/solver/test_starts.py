@@ -1,0 +1,28 @@
+"""Where Newton's method starts: close to the state, at folds and first contact too."""
+
+import numpy as np
+import pytest
+
+from analytic import named_case
+from analytic.problem.contours.many import Contours
+from analytic.solver.branch import trace
+from analytic.solver.starts import located
+from analytic.solver.stations import solve_stations
+
+
+@pytest.mark.parametrize("name", ["catenary", "parabola", "two-circles", "tip-only"])
+def test_starts_are_near_the_states(name: str) -> None:
+    case = named_case(name)
+    centrelines = Contours([case.centreline])
+    branches = trace(centrelines, [case.reach])
+    first, last = branches[0].foot_x[[0, -1]]
+    # Dense at both ends, where x0 moves like a root and folds.
+    share = (1 - np.cos(np.linspace(0, np.pi, 402)[1:-1])) / 2
+    foot_x = first + (last - first) * share
+    _, starts = located(centrelines, branches, [foot_x])
+    states = solve_stations(centrelines, branches, [foot_x])
+    apart = np.abs(starts.t - states.point.alpha), np.abs(starts.excess - states.excess)
+    in_a = ~states.tangent
+    assert np.median(apart[0]) < 1e-6
+    assert np.median(apart[1][in_a]) < 1e-6
+    assert apart[0].max() < 1e-3
