@@ -207,7 +207,7 @@ class Case:
             base_curvature = float(beam.curvature_at(0.0))
             beyond = base_curvature, self.clamp_stiffness, self.friction
             numbers = np.append(numbers, beyond)
-        text = " ".join(f"{x:.12e}" for x in numbers.tolist())
+        text = " ".join(["%.12e"] * numbers.size) % tuple(numbers.tolist())
         if beam.varies:
             given = asdict(beam)
             names = "flexural_rigidity", "tip_radius", "natural_curvature"

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam, Varying
 from analytic.problem.columns import SENSED
 from analytic.problem.errors import InputError, require
@@ -23,7 +23,7 @@ from analytic.problem.support import (
     support_of,
     support_record,
 )
-from analytic.problem.table import Place, checked_table, mirrored_table, row_number
+from analytic.problem.table import Place, as_table, checked_table, mirrored_table, row_number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -87,14 +87,20 @@ class Readings:
 
     @classmethod
     def solved(
-        cls, table: pd.DataFrame, beam: Beam, source: str, provenance: Mapping[str, Any]
+        cls,
+        columns: Mapping[str, Floats | Integers],
+        beam: Beam,
+        source: str,
+        provenance: Mapping[str, Any],
     ) -> "Readings":
-        """Readings of a solver's own table, which is not checked.
+        """Readings of a solver's own columns, which are not checked.
+
+        The table is made when it is first asked for: many sweeps are asked for their snap-off only.
 
         Parameters
         ----------
-        table : pandas.DataFrame
-            As `Readings` would leave it: rows counted from 0, all numbers floats, none infinite.
+        columns : mapping of array, shape (stations,)
+            As `as_table` takes them: all numbers floats, none infinite.
         beam : Beam
             The vibrissa.
         source : str
@@ -108,10 +114,18 @@ class Readings:
             What `Readings` of the same is, in a tenth of the time.
         """
         found = object.__new__(cls)
-        parts = {"table": table, "beam": beam, "source": source, "provenance": provenance}
-        for name, part in parts.items():
-            object.__setattr__(found, name, part)
+        parts = {"_columns": columns, "beam": beam, "source": source, "provenance": provenance}
+        found.__dict__.update(parts)
         return found
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> pd.DataFrame:
+            columns = self.__dict__.get("_columns")
+            if name != "table" or columns is None:
+                raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
+            self.__dict__["table"] = as_table(columns)
+            return self.__dict__["table"]
 
     @classmethod
     def of(

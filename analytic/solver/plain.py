@@ -59,15 +59,14 @@ def solve_plain(cases: Sequence[Case]) -> list[Readings]:
     wrong = ~(np.maximum(*checked.values()) <= SOLVED)
     columns["status"][wrong] = STATUSES.index("diverged")
     columns |= checked
-    table = as_table(columns)
     # Beyond the largest number in the case's units: an error says so.
-    make = Readings if any(np.isinf(x).any() for x in columns.values()) else Readings.solved
+    finite = not any(np.isinf(x).any() for x in columns.values())
     found, begin = [], 0
     for case, count, branch in zip(cases, counts, branches, strict=True):
-        own = table
-        if len(cases) > 1:
-            own = table.iloc[begin : begin + count].reset_index(drop=True)
-        found.append(make(own, case.beam, "analytic", provenance(case, branch.events())))
+        # Copies: readings that are kept do not keep those of all.
+        own = {name: x[begin : begin + count].copy() for name, x in columns.items()}
+        known = case.beam, "analytic", provenance(case, branch.events())
+        found.append(Readings.solved(own, *known) if finite else Readings(as_table(own), *known))
         begin += count
     return found
 

@@ -31,9 +31,9 @@ def _varied(count: int) -> Iterator[Case]:
     """Vibrissae past catenaries and circles, none like another."""
     numbers = np.random.default_rng(0)
     for i in range(count):
-        even = catenary(numbers.uniform(0.3, 0.8), -0.8)
-        odd = circle(numbers.uniform(0.7, 2.0), (0.0, 0.4))
-        yield Case(Beam(radius=numbers.uniform(1e-3, 1e-2)), odd if i % 2 else even)
+        width, size, radius = numbers.uniform((0.3, 0.7, 1e-3), (0.8, 2.0, 1e-2))
+        profile = circle(size, (0.0, 0.4)) if i % 2 else catenary(width, -0.8)
+        yield Case(Beam(radius=radius), profile)
 
 
 def main(quick: bool) -> None:

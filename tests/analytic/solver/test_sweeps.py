@@ -1,6 +1,8 @@
 """Many sweeps at once are what each is alone."""
 
+import copy
 import itertools
+import pickle
 import tracemalloc
 from functools import partial
 
@@ -160,3 +162,14 @@ def test_nearly_straight_sides_are_solved_to_their_roundings():
     rng = np.random.default_rng([list(KINDS).index("nearly polygon"), 51_000_000_000_187])
     found = solve_sweep(any_case("nearly polygon", rng))
     assert (found.table["status"] == "ok").all()
+
+
+def test_the_table_of_solved_readings_survives_a_copy_before_it_is_asked_for() -> None:
+    for copied in (copy.copy, copy.deepcopy, lambda found: pickle.loads(pickle.dumps(found))):
+        fresh = solve_sweep(named_case("catenary"))
+        again = copied(fresh)
+        assert again.snap_off == fresh.snap_off
+        pd.testing.assert_frame_equal(again.table, fresh.table)
+        assert again.table is again.table
+    with pytest.raises(AttributeError, match="chart"):
+        fresh.chart  # noqa: B018
