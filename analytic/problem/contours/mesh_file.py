@@ -80,7 +80,10 @@ def read_body(file: str | Path, hull: bool, tolerance: float) -> Body:
     mesh, middle, size = read
     if not hull and not mesh.is_watertight:
         raise InputError(
-            f"mesh {file}", "open", "watertight", "close its holes, or take its hull (hull = true)"
+            f"mesh {file}",
+            f"open{_hole(read)}",
+            "watertight",
+            "close its holes, or take its hull (hull = true)",
         )
     try:
         kept, miss = thinned(np.asarray(mesh.vertices), tolerance / size, _MOST_VERTICES)
@@ -97,6 +100,17 @@ def read_body(file: str | Path, hull: bool, tolerance: float) -> Body:
     if not hull:
         _check_convex(read, volume, file)
     return body._replace(vertices=middle + size * body.vertices, miss=miss * size)
+
+
+def _hole(read: _Read) -> str:
+    """Where an edge has one face only; empty if some have more than two instead."""
+    mesh, middle, size = read
+    edges, counts = np.unique(mesh.edges_sorted, axis=0, return_counts=True)
+    rims = edges[counts == 1]
+    if not len(rims):
+        return ""
+    x, y, z = middle + size * mesh.vertices[rims[0]].mean(axis=0)
+    return f" at ({x:.4g}, {y:.4g}, {z:.4g})"
 
 
 def _check_convex(read: _Read, hull: float, file: Path) -> None:

@@ -133,7 +133,7 @@ class SpatialCase:
                 what,
                 f"{size / length:.4g} L in size",
                 f"{_SMALLEST:g} to {_LARGEST:g} L",
-                'the file is in another unit: scale = "1 mm" for millimetres',
+                'the file is in another unit: give that as scale, 1e-3 or "1 mm" for millimetres',
             )
         if away > _FARTHEST * length:
             x, y, z = (low + high) / 2

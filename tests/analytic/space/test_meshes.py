@@ -120,10 +120,16 @@ def test_meshes_that_cannot_be_touched_are_refused_in_one_line(tmp_path):
     hole = trimesh.Trimesh(whole.vertices, whole.faces[5:], process=False)
     dented = whole.copy()
     dented.vertices[0] *= [1, 0.4, 1]
-    for mesh, says in ((hole, "open"), (dented, "dented at")):
+    for mesh, says, near in (
+        (hole, "open at", whole.triangles_center[:5]),
+        (dented, "dented at", dented.vertices[:1]),
+    ):
         with pytest.raises(InputError, match=says) as refused:
             convex_mesh(saved(mesh, tmp_path))
         assert "\n" not in str(refused.value)
+        place = str(refused.value).split(says)[1].strip(" (").split(")")[0]
+        apart = np.linalg.norm(near - np.array(place.split(","), dtype=float), axis=1)
+        assert apart.min() < 0.3
     for mesh, says in (
         (ball(2, 2000.0, (0.0, 2800.0, 0.0)), "4000 L in size.*scale"),
         (ball(2, 1.0, (3e4, 1.4, 0.0)), "around .*check its unit"),
