@@ -41,10 +41,11 @@ class Beam:
         Radius of the cross-section and of the tip [length]; 0 is the paper's thin vibrissa, which
         only the analytic side can handle.
     tip_radius : float, optional
-        Of a cone: radius at the tip [length]; that at the clamp is `radius`, and between it is
-        linear. If the flexural rigidity is a number, it is that at the clamp, and the rest follows
-        the fourth power of the radius; else it is as given. An object is touched by the cone's
-        surface: at arc length s its contour feels a sphere of the radius there about the axis.
+        Of a cone: radius at the tip, at least 0.0015 of that at the clamp, which is `radius`;
+        between, it is linear [length]. If the flexural rigidity is a number, it is that at the
+        clamp, and the rest follows the fourth power of the radius; else it is as given. An object
+        is touched by the cone's surface: at arc length s its contour feels a sphere of the radius
+        there about the axis.
     natural_curvature : float, or function or table of arc length
         Of the vibrissa at rest [1/length], given like the flexural rigidity: an arc from the
         upright clamp if it is a number, positive to the left of its way from clamp to tip; 0 is the

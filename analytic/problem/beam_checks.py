@@ -9,6 +9,9 @@ from analytic.problem.errors import InputError
 from analytic.problem.numbers import is_finite_number
 from analytic.problem.unloaded import Unloaded
 
+# Of the radius at the clamp; at a thousandth, the stiffness of the tip is rounding beside that of
+# the clamp, and a sweep finds no equilibria for minutes.
+_THINNEST = 0.0015
 _PLACES = 257  # at which a vibrissa at rest is looked at
 
 
@@ -102,11 +105,12 @@ def checked_radii(radius: object, tip_radius: object, length: float) -> tuple[fl
         )
     if tip_radius is None:
         return float(radius), None
-    if not (is_finite_number(tip_radius) and 0 < tip_radius <= radius):
+    if not (is_finite_number(tip_radius) and _THINNEST * radius <= tip_radius <= radius != 0):
         raise InputError(
             "beam.tip_radius",
             tip_radius,
-            f"positive and at most the radius at the clamp ({radius:g})",
+            f"between {_THINNEST} of the radius at the clamp ({_THINNEST * radius:g}) and all "
+            f"of it ({radius:g})",
             f"the radius falls in proportion to s, and may not vanish before or at s = {length:g}",
         )
     return float(radius), float(tip_radius)

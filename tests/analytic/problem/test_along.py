@@ -113,7 +113,8 @@ def test_shape_at_rest_is_the_integral():
         (lambda: Case(Beam(natural_curvature=lambda s: 3.5 * s), OBJECT), "overhangs"),
         (lambda: Beam(tip_radius=-0.001), "beam.tip_radius = -0.001"),
         (lambda: Beam(tip_radius=0), "may not vanish"),
-        (lambda: Beam(tip_radius=0.006), "at most the radius"),
+        (lambda: Beam(tip_radius=0.006), "and all of it"),
+        (lambda: Beam(tip_radius=5e-6), "between 0.0015 of the radius at the clamp"),
         (lambda: Beam(radius=0, tip_radius=0), "beam.tip_radius = 0"),
     ],
 )

@@ -249,7 +249,7 @@ def test_what_varies_along_the_vibrissa_is_a_table(tmp_path):
         (('"1e-6 N m^2"', "1e-6"), "line 3: beam.flexural_rigidity = without a unit"),
         (("1e-6 N m^2", "-1e-6 N m^2"), "positive all along"),
         (('["50 mm", "1e-6', '["40 mm", "1e-6'), "from the clamp, s = 0, to the tip, s = 0.05"),
-        (('natural_curvature = [[0, "-6 1/m"], ["50 mm", 0]]', 'tip_radius = "-1 um"'), "positive"),
+        (('natural_curvature = [[0, "-6 1/m"], ["50 mm", 0]]', 'tip_radius = "-1 um"'), "between"),
         (('"-6 1/m"', '"-90 1/m"'), "overhangs"),
     ],
 )
