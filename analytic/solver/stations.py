@@ -117,7 +117,9 @@ def _newton(
         step_t = np.where(np.isfinite(step_t), step_t, 0.0)
         step_w = np.where(np.isfinite(step_w), step_w, 0.0)
         new_t = np.clip(t - step_t, low[more], high[more])
-        step = np.maximum(np.abs(new_t - t), np.abs(step_w) / excess)
+        with np.errstate(all="ignore"):  # as much as the rotation itself, or more, is no last step
+            turned = np.where(step_w == 0, 0.0, np.abs(step_w) / excess)
+        step = np.maximum(np.abs(new_t - t), turned)
         t, excess = new_t, np.clip(excess - step_w, excess / 10, _MOST_TURNED)
     assert best is not None
     return best

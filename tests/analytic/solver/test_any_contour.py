@@ -1,5 +1,6 @@
 """Sweeps along random contours, and the kinds of sweep that are hardest to get right."""
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -45,6 +46,13 @@ def test_more_random_contours(kind):
 def test_a_last_fold_next_to_the_end_of_reach(seed):
     """Past a nearly sharp edge x0 dips once more: missed, the snap-off was up to 0.03 L early."""
     assert trial("nearly polygon", seed) == ("solved", [])
+
+
+def test_a_step_as_large_as_the_rotation_itself():
+    """At a first contact that is all but straight the excess rotation is next to nothing."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert trial("through points", 62000000001569) == ("solved", [])
 
 
 @pytest.mark.parametrize("event", ["first_contact", "phase_b_start", "phase_b_end", "snap_off"])
