@@ -54,6 +54,7 @@ class Newton:
         self._model = model
         self._numerics = numerics
         self._last: Touch | None = None
+        self._doubled = 0  # of the addition to the springs in the last step
 
     def step(self, state: State, contacts: Contacts, inertia: float = 0.0) -> State:
         """The next iterate.
@@ -98,7 +99,8 @@ class Newton:
             moments -= np.maximum(-model.contact_stiffness * distance, 0) @ (comes - along)
         springs = (1 + inertia) * model.stiffness(state.angles)
         stiffness = self._stiffness(springs, contacts, slides, force, curvature, across, held)
-        turns = stiffness.solve(np.concatenate([moments[None], comes]))
+        rows = np.concatenate([moments[None], comes])
+        turns, self._doubled = stiffness.solve(rows, self._doubled)
         nearer = comes @ turns.T  # by the moments, and by a unit of force at each contact
         compliance = nearer[:, 1:] + np.eye(len(force)) / model.contact_stiffness
         forces = _unilateral(compliance, distance + nearer[:, 0], loaded)

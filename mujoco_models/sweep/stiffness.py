@@ -42,57 +42,65 @@ class Stiffness:
     directions: Floats
     weights: Floats
 
-    def solve(self, moments: Floats) -> Floats:
+    def solve(self, moments: Floats, near: int = 0) -> tuple[Floats, int]:
         """The turns of the links under moments.
 
         Parameters
         ----------
         moments : array, shape (k, n)
             Generalised forces of the links' angles, k times [EI/L].
+        near : int
+            How often an addition to all springs was doubled for a stiffness like this one: the
+            search begins there, and finds the same from anywhere.
 
         Returns
         -------
-        array, shape (k, n)
-            By this stiffness, or with the least addition to all springs that makes it positive
-            definite [rad].
+        turns : array, shape (k, n)
+            By this stiffness, or with the least addition that makes it positive definite [rad].
+        doubled : int
+            How often that was doubled; 0 without one.
 
         Raises
         ------
         DivergedError
             If the stiffness is not finite.
         """
-        count, rows = len(moments), np.concatenate([moments, self.directions])
+        rows = np.concatenate([moments, self.directions])
         if not math.isfinite(self.springs.sum() + self.links.sum() + rows.sum()):
             raise DivergedError("the stiffness is not finite")
+        level, found = near, self._attempt(near, rows)
+        while found is None:
+            level += 1
+            found = self._attempt(level, rows)
+        if level == near:
+            while level and (softer := self._attempt(level - 1, rows)) is not None:
+                level, found = level - 1, softer
+        return found, level
+
+    def _attempt(self, level: int, rows: Floats) -> Floats | None:
+        """The turns with an addition of this level, if it makes the stiffness positive definite."""
+        shift = _LEAST_SHIFT * len(self.springs) * 2.0 ** (level - 1) if level else 0.0
+        count = len(rows) - len(self.directions)
         if len(self.weights) > len(self.springs):
-            return self._solve_whole(moments)
-        shift, positive = 0.0, np.count_nonzero(self.weights > 0)
-        while True:
-            turns, negative = self._tridiagonal(shift, rows.T)
-            within = self.directions @ turns
-            met, within = within[:, :count], within[:, count:]
-            within.flat[:: len(within) + 1] += 1 / self.weights
-            if negative + _positive(within) == positive:
-                break
-            shift = self._next(shift)
+            return self._solved_whole(shift, rows[:count])
+        turns, negative = self._tridiagonal(shift, rows.T)
+        within = self.directions @ turns
+        met, within = within[:, :count], within[:, count:]
+        within.flat[:: len(within) + 1] += 1 / self.weights
+        if negative + _positive(within) != np.count_nonzero(self.weights > 0):
+            return None
         plain, low = turns[:, :count], turns[:, count:]
         if len(within) == 0:
             return plain.T
         return np.asarray((plain - low @ dgesv(within, met)[2]).T)
 
-    def _next(self, shift: float) -> float:
-        return max(2 * shift, _LEAST_SHIFT * len(self.springs))
-
-    def _solve_whole(self, moments: Floats) -> Floats:
+    def _solved_whole(self, shift: float, moments: Floats) -> Floats | None:
         """The same where contacts outnumber links: of low rank is then nothing."""
-        contacts = (self.directions.T * self.weights) @ self.directions
-        shift, failed = 0.0, 1
-        while failed:
-            diagonal, beside = self._bands(shift)
-            whole = contacts + np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1)
-            _, turns, failed = dposv(whole, moments.T)
-            shift = self._next(shift)
-        return np.asarray(turns.T)
+        diagonal, beside = self._bands(shift)
+        whole = np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1)
+        whole += (self.directions.T * self.weights) @ self.directions
+        _, turns, failed = dposv(whole, moments.T)
+        return None if failed else np.asarray(turns.T)
 
     def _bands(self, shift: float) -> tuple[Floats, Floats]:
         """Of the tridiagonal part: the diagonal, and what is beside it."""

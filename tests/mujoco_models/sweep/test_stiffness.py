@@ -43,16 +43,17 @@ def test_solves_as_the_dense_matrix_does(count):
         indefinite += shift == 0 and np.linalg.eigvalsh(dense(alone))[0] < 0
         moments = draw.normal(size=(3, count))
         exact = np.linalg.solve(dense(stiffness, shift), moments.T).T
-        # Observed at most 1e-12, beside a tridiagonal part that is next to singular.
-        np.testing.assert_allclose(
-            stiffness.solve(moments), exact, rtol=0, atol=1e-10 * np.abs(exact).max()
-        )
+        for near in (0, 2, 9):
+            found, doubled = stiffness.solve(moments, near)
+            assert shift == (0.02 * count * 2.0 ** (doubled - 1) if doubled else 0)
+            # Observed at most 1e-12, beside a tridiagonal part that is next to singular.
+            np.testing.assert_allclose(found, exact, rtol=0, atol=1e-10 * np.abs(exact).max())
     assert plain and shifted and indefinite  # all three ways have been gone
 
 
 def test_without_a_contact():
     stiffness = Stiffness(np.ones(4), np.zeros(4), np.zeros((0, 4)), np.zeros(0))
-    np.testing.assert_allclose(stiffness.solve(np.ones((1, 4))), [[4, 7, 9, 10]])
+    np.testing.assert_allclose(stiffness.solve(np.ones((1, 4)))[0], [[4, 7, 9, 10]])
 
 
 def test_what_is_not_finite_is_refused():
