@@ -107,8 +107,9 @@ class Walk(Generic[Model]):
 
     def _advance(self, target: float, limit: int) -> str | None:
         """Go to `target`; why not, if that is not possible."""
+        numerics, least = self._numerics, self._numerics.smallest_step
         wall: float | None = None  # the nearest place at which it let go, or failed short of that
-        step, let_go, in_vain = target - self._foot_x, False, False
+        step, let_go, in_vain, jumps = target - self._foot_x, False, False, False
         while True:
             end = target if wall is None else wall
             rest = abs(end - self._foot_x) - abs(step)
@@ -116,19 +117,23 @@ class Walk(Generic[Model]):
             state = self._near_rest(trial)
             if self._follows(state):
                 self._accept(trial, state)
-                # Short of a fold half of the way at first: beyond it there is nothing.
+                # Short of a fold half of the way at first: beyond it there is nothing. Where it is
+                # that a tip goes from facet to facet, no reading knows.
                 step = step / 2 if let_go else 2 * step
-                let_go, wall = False, None if trial == wall else wall
-            elif abs(trial - self._foot_x) > self._numerics.smallest_step:
+                wall = None if trial == wall else wall
+                let_go, jumps = False, jumps and wall is not None
+            elif abs(trial - self._foot_x) > (numerics.confirm_step if jumps else least):
                 self._smooth, in_vain = False, True
                 step = (trial - self._foot_x) / 2
-                let_go = wall is not None or state.stance is not self._state.stance
+                stays = state.stance is self._state.stance
+                jumps |= stays and state.settled and self._leaves_its_facet(state)
+                let_go = jumps or wall is not None or not stays
                 wall = trial if let_go else None
             else:
                 trouble = self._decide((self._foot_x + trial) / 2, target)
                 if trouble is not None:
                     return trouble
-                step, wall = target - self._foot_x, None
+                step, wall, jumps = target - self._foot_x, None, False
             if self._foot_x == target:
                 self._smooth = not in_vain
                 return None

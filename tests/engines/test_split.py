@@ -43,8 +43,8 @@ def test_a_joint_that_is_two_percent_too_stiff_is_implementation(
     """The size of the links errs alike in both, and takes no part in what is between them."""
     make = Chain.spec
 
-    def stiffer(self, radius):
-        spec = make(self, radius)
+    def stiffer(self, radius, furnish):
+        spec = make(self, radius, furnish)
         spec.joints[joint].stiffness[0] *= 1.02
         return spec
 
