@@ -337,7 +337,7 @@ def _stable_step(model: mujoco.MjModel, squares: Floats, damping: Floats) -> flo
     """
     if model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_RK4):
         return float(2.78 / max(np.sqrt(squares.max()), damping.max()))
-    return float(((damping + np.sqrt(damping**2 + 4 * squares)) / squares).min())
+    return float(((damping + np.hypot(damping, 2 * np.sqrt(squares))) / squares).min())
 
 
 def _model_name(model: mujoco.MjModel) -> str:

@@ -42,8 +42,8 @@ def test_a_joint_two_percent_too_stiff_is_implementation(others, monkeypatch, jo
     settings, exact, sweeps = others
     make = Chain.spec
 
-    def stiffer(self, radius):
-        spec = make(self, radius)
+    def stiffer(self, radius, furnish):
+        spec = make(self, radius, furnish)
         spec.joints[joint].stiffness[0] *= 1.02
         return spec
 
