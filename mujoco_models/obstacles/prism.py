@@ -147,6 +147,10 @@ class Prism(Faceted):
         x, y = x - along * run_x, y - along * run_y
         distances = np.hypot(x, y)
         best = np.argmin(distances, axis=0), np.arange(len(points))
+        nearest, last = facets[best], len(self.facet_angles) - 1
+        aside = (best[0] == 0) | (best[0] == len(_ABOUT) - 1)
+        if (aside & (nearest > 0) & (nearest < last) & ~inside).any():
+            return None  # a nearer facet may be farther along
         distance = np.where(inside, -distances[best], distances[best])
         return distance, np.array([x[best], y[best]]).T / distance[:, None]
 
