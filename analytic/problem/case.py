@@ -193,14 +193,14 @@ class Case:
     def digest(self) -> str:
         """A hash of the physics: equal for equal problems, whatever the case is called."""
         left, right = self.reach
-        point = self.centreline.at(np.linspace(left, right, 67))
+        xi, eta = self.centreline.place(np.linspace(left, right, 67))
         beam = self.beam
         numbers = np.concatenate(
             [
                 [beam.length, beam.base_rigidity, beam.radius, self._start, self._stop],
                 [self.sweep.stations],
-                point.xi,
-                point.eta,
+                xi,
+                eta,
             ]
         )
         if not self.is_plain:
@@ -280,7 +280,7 @@ class Case:
             return first_touch(self.centreline, self.reach, self.beam.unloaded).foot_x
         left, right = self.reach
         first = left if self._way > 0 else right
-        return float(self.centreline.at(np.array([first])).xi[0])
+        return float(self.centreline.place(np.array([first]))[0][0])
 
     @cached_property
     def _start(self) -> float:

@@ -6,11 +6,14 @@ vibrissa's centreline feels (`Contour.offset`).
 
 import numpy as np
 
+from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
-from analytic.problem.roots import zeros
+from analytic.problem.roots import smooth_zeros
 
 FARTHEST = 1e4  # L, from the origin: positions are then good to 2e-12 L
+_SHARES = np.linspace(0, 1, 33)  # of the way from the lowest point to either end
+_BESIDE = np.array([0, -1, 1, -2, 2, -3, 3, -4, 4])  # roundings off a place that is interpolated
 _WIDEST = 1e3  # L; a wider object turns by less than 1e-3 rad while the vibrissa passes
 
 
@@ -37,7 +40,10 @@ def contact_range(centreline: Contour) -> tuple[float, float]:
     """
     low, high = centreline.t_range
     bottom = float(centreline.parameter(np.array([0.0]))[0])
-    lowest = _height(centreline, bottom)
+    t = bottom + np.array([[low - bottom], [high - bottom]]) * _SHARES
+    t[:, -1] = low, high
+    eta = centreline.place(t.ravel())[1].reshape(t.shape)
+    lowest = float(eta[0, 0])
     name = f"height of the lowest point of the object ({centreline.label}), less the beam's radius,"
     if lowest <= 0:
         raise InputError(name, f"{lowest:.6g} L", "above the foot line, y = 0", "raise the object")
@@ -48,7 +54,7 @@ def contact_range(centreline: Contour) -> tuple[float, float]:
             "below 1 L, the tip of the vibrissa",
             "lower the object or lengthen the vibrissa",
         )
-    ends = _height_one(centreline, low, bottom, high)
+    ends = _height_one(t, eta, centreline)
     _check_place(centreline, ends)
     return ends
 
@@ -70,19 +76,19 @@ def out_of_reach(centreline: Contour, last: float, first: float) -> float:
     """
     from scipy.optimize import minimize_scalar  # slow to load, and stating a case needs none of it
 
-    def leftmost_foot(t: float) -> float:
-        point = centreline.at(np.array([t]))
-        return float(point.xi[0] - np.sqrt(max(0.0, 1 - float(point.eta[0]) ** 2)))
+    def foot(t: Floats) -> Floats:
+        xi, eta = centreline.place(t)
+        return xi - np.sqrt(np.maximum(0.0, 1 - eta * eta))
 
     grid = np.linspace(last, first, 257)
-    points = centreline.at(grid)
-    best = int(np.argmin(points.xi - np.sqrt(np.maximum(0.0, 1 - points.eta**2))))
+    best = int(np.argmin(foot(grid)))
     bounds = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
-    return float(minimize_scalar(leftmost_foot, bounds=bounds, method="bounded").fun)
+    found = minimize_scalar(lambda t: foot(np.array([t]))[0], bounds=bounds, method="bounded")
+    return float(found.fun)
 
 
 def _check_place(centreline: Contour, ends: tuple[float, float]) -> None:
-    left, right = (float(x) for x in centreline.at(np.array(ends)).xi)
+    left, right = centreline.place(np.array(ends))[0].tolist()
     if right - left > _WIDEST:
         raise InputError(
             f"width of the object within reach ({centreline.label})",
@@ -99,17 +105,27 @@ def _check_place(centreline: Contour, ends: tuple[float, float]) -> None:
         )
 
 
-def _height_one(centreline: Contour, low: float, bottom: float, high: float) -> tuple[float, float]:
-    """Where the contour passes the height 1 on both sides of its lowest point, or its ends."""
-    outer = np.array([low, high])
-    above = np.flatnonzero(centreline.at(outer).eta > 1)
-    outer[above] = zeros(
-        lambda _, t: centreline.at(t).eta - 1,
-        np.where(above == 0, low, bottom),
-        np.where(above == 0, bottom, high),
-    )
-    return float(outer[0]), float(outer[1])
+def _height_one(t: Floats, eta: Floats, centreline: Contour) -> tuple[float, float]:
+    """Where the contour passes the height 1 on both sides of its lowest point, or its ends.
 
-
-def _height(centreline: Contour, t: float) -> float:
-    return float(centreline.at(np.array([t])).eta[0])
+    From its parameters and heights on a grid, shape (2, n): from the lowest point to either end.
+    """
+    ends = t[:, -1].copy()
+    sides = np.flatnonzero(eta[:, -1] > 1)
+    if sides.size:
+        past = np.argmax(eta[sides] >= 1, axis=1)
+        (inner, lower), (outer, higher) = (
+            (t[sides, place], eta[sides, place]) for place in (past - 1, past)
+        )
+        likely = inner + (outer - inner) * ((1 - lower) / (higher - lower))
+        found = smooth_zeros(
+            lambda _, at: centreline.place(at)[1] - 1,
+            np.minimum(inner, outer),
+            np.maximum(inner, outer),
+            likely,
+        )
+        # Of the numbers next to it the one that is nearest to that height, or else it itself.
+        near = found[:, None] + np.spacing(found)[:, None] * _BESIDE
+        missed = np.abs(centreline.place(near.ravel())[1] - 1).reshape(near.shape)
+        ends[sides] = near[np.arange(sides.size), np.argmin(missed, axis=1)]
+    return float(ends[0]), float(ends[1])

@@ -54,6 +54,22 @@ class Contour(ABC):
             Arrays of the shape of `t` [length, rad].
         """
 
+    def place(self, t: Floats) -> tuple[Floats, Floats]:
+        """Where points of the contour are, and nothing more of them.
+
+        Parameters
+        ----------
+        t : array, shape (n,)
+            Contour parameters, within `t_range`.
+
+        Returns
+        -------
+        xi, eta : array, shape (n,)
+            Coordinates [length], those that `at` has.
+        """
+        point = self.at(t)
+        return point.xi, point.eta
+
     @abstractmethod
     def parameter(self, alpha: Floats) -> Floats:
         """Contour parameter of the first point, from the left, with a given slope angle.

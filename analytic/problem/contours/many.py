@@ -9,6 +9,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.contour import Contour, ContourPoint
+from analytic.problem.contours.parallel import Parallel
 from analytic.problem.contours.profile import Profile
 
 
@@ -32,7 +33,8 @@ class Contours:
         families: dict[Any, list[int]] = {}
         numbers: list[tuple[float, ...]] = []
         for i, contour in enumerate(self.contours):
-            family, own = _taken_apart(contour) if isinstance(contour, Profile) else (i, ())
+            one_of_many = isinstance(contour, Profile | Parallel)
+            family, own = _taken_apart(contour) if one_of_many else (i, ())
             families.setdefault(family, []).append(i)
             numbers.append(own)
         self._members = [np.array(members) for members in families.values()]
@@ -100,6 +102,8 @@ def _taken_apart(value: Any) -> tuple[Any, tuple[float, ...]]:  # noqa: ANN401
             common, parts = "tuple", value
         case Profile() if value.radius_of_curvature is not None:
             common, parts = "profile", _curves(value)
+        case Parallel():
+            common, parts = "parallel", (value.of, value.radius)
         case partial() if _takes_arrays(value):
             common, parts = value.func, value.args
         case MethodType():
@@ -123,6 +127,12 @@ def _put_together(value: Any, numbers: Iterator[Floats]) -> Any:  # noqa: ANN401
             for name, part in zip(_PARTS, _curves(value), strict=True):
                 object.__setattr__(profile, name, _put_together(part, numbers))
             return profile
+        case Parallel():
+            # As an array the distance is one for each point.
+            below = object.__new__(Parallel)
+            for name in ("of", "radius"):
+                object.__setattr__(below, name, _put_together(getattr(value, name), numbers))
+            return below
         case partial() if _takes_arrays(value):
             return partial(value.func, *(_put_together(part, numbers) for part in value.args))
         case MethodType():

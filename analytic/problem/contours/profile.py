@@ -9,6 +9,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.contours.convexity import Curve, check_convex
+from analytic.problem.contours.parallel import Parallel
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import pair, positive
 
@@ -84,7 +85,12 @@ class Profile(Contour):
         t = np.asarray(t, dtype=float)
         on = self._on(t)
         stretch = np.where(t == on, self._stretch(on), 0.0)
-        return ContourPoint(t, self.xi(on), self.eta(on), np.ones_like(t), stretch)
+        return ContourPoint(t, self.xi(on), self.eta(on), np.ones(t.shape), stretch)
+
+    def place(self, t: Floats) -> tuple[Floats, Floats]:
+        """Coordinates of the points at slope angles `t`, shape (n,)."""
+        on = self._on(t)
+        return self.xi(on), self.eta(on)
 
     def parameter(self, alpha: Floats) -> Floats:
         """The slope angle itself."""
@@ -101,18 +107,9 @@ class Profile(Contour):
         on = np.linspace(max(begin, low), min(end, high), points)
         return np.column_stack([self.xi(on), self.eta(on)])
 
-    def offset(self, radius: float) -> "Profile":
+    def offset(self, radius: float) -> Contour:
         """The parallel curve at distance `radius` below, round the corners at the ends too."""
-        if radius == 0:
-            return self
-        positive("radius of the parallel curve", radius)
-        return self._changed(
-            xi=partial(_offset_xi, self, radius),
-            eta=partial(_offset_eta, self, radius),
-            alpha_range=self.t_range,
-            radius_of_curvature=partial(_offset_stretch, self, radius),
-            kinks=tuple(self.breaks().tolist()),
-        )
+        return self if radius == 0 else Parallel(self, radius)
 
     def scaled(self, factor: float) -> "Profile":
         """The contour enlarged by `factor` about the origin, to change its unit of length."""
@@ -190,16 +187,3 @@ def _raised(curve: Curve, height: float, alpha: Floats) -> Floats:
 
 def _mirrored(curve: Curve, sign: int, alpha: Floats) -> Floats:
     return sign * curve(-alpha)
-
-
-def _offset_xi(profile: Profile, radius: float, alpha: Floats) -> Floats:
-    return profile.xi(profile._on(alpha)) + radius * np.sin(alpha)
-
-
-def _offset_eta(profile: Profile, radius: float, alpha: Floats) -> Floats:
-    return profile.eta(profile._on(alpha)) - radius * np.cos(alpha)
-
-
-def _offset_stretch(profile: Profile, radius: float, alpha: Floats) -> Floats:
-    on = profile._on(alpha)
-    return np.where(alpha == on, profile._stretch(on), 0.0) + radius

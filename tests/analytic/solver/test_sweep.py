@@ -56,10 +56,14 @@ def test_agrees_with_solve_contact(case, exact):
     touching = exact.table[exact.table["phase"] != "free"]
     solved = solve_contact(case.profile, touching["contact_angle"], case.beam)
     assert (solved["phase"].to_numpy() == touching["phase"].to_numpy()).all()
+    # Right after first contact the height hardly determines the force, which goes with the root of
+    # 1 - eta; a station's height is its contour's up to 16 roundings.
+    sag = 1 - case.centreline.place(touching["contact_angle"].to_numpy())[1]
+    doubt = np.where(touching["phase"] == "tip", 8 * np.finfo(float).eps / sag, 0.0)
     for column in ("foot_x", *CLAMP_READINGS, "contact_arc_length", "contact_x", "contact_y"):
-        error = np.abs(solved[column].to_numpy() - touching[column].to_numpy()).max()
-        # Right after first contact the height hardly determines the force: 1e-16/(1 - eta).
-        assert error < 1e-12 * np.abs(touching[column]).max(), column
+        size = np.abs(touching[column].to_numpy())
+        error = np.abs(solved[column].to_numpy() - touching[column].to_numpy())
+        assert (error < 1e-12 * size.max() + doubt * size).all(), column
 
 
 def test_phases_follow_each_other(case_name, exact):
