@@ -23,6 +23,8 @@ def test_starts_are_near_the_states(name: str) -> None:
     states = solve_stations(centrelines, branches, [foot_x])
     apart = np.abs(starts.t - states.point.alpha), np.abs(starts.excess - states.excess)
     in_a = ~states.tangent
+    # Newton's method squares what it is off: from 1e-6 one step comes to rounding, from 1e-3 two.
+    # Observed 3e-8, 8e-8, and 1.5e-4 next to a fold, where the foot hardly moves.
     assert np.median(apart[0]) < 1e-6
     assert np.median(apart[1][in_a]) < 1e-6
     assert apart[0].max() < 1e-3

@@ -37,11 +37,11 @@ def rms(exact, moved):
 PYRAMID = replace(SLOW, cone="pyramidal", timestep=0.001, contact_stiffness=4e3, average=1.0)
 
 
-@pytest.mark.slow
+@pytest.mark.trial  # minutes; the parabola, and how a pyramid rubs on its first fifth, are below
 @pytest.mark.parametrize(
     ("name", "motion", "limit"),
     [
-        ("parabola", SLOW, 4e-3),  # observed 2.8e-3; catenary 2.3e-3, shallow-catenary 2.0e-3
+        ("catenary", SLOW, 4e-3),  # observed 2.3e-3; shallow-catenary 2.0e-3
         ("two-circles", SLOW, 5e-3),  # 3.6e-3
         ("tip-only", SLOW, 5e-3),  # 4.0e-3
         ("parabola", PYRAMID, 3e-3),  # 1.4e-3; of the five cases at most 2.6e-3
@@ -59,30 +59,32 @@ def test_named_cases(name, motion, limit):
 
 @pytest.mark.slow
 def test_a_pyramid_rubs_less_the_slower_it_slides():
-    """Of a coefficient of 0.2, in the median: 0.199, and 0.167 at half of the speed."""
+    """Of a coefficient of 0.2, in the median: 0.197, and 0.168 at half of the speed."""
     case = replace(named_case("parabola"), friction=0.2)
     x = replace(case, sweep=replace(case.sweep, stations=60)).foot_x
-    case = replace(case, sweep=Sweep(24, float(x[0]), float(x[23])))  # of which 23 touch
+    case = replace(case, sweep=Sweep(12, float(x[0]), float(x[11])))  # of which 11 touch
     slope = solve_sweep(case).table["contact_angle"]
     seen = []
     for speed in (0.025, 0.0125):
         motion = replace(SLOW, cone="pyramidal", average=1.0, speed=speed)
         table = simulate_motion(case, motion, Settings(segments=40, obstacle="primitive")).table
         seen.append(np.nanmedian(np.tan(np.arctan2(-table["force_x"], table["force_y"]) - slope)))
-    assert seen[0] == pytest.approx(0.199, abs=0.003)
+    assert seen[0] == pytest.approx(0.197, abs=0.003)
     assert seen[1] < 0.185
 
 
 @pytest.mark.slow
 def test_a_slow_sweep_agrees_with_the_closed_form():
-    exact = solve_sweep(CASE)
-    moved = simulate_motion(CASE, SLOW, Settings(segments=40, obstacle="primitive"))
+    case = replace(named_case("parabola"), friction=0.2)
+    case = replace(case, sweep=replace(case.sweep, stations=60))
+    exact = solve_sweep(case)
+    moved = simulate_motion(case, SLOW, Settings(segments=40, obstacle="primitive"))
     assert (moved.table["status"] == "ok").mean() > 0.9
-    assert max(rms(exact, moved)) < 5e-3
-    # It is friction that is seen: without, force_x is another by three quarters.
-    frictionless = solve_sweep(replace(CASE, friction=0.0))
-    assert rms(frictionless, moved)[0] > 0.5
-    # It lets go later than without friction, as the closed form does: 0.056 L.
+    assert max(rms(exact, moved)) < 4e-3  # observed 2.8e-3
+    # It is friction that is seen: without, force_x is another by 0.22 of its largest.
+    frictionless = solve_sweep(replace(case, friction=0.0))
+    assert rms(frictionless, moved)[0] > 0.2
+    # It lets go later than without friction, as the closed form does: 0.049 L.
     assert exact.snap_off - moved.snap_off < 0.02
     assert frictionless.snap_off - moved.snap_off > 0.04
 
