@@ -7,6 +7,7 @@ import pytest
 
 from analytic import CASE_NAMES, Case, Readings, named_case, solve_sweep
 from mujoco_models import Settings, simulate_sweep
+from tests.in_turn import InTurn
 
 collect_ignore = ["examples"]  # for users; run as they would by compare/testing/test_plugin.py
 
@@ -17,6 +18,13 @@ def nothing_is_ignored():
     for way in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(way) is signal.SIG_IGN:
             signal.signal(way, signal.default_int_handler)
+
+
+@pytest.fixture
+def in_turn(monkeypatch):
+    """Budgets are swept in this process."""
+    for module in ("controlled", "moving"):
+        monkeypatch.setattr(f"compare.simulate.{module}.Workers", InTurn)
 
 
 @cache

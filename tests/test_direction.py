@@ -185,6 +185,7 @@ def test_bad_direction():
         Sweep(direction="up")
 
 
+@pytest.mark.slow
 def test_the_budget_of_a_mirrored_case_is_the_same():
     """From readings alone: sweeps that differ from the exact one as a simulator's would."""
     case = replace(named_case("two-circles"), sweep=Sweep(stations=60))
@@ -210,8 +211,9 @@ def test_the_budget_of_a_mirrored_case_is_the_same():
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("in_turn")
 def test_the_measured_budget_of_a_mirrored_case_is_the_same():
-    case = replace(named_case("two-circles"), sweep=Sweep(stations=40))
+    case = replace(named_case("two-circles"), sweep=Sweep(stations=24))
     (one, _), (other, _) = (
         measure_budget(c, Settings(segments=10)) for c in (case, case.mirrored())
     )

@@ -46,6 +46,7 @@ def test_a_coarse_beam_disagrees(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("in_turn")
 def test_a_run_with_its_budget(tmp_path):
     (tmp_path / "case.toml").write_text(CASE)
     done = vibrissa("run", "case.toml", "--budget", "--out", "runs/it", cwd=tmp_path)

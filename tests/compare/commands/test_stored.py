@@ -20,6 +20,7 @@ def sweep() -> Readings:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("in_turn")
 def test_the_report_of_a_run_again(tmp_path):
     """All that `run` writes after its sweeps: limits, budget and animation are the same."""
     limits = '[tolerances]\nrms = { limit = 3e-2, reason = "eight segments" }\n'

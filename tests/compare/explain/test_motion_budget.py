@@ -142,6 +142,7 @@ def test_the_contacts_are_the_same_in_all_of_them():
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("in_turn")
 def test_the_command_closes_the_budget_of_a_real_sweep(tmp_path):
     """Observed: rate 5.9e-3, damping 2.7e-3, at rest 4.4e-3, unexplained 9e-4 +- 2e-3."""
     words = ("--speed", "0.2", "--obstacle", "primitive", "--segments", "20", "--out", "out")
