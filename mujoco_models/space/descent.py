@@ -11,6 +11,10 @@ m = 1/t it is one of time t by implicit differences. Where a side slides over a 
 several links touch in turn, and one at a time would send it back and forth. On a smooth body there
 is one contact, which slides along the vibrissa: links beside it that are as near to rounding would
 hold it where no vibrissa is held.
+
+E'' is negative along ways into the body, which are barred anyway: a large m because of them makes a
+way past the end of a branch a creep. So for the links that pressed before, c (d_j + d_j' . v)^2/2 is
+added to the energy; it vanishes where they still press, and is left out where they do not.
 """
 
 from typing import NamedTuple
@@ -20,7 +24,7 @@ import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
 from scipy.optimize import nnls
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Booleans, Floats
 from mujoco_models.space.balance import Linearised, State
 from mujoco_models.space.model import SpaceModel, Touch
 from mujoco_models.space.rest import Rest, Settled
@@ -36,6 +40,7 @@ _SLOW, _PATIENCE = 1e-6, 20  # rad, of a step; so many in a row, and it will not
 _NEAR = 0.02  # L; a link that is farther off the body does not touch in this step
 _LANDED = 0.02  # L, of the contact: Newton's method that leads farther left the way down
 _NEARLY = 1e-3  # EI/L, of balance, where Newton's method is tried
+_HELD = 1e4  # EI/L^3, c above: more than E'' is negative by, and little to rounding
 _SINGULAR = 1e-12  # of the constraints' own stiffness: two links that touch in one place
 
 
@@ -68,7 +73,7 @@ def descend(rest: Rest, start: Settled, foot: Floats, far: float) -> Settled | N
         way after the last step, or hardly moved, it is not `stable`.
     """
     model, state, inertia, unloaded, slow = rest.model, start.state, _INERTIA, 0, 0
-    begin = model.contact(start.touch)
+    begin, pressing = model.contact(start.touch), {state.link}
     _, softest = rest.softest(start, foot)
     for number in range(_STEPS):
         model.place(foot, state.configuration)
@@ -84,9 +89,11 @@ def descend(rest: Rest, start: Settled, foot: Floats, far: float) -> Settled | N
         if landed is not None:
             return landed
         model.place(foot, state.configuration)
-        turns, forces, inertia = _turns(rest, system, system.curvature(state), near, inertia)
+        held = np.array([one.link in pressing for one in near])
+        turns, forces, inertia = _turns(rest, system, system.curvature(state), near, held, inertia)
         if not number:
             turns = turns + _nudge(softest, turns)
+        pressing = {one.link for one, force in zip(near, forces, strict=True) if force > 0}
         size = float(np.abs(turns).max())
         unloaded = 0 if forces.any() else unloaded + 1
         slow = slow + 1 if size < _SLOW else 0
@@ -139,25 +146,36 @@ def _look(rest: Rest, state: State, surface: Surface, foot: Floats) -> tuple[Sta
 
 
 def _turns(
-    rest: Rest, system: Linearised, curvature: Floats, near: list[_Near], inertia: float
+    rest: Rest,
+    system: Linearised,
+    curvature: Floats,
+    near: list[_Near],
+    held: Booleans,
+    inertia: float,
 ) -> tuple[Floats, Floats, float]:
     """Turns of the joints, forces of the links near by, and the inertia that it took."""
     model = rest.model
     springs = np.einsum("ijj->ij", model.blocks()).ravel()
+    rows, distances = _pushes(model, near), np.array([one.touch.distance for one in near])
     while True:
-        factor, failed = dpotrf(curvature + inertia * np.diag(springs), lower=1)
-        if not failed:
-            break
-        inertia *= 2.0  # or it would go up to the saddle
-    rows = _pushes(model, near)
-    moved = dpotrs(factor, rows.T, lower=1)[0]
-    turns = dpotrs(factor, system.springs, lower=1)[0]
-    gaps = np.array([one.touch.distance for one in near]) + rows @ turns
-    own = rows @ moved
-    # The forces that keep all links off: least squares with their stiffness' square root.
-    root = np.linalg.cholesky(own + _SINGULAR * np.trace(own) * np.eye(len(near)))
-    forces, _ = nnls(root.T, -np.linalg.solve(root, gaps))
-    return turns + moved @ forces, forces, inertia
+        barred = rows[held]
+        factor, failed = dpotrf(
+            curvature + inertia * np.diag(springs) + _HELD * (barred.T @ barred), lower=1
+        )
+        if failed:
+            inertia *= 2.0  # or it would go up to the saddle
+            continue
+        moved = dpotrs(factor, rows.T, lower=1)[0]
+        pulled = system.springs - _HELD * (distances[held] @ barred)
+        turns = dpotrs(factor, pulled, lower=1)[0]
+        gaps = distances + rows @ turns
+        own = rows @ moved
+        # The forces that keep all links off: least squares with their stiffness' square root.
+        root = np.linalg.cholesky(own + _SINGULAR * np.trace(own) * np.eye(len(near)))
+        forces, _ = nnls(root.T, -np.linalg.solve(root, gaps))
+        if (forces[held] > 0).all():
+            return turns + moved @ forces, forces, inertia
+        held = held & (forces > 0)
 
 
 def _pushes(model: SpaceModel, near: list[_Near]) -> Floats:
