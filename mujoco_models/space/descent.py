@@ -12,9 +12,9 @@ several links touch in turn, and one at a time would send it back and forth. On 
 is one contact, which slides along the vibrissa: links beside it that are as near to rounding would
 hold it where no vibrissa is held.
 
-E'' is negative along ways into the body, which are barred anyway: a large m because of them makes a
-way past the end of a branch a creep. So for the links that pressed before, c (d_j + d_j' . v)^2/2 is
-added to the energy; it vanishes where they still press, and is left out where they do not.
+E'' is negative along ways into the body, which are barred anyway: a large m because of them makes
+a way past the end of a branch a creep. So for the links that pressed before, c (d_j + d_j' . v)^2/2
+is added to the energy; it vanishes where they still press, and is left out where they do not.
 """
 
 from typing import NamedTuple

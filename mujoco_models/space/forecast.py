@@ -27,6 +27,7 @@ from mujoco_models.space.beams import Law
 from mujoco_models.space.surface import Feature
 
 _ITERATIONS = 14
+_NOT_HALVED = 5  # steps; from its start or later, Newton's method that leads anywhere halves them
 _LARGEST_TURN = 0.4  # rad, of a link in one step
 _LONGEST_SLIDE = 0.1  # L, of the bead in one step
 _FOUND = 1e-7  # rad and L, of a step: the next one would be of rounding's size
@@ -102,6 +103,7 @@ class Forecast:
         """
         bow, basis = start, surface.basis
         first = basis @ (foot + self._joints[0] * self._tangent - surface.point)
+        before, not_halved = math.inf, 0
         for _ in range(_ITERATIONS):
             if bow.force @ bow.force < _LEAST_FORCE**2:
                 return None
@@ -111,6 +113,10 @@ class Forecast:
             bow, size = stepped
             if size < _FOUND:
                 return bow
+            not_halved += 2 * size > before
+            if not_halved == _NOT_HALVED:
+                return None
+            before = size
             bow = self._slid_or_held(bow)
         return None
 
@@ -138,6 +144,30 @@ class Forecast:
         side = across / size
         angles = np.arctan2(tangents @ side, tangents @ self._tangent)
         return Bow(angles, side, link, s, force, sliding)
+
+    def between(self, one: Bow, other: Bow, share: float) -> Bow | None:
+        """Between two equilibria on the same face, edge or corner.
+
+        Parameters
+        ----------
+        one, other : Bow
+            The equilibria.
+        share : float
+            Of the way from one to the other.
+
+        Returns
+        -------
+        Bow or None
+            None if the bead slides in one and is held in the other, or an edge without end has been
+            passed to its other side.
+        """
+        alike = one.sliding == other.sliding and (one.sliding or one.link == other.link)
+        if not alike or one.force @ other.force <= 0:
+            return None
+        force = one.force + share * (other.force - one.force)
+        link, s = self._slid(one, share * (other.s - one.s)) if one.sliding else (one.link, one.s)
+        angles = one.angles + share * (other.angles - one.angles)
+        return Bow(angles, self._side(force, one.side), link, s, force, one.sliding)
 
     def centre(self, bow: Bow, foot: Floats) -> Floats:
         """Of the bead.

@@ -114,6 +114,26 @@ class Rest:
         bow = self.foresee(held.bow, held.surface, foot)
         return None if bow is None else self.confirm(bow, held.surface, foot)
 
+    def between(self, held: Settled, found: Settled, share: float) -> Settled:
+        """Where to begin between two equilibria on the same surface.
+
+        Parameters
+        ----------
+        held, found : Settled
+            The equilibria.
+        share : float
+            Of the way from `held` to `found`.
+
+        Returns
+        -------
+        Settled
+            The first one, with a forecast that starts there if there is one.
+        """
+        if held.bow is None or found.bow is None:
+            return held
+        assert self._forecast is not None
+        return held._replace(bow=self._forecast.between(held.bow, found.bow, share) or held.bow)
+
     def foresee(self, bow: Bow, surface: Surface, foot: Floats) -> Bow | None:
         """Where it will rest, as far as is known without MuJoCo.
 

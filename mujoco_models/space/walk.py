@@ -236,7 +236,10 @@ class Walk:
             if beside is not None:
                 about = self._at + self._left(found, goal) * step + beside * _CROSSED
                 at = about if self._at < about < goal else at
-            between = self._neighbour(at)
+            held = self._held
+            assert held is not None
+            start = self._rest.between(held, found, (at - self._at) / step)
+            between = self._neighbour(at, start)
             if between is None:
                 return at, None
             if between.stays:
@@ -246,11 +249,11 @@ class Walk:
             tries += 1
         return goal, found
 
-    def _neighbour(self, goal: float) -> Settled | None:
+    def _neighbour(self, goal: float, start: Settled | None = None) -> Settled | None:
         """The stable equilibrium on the same branch, of a mesh on the same face, edge or corner."""
         held, step = self._held, goal - self._at
         assert held is not None
-        found = self._rest.follow(held, self._foot(self._at), self._foot(goal))
+        found = self._rest.follow(start or held, self._foot(self._at), self._foot(goal))
         if found is None or not found.stable:
             return None
         on_face = isinstance(held.surface, Feature) and held.surface.flat
