@@ -19,9 +19,24 @@ class InputError(ValueError):
     """
 
     def __init__(self, name: str, value: object, allowed: str, remedy: str) -> None:
-        self._given = name, _written(value), allowed, remedy
+        self.name, self._given = name, (name, _written(value), allowed, remedy)
         line = f"{name} = {self._given[1]}: must be {allowed}; {remedy}"
         super().__init__(" ".join(line.split()))
+
+    def called(self, name: str) -> "InputError":
+        """The same of what is known by another name, as a key of a file.
+
+        Parameters
+        ----------
+        name : str
+            That name.
+
+        Returns
+        -------
+        InputError
+            To be raised.
+        """
+        return InputError(name, *self._given[1:])
 
     def __reduce__(self) -> tuple[type["InputError"], tuple[str, str, str, str]]:
         return type(self), self._given  # so that another process can hand it back

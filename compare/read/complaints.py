@@ -106,9 +106,20 @@ def complaint(
                 "add what is missing" if few else "leave some out",
             )
         case "value_error":
-            return InputError(name, value, "usable", str(context["error"]))
+            return _refused(context["error"], value, inside, outer, place)
     allowed_value = first["msg"].removeprefix("Input should be ").removeprefix("Value should be ")
     return InputError(name, value, allowed_value, "change it")
+
+
+def _refused(
+    error: Exception, value: str, inside: Sequence[str], outer: Sequence[str], place: Place
+) -> InputError:
+    """What a table says against a value, of one of its keys if it names one."""
+    if isinstance(error, InputError):
+        keys = error.name.split(".")
+        if keys[: len(inside)] == [*inside]:
+            return error.called(place([*outer, *keys]))
+    return InputError(place([*outer, *inside]), value, "usable", str(error))
 
 
 _UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")

@@ -1,9 +1,9 @@
 """The numerics of a MuJoCo sweep in space: everything that is not physics."""
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias, get_args
+from typing import Annotated, Literal, TypeAlias, TypeVar, get_args
 
-from pydantic import ConfigDict, StrictFloat, StrictInt
+from pydantic import BeforeValidator, ConfigDict, StrictFloat, StrictInt
 
 from analytic.problem.errors import InputError
 from mujoco_models.allowed import CONTACT_STIFFNESSES, ClampKind, check_number, check_word
@@ -15,6 +15,19 @@ _WORDS = {
     "joints": get_args(JointKind),
     "clamp": get_args(ClampKind),
 }
+_Beam = TypeVar("_Beam")
+
+
+def _no_cable(beam: _Beam) -> _Beam:
+    """MuJoCo has a beam of that name too, so that it takes a reason why it is none here."""
+    if beam == "cable":
+        raise InputError(
+            "mujoco.beam",
+            "'cable'",
+            "'chain' or 'rod' in space",
+            "the cable's joints are the chain's balls, whose moments are the same to 1e-14",
+        )
+    return beam
 
 
 @dataclass(frozen=True)
@@ -52,7 +65,7 @@ class SpatialSettings:
 
     __pydantic_config__ = ConfigDict(extra="forbid")  # a misspelt key in a case file is an error
 
-    beam: SpatialBeamKind = "chain"
+    beam: Annotated[SpatialBeamKind, BeforeValidator(_no_cable)] = "chain"
     joints: JointKind = "ball"
     segments: StrictInt = 40
     contact_stiffness: StrictFloat = 1e7
@@ -61,13 +74,7 @@ class SpatialSettings:
     tolerance: StrictFloat = 1e-8
 
     def __post_init__(self) -> None:
-        if str(self.beam) == "cable":  # as another beam of MuJoCo's is called
-            raise InputError(
-                "mujoco.beam",
-                "'cable'",
-                "'chain' or 'rod' in space",
-                "the cable's joints are the chain's balls, whose moments are the same to 1e-14",
-            )
+        _no_cable(self.beam)
         for name, allowed in _WORDS.items():
             check_word(f"mujoco.{name}", getattr(self, name), allowed)
         if self.beam == "rod" and self.joints != "universal":

@@ -43,6 +43,19 @@ def test_a_case_with_units_is_in_si(tmp_path):
     assert solve_space(case).touching.sum() > 5
 
 
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ('beam = "cable"', "line 15: mujoco.beam = 'cable': .* the chain's balls"),
+        ("segments = 1", "line 15: mujoco.segments = 1: must be a whole number between 2"),
+    ],
+)
+def test_what_mujoco_does_not_take_has_its_line_and_its_reason(line, said, tmp_path):
+    with pytest.raises(InputError, match=said) as raised:
+        loaded(f"{BALL}[mujoco]\n{line}\n", tmp_path)
+    assert str(raised.value).count("must be") == 1
+
+
 def test_a_prism_takes_its_contour_from_the_profile(tmp_path):
     text = """
 [body]
