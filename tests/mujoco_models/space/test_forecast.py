@@ -52,7 +52,7 @@ def test_mujoco_is_at_rest_where_it_is_foreseen(beam, joints, tmp_path):
 def test_it_is_stable_where_mujocos_stiffness_is_positive(beam, joints, tmp_path):
     rest, states = walked(beam, joints, tmp_path)
     random, seen = np.random.default_rng(1), []
-    for held, foot in states * 10:
+    for held, foot in states * 20:
         # Newton's method does not mind saddles: from twenty times the force it finds many.
         there = foot + [0.3, 0.0, 0.3] * random.normal(size=3)
         start = turned(held.bow._replace(force=20 * held.bow.force), 0.3, random)
