@@ -33,9 +33,13 @@ def noisy(readings, level, rng) -> tuple[Readings, dict[str, float]]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("direction", ["left", "right"])
 @pytest.mark.parametrize(
-    "profile", [CIRCLE, catenary(0.5, -0.8), polygon([(-1, 1.2), (0, 0.4), (1, 1.2)])]
+    ("profile", "direction"),
+    [
+        (CIRCLE, "left"),
+        (catenary(0.5, -0.8), "right"),
+        (polygon([(-1, 1.2), (0, 0.4), (1, 1.2)]), "left"),
+    ],
 )
 def test_exact_readings_give_the_numbers_back(profile, direction):
     """From the paper's vibrissa of another rigidity, in SI."""
@@ -146,18 +150,20 @@ def test_noise_is_stated_as_an_interval():
     assert wider.highest - wider.lowest > stated.highest - stated.lowest
 
 
-@pytest.mark.slow
-def test_an_object_that_is_one_per_cent_off_is_noticed():
+@pytest.mark.parametrize(
+    "times", [pytest.param(4, marks=pytest.mark.slow), pytest.param(20, marks=pytest.mark.trial)]
+)
+def test_an_object_that_is_one_per_cent_off_is_noticed(times):
     """Under 1 % of noise it leaves 1.3 to 1.7 times the noise; the right object never 1.2."""
     noticed = wrongly = 0
-    for seed in range(20):
+    for seed in range(times):
         true, stated = (
             Case(profile=circle(1.0, (0.0, low)), sweep=Sweep(60)) for low in (0.4, 0.41)
         )
         readings, noise = noisy(solve_sweep(true), 0.01, np.random.default_rng(seed))
         noticed += not calibrate(readings, stated, ["flexural_rigidity"], noise).explains
         wrongly += not calibrate(readings, true, ["flexural_rigidity"], noise).explains
-    assert (noticed, wrongly) == (20, 0)
+    assert (noticed, wrongly) == (times, 0)
 
 
 @pytest.mark.slow
@@ -208,7 +214,8 @@ def changed(**columns) -> Readings:
         (changed(force_x=0.0, force_y=0.0, moment_z=0.0), SOFT, ["friction"], "never touches"),
         (changed(moment_z=0.0), SOFT, ["friction"], "moment_z of the readings = zero"),
         (changed(force_x=1e12 * READINGS.values("force_x")), SOFT, ["friction"], "same units"),
-        (changed(foot_x=50 * READINGS.values("foot_x")), SOFT, ["friction"], "does not touch"),
+        pytest.param(changed(foot_x=50 * READINGS.values("foot_x")), SOFT, ["friction"],
+                     "does not touch", marks=pytest.mark.slow),
         (changed(force_x=-READINGS.values("force_x"), force_y=-READINGS.values("force_y"),
                  moment_z=-READINGS.values("moment_z")), SOFT, ["flexural_rigidity"],
          "flexural_rigidity of the best fit = 0.01"),

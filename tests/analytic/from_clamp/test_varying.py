@@ -38,7 +38,7 @@ def test_contacts_of_a_cone():
 
 
 @pytest.mark.slow
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(
     ratio=st.floats(0.2, 1.0),
     curvature=st.floats(-0.6, 0.3),
@@ -86,14 +86,24 @@ def test_shapes_go_through_the_contacts():
         assert np.allclose(length, 1, atol=1e-3)  # of chords
 
 
-@pytest.mark.slow
-def test_noise_covers_the_contact():
-    """95 % of contacts of noisy readings lie within the stated uncertainty."""
+@pytest.mark.parametrize(
+    ("times", "least"),
+    [
+        pytest.param(1, 0.86, marks=pytest.mark.slow),
+        pytest.param(3, 0.90, marks=pytest.mark.trial),
+    ],
+)
+def test_noise_covers_the_contact(times, least):
+    """95 % of contacts of noisy readings lie within the stated uncertainty.
+
+    A sweep has some 55 contacts: three standard deviations are 0.09, of three sweeps 0.05. Half the
+    uncertainty would hold two thirds of them.
+    """
     beam = Beam(radius=0.01, tip_radius=0.004)
     exact = solve_sweep(Case(beam, CATENARY, Sweep(60)))
     noise, draw = relative_noise(exact, 0.003), np.random.default_rng(4)
     covered = []
-    for _ in range(3):
+    for _ in range(times):
         noisy = exact.table.copy()
         for name, size in noise.items():
             noisy[name] += size * draw.standard_normal(len(noisy))
@@ -101,4 +111,5 @@ def test_noise_covers_the_contact():
         there = ((exact.table["phase"] != "free") & (found["status"] == "ok")).to_numpy()
         miss = np.hypot(*(found[n] - exact.table[n] for n in ("contact_x", "contact_y")))
         covered += list((miss <= found["uncertainty"])[there])
-    assert 0.9 < np.mean(covered) <= 1  # some 160 contacts: 0.95 within three deviations
+    assert len(covered) > 50 * times
+    assert np.mean(covered) > least

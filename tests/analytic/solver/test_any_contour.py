@@ -34,10 +34,16 @@ def test_random_contours(kind):
         assert (outcome == "refused") or (outcome, found) == ("solved", [])
 
 
-@pytest.mark.slow
+@pytest.mark.parametrize(
+    "seeds",
+    [
+        pytest.param(range(100, 108), marks=pytest.mark.slow),
+        pytest.param(range(108, 160), marks=pytest.mark.trial),
+    ],
+)
 @pytest.mark.parametrize("kind", KINDS)
-def test_more_random_contours(kind):
-    for seed in range(100, 140):
+def test_more_random_contours(kind, seeds):
+    for seed in seeds:
         outcome, found = trial(kind, seed)
         assert (outcome == "refused") or (outcome, found) == ("solved", []), seed
 

@@ -29,10 +29,18 @@ def test_a_unit_of_length_that_is_usual(factor):
     is_refused("parabola", factor, {"moment_z": 1e3})
 
 
+NAMES = ("catenary", "parabola", "two-circles")
+OTHERS = ({}, {"moment_z": 1e3}, {"force_x": 1e-3, "force_y": 1e-3})
+# Each factor with each case, and with what else is in another unit.
+LENGTHS = [
+    (NAMES[(i + j) % 3], factor, others)
+    for i, factor in enumerate((1000.0, 0.001, 10.0, 0.1, 100.0, 25.4))
+    for j, others in enumerate(OTHERS)
+]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["catenary", "parabola", "two-circles"])
-@pytest.mark.parametrize("factor", [1000.0, 0.001, 10.0, 0.1, 100.0, 25.4])
-@pytest.mark.parametrize("others", [{}, {"moment_z": 1e3}, {"force_x": 1e-3, "force_y": 1e-3}])
+@pytest.mark.parametrize(("name", "factor", "others"), LENGTHS)
 def test_another_unit_of_length(name, factor, others):
     is_refused(name, factor, others)
 
@@ -47,7 +55,9 @@ def is_refused(name, factor, others):
         assert "spans" in str(refused.value)
 
 
-@pytest.mark.parametrize("name", ["catenary", "parabola", "two-circles"])
+@pytest.mark.parametrize(
+    "name", ["catenary", *(pytest.param(name, marks=pytest.mark.slow) for name in NAMES[1:])]
+)
 @pytest.mark.parametrize(
     ("factors", "said"),
     [

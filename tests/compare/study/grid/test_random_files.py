@@ -51,7 +51,7 @@ def random_file(chance):
     "trials",
     [
         15,
-        pytest.param(500, marks=pytest.mark.slow),
+        pytest.param(100, marks=pytest.mark.slow),
         pytest.param(3000, marks=pytest.mark.trial),
     ],
 )

@@ -117,7 +117,7 @@ def check_recovery(folder, plan, stored):
     return missing, warned
 
 
-@pytest.mark.parametrize("trials", [8, pytest.param(300, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("trials", [8, pytest.param(300, marks=pytest.mark.trial)])
 @pytest.mark.parametrize("what", ["part", "journal", "plan"])
 def test_random_damage(what, trials, plan, stored, as_part, as_journal, tmp_path):
     chance = random.Random(f"damage to {what}")
