@@ -1,11 +1,13 @@
 """The wheel, installed in an environment of its own, does all that it should elsewhere."""
 
+import json
 import os
 import re
 import subprocess
 import sys
 import sysconfig
 import venv
+from itertools import groupby
 from pathlib import Path
 
 import pytest
@@ -74,6 +76,22 @@ COMMANDS = {
     "study-report": (0, "study-report grid"),
     "view": (2, "view mine.toml"),  # there is no display
 }
+# Those that start processes of their own are started as users do, which takes one process each.
+STARTED = ("run", "study")
+IN_TURN = """
+import contextlib, io, json, sys
+from compare.commands.main import main
+
+for words in json.load(sys.stdin):
+    said = io.StringIO()
+    sys.argv = ["vibrissa", *words]
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        try:
+            main()
+        except SystemExit as ended:
+            code = ended.code
+    print(json.dumps([code, said.getvalue()]))
+"""
 
 
 @pytest.fixture(scope="module")
@@ -104,22 +122,32 @@ def test_every_command_runs_elsewhere(environment, tmp_path):
     hidden = ("PYTHONPATH", "DISPLAY", "WAYLAND_DISPLAY")
     variables = {name: value for name, value in os.environ.items() if name not in hidden}
 
-    def vibrissa(*arguments: str) -> subprocess.CompletedProcess:
+    def done(*words: str | Path, said: str = "") -> subprocess.CompletedProcess:
         return subprocess.run(
-            [environment / "vibrissa", *arguments],
-            cwd=tmp_path,
-            env=variables,
-            capture_output=True,
-            text=True,
+            words, input=said, cwd=tmp_path, env=variables, capture_output=True, text=True,
             check=False,
-        )
+        )  # fmt: skip
 
-    listed = re.findall(r"^  ([a-z][a-z0-9-]+)  ", vibrissa("--help").stdout, re.M)
+    def vibrissa(*arguments: str) -> tuple[int, str]:
+        started = done(environment / "vibrissa", *arguments)
+        return started.returncode, started.stdout + started.stderr
+
+    def in_turn(*commands: str) -> list[tuple[int, str]]:
+        words = json.dumps([command.split() for command in commands])
+        one = done(environment / "python", "-P", "-c", IN_TURN, said=words)
+        assert one.returncode == 0, one.stderr
+        return [json.loads(line) for line in one.stdout.splitlines()]
+
+    _, page = vibrissa("--help")
+    listed = re.findall(r"^  ([a-z][a-z0-9-]+)  ", page, re.M)
     assert set(listed) == set(COMMANDS)
-    for code, command in COMMANDS.values():
-        done = vibrissa(*command.split())
-        assert done.returncode == code, f"{command}\n{done.stdout}{done.stderr}"
-        assert "Traceback" not in done.stderr
+    for started, some in groupby(COMMANDS, STARTED.__contains__):
+        asked = [COMMANDS[name] for name in some]
+        commands = [command for _, command in asked]
+        ends = [vibrissa(*c.split()) for c in commands] if started else in_turn(*commands)
+        for (code, command), (ended, said) in zip(asked, ends, strict=True):
+            assert ended == code, f"{command}\n{said}"
+            assert "Traceback" not in said
     for written in ("runs/mine/report.html", "found/README.md", "grid/report.html"):
         assert (tmp_path / written).exists()
 

@@ -80,7 +80,7 @@ def test_a_budget_that_is_ended_leaves_no_process_and_no_folder(tmp_path, way):
         while not (workers := children(process.pid)):
             assert time.monotonic() < end
             time.sleep(0.1)
-        time.sleep(5)  # at work, or just about to start
+        time.sleep(2)  # at work, or just about to start
         workers = {*workers, *children(process.pid)}
         process.send_signal(way)
         begin = time.monotonic()
@@ -136,11 +136,15 @@ def test_nohup_is_respected(tmp_path):
 @pytest.mark.parametrize(
     "strange",
     [
-        {"MPLBACKEND": "nonsense"},
+        {
+            "MPLBACKEND": "nonsense",
+            "HOME": "/nowhere",
+            "MPLCONFIGDIR": "/nowhere",
+            "COLUMNS": "10",
+            "TERM": "dumb",
+        },
         {"PYTHONIOENCODING": "ascii"},
         {"LC_ALL": "C"},
-        {"COLUMNS": "10", "TERM": "dumb"},
-        {"HOME": "/nowhere", "MPLCONFIGDIR": "/nowhere"},
     ],
     ids=" ".join,
 )

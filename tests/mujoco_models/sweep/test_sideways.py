@@ -70,7 +70,7 @@ def test_leaves_where_the_contact_passes_the_lowest_point(beam):
 def test_leaves_where_predicted_on_every_named_case(beam, case):
     # Observed at most 4e-4 and 5e-3: contact angles are good to the facets' 4e-4 rad, and on the
     # catenary the foot moves by 4 L a radian. The place is located between stations, however few.
-    case = replace(case, sweep=Sweep(60))
+    case = replace(case, sweep=Sweep(24))
     settings = Settings(beam=beam, planar=False)
     check_sweep(case, simulate_sweep(case, settings), settings, place=8e-4, stiffness=8e-3)
 
