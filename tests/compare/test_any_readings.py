@@ -66,7 +66,7 @@ def test_any_two_readings(reference, candidate):
     outcome(exact_sweep("parabola"), candidate)
 
 
-@settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=8, deadline=None, suppress_health_check=list(HealthCheck))
 @given(spoilt_sweep(), st.sampled_from([{}, {"offset": "auto"}, {"noise": "auto"}]))
 def test_any_spoilt_sweep(candidate, how):
     outcome(exact_sweep("parabola"), candidate, **how)

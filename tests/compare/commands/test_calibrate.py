@@ -24,7 +24,8 @@ def folder(tmp_path_factory):
     return folder
 
 
-@pytest.mark.parametrize("file", [pytest.param("swept.parquet", marks=pytest.mark.slow), "rig.csv"])
+@pytest.mark.slow
+@pytest.mark.parametrize("file", ["swept.parquet", "rig.csv"])
 def test_the_clamp_is_found_and_written(file, folder, tmp_path):
     done = vibrissa(
         "calibrate", folder / "object.toml", folder / file,

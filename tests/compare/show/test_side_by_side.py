@@ -40,6 +40,7 @@ def test_known_shifts_come_out(exact):
     np.testing.assert_allclose(table["seconds_per_station"], [0.1, 0.2, 0.2])
 
 
+@pytest.mark.slow
 def test_command(exact, tmp_path):
     exact.write(tmp_path / "exact.csv")
     for name, share in (("near", 1e-3), ("far", 1e-2)):

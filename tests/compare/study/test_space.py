@@ -56,6 +56,7 @@ def case_of(tangent_x, height=0.0, turn=0.0, y=1.4, points=((1.6, 0.3), (-1.6, 0
     return SpatialCase(Beam(), body=sphere(1.0, (0, y, 0)), path=path)
 
 
+@pytest.mark.slow
 def test_a_row_of_the_closed_form_is_what_the_library_finds(plan_of):
     plan = plan_of(LEANING)
     assert len(plan) == 16

@@ -171,6 +171,7 @@ def test_fine_polygons_keep_their_beads():
     assert len(place(Case(profile=regular(1000, 1.0)), Settings()).corners) > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("beam", sorted({"chain", "rod"} & set(available_beams())))
 def test_the_tip_comes_round_an_edge_that_leans(beam, tmp_path):
     """The normal turns slower there than at an upright edge, and more the deeper the tip is."""

@@ -59,7 +59,8 @@ def rms(reference, candidate):
     return max(found.disagreement[name].rms for name in CLAMP_READINGS)
 
 
-@pytest.mark.parametrize("make", [pytest.param(prism, marks=pytest.mark.slow), bicone])
+@pytest.mark.slow
+@pytest.mark.parametrize("make", [prism, bicone])
 def test_a_files_mesh_is_its_section_to_the_vibrissa(make, tmp_path):
     profile = section(make(), tmp_path)
     assert profile.solid.tilt < 1e-9

@@ -26,6 +26,7 @@ def apart(speed):
     return rms(back.values("force_x")[::-1], on.values("force_x"))
 
 
+@pytest.mark.slow
 def test_without_friction_the_way_back_is_the_way_on_as_the_speed_goes_to_zero():
     """Observed 7.1e-3 and 3.4e-3: of first order in the speed, as damping is."""
     fast, slow = apart(0.1), apart(0.05)
