@@ -23,7 +23,6 @@ _AT_REST = 1e-11  # rad; the step is what the energy still asks for, and roundin
 _ON_A_FACET = 1e-5  # rad; nearer than that, steps change from facet to facet no more
 _SHORTER = (1.0, 0.25, 0.0625)  # steps that are tried in turn
 _ROUNDING = 4e-16  # of the energy
-_NOT_AT_ALL = 1e-3  # EI/L^3; forces are those of the depths here: there is no slack to convexify
 
 
 class _OnFacets(Newton):
@@ -59,7 +58,7 @@ def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> 
     if len(start.forces) < 2 or len(model.obstacle.corners):
         return None
     picture = Picture(model, start.forces, numerics.ahead)
-    newton, secant = _OnFacets(picture, replace(numerics, stiffening=_NOT_AT_ALL)), Secant()
+    newton, secant = _OnFacets(picture, numerics), Secant()
     angles = start.angles
     for _ in range(_STEPS):
         contacts = picture.look(foot_x, angles)

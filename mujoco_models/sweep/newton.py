@@ -91,25 +91,31 @@ class Newton:
             comes = along.copy()
             comes[slides] = along[np.where(slides, distance, np.inf).argmin()]
 
-        # Loaded contacts convexify the model; their slack is zero at rest, and so is the effect.
+        # A part of each loaded contact's stiffness convexifies the model, the rest is compliance.
         loaded = force > 0
-        held, slack = comes[loaded], (distance + force / model.contact_stiffness)[loaded]
-        moments = of_links(model.elastic_moments()) - numerics.stiffening * slack @ held
+        part = min(numerics.stiffening, model.contact_stiffness / 2)
+        rest = model.contact_stiffness - part * loaded
+        held = comes[loaded]
+        moments = of_links(model.elastic_moments()) - part * distance[loaded] @ held
         if sliding:
             moments -= np.maximum(-model.contact_stiffness * distance, 0) @ (comes - along)
         springs = (1 + inertia) * model.stiffness(state.angles)
-        stiffness = self._stiffness(springs, contacts, slides, force, curvature, across, held)
+        stiff = np.full(len(held), part)
+        stiffness = self._stiffness(
+            springs, contacts, slides, force, curvature, across, held, stiff
+        )
         rows = np.concatenate([moments[None], comes])
         turns, self._doubled = stiffness.solve(rows, self._doubled)
         nearer = comes @ turns.T  # by the moments, and by a unit of force at each contact
-        compliance = nearer[:, 1:] + np.eye(len(force)) / model.contact_stiffness
+        compliance = nearer[:, 1:] + np.diag(1 / rest)
         forces = _unilateral(compliance, distance + nearer[:, 0], loaded)
         step = turns[0] + forces @ turns[1:]
+        whole = forces * model.contact_stiffness / rest
         shorter = min(1.0, numerics.largest_turn / max(float(np.abs(step).max()), 1e-300))
         step[1:] -= step[:-1].copy()
         return State(
             state.angles + shorter * step,
-            {i: f for i, f in zip(contacts.touch.tolist(), forces.tolist(), strict=True) if f > 0},
+            {i: f for i, f in zip(contacts.touch.tolist(), whole.tolist(), strict=True) if f > 0},
             state.imbalance,
         )
 
@@ -122,6 +128,7 @@ class Newton:
         curvature: Floats,
         across: Floats,
         held: Floats,
+        stiff: Floats,
     ) -> Stiffness:
         """That of the springs, of turning levers and normals, and of what is held in contact."""
         on_side = contacts.on_side | slides
@@ -131,7 +138,7 @@ class Newton:
         turns = -force * curvature
         turning = ~on_side & (turns != 0)
         directions = [held, across[turning]]
-        weights = [np.full(len(held), self._numerics.stiffening), turns[turning]]
+        weights = [stiff, turns[turning]]
         # A corner stays where it is and the normal turns with its link; so it does where beads
         # slide, about the contour's centre of curvature.
         for i in np.flatnonzero(on_side & (force > 0)):

@@ -16,7 +16,7 @@ class Numerics:
         to 4 suffice; with fewer than a contact needs that changes its facet, steps are halved in
         vain.
     in_vain : int
-        Newton steps in a row without a better one, and the rest are not tried. From 6 to 25 nothing
+        Newton steps in a row without a better one, and the rest are not tried. From 5 to 25 nothing
         changes on twenty sweeps at random, but for a third of their cost.
     slow : float
         Newton's method that comes nearer by less than this from step to step does not know the
@@ -27,8 +27,9 @@ class Numerics:
         that lets go is kept from it: without a bound 2 of 50 sweeps did not snap off. At 1e-2
         nothing changes.
     stiffening : float
-        Loaded contacts convexify the quadratic model by this much [EI/L^3]; their slack is zero at
-        rest, and so is the effect there. It matters on the way: at 1e2 the quadratic model leaves
+        So much of each loaded contact's stiffness convexifies the quadratic model [EI/L^3], at most
+        half of it; the rest is the contact's compliance. Next to rest that is as good as any other
+        split, and Newton's method is quadratic. It matters on the way: at 1e2 the model leaves
         the branch 1.9e-3 L before the catenary's fold, and descents take it there, in three times
         the time; at 10 stations run out of their budget. From 1e2 to 1e6 the snap-off moves by less
         than 7e-5 L.
@@ -112,7 +113,7 @@ class Numerics:
     """
 
     iterations: int = 25
-    in_vain: int = 8
+    in_vain: int = 5
     slow: float = 0.2
     learns: float = 1e-3
     stiffening: float = 1e3

@@ -7,6 +7,8 @@ import pytest
 
 from analytic import CASE_NAMES, CLAMP_READINGS, named_case
 from mujoco_models import Settings, available_beams, simulate_sweep
+from mujoco_models.sweep.numerics import Numerics
+from mujoco_models.sweep.sweep import set_out
 from tests.conftest import simulated_sweep
 
 
@@ -125,3 +127,28 @@ def test_stations_settle(beam, name, segments):
     table = simulated_sweep(name, Settings(beam=beam, segments=segments)).table
     settled = table["status"] == "ok"
     assert settled.mean() >= 0.995, f"unsettled at {table.loc[~settled, 'foot_x'].tolist()}"
+
+
+@pytest.mark.parametrize("contact_stiffness", [1e4, 1e5, 1e7])
+def test_newtons_method_is_quadratic_however_soft_the_contact(contact_stiffness):
+    """Of a soft contact, too, all of the force is that of the next depth, not of the last one."""
+    settings = Settings(segments=20, contact_stiffness=contact_stiffness)
+    walk = set_out(named_case("catenary"), settings, Numerics(forecasts=0))
+    model, found = walk.model, []
+    imbalance = model.imbalance
+
+    def noted(foot_x, angles):
+        moments = imbalance(foot_x, angles)
+        found.append(np.abs(moments).max())
+        return moments
+
+    model.imbalance = noted
+    ratios = []
+    for foot_x in named_case("catenary").foot_x[20:120]:
+        found.clear()
+        walk.go_to(float(foot_x))
+        # Once it is that near, a step is short against what turns about it; 1e-10 is rounding.
+        ratios += [b / a for a, b in zip(found, found[1:], strict=False) if 1e-7 < a < 1e-4]
+    assert len(ratios) > 15
+    # With the old force instead it is 1e3 / contact_stiffness: 0.1 with the softest.
+    assert np.median(ratios) < 1e-3
