@@ -99,7 +99,7 @@ class SpatialWalk(Walk[BeamModel]):
 
     def _resume(self, start: tuple[float, State]) -> None:
         self._foot_x, self._state = start
-        self._before = None
+        self._trail.clear()
 
     def _locate(self, start: tuple[float, State], target: float) -> float:
         """Where, between a station that is held in the plane and one that is not, that changes."""
@@ -148,7 +148,8 @@ class SpatialWalk(Walk[BeamModel]):
         self._move(departure.timestep, _STEPS)
         self._move(STEP, _LAST_STEPS)
         angles = model.beam.angles(model.data)
-        self._foot_x, self._before, self._held = target, None, None
+        self._foot_x, self._held = target, None
+        self._trail.clear()
         if model.out_of_plane() > _IN_PLANE:
             model.relieved()
             imbalance = float(np.abs(model.moments()).max())

@@ -1,5 +1,6 @@
 """From station to station at rest, and the snap-off found by smaller and smaller steps."""
 
+from collections import deque
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -15,6 +16,7 @@ from mujoco_models.sweep.minimum import minimum
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.rest import refine, relax
 from mujoco_models.sweep.state import State, turned
+from mujoco_models.sweep.walls import Walls
 
 Model = TypeVar("Model", bound=Balance)
 _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
@@ -67,7 +69,7 @@ class Walk(Generic[Model]):
         self._numerics = numerics or Numerics()
         self._foot_x = foot_x
         self._state = State.straight(len(model.layout.joints))
-        self._before: tuple[float, State] | None = None
+        self._trail: deque[tuple[float, State]] = deque(maxlen=2)  # before the last state
         self._shown = self._state
         self._budget = self._numerics.budget
         self._lost: str | None = None
@@ -107,38 +109,52 @@ class Walk(Generic[Model]):
 
     def _advance(self, target: float, limit: int) -> str | None:
         """Go to `target`; why not, if that is not possible."""
-        numerics, least = self._numerics, self._numerics.smallest_step
-        wall: float | None = None  # the nearest place at which it let go, or failed short of that
-        step, let_go, in_vain, jumps = target - self._foot_x, False, False, False
+        least, walls = self._numerics.smallest_step, Walls(self._numerics.smallest_step)
+        step, in_vain = target - self._foot_x, False
         while True:
-            end = target if wall is None else wall
-            rest = abs(end - self._foot_x) - abs(step)
-            trial = end if rest < _SAME_PLACE else self._foot_x + step
-            state = self._near_rest(trial)
+            trial = self._onward(step, target)
+            if walls:
+                trial = walls.aim([*self._trail, (self._foot_x, self._state)], self._follows)
+            state, ended = self._near_rest(trial), False
             if self._follows(state):
                 self._accept(trial, state)
-                # Short of a fold half of the way at first: beyond it there is nothing. Where it is
-                # that a tip goes from facet to facet, no reading knows.
-                step = step / 2 if let_go else 2 * step
-                wall = None if trial == wall else wall
-                let_go, jumps = False, jumps and wall is not None
-            elif abs(trial - self._foot_x) > (numerics.confirm_step if jumps else least):
-                self._smooth, in_vain = False, True
-                step = (trial - self._foot_x) / 2
-                stays = state.stance is self._state.stance
-                jumps |= stays and state.settled and self._leaves_its_facet(state)
-                let_go = jumps or wall is not None or not stays
-                wall = trial if let_go else None
+                walls.leave_behind(trial, target)
+                step *= 2
             else:
-                trouble = self._decide((self._foot_x + trial) / 2, target)
+                self._smooth, in_vain = False, True
+                ended = abs(trial - self._foot_x) <= least
+                step = (trial - self._foot_x) / 2
+                if walls or state.stance is not self._state.stance or self._jumped(state):
+                    walls.add(trial, state, self._foot_x)
+            end = walls.nearest if walls else trial
+            if ended or (walls and abs(end - self._foot_x) <= self._least(walls.beyond)):
+                trouble = self._decide((self._foot_x + end) / 2, target)
                 if trouble is not None:
                     return trouble
-                step, wall, jumps = target - self._foot_x, None, False
+                walls.leave_behind(self._foot_x, target)
+                step = target - self._foot_x
             if self._foot_x == target:
                 self._smooth = not in_vain
                 return None
             if self.model.evaluations > limit:
                 return f"not at rest after {self._budget} evaluations"
+
+    def _onward(self, step: float, target: float) -> float:
+        """A step on, or up to the target."""
+        rest = abs(target - self._foot_x) - abs(step)
+        return target if rest < _SAME_PLACE else self._foot_x + step
+
+    def _jumped(self, state: State) -> bool:
+        """Whether the contact is elsewhere on an obstacle with corners."""
+        cornered = len(self.model.obstacle.corners) > 0
+        return cornered and state.settled and state.stance is self._state.stance
+
+    def _least(self, beyond: State) -> float:
+        """How closely the end of the branch is located, if `beyond` is behind it."""
+        # Where it is that a tip goes from facet to facet, no reading knows.
+        to_another_facet = self._jumped(beyond) and self._leaves_its_facet(beyond)
+        numerics = self._numerics
+        return numerics.confirm_step if to_another_facet else numerics.smallest_step
 
     def _decide(self, where: float, target: float) -> str | None:
         """Go on a little where no neighbour was found: held, or let go; else say what is wrong."""
@@ -162,7 +178,7 @@ class Walk(Generic[Model]):
         if let_go and last.load > numerics.load_held:
             self.snap_off = where
         self._accept(foot_x, rest)
-        self._before = None
+        self._trail.clear()
         return None
 
     def _lost_from(self, last: State) -> str:
@@ -176,7 +192,7 @@ class Walk(Generic[Model]):
 
     def _accept(self, foot_x: float, state: State) -> None:
         if foot_x != self._foot_x:
-            self._before = (self._foot_x, self._state)
+            self._trail.append((self._foot_x, self._state))
         self._foot_x, self._state = foot_x, state
 
     def _near_rest(self, foot_x: float) -> State:
@@ -191,7 +207,8 @@ class Walk(Generic[Model]):
         stayed = self._relax(foot_x, State(last.angles, last.forces, slope=last.slope))
         if stayed.settled and not self._leaves_its_facet(stayed):
             return stayed
-        return self._relax(foot_x, state)
+        # The model has to be in the state that is gone on from.
+        return self._relax(foot_x, state) if self._follows(state) else state
 
     def _leaves_its_facet(self, state: State) -> bool:
         """Whether the last state rests on a facet between sharp corners, and `state` does not."""
@@ -233,9 +250,9 @@ class Walk(Generic[Model]):
     def _guess(self, foot_x: float) -> State:
         """The last state, carried on along the branch; so is the place of its load."""
         state = self._state
-        if self._before is None:
+        if not self._trail:
             return State(state.angles, state.forces, slope=state.slope)
-        x, before = self._before
+        x, before = self._trail[-1]
         ahead = (foot_x - self._foot_x) / (self._foot_x - x)
         forces, slope = state.forces, state.slope
         last = len(self.model.layout.beads) - 1
