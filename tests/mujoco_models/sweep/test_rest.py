@@ -1,6 +1,7 @@
 """At rest only springs and contacts count: nothing that belongs to the way there."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -148,7 +149,7 @@ def test_newtons_method_is_quadratic_however_soft_the_contact(contact_stiffness)
         found.clear()
         walk.go_to(float(foot_x))
         # Once it is that near, a step is short against what turns about it; 1e-10 is rounding.
-        ratios += [b / a for a, b in zip(found, found[1:], strict=False) if 1e-7 < a < 1e-4]
+        ratios += [b / a for a, b in pairwise(found) if 1e-7 < a < 1e-4]
     assert len(ratios) > 15
     # With the old force instead it is 1e3 / contact_stiffness: 0.1 with the softest.
     assert np.median(ratios) < 1e-3
