@@ -10,6 +10,7 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 _MAX_ITERATIONS = 120  # bisection alone needs 53, and 64 more to pass from 1 to 1e-19
 _ROUNDING = 2 * float(np.finfo(float).eps)  # of a zero, relative
 _NODES = np.cos(np.pi * (np.arange(13) + 0.5) / 13)  # of a polynomial's, about a likely place
+_EACH = np.arange(_NODES.size)
 _NEAR = 0.1  # of the width between the bounds: up to so far from that place
 _AGREED = 1e-13  # of that width: polynomials of one degree less and of this one agree
 _AT_ONCE, _ASIDE = 64, 15  # so many numbers take hardly longer than one; at most, on either side
@@ -72,9 +73,9 @@ def smooth_zeros(
 ) -> Floats:
     """`zeros` of functions that are smooth but of few, and whose zeros are nearly known.
 
-    Inverse interpolation by Neville's scheme, through values about the likely place, takes one call
-    of the function. Where the sign does not change there, or the last two polynomials differ, it is
-    `zeros`.
+    Lagrange's inverse interpolation, through values about the likely place, takes one call of the
+    function. Where the sign does not change there, or polynomials through one value less differ, it
+    is `zeros`.
 
     Parameters
     ----------
@@ -98,13 +99,16 @@ def smooth_zeros(
     x = centre[:, None] + (_NEAR * width)[:, None] * _NODES
     f = _values(function, np.arange(low.size), x)
     with np.errstate(all="ignore"):  # values that coincide: no polynomial
-        found = x
-        for degree in range(1, _NODES.size):
-            ahead, behind = f[:, degree:], f[:, :-degree]
-            before = found
-            found = (ahead * found[:, :-1] - behind * found[:, 1:]) / (ahead - behind)
-        found, before = found[:, 0], before.T
-        doubt = np.abs(before - found).max(axis=0)
+        shares = f[:, None, :] / (f[:, None, :] - f[:, :, None])
+        shares[:, _EACH, _EACH] = 1.0
+        weighted = shares.prod(axis=2) * (_NEAR * width)[:, None] * _NODES
+        ahead = weighted.sum(axis=1)
+        # Without the first value or the last one it is a polynomial of one degree less.
+        doubt = np.maximum(
+            np.abs((weighted[:, 1:] / shares[:, 1:, 0]).sum(axis=1) - ahead),
+            np.abs((weighted[:, :-1] / shares[:, :-1, -1]).sum(axis=1) - ahead),
+        )
+        found = centre + ahead
     crosses = np.signbit(f[:, 0]) != np.signbit(f[:, -1])
     left = np.flatnonzero(~(crosses & (doubt <= _AGREED * np.abs(width))))
     if left.size:

@@ -146,9 +146,8 @@ def _steps(states: Equilibria, too_high: Floats, too_far: Floats) -> tuple[Float
     determinant = height_t * reach.by_excess - reach_t * height.by_excess
     step_t = (too_high * reach.by_excess - too_far * height.by_excess) / determinant
     step_w = (height_t * too_far - reach_t * too_high) / determinant
-    along = -too_far / states.foot_x_rate
     return (
-        np.where(states.tangent, along, step_t),
+        np.where(states.tangent, -too_far / states.tangent_rate(), step_t),
         np.where(states.tangent, 0.0, step_w),
     )
 
