@@ -108,7 +108,7 @@ def smooth_zeros(
             np.abs((weighted[:, 1:] / shares[:, 1:, 0]).sum(axis=1) - ahead),
             np.abs((weighted[:, :-1] / shares[:, :-1, -1]).sum(axis=1) - ahead),
         )
-        found = centre + ahead
+        found: Floats = centre + ahead
     crosses = np.signbit(f[:, 0]) != np.signbit(f[:, -1])
     left = np.flatnonzero(~(crosses & (doubt <= _AGREED * np.abs(width))))
     if left.size:

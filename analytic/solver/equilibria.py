@@ -19,7 +19,6 @@ from analytic.solver.elastica import (
     frame,
     least_rotation,
     span,
-    span_by_alpha,
     span_by_excess,
     tangent_span,
 )
@@ -128,7 +127,7 @@ class Equilibria(NamedTuple):
             By the contour's parameter.
         """
         alpha, _, _, turning, stretch = self.point
-        height, reach = tip_rates(self.excess, self.span, alpha)
+        height, reach = tip_rates(self.excess, self.span, alpha, self.frame)
         excess_rate = (stretch * np.sin(alpha) - turning * height.by_alpha) / height.by_excess
         along = stretch * np.cos(alpha) - turning * reach.by_alpha
         return TipRate(along - reach.by_excess * excess_rate, excess_rate)
@@ -150,8 +149,13 @@ class Rates(NamedTuple):
     by_excess: Floats
 
 
-def tip_rates(excess: Floats, loaded: Span, alpha: Floats) -> tuple[Rates, Rates]:
+def tip_rates(
+    excess: Floats, loaded: Span, alpha: Floats, end: Frame | None = None
+) -> tuple[Rates, Rates]:
     """Derivatives of the tip's height y(1) and reach x(1) - x0 by alpha and excess rotation.
+
+    With alpha the lower limit of the integrals moves as with the excess rotation, the other way for
+    alpha < 0; of what the upper one adds, the integrands at the clamp, 1/C up is left.
 
     Parameters
     ----------
@@ -161,22 +165,23 @@ def tip_rates(excess: Floats, loaded: Span, alpha: Floats) -> tuple[Rates, Rates
         Integrals of the vibrissa, loaded all along.
     alpha : array, shape (n,)
         Slope angle of the contour at the tip [rad].
+    end : Frame, optional
+        `frame` of both, where it is known.
 
     Returns
     -------
     height, reach : Rates
         [L/rad]
     """
-    up, across = frame(loaded, alpha)
     by_excess = span_by_excess(loaded, excess, alpha)
-    by_alpha = span_by_alpha(loaded, by_excess, alpha)
+    up, across = frame(loaded, alpha) if end is None else end
     up_w, across_w = frame(by_excess, alpha)
-    up_a, across_a = frame(by_alpha, alpha)
-    q = loaded.q
-    height = Rates((up_a + across - up / q * by_alpha.q) / q, (up_w - up / q * by_excess.q) / q)
-    reach = Rates(
-        (across_a - up - across / q * by_alpha.q) / q, (across_w - across / q * by_excess.q) / q
-    )
+    q, C = loaded.q, loaded.C
+    y, x = up / q, across / q
+    height_w, reach_w = (up_w - y * by_excess.q) / q, (across_w - x * by_excess.q) / q
+    side = np.where(alpha < 0, -1.0, 1.0)
+    height = Rates(side * height_w + x + (y - 1) / (C * q), height_w)
+    reach = Rates(side * reach_w - y + x / (C * q), reach_w)
     return height, reach
 
 

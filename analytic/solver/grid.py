@@ -14,6 +14,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.contours.contour import ContourPoint
 from analytic.problem.contours.many import Contours
 from analytic.problem.roots import smooth_zeros, zeros
 from analytic.solver.contact_length import surplus_and_rate
@@ -51,7 +52,7 @@ class Grid(NamedTuple):
         Grid
             Of at most n + m points.
         """
-        whose, where = np.append(self.owner, owner), np.append(self.t, t)
+        whose, where = np.concatenate([self.owner, owner]), np.concatenate([self.t, t])
         order = _order(whose, where)
         return Grid(whose[order], where[order])
 
@@ -63,7 +64,7 @@ class Grid(NamedTuple):
     @property
     def begins(self) -> Integers:
         """The number of each contour's first point."""
-        return np.flatnonzero(np.append(True, ~self.cells))
+        return np.concatenate([[0], np.flatnonzero(~self.cells) + 1])
 
     def part(self, chosen: Booleans) -> "Grid":
         """Some of the points.
@@ -128,15 +129,16 @@ def along(centrelines: Contours, first: Floats, last: Floats) -> Grid:
         if breaks.size:
             beside = np.append(np.nextafter(breaks, last[i]), np.nextafter(breaks, first[i]))
             grid = grid.with_points(np.full(beside.size, i), beside)
+    point = centrelines.at(*grid)
     for _ in range(_LEVELS):
-        point = centrelines.at(*grid)
         turn, rise = np.abs(np.diff(point.alpha)), np.abs(np.diff(point.eta))
         steep = (turn > _TURN) | (rise > _RISE * np.minimum(point.eta[1:], point.eta[:-1]))
         new = grid.middles(steep)
         if not new.t.size:
             break
-        grid = grid.with_points(*new)
-    return _with_phase_changes(centrelines, grid)
+        grid, values = _merged(grid, tuple(point), new, tuple(centrelines.at(*new)))
+        point = ContourPoint(*values)
+    return _with_phase_changes(centrelines, grid, point)
 
 
 def doubtful(t: Floats, value: Floats, rate: Floats) -> Booleans:
@@ -162,8 +164,8 @@ def doubtful(t: Floats, value: Floats, rate: Floats) -> Booleans:
     return np.asarray(((mean < low - slack) | (mean > high + slack)) & large)
 
 
-def _with_phase_changes(centrelines: Contours, grid: Grid) -> Grid:
-    value, rate = surplus_and_rate(centrelines.at(*grid))
+def _with_phase_changes(centrelines: Contours, grid: Grid, point: ContourPoint) -> Grid:
+    value, rate = surplus_and_rate(point)
     most = np.bincount(grid.owner, minlength=len(centrelines)) + _MOST
     for _ in range(_LEVELS):
         # How near the surplus can come to zero, if it goes on as steeply as at either end.
@@ -246,11 +248,11 @@ def folded(centrelines: Contours, grid: Grid) -> tuple[Grid, Samples, Grid]:
     folds : Grid
         Those of its points that are folds; each has two more close by.
     """
-    grid = _to_end_of_reach(centrelines, grid)
-    samples = _sample(centrelines, grid)
+    grid, point = _to_end_of_reach(centrelines, grid)
+    samples = _sampled(point)
     most = np.bincount(grid.owner, minlength=len(centrelines)) + _MOST
     begins = grid.begins  # the first contact, without a load
-    samples.foot_x[begins] = centrelines.at(grid.owner[begins], grid.t[begins]).xi
+    samples.foot_x[begins] = point.xi[begins]
     samples.rate[begins], samples.excess[begins] = np.nan, 0.0
     for _ in range(_LEVELS):
         chosen = grid.middles(doubtful(grid.t, samples.foot_x, samples.rate))
@@ -264,24 +266,28 @@ def folded(centrelines: Contours, grid: Grid) -> tuple[Grid, Samples, Grid]:
     return grid.part(reached), Samples(*(values[reached] for values in samples)), folds
 
 
-def _to_end_of_reach(centrelines: Contours, grid: Grid) -> Grid:
+def _to_end_of_reach(centrelines: Contours, grid: Grid) -> tuple[Grid, ContourPoint]:
     """Up to the first point out of reach of each contour, with more points before that.
 
     Nothing is within reach again behind it. Past a nearly sharp edge x0 may dip a last time before
     it, within a small part of a cell.
     """
-    gone = ~within_reach(centrelines.at(*grid))
+    point = centrelines.at(*grid)
+    gone = ~within_reach(point)
     gone[grid.begins] = False
     for _ in range(_AT_END):
         first = np.flatnonzero(gone)
         if not first.size:
-            return grid
+            return grid, point
         first = first[np.unique(grid.owner[first], return_index=True)[1]]
         fraction = np.linspace(0, 1, _INSIDE + 2)[1:-1]
         t = grid.t[first - 1, None] + (grid.t[first] - grid.t[first - 1])[:, None] * fraction
         new = Grid(np.repeat(grid.owner[first], _INSIDE), t.ravel())
-        grid, (gone,) = _merged(grid, (gone,), new, (~within_reach(centrelines.at(*new)),))
-    return grid.part(_before_first(grid, np.append(False, gone[:-1] & grid.cells)))
+        more = centrelines.at(*new)
+        point = ContourPoint(*_merged(grid, tuple(point), new, tuple(more))[1])
+        grid, (gone,) = _merged(grid, (gone,), new, (~within_reach(more),))
+    reached = _before_first(grid, np.append(False, gone[:-1] & grid.cells))
+    return grid.part(reached), ContourPoint(*(values[reached] for values in point))
 
 
 def _before_first(grid: Grid, chosen: Booleans) -> Booleans:
@@ -339,7 +345,11 @@ def _least_so_far(grid: Grid, foot_x: Floats) -> Floats:
 
 
 def _sample(centrelines: Contours, grid: Grid) -> Samples:
-    states = equilibria_at(centrelines.at(*grid))
+    return _sampled(centrelines.at(*grid))
+
+
+def _sampled(point: ContourPoint) -> Samples:
+    states = equilibria_at(point)
     with np.errstate(divide="ignore", invalid="ignore"):  # where the clamp's moment vanishes
         in_b, in_a = states.tangent_rate(), states.tip_rate()
         rate = np.where(states.tangent, in_b, in_a.foot_x)
@@ -357,18 +367,20 @@ def _merged(
     grid: Grid, values: tuple[_Values, ...], new: Grid, found: tuple[_Values, ...]
 ) -> tuple[Grid, tuple[_Values, ...]]:
     """Two grids as one, with what is known of their points; of points in both, the first's."""
-    owner, t = np.append(grid.owner, new.owner), np.append(grid.t, new.t)
+    owner, t = np.concatenate([grid.owner, new.owner]), np.concatenate([grid.t, new.t])
     order = _order(owner, t)
     both = zip(values, found, strict=True)
-    return Grid(owner[order], t[order]), tuple(np.append(one, other)[order] for one, other in both)
+    merged = tuple(np.concatenate(pair)[order] for pair in both)
+    return Grid(owner[order], t[order]), merged
 
 
 def _order(owner: Integers, t: Floats) -> Integers:
     """The order of a grid's points, each once; of equal ones the first."""
     order = np.lexsort((-t, owner))
     whose, where = owner[order], t[order]
-    again = np.append(False, (whose[1:] == whose[:-1]) & (where[1:] == where[:-1]))
-    return np.asarray(order[~again])
+    first = np.ones(order.size, dtype=bool)
+    first[1:] = (whose[1:] != whose[:-1]) | (where[1:] != where[:-1])
+    return np.asarray(order[first])
 
 
 def _allowed(grid: Grid, new: Grid, most: Integers) -> Grid:

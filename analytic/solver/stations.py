@@ -140,7 +140,7 @@ def _misses(states: Equilibria, foot_x: Floats, at: Floats) -> tuple[Floats, Flo
 def _steps(states: Equilibria, too_high: Floats, too_far: Floats) -> tuple[Floats, Floats]:
     """Newton's step of the contour parameter and of the excess rotation."""
     alpha, _, _, turning, stretch = states.point
-    height, reach = tip_rates(states.excess, states.span, alpha)
+    height, reach = tip_rates(states.excess, states.span, alpha, states.frame)
     height_t = turning * height.by_alpha - stretch * np.sin(alpha)
     reach_t = turning * reach.by_alpha - stretch * np.cos(alpha)
     determinant = height_t * reach.by_excess - reach_t * height.by_excess

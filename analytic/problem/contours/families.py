@@ -170,7 +170,8 @@ def _catenary_eta(a: float, c: float, alpha: Floats) -> Floats:
 
 
 def _catenary_radius(a: float, alpha: Floats) -> Floats:
-    return 1 / (np.cos(alpha) ** 3 * a * np.hypot(a, np.tan(alpha)))
+    cosine = np.cos(alpha)
+    return 1 / (cosine * cosine * cosine * a * np.hypot(a, np.tan(alpha)))
 
 
 def _parabola_xi(a: float, alpha: Floats) -> Floats:
@@ -182,7 +183,8 @@ def _parabola_eta(a: float, c: float, alpha: Floats) -> Floats:
 
 
 def _parabola_radius(a: float, alpha: Floats) -> Floats:
-    return 1 / (2 * a * np.cos(alpha) ** 3)
+    cosine = np.cos(alpha)
+    return 1 / (2 * a * cosine * cosine * cosine)
 
 
 def _ellipse(across: float, upward: float, lowest: tuple[float, float], label: str) -> Profile:
