@@ -69,7 +69,7 @@ def test_mujoco_slips_off_there():
     model.model.body_quat[model.model.body(FOOT).id] = [np.cos(tilt / 2), np.sin(tilt / 2), 0, 0]
     model.lookout.watch(frozenset(range(len(model.layout.beads))))
     out = []
-    for ahead in (0.02, 0.01, 0.004, -0.004):
+    for ahead in (0.01, 0.004, -0.004):
         model.move_foot(place + ahead)
         for _ in range(10_000):
             moved = model.creep(GENTLE_STEP)
@@ -82,5 +82,5 @@ def test_mujoco_slips_off_there():
         out.append(float(contacts.normal[np.argmin(contacts.distance), 0]))
     # On the near side until there, and 4e-3 L farther, which 10 segments and 1,600 facets need not
     # distinguish, on the other one.
-    assert all(0.03 < slope < 0.1 for slope in out[:3])
-    assert out[3] < -0.5
+    assert all(0.03 < slope < 0.1 for slope in out[:2])
+    assert out[2] < -0.5

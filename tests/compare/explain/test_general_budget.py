@@ -34,7 +34,7 @@ def test_it_closes(name, vibrissa):
     if vibrissa == "cone":
         assert_closed(name, vibrissa, segments=40, stations=40, least=30, points=200)
     else:
-        assert_closed(name, vibrissa, segments=40, stations=60, least=45)
+        assert_closed(name, vibrissa, segments=40, stations=60, least=45, points=400)
 
 
 @pytest.mark.trial
