@@ -62,7 +62,12 @@ def test_refused_in_one_line(name, ask):
 
 
 @pytest.mark.parametrize(
-    "name", [name for name in BEYOND if BEYOND[name].get("beam", Beam()).varies]
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow if name == "beam.tip_radius" else ())
+        for name in BEYOND
+        if BEYOND[name].get("beam", Beam()).varies
+    ],
 )
 def test_a_vibrissa_that_varies_is_compared_and_its_friction_found(name):
     readings = solve_sweep(Case(profile=OBJECT, sweep=Sweep(20), **BEYOND[name]))

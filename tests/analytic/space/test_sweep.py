@@ -83,7 +83,10 @@ def test_contacts_lie_on_the_ellipsoid_and_nothing_inside():
     assert ((axis**2).sum(axis=2) > 1).all()
 
 
-@pytest.mark.parametrize("contour", [circle(1.0, (0.0, 0.4)), catenary(0.5, -0.8)])
+@pytest.mark.parametrize(
+    "contour",
+    [circle(1.0, (0.0, 0.4)), pytest.param(catenary(0.5, -0.8), marks=pytest.mark.slow)],
+)
 @pytest.mark.parametrize("radius", [0.0, pytest.param(0.005, marks=pytest.mark.slow)])
 def test_a_prism_across_the_path_is_the_planar_problem(contour, radius):
     beam = Beam(2.0, 3.0, radius)

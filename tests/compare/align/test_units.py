@@ -75,9 +75,16 @@ def test_another_unit_of_a_reading_beside_an_unknown_offset(name, factors, said)
     assert said.split(":")[0] in found.likely
 
 
-@pytest.mark.parametrize("name", ["catenary", "parabola", "two-circles"])
-@pytest.mark.parametrize("share", [0.03, 0.1, 0.3])
-@pytest.mark.parametrize("begin", [0.05, 0.4, 0.6])
+# Each pair of case, share and begin once in the fast tests.
+PARTS = [
+    pytest.param(name, share, begin, marks=() if (i + j + k) % 3 == 0 else pytest.mark.slow)
+    for i, name in enumerate(NAMES)
+    for j, share in enumerate((0.03, 0.1, 0.3))
+    for k, begin in enumerate((0.05, 0.4, 0.6))
+]
+
+
+@pytest.mark.parametrize(("name", "share", "begin"), PARTS)
 def test_a_part_of_a_sweep_is_in_the_same_unit(name, share, begin):
     case, whole = named_case(name), exact_sweep(name)
     x = whole.values("foot_x")[np.isin(whole.table["phase"], ("tip", "tangent"))]
