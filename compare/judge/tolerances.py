@@ -273,7 +273,8 @@ class Tolerances:
 
 CONVENTION = (
     "note: the default limits are no more than a convention for this source: give limits of your "
-    "own, each with its reason (`--tolerances FILE`, in Python `Tolerances`)"
+    "own, each with its reason (`--tolerances FILE`, in Python `Tolerances`, in space "
+    "`SpatialTolerances`)"
 )
 """What is to be said where one of `_CONVENTIONS` is exceeded."""
 _CONVENTIONS = {
