@@ -6,7 +6,6 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats, Integers
-from analytic.problem.errors import InputError
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.errors import DivergedError
 from mujoco_models.model import clamp
@@ -14,7 +13,7 @@ from mujoco_models.model.contacts import Contacts
 from mujoco_models.model.lookout import Lookout, MujocoScene
 from mujoco_models.model.sides import FUSED, Sides
 from mujoco_models.model.sliding import SlidingBeads
-from mujoco_models.model.spec import assemble
+from mujoco_models.model.spec import assemble, compiled
 from mujoco_models.model.surface import Surface
 from mujoco_models.obstacles.protocol import Obstacle
 
@@ -67,7 +66,7 @@ class BeamModel:
         self.obstacle = obstacle
         self.contact_stiffness = contact_stiffness
         self.evaluations = 0
-        self.model = _compiled(assemble(beam, radius, obstacle))
+        self.model = compiled(assemble(beam, radius, obstacle))
         self.data = mujoco.MjData(self.model)
         model = self.model
         self._foot = model.body(FOOT).id
@@ -425,16 +424,3 @@ class BeamModel:
         by_contacts = clamp.by_contacts(self.data, foot, self._surface.moves)
         moment = float(self.elastic_moments()[0])
         return clamp.discrepancy(self.clamp(), by_contacts, self.layout.base[0], moment)
-
-
-def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
-    """What MuJoCo makes of it, unless it is too thin or too small for MuJoCo's precision."""
-    try:
-        return spec.compile()
-    except (ValueError, mujoco.FatalError) as error:
-        raise InputError(
-            "MuJoCo's model",
-            f"impossible ({' '.join(str(error).split())[:150]})",
-            "of a vibrissa and an object that are neither too thin nor too small for MuJoCo",
-            "give a larger radius or object: some 1e-4 L is the least",
-        ) from error

@@ -2,6 +2,7 @@
 
 import mujoco
 
+from analytic.problem.errors import InputError
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.model.surface import CONTACT_GAP, SIDE_PREFIX
 from mujoco_models.obstacles.corners import LINKS
@@ -92,3 +93,32 @@ def add_options(spec: mujoco.MjSpec) -> None:
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
     # The midphase's tree tests every bead against every window: seven times the cost of a step.
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MIDPHASE
+
+
+def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """What MuJoCo makes of it.
+
+    Parameters
+    ----------
+    spec : mujoco.MjSpec
+        Of a vibrissa and an object.
+
+    Returns
+    -------
+    mujoco.MjModel
+        Compiled.
+
+    Raises
+    ------
+    InputError
+        If it is too thin or too small for MuJoCo's precision.
+    """
+    try:
+        return spec.compile()
+    except (ValueError, mujoco.FatalError) as error:
+        raise InputError(
+            "MuJoCo's model",
+            f"impossible ({' '.join(str(error).split())[:150]})",
+            "of a vibrissa and an object that are neither too thin nor too small for MuJoCo",
+            "give a larger radius or object: some 1e-4 L is the least",
+        ) from error

@@ -4,10 +4,9 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.errors import InputError
 from mujoco_models.beams.links import link_name
 from mujoco_models.beams.protocol import FOOT
-from mujoco_models.model.spec import add_options
+from mujoco_models.model.spec import add_options, compiled
 
 _CCD_ITERATIONS = 500  # of MuJoCo's search for the nearest point of an ellipsoid: 35 leave 1e-5
 
@@ -58,7 +57,7 @@ def assembled(spec: mujoco.MjSpec, links: int, tangent: Floats, radius: float) -
     foot.add_site(name="clamp")
     for kind in (mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE):
         spec.add_sensor(type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="clamp")
-    return _compiled(spec)
+    return compiled(spec)
 
 
 def _to(tangent: Floats) -> Floats:
@@ -68,15 +67,3 @@ def _to(tangent: Floats) -> Floats:
         return np.array([1.0, 0, 0, 0] if tangent[1] > 0 else [0.0, 1, 0, 0])
     turn = np.array([1 + tangent[1], *axis])
     return np.asarray(turn / np.linalg.norm(turn))
-
-
-def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
-    try:
-        return spec.compile()
-    except (ValueError, mujoco.FatalError) as error:
-        raise InputError(
-            "MuJoCo's model",
-            f"impossible ({' '.join(str(error).split())[:150]})",
-            "of a vibrissa and a body that are neither too thin nor too small for MuJoCo",
-            "give a larger radius or body: some 1e-4 L is the least",
-        ) from error
