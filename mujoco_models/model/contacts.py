@@ -1,5 +1,6 @@
 """The contacts that MuJoCo reports."""
 
+import math
 from typing import Any, NamedTuple
 
 import mujoco
@@ -54,7 +55,12 @@ class Contacts(NamedTuple):
 
     @classmethod
     def of(
-        cls, data: mujoco.MjData, surface: Surface, layout: Layout, joints: Floats
+        cls,
+        data: mujoco.MjData,
+        surface: Surface,
+        layout: Layout,
+        joints: Floats,
+        sides: Sides | None = None,
     ) -> "Contacts":
         """All contacts that MuJoCo reports.
 
@@ -68,6 +74,8 @@ class Contacts(NamedTuple):
             Of the beam.
         joints : array, shape (n_joints, 2)
             Where its joints are [L].
+        sides : Sides, optional
+            Those of this configuration, past corners; found anew if they are not given.
 
         Returns
         -------
@@ -94,20 +102,20 @@ class Contacts(NamedTuple):
             no,
             passed=False,
         )
-        return (
-            beads if len(surface.sides) == 0 else beads._with_sides(data, surface, layout, joints)
-        )
+        if len(surface.sides) == 0:
+            return beads
+        sides = sides or Sides.of(data, surface, layout, joints)
+        return beads._with_sides(data, surface, layout, sides)
 
     def _with_sides(
-        self, data: mujoco.MjData, surface: Surface, layout: Layout, joints: Floats
+        self, data: mujoco.MjData, surface: Surface, layout: Layout, sides: Sides
     ) -> "Contacts":
         """The same, where what is no bead is a link that touches a corner."""
-        sides = Sides.of(data, surface, layout, joints)
         fused = data.contact.exclude == FUSED
         # Deeper than the axis of a link, MuJoCo sees the corner from behind.
         behind = sides.along & (self.distance < 0) & ~fused
         behind &= (self.normal * surface.corners.outward[sides.edge]).sum(axis=1) < 0
-        number = len(surface.beads) + sides.edge * len(joints) + sides.link
+        number = len(surface.beads) + sides.edge * len(layout.joints) + sides.link
         distance = np.where(behind, -self.distance - 2 * surface.radius, self.distance)
         return Contacts(
             np.where(sides.touch, number, self.touch),
@@ -164,16 +172,17 @@ class Contacts(NamedTuple):
         loaded = self.loaded
         if not loaded.any():
             return {"phase": "free", **NOWHERE, "penetration": 0.0}
-        weight = self.distance[loaded] / self.distance[loaded].sum()
-        normal, s = weight @ self.normal[loaded], self.arc_length[loaded]
-        x, y = weight @ place[loaded]
+        depth, s = self.distance[loaded], self.arc_length[loaded]
+        weight = depth / depth.sum()
+        normal_x, normal_y = (weight @ self.normal[loaded]).tolist()
+        x, y = (weight @ place[loaded]).tolist()
         return {
             "phase": "tip" if s.min() > 1 - _AT_TIP else "tangent",
-            "contact_angle": float(np.arctan2(normal[0], -normal[1])),
+            "contact_angle": math.atan2(normal_x, -normal_y),
             "contact_arc_length": float(weight @ s),
-            "contact_x": float(x),
-            "contact_y": float(y),
-            "penetration": float(-weight @ self.distance[loaded]),
+            "contact_x": x,
+            "contact_y": y,
+            "penetration": float(-weight @ depth),
         }
 
     @property

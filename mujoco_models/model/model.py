@@ -1,5 +1,6 @@
 """The compiled beam and obstacle: what MuJoCo says of a configuration at rest."""
 
+import math
 from dataclasses import replace
 
 import mujoco
@@ -25,7 +26,7 @@ _BAD_STATES = (
     mujoco.mjtWarning.mjWARN_BADQVEL,
     mujoco.mjtWarning.mjWARN_BADQACC,
 )
-_FULL = (mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL)
+_FULL = [mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL]
 ROUNDING = 1e-13  # L, of a contact's depth: that of its place, which all joints before it add to
 _DISTINCT = 1e-2  # of the largest; beads side by side share a load in ways that hardly differ
 _IMPEDANCE = 0.9  # MuJoCo's d; with the stiffness set below it cancels out of the law at rest
@@ -78,6 +79,7 @@ class BeamModel:
         self._sliding = SlidingBeads(model, self.beads, self.layout, obstacle)
         sharpest = obstacle.largest_curvature
         self._slides = self._sliding.needed(sharpest / (1 + radius * sharpest))
+        self._sides: Sides | None = None  # of the configuration that was evaluated last
         scene = MujocoScene(model, self.data, self.beads, obstacle)
         self.lookout = Lookout(scene, obstacle, radius, self.layout)
 
@@ -122,10 +124,10 @@ class BeamModel:
         self.beam.place(self.data, angles)
         self.evaluate()
         self.evaluations += 1
-        if any(self.data.warning[full].number for full in _FULL):
+        if self.data.warning.number.take(_FULL).any():
             raise MemoryError(f"MuJoCo's own memory does not hold all of {self.data.ncon} contacts")
         moments = self.beam.moments(self.moments())
-        if not np.isfinite(moments).all():
+        if not math.isfinite(moments.sum()):
             raise DivergedError("MuJoCo's moments at the joints are not finite")
         return moments
 
@@ -147,6 +149,7 @@ class BeamModel:
         is touched once, see `mujoco_models.model.sides`.
         """
         model, data = self.model, self.data
+        self._sides = None
         data.qvel[:] = 0
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
@@ -164,8 +167,8 @@ class BeamModel:
     def _fuse(self) -> None:
         """Leave out of MuJoCo's balance the contacts that only repeat another one."""
         data = self.data
-        sides = Sides.of(data, self._surface, self.layout, self.joint_positions())
-        data.contact.exclude[sides.fused(data, self._surface)] = FUSED
+        self._sides = Sides.of(data, self._surface, self.layout, self.joint_positions())
+        data.contact.exclude[self._sides.fused(data, self._surface)] = FUSED
 
     def relieved(self, rounding: float = ROUNDING) -> Floats:
         """Moment out of balance at each joint, but for what rounding of depths makes of it.
@@ -256,6 +259,7 @@ class BeamModel:
         model, data = self.model, self.data
         model.opt.integrator, model.opt.timestep = mujoco.mjtIntegrator.mjINT_DISCRETE, timestep
         before = data.qpos.copy()
+        self._sides = None
         data.qvel[:] = 0
         mujoco.mj_step(model, data)
         if any(data.warning[bad].number for bad in _BAD_STATES):
@@ -271,7 +275,8 @@ class BeamModel:
         Contacts
             Loaded, or within the gap.
         """
-        return Contacts.of(self.data, self._surface, self.layout, self.joint_positions())
+        joints = self.joint_positions()
+        return Contacts.of(self.data, self._surface, self.layout, joints, self._sides)
 
     def contact_places(self) -> Floats:
         """Where MuJoCo has each contact: between the two surfaces."""
