@@ -134,17 +134,19 @@ class Faceted(Obstacle):
         facet above a point gives a bound, and the one that is nearest by that a better one.
         """
         x = points[:, 0]
-        bound, aside = self._below(points, x)
+        bound, aside = self._below(points, self._inner.searchsorted(x))
         found = np.flatnonzero(bound < distance)
+        if len(found) == 0:
+            return found
         points, foot = points[found], (x - bound * aside)[found]
-        close = self._below(points, foot)[0] < distance
+        close = self._below(points, self._inner.searchsorted(foot))[0] < distance
         left, right = self._sides
         x = points[:, 0]
         return found[close & (x > left - distance) & (x < right + distance)]
 
-    def _below(self, points: Floats, x: Floats) -> tuple[Floats, Floats]:
-        """How far the points are below the lines of the facets at `x`, and the slopes' sines."""
-        sin, cos, height = self._lines.take(np.searchsorted(self._inner, x), axis=1)
+    def _below(self, points: Floats, facet: Integers) -> tuple[Floats, Floats]:
+        """How far the points are below the lines of facets, and the sines of their slopes."""
+        sin, cos, height = self._lines.take(facet, axis=1)
         return sin * points[:, 0] - cos * points[:, 1] + height, sin
 
     @cached_property

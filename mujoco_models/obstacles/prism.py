@@ -132,11 +132,10 @@ class Prism(Faceted):
         """From the facets about the nearest one; sharp corners are touched by links, not points."""
         if len(self.corners):
             return None
-        facets = np.minimum(
-            np.maximum(self._nearest(points) + _ABOUT, 0), len(self.facet_angles) - 1
-        )
+        last = len(self.facet_angles) - 1
+        facets = np.minimum(np.maximum(self._nearest(points) + _ABOUT, 0), last)
         origin = self._origin(window)
-        ends = self._columns.take([facets, facets + 1], axis=1) - origin[:, None, None, None]
+        ends = self._facets.take(facets, axis=2) - origin[:, None, None, None]
         (begin_x, end_x), (begin_y, end_y) = ends.astype(np.float32).astype(float)  # as in MuJoCo
         run_x, run_y = end_x - begin_x, end_y - begin_y
         x, y = (points - origin).T
@@ -146,13 +145,15 @@ class Prism(Faceted):
         inside = (run_x * y > run_y * x).all(axis=0)
         x, y = x - along * run_x, y - along * run_y
         distances = np.hypot(x, y)
-        best = np.argmin(distances, axis=0), np.arange(len(points))
-        nearest, last = facets[best], len(self.facet_angles) - 1
-        aside = (best[0] == 0) | (best[0] == len(_ABOUT) - 1)
-        if (aside & (nearest > 0) & (nearest < last) & ~inside).any():
-            return None  # a nearer facet may be farther along
-        distance = np.where(inside, -distances[best], distances[best])
-        return distance, np.array([x[best], y[best]]).T / distance[:, None]
+        best = distances.argmin(axis=0)
+        aside = (best == 0) | (best == len(_ABOUT) - 1)
+        best = best * len(points) + np.arange(len(points))  # of the arrays, taken as flat
+        if aside.any():
+            nearest = facets.take(best)
+            if (aside & (nearest > 0) & (nearest < last) & ~inside).any():
+                return None  # a nearer facet may be farther along
+        distance = np.where(inside, -1.0, 1.0) * distances.take(best)
+        return distance, np.array([x.take(best), y.take(best)]).T / distance[:, None]
 
     def _nearest(self, points: Floats) -> Integers:
         """The facets nearest to the points, shape (n,), to within the next one.
@@ -160,15 +161,16 @@ class Prism(Faceted):
         By Newton's method on the foot of the perpendicular; where the contour is sharper than a
         point is far away, a step would go past it without the contour's turn.
         """
-        x, facet = points[:, 0], np.full(len(points), -1)
+        x = points[:, 0]
+        facet = self._inner.searchsorted(x)
         for _ in range(_FEET):
-            before, facet = facet, np.searchsorted(self._inner, x)
+            bound, aside = self._below(points, facet)
+            begin, curvature = self._begins.take(facet, axis=1)
+            across = x - bound * aside - begin
+            foot = begin + across / (1 + curvature * np.maximum(bound, 0))
+            before, facet = facet, self._inner.searchsorted(foot)
             if (np.abs(facet - before) < 2).all():
                 break
-            bound, aside = self._below(points, x)
-            begin = self.vertices[facet, 0]
-            across = points[:, 0] - bound * aside - begin
-            x = begin + across / (1 + self._curvature[facet] * np.maximum(bound, 0))
         return facet
 
     def place(self, slope: Floats) -> Floats:
@@ -205,8 +207,8 @@ class Prism(Faceted):
     def _polygon(self, centre: int) -> Floats:
         """A window's vertices, from its centre on: there MuJoCo's search for the nearest begins."""
         kept = self._kept(centre)
-        polygon = np.vstack([self._gridded[kept], self.outline[-1]])
-        return np.roll(polygon, -int(np.searchsorted(kept, centre)), axis=0)
+        begin, roof = kept.searchsorted(centre), [len(self.vertices)]
+        return np.asarray(self._closed[np.concatenate([kept[begin:], roof, kept[:begin]])])
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """One mesh with room for any window; what it is, `show` says."""
@@ -261,9 +263,19 @@ class Prism(Faceted):
         return np.asarray(np.round(self.vertices / grid) * grid)
 
     @cached_property
-    def _columns(self) -> Floats:
-        """The same by columns, shape (2, n)."""
-        return np.ascontiguousarray(self._gridded.T)
+    def _closed(self) -> Floats:
+        """Those, and the vertex above them, shape (n + 1, 2)."""
+        return np.vstack([self._gridded, self.outline[-1]])
+
+    @cached_property
+    def _facets(self) -> Floats:
+        """Those at the facets' ends: x and y, of begin and end, shape (2, 2, n - 1)."""
+        return np.stack([self._gridded[:-1].T, self._gridded[1:].T], axis=1)
+
+    @cached_property
+    def _begins(self) -> Floats:
+        """Where each facet begins along x, and the contour's curvature there, shape (2, n - 1)."""
+        return np.array([self.vertices[:-1, 0], self._curvature[:-1]])
 
     @cached_property
     def _arc_length(self) -> Floats:
