@@ -6,8 +6,9 @@ and the engine has only to confirm what was found. Nothing of it is in a reading
 does not confirm, its own balance corrects.
 """
 
+import math
+
 from mujoco_models.model.balance import Balance
-from mujoco_models.model.contacts import slope_angle
 from mujoco_models.sweep.newton import Newton
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.picture import Picture
@@ -42,7 +43,8 @@ def forecast(model: Balance, foot_x: float, start: State, numerics: Numerics) ->
         contacts = picture.look(foot_x, state.angles)
         if contacts is None or picture.is_inside(contacts):
             return None
-        slope = float(slope_angle(contacts.normal[[contacts.distance.argmin()]])[0])
+        x, y = contacts.normal[contacts.distance.argmin()].tolist()
+        slope = math.atan2(x, -y)
         model.lookout.face(slope)  # each window rounds the obstacle's vertices anew
         before, state = state, newton.step(state, contacts)
         if turned(state.angles, before.angles) < numerics.foreseen:

@@ -53,6 +53,7 @@ class Newton:
     def __init__(self, model: Mechanics, numerics: Numerics) -> None:
         self._model = model
         self._numerics = numerics
+        self._cornered = len(model.obstacle.corners) > 0
         self._last: Touch | None = None
         self._doubled = 0  # of the addition to the springs in the last step
 
@@ -107,7 +108,8 @@ class Newton:
         rows = np.concatenate([moments[None], comes])
         turns, self._doubled = stiffness.solve(rows, self._doubled)
         nearer = comes @ turns.T  # by the moments, and by a unit of force at each contact
-        compliance = nearer[:, 1:] + np.diag(1 / rest)
+        compliance = nearer[:, 1:].copy()
+        compliance.flat[:: len(force) + 1] += 1 / rest
         forces = _unilateral(compliance, distance + nearer[:, 0], loaded)
         step = turns[0] + forces @ turns[1:]
         whole = forces * model.contact_stiffness / rest
@@ -141,7 +143,7 @@ class Newton:
         weights = [stiff, turns[turning]]
         # A corner stays where it is and the normal turns with its link; so it does where beads
         # slide, about the contour's centre of curvature.
-        for i in np.flatnonzero(on_side & (force > 0)):
+        for i in (on_side & (force > 0)).nonzero()[0]:
             own, couple = int(contacts.link[i]), -force[i] * across[i]
             links[own] += 2 * couple[own]
             if slides[i]:
@@ -160,11 +162,11 @@ class Newton:
         As the beam slides, a corner passes from link to joint to link: what has lost it leaves its
         force to the nearest contact at the same corner or the same joint.
         """
-        touch = np.where(contacts.fused, -1, contacts.touch)
+        touch = np.where(contacts.fused, -1, contacts.touch) if self._cornered else contacts.touch
         force = np.array([state.forces.get(i, 0.0) for i in touch.tolist()])
-        if (slides & contacts.loaded).any() and not force[slides].any():
-            force[np.where(slides, contacts.distance, np.inf).argmin()] = state.load
-        if len(self._model.obstacle.corners) == 0:
+        if not self._cornered:
+            if (slides & contacts.loaded).any() and not force[slides].any():
+                force[np.where(slides, contacts.distance, np.inf).argmin()] = state.load
             return force
         beads, links = len(self._model.layout.beads), len(self._model.layout.joints)
         corner, link = np.divmod(touch - beads, links)
@@ -189,26 +191,32 @@ class Newton:
         Sharp corners are known to the obstacle.
         """
         angles = contacts.slope
-        found = self._model.contact_curvature(angles)
-        found /= 1 + found * np.minimum(contacts.distance, 0)  # nearer, as deep as the bead is
-        found *= self._model.obstacle.across(angles)
-        if not self._model.obstacle.faceted or len(self._model.obstacle.corners):
-            return found
+        if not self._model.obstacle.faceted or self._cornered:
+            return self._mean_curvature(contacts.distance, angles)
         before = self._last
         now = self._last = Touch(contacts.touch, angles, contacts.point)
         if before is None or len(before.bead) == 0:
-            return found
-        if now.bead is before.bead:
-            same = np.ones(len(angles), dtype=bool)
-        else:
+            return self._mean_curvature(contacts.distance, angles)
+        known: Booleans | bool = True
+        if now.bead is not before.bead:
             row = {bead: i for i, bead in enumerate(before.bead.tolist())}
             old = np.array([row.get(bead, -1) for bead in now.bead.tolist()], dtype=int)
-            same, before = old >= 0, Touch(*(part[old] for part in before))
+            known, before = old >= 0, Touch(*(part[old] for part in before))
         turn = np.abs(angles - before.normal_angle)
-        slid = np.hypot(*(now.position - before.position).T)
-        moved = same & (slid > 0)  # or another window shows the same place
         turn[turn < self._numerics.same_normal] = 0.0
+        slid = np.hypot(*(now.position - before.position).T)
+        moved = known & (slid > 0)  # or another window shows the same place
+        if moved.all():
+            return np.asarray(turn / slid)
+        found = self._mean_curvature(contacts.distance, angles)
         np.divide(turn, slid, out=found, where=moved)
+        return found
+
+    def _mean_curvature(self, distance: Floats, slope: Floats) -> Floats:
+        """That of the contour about the places with these slope angles, as deep as beads are."""
+        found = self._model.contact_curvature(slope)
+        found /= 1 + found * np.minimum(distance, 0)
+        found *= self._model.obstacle.across(slope)
         return found
 
 
@@ -227,14 +235,14 @@ def levers(contacts: Contacts, joints: Floats) -> tuple[Floats, Floats]:
     along, across : array, shape (n, n_links)
         Along the normals, and along the contour, negative if that is the way of its slope [L/rad].
     """
-    link, (x, y) = contacts.link, contacts.normal.T
-    chord = np.zeros_like(joints)
-    chord[:-1] = joints[1:] - joints[:-1]
-    ways = np.array([[y, -x], [x, y]])
-    lever = ways.transpose(0, 2, 1) @ chord.T
-    lever *= np.arange(len(joints)) < link[:, None]
-    lever[:, np.arange(len(link)), link] = (ways * (contacts.point - joints[link]).T).sum(axis=1)
-    return lever[0], lever[1]
+    # From joint to joint, and from where a contact's link begins straight to the contact.
+    beyond = np.arange(len(joints) + 1) > contacts.link[:, None]
+    way = np.empty((2, *beyond.shape))
+    way[:, :, :-1] = joints.T[:, None]
+    np.copyto(way, contacts.point.T[:, :, None], where=beyond)
+    arm = way[:, :, 1:] - way[:, :, :-1]
+    (x, y), (right, up) = contacts.normal.T[:, :, None], arm
+    return y * right - x * up, x * right + y * up
 
 
 def of_links(moments: Floats) -> Floats:
@@ -262,14 +270,14 @@ def _unilateral(compliance: Floats, gap: Floats, guess: Booleans) -> Floats:
     goes round in circles, an active-set method that never does finds them.
     """
     for _ in range(_TRIALS):
-        force, held = np.zeros(len(gap)), np.flatnonzero(guess)
+        force, held = np.zeros(len(gap)), guess.nonzero()[0]
         if held.size:
             _, force[held], failed = dposv(compliance[held[:, None], held], -gap[held])
             if failed:
                 break
-        right = np.where(guess, force >= 0, compliance @ force + gap < 0)
-        if (right == guess).all():
+        wrong = np.where(guess, force, compliance @ force + gap) < 0
+        if not wrong.any():
             return force
-        guess = right
+        guess = guess ^ wrong
     root = np.linalg.cholesky(compliance)
     return np.asarray(nnls(root.T, -np.linalg.solve(root, gap))[0])

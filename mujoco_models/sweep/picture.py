@@ -9,6 +9,8 @@ from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import Contacts
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
+# Gauss and Legendre's rule from the unbent joint to the bent one: where, and with which weight.
+_RULE = list(zip(((1 + _NODES) / 2).tolist(), (_WEIGHTS / 2).tolist(), strict=True))
 
 
 class Picture:
@@ -42,8 +44,7 @@ class Picture:
         self._from_link = self.layout.from_links[:, self._beads]
         self.radii = model.lookout.radii[self._beads]
         self._none = np.zeros(len(self._beads), dtype=bool)
-        self._joints, self._elastic = self.layout.base, np.zeros(len(self.layout.joints))
-        self._bent = 0.0
+        self._joints, self._angles = self.layout.base, np.zeros(len(self.layout.joints))
 
     def look(self, foot_x: float, angles: Floats) -> Contacts | None:
         """Where a configuration touches; what else is asked is of that.
@@ -60,23 +61,17 @@ class Picture:
         Contacts or None
             Of the beads; None if the obstacle says nothing of that.
         """
-        layout = self.layout
+        layout, self._angles = self.layout, angles
         heading = layout.headings + angles.cumsum()
         along = np.array([-np.sin(heading), np.cos(heading)])
-        joints = layout.chords * along
-        joints[:, 1:] = joints[:, :-1].cumsum(axis=1)
-        joints[:, 0] = 0.0
-        joints += (layout.base[0] + [foot_x, 0.0])[:, None]
-        # The springs' moments, from their stiffness at the nodes of Gauss and Legendre.
-        part = [
-            w * self.stiffness(angles * (1 + x) / 2) for x, w in zip(_NODES, _WEIGHTS, strict=True)
-        ]
-        self._elastic = -angles * sum(part) / 2
-        toward = sum(p * (1 - x) for p, x in zip(part, _NODES, strict=True))
-        self._bent = float(angles @ (angles * toward)) / 4
-        ahead, aside = along[:, self._links], self._from_link
-        points = joints[:, self._links] + aside[1] * ahead
-        points += aside[0] * np.array([ahead[1], -ahead[0]])
+        joints = np.zeros(along.shape)
+        joints[:, 1:] = (layout.chords * along)[:, :-1].cumsum(axis=1)
+        joints[0] += foot_x + layout.base[0, 0]
+        joints[1] += layout.base[0, 1]
+        ahead, (across, onward) = along[:, self._links], self._from_link
+        points = joints[:, self._links] + onward * ahead
+        points[0] += across * ahead[1]
+        points[1] -= across * ahead[0]
         gap = self.obstacle.gap(self._model.lookout.window, points.T)
         if gap is None:
             return None
@@ -92,8 +87,9 @@ class Picture:
         return self._joints
 
     def elastic_moments(self) -> Floats:
-        """The beam's own moment at each joint."""
-        return self._elastic
+        """The beam's own moment at each joint, from the stiffness on the way there."""
+        angles = self._angles
+        return np.asarray(-angles * sum(w * self.stiffness(x * angles) for x, w in _RULE))
 
     def slides(self, contacts: Contacts) -> Booleans:
         """No bead does."""
@@ -112,8 +108,10 @@ class Picture:
         float
             By EI/L.
         """
-        depth = np.minimum(contacts.distance, 0)
-        return self._bent + self.contact_stiffness / 2 * float(depth @ depth)
+        angles, depth = self._angles, np.minimum(contacts.distance, 0)
+        toward = sum(w * (1 - x) * self.stiffness(x * angles) for x, w in _RULE)
+        bent = float(angles @ (angles * toward))
+        return bent + self.contact_stiffness / 2 * float(depth @ depth)
 
     def is_inside(self, contacts: Contacts) -> bool:
         """Whether a bead is so deep in the object that it may be pushed out on the far side.

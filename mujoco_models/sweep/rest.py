@@ -65,10 +65,10 @@ def relax(
         if not held and model.slide_beads(contacts):
             residual = _largest(model.imbalance(foot_x, state.angles))
             contacts = model.contacts()
+        imbalance = residual
         if tolerance <= residual < nearly:
-            state = replace(state, imbalance=_largest(model.relieved()))
-        else:
-            state = replace(state, imbalance=residual)
+            imbalance = _largest(model.relieved())
+        state = State(state.angles, state.forces, imbalance)
         if state.imbalance < best.imbalance:
             best, vain = state, 0
         elif (vain := vain + 1) > numerics.in_vain:

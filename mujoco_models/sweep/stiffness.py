@@ -11,9 +11,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg.lapack import dgesv, dgttrf, dgttrs, dposv, dpttrf, dpttrs, dstebz, dsyev
+from scipy.linalg.lapack import dgttrf, dgttrs, dposv, dpttrf, dpttrs, dstebz, dsysv
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 from mujoco_models.errors import DivergedError
 
 _LEAST_SHIFT = 0.02  # EI/L, times the number of joints: what makes it positive definite
@@ -84,15 +84,16 @@ class Stiffness:
         if len(self.weights) > len(self.springs):
             return self._solved_whole(shift, rows[:count])
         turns, negative = self._tridiagonal(shift, rows.T)
-        within = self.directions @ turns
-        met, within = within[:, :count], within[:, count:]
-        within.flat[:: len(within) + 1] += 1 / self.weights
-        if negative + _positive(within) != np.count_nonzero(self.weights > 0):
-            return None
+        if len(self.weights) == 0:
+            return None if negative else turns.T
         plain, low = turns[:, :count], turns[:, count:]
-        if len(within) == 0:
-            return plain.T
-        return np.asarray((plain - low @ dgesv(within, met)[2]).T)
+        within = self.directions @ low
+        within.flat[:: len(within) + 1] += 1 / self.weights
+        factors, pivots, met, singular = dsysv(within, self.directions @ plain)
+        of_weights = sum(weight > 0 for weight in self.weights.tolist())
+        if singular or negative + _positive(factors, pivots) != of_weights:
+            return None
+        return np.asarray((plain - low @ met).T)
 
     def _solved_whole(self, shift: float, moments: Floats) -> Floats | None:
         """The same where contacts outnumber links: of low rank is then nothing."""
@@ -128,8 +129,11 @@ class Stiffness:
         return np.asarray(dgttrs(*factors, moments)[0]), int(negative)
 
 
-def _positive(matrix: Floats) -> int:
-    """How many eigenvalues of a symmetric matrix are positive."""
-    if len(matrix) == 0:
-        return 0
-    return int((dsyev(matrix, compute_v=0)[0] > 0).sum())
+def _positive(factors: Floats, pivots: Integers) -> float:
+    """How many eigenvalues of a symmetric matrix are positive, by LAPACK's factors of it.
+
+    Bunch and Kaufman's blocks have the same inertia: those of two rows, whose pivots are negative,
+    have an eigenvalue of either sign.
+    """
+    rows = zip(factors.diagonal().tolist(), pivots.tolist(), strict=True)
+    return sum(0.5 if pivot < 0 else float(value > 0) for value, pivot in rows)
