@@ -201,6 +201,25 @@ def test_misuse(make, said):
     assert "\n" not in str(refused.value)
 
 
+def test_parallel_curves_keep_what_a_contour_can_do():
+    """Enlarged, mirrored, raised or thickened again, and the same points with or without slopes."""
+    arc = Profile(xi=np.sin, eta=lambda a: 1.4 - np.cos(a), alpha_range=(-0.3, 0.9))
+    t, below = np.linspace(-1.5, 1.5, 31), arc.offset(0.05)
+    for found, known in (
+        (below.scaled(2.0), arc.scaled(2.0).offset(0.1)),
+        (below.mirrored(), arc.mirrored().offset(0.05)),
+        (below.raised(0.2), arc.raised(0.2).offset(0.05)),
+        (below, arc.offset(0.02).offset(0.03)),
+    ):
+        point, expected = found.at(t), known.at(t)
+        np.testing.assert_allclose(point, expected, rtol=1e-15, atol=1e-15)
+        np.testing.assert_array_equal(found.place(t), point[1:3])
+        np.testing.assert_array_equal(found.breaks(), known.breaks())
+    corner = below.at(np.array([1.2]))  # round the end of the arc at the distance of the curve
+    assert corner.stretch == 0.05
+    assert np.hypot(corner.xi - np.sin(0.9), corner.eta - 1.4 + np.cos(0.9)) == pytest.approx(0.05)
+
+
 def test_numbers_of_numpy_are_numbers():
     case = Case(Beam(np.float32(1), np.int64(1)), circle(np.float64(1), np.array([0, 0.4])))
     assert case.beam == Beam()
