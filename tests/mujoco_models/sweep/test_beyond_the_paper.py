@@ -74,8 +74,7 @@ def test_all_at_once_is_of_second_order(beam):
 @pytest.mark.parametrize("name", CASE_NAMES)
 @pytest.mark.parametrize("beam", available_beams())
 def test_named_cases(beam, name, variant):
-    few = variant == "curved to the left"  # states that touch twice take a second each
-    case = case_of(name, **VARIANTS[variant], stations=60 if few else 200)
+    case = case_of(name, **VARIANTS[variant], stations=60)
     exact = solve_sweep(case)
     # A cone's snap-off is a flat fold next to its soft tip. The rod's was off by up to 2.1e-3 L at
     # N = 40, 4.7e-4 at 80 and 2.1e-4 at 160, the chain's by 2.4e-4, 1.6e-4 and 1.6e-4.
@@ -86,7 +85,7 @@ def test_named_cases(beam, name, variant):
         simulated = simulate_sweep(case, Settings(beam=beam, segments=segments))
         assert largest_rms(exact, simulated) < limit
         alike = exact.table["phase"] == simulated.table["phase"]
-        assert alike[exact.table["status"] == "ok"].mean() > 0.98
+        assert alike[exact.table["status"] == "ok"].mean() > 0.98  # all but one
         snaps = [s.provenance["events"]["snap_off"] for s in (exact, simulated)]
         if None not in snaps:
             assert abs(snaps[0] - snaps[1]) < snap_limit
