@@ -16,7 +16,7 @@ class Numerics:
         to 4 suffice; with fewer than a contact needs that changes its facet, steps are halved in
         vain.
     in_vain : int
-        Newton steps in a row without a better one, and the rest are not tried. From 5 to 25 nothing
+        Newton steps in a row without a better one, and the rest are not tried. From 6 to 25 nothing
         changes on twenty sweeps at random, but for a third of their cost.
     slow : float
         Newton's method that comes nearer by less than this from step to step does not know the
@@ -113,7 +113,7 @@ class Numerics:
     """
 
     iterations: int = 25
-    in_vain: int = 5
+    in_vain: int = 8
     slow: float = 0.2
     learns: float = 1e-3
     stiffening: float = 1e3
