@@ -1,7 +1,7 @@
 """Closing in on the place where a branch of equilibria ends.
 
 Near a fold the foot's position is a parabola over what the vibrissa turns by. Three states at rest
-tell where its end is; a trial short of it seldom fails, and one that fails costs several that hold.
+show where its end is; a trial short of it seldom fails, and one that fails costs several that hold.
 """
 
 from collections.abc import Callable, Sequence
@@ -112,7 +112,7 @@ def fold(trail: Sequence[tuple[float, State]]) -> float | None:
     Returns
     -------
     float or None
-        Foot position [L]; None if they tell nothing of it.
+        Foot position [L]; None if they show none.
     """
     if len(trail) < 3 or len({state.stance for _, state in trail[-3:]}) > 1:
         return None
