@@ -170,7 +170,7 @@ def vibrissa_case(request: pytest.FixtureRequest) -> Case:
     """The problem: an `analytic.Case`, one test for each that marker or option names."""
     if not hasattr(request, "param"):
         pytest.fail("vibrissa_case: no case is chosen; let the test itself use it", pytrace=False)
-    job: Job = _ours("compare.read.case").load_job(request.param)
+    job: Job = _stated(_ours("compare.read.case").load_job, request.param)
     request.node.stash[_JOB] = job
     return job.case
 
@@ -251,7 +251,7 @@ def vibrissa_space_case(request: pytest.FixtureRequest) -> SpatialCase:
             "@pytest.mark.vibrissa_space(FILE), and let the test itself use it",
             pytrace=False,
         )
-    job: SpaceJob = _ours("compare.read.space").load_space_job(request.param)
+    job: SpaceJob = _stated(_ours("compare.read.space").load_space_job, request.param)
     request.node.stash[_SPACE_JOB] = job
     return job.case
 
@@ -424,6 +424,14 @@ def _agreement(
         return found
 
     return agree
+
+
+def _stated(load: Callable[[str], Any], file: str) -> Any:  # noqa: ANN401
+    """What a marker names; what is wrong with it fails the test in a line."""
+    try:
+        return load(file)
+    except _ours("analytic").InputError as error:
+        pytest.fail(str(error), pytrace=False)
 
 
 def _ours(module: str) -> Any:  # noqa: ANN401
