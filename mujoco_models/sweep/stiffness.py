@@ -56,7 +56,8 @@ class Stiffness:
         Returns
         -------
         turns : array, shape (k, n)
-            By this stiffness, or with the least addition that makes it positive definite [rad].
+            By this stiffness, if it is positive definite; else without its negative weights, and
+            with the least addition that is needed then [rad].
         doubled : int
             How often that was doubled; 0 without one.
 
@@ -68,12 +69,21 @@ class Stiffness:
         rows = np.concatenate([moments, self.directions])
         if not math.isfinite(self.springs.sum() + self.links.sum() + rows.sum()):
             raise DivergedError("the stiffness is not finite")
-        level, found = near, self._attempt(near, rows)
+        level, found = 0, self._attempt(0, rows)
+        if found is None and (pulls := self.weights < 0).any():
+            # A corner that turns the normal weighs a thousand times what the beam does: without it
+            # there are steps, with as large an addition to all springs there are hardly any.
+            rest = Stiffness(
+                self.springs, self.links, self.directions[~pulls], self.weights[~pulls]
+            )
+            return rest.solve(moments, near)
+        if found is None:
+            level, found = near, self._attempt(near, rows)
         while found is None:
             level += 1
             found = self._attempt(level, rows)
         if level == near:
-            while level and (softer := self._attempt(level - 1, rows)) is not None:
+            while level > 1 and (softer := self._attempt(level - 1, rows)) is not None:
                 level, found = level - 1, softer
         return found, level
 
