@@ -69,19 +69,19 @@ class Stiffness:
         rows = np.concatenate([moments, self.directions])
         if not math.isfinite(self.springs.sum() + self.links.sum() + rows.sum()):
             raise DivergedError("the stiffness is not finite")
-        level, found = 0, self._attempt(0, rows)
-        if found is None and (pulls := self.weights < 0).any():
+        found = self._attempt(0, rows)
+        if found is not None:
+            return found, 0
+        if (pulls := self.weights < 0).any():
             # A corner that turns the normal weighs a thousand times what the beam does: without it
             # there are steps, with as large an addition to all springs there are hardly any.
             rest = Stiffness(
                 self.springs, self.links, self.directions[~pulls], self.weights[~pulls]
             )
             return rest.solve(moments, near)
-        if found is None:
-            level, found = near, self._attempt(near, rows)
-        while found is None:
+        level = near = max(near, 1)
+        while (found := self._attempt(level, rows)) is None:
             level += 1
-            found = self._attempt(level, rows)
         if level == near:
             while level > 1 and (softer := self._attempt(level - 1, rows)) is not None:
                 level, found = level - 1, softer
