@@ -150,6 +150,9 @@ def test_newtons_method_is_quadratic_however_soft_the_contact(contact_stiffness)
         walk.go_to(float(foot_x))
         # Once it is that near, a step is short against what turns about it; 1e-10 is rounding.
         ratios += [b / a for a, b in pairwise(found) if 1e-7 < a < 1e-4]
+        # Forces next to rest are those of the depths: what is left is the last step's.
+        depth = np.minimum(model.contacts().distance, 0).sum()
+        assert walk._state.load == pytest.approx(-contact_stiffness * depth, rel=1e-3, abs=1e-3)
     assert len(ratios) > 15
     # With the old force instead it is 1e3 / contact_stiffness: 0.1 with the softest.
     assert np.median(ratios) < 1e-3
