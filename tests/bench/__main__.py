@@ -1,4 +1,4 @@
-"""``make bench``: all of it, or the parts named; ``--quick`` only tries them."""
+"""``make bench``: all that is not long, or the parts named; ``--quick`` only tries them."""
 
 import sys
 
@@ -6,6 +6,7 @@ from tests.bench import (
     analytic_speed,
     engines_speed,
     exudyn_speed,
+    million,
     mujoco_speed,
     plain_stepping,
     ratios,
@@ -23,13 +24,16 @@ PARTS = {
     "engines": engines_speed.main,
     "study": study_speed.main,
 }
+LONG = {"million": million.main}
+"""Half an hour of one core or more: only if asked for by name."""
 
 if __name__ == "__main__":  # the studies start processes of their own
     asked = [name for name in sys.argv[1:] if name != "--quick"]
-    unknown = ", ".join(sorted(set(asked) - set(PARTS)))
+    unknown = ", ".join(sorted(set(asked) - {*PARTS, *LONG}))
     if unknown:
         sys.exit(
-            f"bench = {unknown}: must be among {', '.join(PARTS)}; name those, or none for all"
+            f"bench = {unknown}: must be among {', '.join([*PARTS, *LONG])}; "
+            f"name those, or none for all but {', '.join(LONG)}"
         )
     for name in asked or PARTS:
-        PARTS[name]("--quick" in sys.argv)
+        (PARTS | LONG)[name]("--quick" in sys.argv)

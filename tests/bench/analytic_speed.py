@@ -27,8 +27,19 @@ THIN = Beam(radius=0.0)
 COUNT = 100_000
 
 
-def _varied(count: int) -> Iterator[Case]:
-    """Vibrissae past catenaries and circles, none like another."""
+def varied(count: int) -> Iterator[Case]:
+    """Vibrissae past catenaries and circles, none like another.
+
+    Parameters
+    ----------
+    count : int
+        How many.
+
+    Yields
+    ------
+    Case
+        Of 200 stations.
+    """
     numbers = np.random.default_rng(0)
     for i in range(count):
         width, size, radius = numbers.uniform((0.3, 0.7, 1e-3), (0.8, 2.0, 1e-2))
@@ -75,7 +86,7 @@ def main(quick: bool) -> None:
     some = 64 if quick else 10_000
     begin, last = time.process_time(), 0.0
     tracemalloc.start()
-    for done, found in enumerate(solve_sweeps(_varied(some)), 1):
+    for done, found in enumerate(solve_sweeps(varied(some)), 1):
         assert isinstance(found, Readings), found
         if done == some // 10:
             last = tracemalloc.get_traced_memory()[1]
