@@ -45,7 +45,7 @@ def inspect(
     ] = None,
 ) -> int:
     """Measure what beam a MuJoCo model is, and say what a user should know of it."""
-    from compare.read.case import read_beam
+    from compare.read.case_file import read_beam
     from mujoco_models import shipped_models
 
     stated = None if beam is None else read_beam(beam)[0]

@@ -102,7 +102,7 @@ FileName = Annotated[str, AfterValidator(plain_name)]
 class Table(BaseModel):
     """A table without unknown keys, whose numbers are numbers: no text, no boolean."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, defer_build=True)
 
     @classmethod
     def quantities(cls) -> list[str]:

@@ -17,7 +17,7 @@ from analytic.problem.files import as_path
 from analytic.problem.readings_file import is_ours
 from analytic.problem.table import Place, as_numbers, row_number
 from compare.read.assumed import BEAM_WANTED, assumed_of
-from compare.read.case import read_beam
+from compare.read.case_file import read_beam
 from compare.read.dialect import read_text_table
 from compare.read.suffixes import TEXTS
 from compare.read.units import DIMENSIONS, unit_in_si

@@ -20,7 +20,7 @@ from analytic.space import (
     sphere,
 )
 from compare.judge.spatial import SpatialTolerances
-from compare.read.case import check_units
+from compare.read.case_file import check_units
 from compare.read.complaints import complaint, name_of
 from compare.read.limits import tolerances_of
 from compare.read.profiles import Drawn

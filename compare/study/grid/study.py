@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
-from compare.read.case import validate
+from compare.read.case_file import validate
 from compare.read.space import SpaceFile, validate_space
 from compare.read.tables import CaseFile
 from compare.read.toml import Place
