@@ -13,7 +13,7 @@ from functools import cached_property
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.problem.arrays import Complexes, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.contours.polygon import Polygon
 from mujoco_models.obstacles.corners import Corners, upright
@@ -27,7 +27,7 @@ _TURN = 0.1  # rad; or by which they turn, if that is less: farther away single 
 _GRADED = 8  # vertices a level farther out; the spacing doubles from level to level
 _OF_TURN = 0.01  # of a facet's turn from the last one; so much may its vertices' rounding turn it
 _FINEST = 1e-12  # L
-_ABOUT = np.arange(-2, 3)[:, None]  # facets; the nearest one is found to within the next one
+_EITHER_SIDE = 2  # facets; the nearest one is found to within the next one
 _FEET = 8  # two are usual, five at the tip of a needle
 _BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
 
@@ -129,49 +129,52 @@ class Prism(Faceted):
         return Corners.of(self.vertices, edges, self._corner_radius)
 
     def gap(self, window: int, points: Floats) -> tuple[Floats, Floats] | None:
-        """From the facets about the nearest one; sharp corners are touched by links, not points."""
+        """From the facets about the nearest one; sharp corners are touched by links, not points.
+
+        Points of the plane are complex numbers here: an arrow over a facet's is where it is along
+        the facet and, if that is the imaginary part, how far inside.
+        """
         if len(self.corners):
             return None
-        last = len(self.facet_angles) - 1
-        facets = np.minimum(np.maximum(self._nearest(points) + _ABOUT, 0), last)
-        origin = self._origin(window)
-        ends = self._facets.take(facets, axis=2) - origin[:, None, None, None]
-        (begin_x, end_x), (begin_y, end_y) = ends.astype(np.float32).astype(float)  # as in MuJoCo
-        run_x, run_y = end_x - begin_x, end_y - begin_y
-        x, y = (points - origin).T
-        x, y = x - begin_x, y - begin_y
-        along = (run_x * x + run_y * y) / (run_x**2 + run_y**2)
-        along = np.minimum(np.maximum(along, 0.0), 1.0)
-        inside = (run_x * y > run_y * x).all(axis=0)
-        x, y = x - along * run_x, y - along * run_y
-        distances = np.hypot(x, y)
-        best = distances.argmin(axis=0)
-        aside = (best == 0) | (best == len(_ABOUT) - 1)
-        best = best * len(points) + np.arange(len(points))  # of the arrays, taken as flat
-        if aside.any():
-            nearest = facets.take(best)
-            if (aside & (nearest > 0) & (nearest < last) & ~inside).any():
-                return None  # a nearer facet may be farther along
-        distance = np.where(inside, -1.0, 1.0) * distances.take(best)
-        return distance, np.array([x.take(best), y.take(best)]).T / distance[:, None]
-
-    def _nearest(self, points: Floats) -> Integers:
-        """The facets nearest to the points, shape (n,), to within the next one.
-
-        By Newton's method on the foot of the perpendicular; where the contour is sharper than a
-        point is far away, a step would go past it without the contour's turn.
-        """
-        x = points[:, 0]
-        facet = self._inner.searchsorted(x)
+        origin, count = self._origin(window), len(self._about) - 1
+        last = len(self.facet_angles) - count
+        from_origin = np.subtract(points, origin, order="C").view(complex).T
+        number = np.arange(len(points))
+        facet: Integers = self._inner.searchsorted(points[:, 0])
         for _ in range(_FEET):
-            bound, aside = self._below(points, facet)
-            begin, curvature = self._begins.take(facet, axis=1)
-            across = x - bound * aside - begin
-            foot = begin + across / (1 + curvature * np.maximum(bound, 0))
-            before, facet = facet, self._inner.searchsorted(foot)
-            if (np.abs(facet - before) < 2).all():
+            facet = self._under(points, facet)
+            first = np.minimum(np.maximum(facet - _EITHER_SIDE, 0), last)
+            ends = self._in_plane.take(first + self._about) - complex(*origin)
+            ends = ends.astype(np.complex64).astype(complex)  # as in MuJoCo
+            begin, run = ends[:-1], ends[1:] - ends[:-1]
+            off = from_origin - begin
+            share = off / run
+            off -= np.minimum(np.maximum(share.real, 0.0), 1.0) * run
+            distances = np.abs(off)
+            best = distances.argmin(axis=0)
+            aside = (best == 0) & (first != 0) | (best == count - 1) & (first != last)
+            if not np.count_nonzero(aside):
                 break
-        return facet
+        here = best * len(points) + number  # of the arrays, taken as flat
+        inside = share.imag.take(here) > 0
+        if np.count_nonzero(aside & ~inside):
+            return None  # a nearer facet may be farther along
+        distance = distances.take(here)
+        distance[inside] *= -1
+        normal: Floats = (off.take(here) / distance).view(float).reshape(-1, 2)
+        return distance, normal
+
+    def _under(self, points: Floats, facet: Integers) -> Integers:
+        """The facets nearest to the points, shape (n,), by those that are near to them.
+
+        A step of Newton's method on the foot of the perpendicular; where the contour is sharper
+        than a point is far away, a step would go past it without the contour's turn.
+        """
+        bound, aside = self._below(points, facet)
+        begin, curvature = self._begins.take(facet, axis=1)
+        across = points[:, 0] - bound * aside - begin
+        foot = begin + across / (1 + curvature * np.maximum(bound, 0))
+        return np.asarray(self._inner.searchsorted(foot))
 
     def place(self, slope: Floats) -> Floats:
         """The number of the vertex at which the slope angle is passed."""
@@ -268,9 +271,14 @@ class Prism(Faceted):
         return np.vstack([self._gridded, self.outline[-1]])
 
     @cached_property
-    def _facets(self) -> Floats:
-        """Those at the facets' ends: x and y, of begin and end, shape (2, 2, n - 1)."""
-        return np.stack([self._gridded[:-1].T, self._gridded[1:].T], axis=1)
+    def _in_plane(self) -> Complexes:
+        """Those as complex numbers, shape (n,)."""
+        return np.ascontiguousarray(self._gridded).view(complex)[:, 0]
+
+    @cached_property
+    def _about(self) -> Integers:
+        """The ends of the facets about one, counted from the begin of the first of them."""
+        return np.arange(min(2 * _EITHER_SIDE + 2, len(self.vertices)))[:, None]
 
     @cached_property
     def _begins(self) -> Floats:
