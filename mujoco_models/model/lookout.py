@@ -219,7 +219,9 @@ class Lookout:
         points = scene.bead_positions(beads)
         near = obstacle.near(points, distance)
         beads, points = beads[near], points[near]
-        if len(beads) and (gap := obstacle.gap(self.window, points)) is not None:
+        # What is no prism is true to the contour about its window only.
+        seen = obstacle.upright and len(beads)
+        if seen and (gap := obstacle.gap(self.window, points)) is not None:
             beads = beads[gap[0] < self.radii[beads] + _CLEAR]
         return frozenset(beads.tolist())
 

@@ -157,6 +157,12 @@ class Primitive(Obstacle):
         slope = self._outline.facet_angles[int(facet)]
         return clearance, float(self.place(np.array([slope]))[0])
 
+    def gap(self, window: int, points: Floats) -> tuple[Floats, Floats]:
+        """From the window's circle."""
+        from_centre = points - self._circles.centre[window]
+        out = np.hypot(*from_centre.T)
+        return out - self._circles.radius[window], from_centre / out[:, None]
+
     def place(self, slope: Floats) -> Floats:
         """Number of the circle, with a fraction."""
         number = np.arange(len(self._circles.slope), dtype=float)
