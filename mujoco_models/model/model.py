@@ -12,6 +12,7 @@ from mujoco_models.errors import DivergedError
 from mujoco_models.model import clamp
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.model.lookout import Lookout, MujocoScene
+from mujoco_models.model.search import Search
 from mujoco_models.model.sides import FUSED, Sides
 from mujoco_models.model.sliding import SlidingBeads
 from mujoco_models.model.spec import assemble, compiled
@@ -72,6 +73,7 @@ class BeamModel:
         model = self.model
         self._foot = model.body(FOOT).id
         self._surface = Surface.of(model, len(self.layout.joints), obstacle.corners, radius)
+        self._search = Search(self._surface, obstacle, self.layout, model)
         self.beads: Integers = self._surface.beads
         # One of those at each of the beam's joints: a universal joint has two of MuJoCo's.
         self._joints = np.unique(model.jnt_bodyid, return_index=True)[1]
@@ -154,7 +156,7 @@ class BeamModel:
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_flex(model, data)
-        mujoco.mj_collision(model, data)
+        self._search(model, data, self.joint_positions())
         if len(self._surface.sides) and data.ncon:
             self._fuse()
         mujoco.mj_makeConstraint(model, data)
