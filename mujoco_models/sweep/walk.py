@@ -23,6 +23,7 @@ _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
 # L; from two states at rest that rounding alone puts apart, nothing can be carried on.
 _SAME_PLACE = 1e-12
 _DEEP = 0.25  # of the radius; two sweeps of 390 were lost past polygons, at 0.5 of it and more
+_PACE = 0.8  # of the largest shift of a contact: what is left is for its rate to grow
 # What may follow one state at rest without a snap-off.
 _NEIGHBOURS = {
     (Stance.AHEAD, Stance.AHEAD),
@@ -112,7 +113,7 @@ class Walk(Generic[Model]):
         least, walls = self._numerics.smallest_step, Walls(self._numerics.smallest_step)
         step, in_vain = target - self._foot_x, False
         while True:
-            trial = self._onward(step, target)
+            trial = self._onward(self._in_pace(step), target)
             if walls:
                 trial = walls.aim([*self._trail, (self._foot_x, self._state)], self._follows)
             state, ended = self._near_rest(trial), False
@@ -143,6 +144,17 @@ class Walk(Generic[Model]):
         """A step on, or up to the target."""
         rest = abs(target - self._foot_x) - abs(step)
         return target if rest < _SAME_PLACE else self._foot_x + step
+
+    def _in_pace(self, step: float) -> float:
+        """A step that should not shift the contact too far, past corners."""
+        if not self._trail or len(self.model.obstacle.corners) == 0:
+            return step
+        (x, before), last = self._trail[-1], self._state
+        if before.slope is None or last.slope is None or before.slope == last.slope:
+            return step
+        taken, turn = abs(self._foot_x - x), abs(last.slope - before.slope)
+        most = taken * max(_PACE * self._numerics.facet_shift / turn, 1.0)
+        return float(np.copysign(min(abs(step), most), step))
 
     def _jumped(self, state: State) -> bool:
         """Whether the contact is elsewhere on an obstacle with corners."""
