@@ -26,6 +26,7 @@ def relax(
     numerics: Numerics,
     *,
     leave: State | None = None,
+    stay: float | None = None,
     held: bool = False,
 ) -> State:
     """Bring the beam to rest with its foot at `foot_x`, from `start`.
@@ -44,6 +45,8 @@ def relax(
         Constants of the way there.
     leave : State, optional
         The last state on the branch: what has turned too far from it is followed no further.
+    stay : float, optional
+        Slope angle of a facet: two iterates in a row off it are followed no further, either [rad].
     held : bool
         Whether beads stay where they are, also where they should slide.
 
@@ -58,7 +61,7 @@ def relax(
     lookout.watch(around(model, state.forces, numerics.ahead) or one_bead_a_link(model))
     if start.slope is not None:
         lookout.face(start.slope)
-    nearly, residual, vain = numerics.nearly * tolerance, np.inf, 0
+    nearly, residual, vain, astray = numerics.nearly * tolerance, np.inf, 0, 0
     for _ in range(numerics.iterations):
         before, residual = residual, _largest(model.imbalance(foot_x, state.angles))
         contacts = model.contacts()
@@ -73,6 +76,11 @@ def relax(
             best, vain = state, 0
         elif (vain := vain + 1) > numerics.in_vain:
             break
+        if stay is not None:
+            on = np.abs(contacts.slope - stay) < numerics.same_facet
+            astray = 0 if (on & contacts.loaded).any() else astray + 1
+            if astray > 1:
+                break
         if state.imbalance < tolerance:
             if contacts.passed or lookout.is_crossed(model.joint_positions()):
                 break  # a corner has gone through a link

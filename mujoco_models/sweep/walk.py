@@ -216,7 +216,8 @@ class Walk(Generic[Model]):
             return state
         # It may have jumped there in a long step, while it is at rest on its own facet, too.
         last = self._state
-        stayed = self._relax(foot_x, State(last.angles, last.forces, slope=last.slope))
+        start = State(last.angles, last.forces, slope=last.slope)
+        stayed = self._relax(foot_x, start, stay=last.slope)
         if stayed.settled and not self._leaves_its_facet(stayed):
             return stayed
         # The model has to be in the state that is gone on from.
@@ -229,10 +230,12 @@ class Walk(Generic[Model]):
             return False
         return state.slope is None or abs(state.slope - last) > self._numerics.same_facet
 
-    def _relax(self, foot_x: float, start: State, leave: State | None = None) -> State:
+    def _relax(
+        self, foot_x: float, start: State, leave: State | None = None, stay: float | None = None
+    ) -> State:
         """At rest, if Newton's method gets there; it stops where it is sure to leave a state."""
         model, numerics = self.model, self._numerics
-        state = relax(model, foot_x, start, self._tolerance, numerics, leave=leave)
+        state = relax(model, foot_x, start, self._tolerance, numerics, leave=leave, stay=stay)
         short = abs(foot_x - self._foot_x) < numerics.confirm_step
         if state.settled or not short or not model.hold_beads():
             return state
