@@ -21,6 +21,7 @@ from mujoco_models.sweep.state import State, turned
 _STEPS = 40  # twelve are usual, and more than forty as dear as the engine's own way
 _AT_REST = 1e-11  # rad; the step is what the energy still asks for, and rounding is 1e-15
 _ON_A_FACET = 1e-5  # rad; nearer than that, steps change from facet to facet no more
+_STRIDE = 1e-3  # rad; up to that a step may double: facet by facet it takes ten times as many
 _SHORTER = (1.0, 0.25, 0.0625)  # steps that are tried in turn
 _ROUNDING = 4e-16  # of the energy
 
@@ -76,10 +77,17 @@ def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> 
         if turn < _ON_A_FACET:
             steps.insert(0, secant.better(angles, step))
         most = picture.energy(contacts) * (1 + _ROUNDING)
-        lower = next((s for s in steps if _energy(picture, foot_x, angles + s) <= most), None)
+        tried = ((s, _energy(picture, foot_x, angles + s)) for s in steps)
+        lower = next(((s, energy) for s, energy in tried if energy <= most), None)
         if lower is None:
             return None
-        angles = angles + lower
+        taken, energy = lower
+        while _ON_A_FACET <= turn < _STRIDE:
+            farther = _energy(picture, foot_x, angles + 2 * taken)
+            if farther >= energy:
+                break
+            turn, taken, energy = 2 * turn, 2 * taken, farther
+        angles = angles + taken
         if turned(angles, start.angles) > numerics.left_turn:
             return State(angles, {})  # it lets go, if the engine says so
     return None
