@@ -9,7 +9,7 @@ import pytest
 from analytic import CASE_NAMES, CLAMP_READINGS, named_case
 from mujoco_models import Settings, available_beams, simulate_sweep
 from mujoco_models.sweep.numerics import Numerics
-from mujoco_models.sweep.sweep import set_out
+from mujoco_models.sweep.sweep import run_sweep, set_out
 from tests.conftest import simulated_sweep
 
 
@@ -33,7 +33,7 @@ def changed(quantity, factor):
     return add_options
 
 
-@pytest.fixture(scope="module", params=available_beams())
+@pytest.fixture(scope="module")
 def usual(request):
     case = named_case("parabola")
     case = replace(case, sweep=replace(case.sweep, stations=25))
@@ -42,6 +42,7 @@ def usual(request):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("usual", available_beams(), indirect=True)
 @pytest.mark.parametrize("factor", [0.1, 10])
 @pytest.mark.parametrize("quantity", ["time step", "mass", "armature"])
 def test_readings_do_not_depend_on(quantity, factor, usual, monkeypatch):
@@ -85,35 +86,42 @@ VARIED = {
 FAST = ("stiffening", "forecasts")
 
 
-@pytest.mark.parametrize(
-    "constant",
-    [name if name in FAST else pytest.param(name, marks=pytest.mark.slow) for name in VARIED],
-)
-def test_no_constant_of_the_way_shows(constant, usual):
-    """Each constant varied on either side: the same states at rest, the same snap-off."""
-    from mujoco_models.sweep.numerics import Numerics
-    from mujoco_models.sweep.sweep import run_sweep
+def kind(i, constant, beam, side):
+    """Either side of every constant, and every constant with every beam; the rest is a trial."""
+    if (i + beam + side) % 2:
+        return pytest.mark.trial
+    return () if constant in FAST else pytest.mark.slow
 
+
+@pytest.mark.parametrize(
+    ("usual", "constant", "side"),
+    [
+        pytest.param(name, constant, side, marks=kind(i, constant, beam, side))
+        for beam, name in enumerate(available_beams())
+        for i, constant in enumerate(VARIED)
+        for side in (0, 1)
+    ],
+    indirect=["usual"],
+)
+def test_no_constant_of_the_way_shows(usual, constant, side):
+    """Each constant varied on either side: the same states at rest, the same snap-off."""
     case, settings, expected = usual
-    for value in VARIED[constant]:
-        found = run_sweep(case, settings, numerics=replace(Numerics(), **{constant: value}))
-        assert (found.table["status"] == "ok").all()
-        for name in CLAMP_READINGS:
-            scale = 1 + np.abs(expected.values(name)).max()
-            error = np.abs(found.values(name) - expected.values(name))
-            # Two states out of balance by up to the tolerance, as above.
-            assert error.max() < 10 * settings.tolerance * scale, (constant, value, name)
-        # Observed: 6e-5 by the stiffening, 1.3e-5 by the smallest step, 0 by all others.
-        assert abs(found.snap_off - expected.snap_off) < 1e-4, (constant, value)
+    varied = replace(Numerics(), **{constant: VARIED[constant][side]})
+    found = run_sweep(case, settings, numerics=varied)
+    assert (found.table["status"] == "ok").all()
+    for name in CLAMP_READINGS:
+        scale = 1 + np.abs(expected.values(name)).max()
+        error = np.abs(found.values(name) - expected.values(name))
+        # Two states out of balance by up to the tolerance, as above.
+        assert error.max() < 10 * settings.tolerance * scale, name
+    # Observed: 6e-5 by the stiffening, 1.3e-5 by the smallest step, 0 by all others.
+    assert abs(found.snap_off - expected.snap_off) < 1e-4
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("stiffening", [1e2, 3e2, 1e6])
 def test_a_stiffness_that_stalls_early_does_not_let_go_early(stiffening):
     """At 1e2 Newton's method stalls 1.9e-3 before the fold; the descent says that it is held."""
-    from mujoco_models.sweep.numerics import Numerics
-    from mujoco_models.sweep.sweep import run_sweep
-
     case, expected = named_case("catenary"), simulated_sweep("catenary").snap_off
     found = run_sweep(case, Settings(), numerics=Numerics(stiffening=stiffening))
     assert (found.table["status"] == "ok").all()

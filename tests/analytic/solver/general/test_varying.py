@@ -385,16 +385,19 @@ def test_residuals_find_a_wrong_rigidity():
 
 @pytest.mark.slow
 def test_a_cone_past_small_facets_lets_go_where_it_does_past_the_curve():
-    """The foot turns back at every corner near the snap-off. Observed 1.2e-3 L apart."""
+    """The foot turns back at every corner: at the first one 4.5 L before it lets go.
+
+    Observed 2.6e-3 L apart, and 1.2e-3 past twice as many facets.
+    """
     case = named_case("catenary")
     case = Case(Beam(tip_radius=0.002), case.profile, Sweep(40))
     smooth = solve_sweep(case)
     left, right = case.reach
-    facets = polygon(case.profile.outline(left, right, 400))
+    facets = polygon(case.profile.outline(left, right, 200))
     stations = Sweep(40, float(case.foot_x[0]), float(case.foot_x[-1]))
     found = solve_sweep(Case(case.beam, facets, stations))
     assert set(found.table["status"]) == {"ok"}
-    assert found.snap_off == pytest.approx(smooth.snap_off, abs=2e-3)
+    assert found.snap_off == pytest.approx(smooth.snap_off, abs=4e-3)
 
 
 @pytest.mark.slow
