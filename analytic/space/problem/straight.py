@@ -81,6 +81,7 @@ class Way:
         self.radius = radius / length
         self.marks = path.marks / length
         self._corners = path.corners / length
+        self._slopes = np.diff(self._corners, axis=0) / np.diff(self.marks)[:, None]
 
     def foot(self, travel: float) -> Floats:
         """A foot position.
@@ -95,7 +96,9 @@ class Way:
         array, shape (3,)
             [L]
         """
-        return np.array([np.interp(travel, self.marks, column) for column in self._corners.T])
+        travel = min(max(travel, 0.0), float(self.marks[-1]))
+        leg = min(int(self.marks.searchsorted(travel, "right")), len(self._slopes)) - 1
+        return np.asarray(self._corners[leg] + (travel - self.marks[leg]) * self._slopes[leg])
 
     def gap(self, travel: float) -> Gap:
         """How near the straight vibrissa is there.
