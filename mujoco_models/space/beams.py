@@ -121,17 +121,15 @@ class BallChain(SpatialChain):
     def blocks(self, configuration: Floats) -> Floats:
         """Of k theta^2/2, theta the ball's rotation vector."""
         quaternion = configuration.reshape(-1, 4)
-        sine = np.linalg.norm(quaternion[:, 1:], axis=1)
-        angle = 2 * np.arctan2(sine, quaternion[:, 0])
-        axis = quaternion[:, 1:] / np.maximum(sine, 1e-300)[:, None]
+        cosine, vector = quaternion[:, 0], quaternion[:, 1:]
+        sine = np.sqrt(np.einsum("ij,ij->i", vector, vector))
+        half, some = np.arctan2(sine, cosine), np.maximum(sine, 1e-300)
         # The inverse of the right Jacobian of SO(3), its symmetric part.
-        with np.errstate(divide="ignore", invalid="ignore"):
-            half = angle / 2
-            share = np.where(angle > _SLIGHT, 1 - half / np.tan(half), angle**2 / 12)
-        flat = np.eye(3) - axis[:, :, None] * axis[:, None, :]
-        return np.asarray(
-            (np.eye(3) - share[:, None, None] * flat) / self.layout.compliances[:, None, None]
-        )
+        share = np.where(half > _SLIGHT / 2, 1 - half * cosine / some, half**2 / 3)
+        axis = vector / some[:, None]
+        found = (share[:, None] * axis)[:, :, None] * axis[:, None, :]
+        found.reshape(-1, 9)[:, ::4] += (1 - share)[:, None]
+        return np.asarray(found / self.layout.compliances[:, None, None])
 
 
 class Universal:

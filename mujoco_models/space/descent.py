@@ -25,7 +25,7 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 from scipy.optimize import nnls
 
 from analytic.problem.arrays import Booleans, Floats
-from mujoco_models.space.balance import Linearised, State
+from mujoco_models.space.balance import Linearised, State, cross
 from mujoco_models.space.model import SpaceModel, Touch
 from mujoco_models.space.rest import Rest, Settled
 from mujoco_models.space.surface import Feature, Surface, surface_at
@@ -138,11 +138,14 @@ def _landed(
 
 def _look(rest: Rest, state: State, surface: Surface, foot: Floats) -> tuple[State, Linearised]:
     """At the contact that presses most; a tip or a joint goes on from face to face."""
-    state, system = rest.balance.look(state, surface, foot)
+    state, touch = rest.balance.seen(state, surface, foot)
+    turning = np.zeros((3, 3))
     if isinstance(surface, Feature) and (surface.flat or not state.sliding):
         state = state._replace(sliding=False)
-        system = rest.balance.linearised(state, system.touch, system.slope, np.zeros((3, 3)))
-    return state, system
+    else:
+        turning = surface.turning(state.link, touch)
+    slope = float(touch.normal @ rest.model.direction(state.link))
+    return state, rest.balance.linearised(state, touch, slope, turning)
 
 
 def _turns(
@@ -154,14 +157,13 @@ def _turns(
     inertia: float,
 ) -> tuple[Floats, Floats, float]:
     """Turns of the joints, forces of the links near by, and the inertia that it took."""
-    model = rest.model
-    springs = np.einsum("ijj->ij", model.blocks()).ravel()
-    rows, distances = _pushes(model, near), np.array([one.touch.distance for one in near])
+    rows = _pushes(rest.model, near)
+    distances = np.array([one.touch.distance for one in near])
     while True:
         barred = rows[held]
-        factor, failed = dpotrf(
-            curvature + inertia * np.diag(springs) + _HELD * (barred.T @ barred), lower=1
-        )
+        stiffness = curvature + _HELD * (barred.T @ barred)
+        stiffness.flat[:: len(stiffness) + 1] += inertia * system.own
+        factor, failed = dpotrf(stiffness, lower=1)
         if failed:
             inertia *= 2.0  # or it would go up to the saddle
             continue
@@ -181,10 +183,10 @@ def _turns(
 def _pushes(model: SpaceModel, near: list[_Near]) -> Floats:
     """How the links' distances change with the joints' turns, shape (n_links, nv) [L]."""
     normals = np.array([one.touch.normal for one in near])
-    moments = np.cross([one.touch.centre for one in near], normals)
-    joints = model.joints[model.joint_of]
-    found = moments @ model.axes.T - normals @ np.cross(model.axes, joints).T
-    return np.where(model.joint_of <= np.array([[one.link] for one in near]), found, 0.0)
+    moments = cross(np.array([one.touch.centre for one in near]), normals)
+    found = moments @ model.axes.T - normals @ cross(model.axes, model.anchors).T
+    found[model.joint_of > np.array([[one.link] for one in near])] = 0.0
+    return found
 
 
 def _pressed(model: SpaceModel, configuration: Floats, near: list[_Near], forces: Floats) -> State:

@@ -15,6 +15,7 @@ where Newton's method on MuJoCo's own balance begins.
 """
 
 import math
+from bisect import bisect_left
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +35,7 @@ _FOUND = 1e-7  # rad and L, of a step: the next one would be of rounding's size
 _OUTWARD = 1e-12  # cosine; rounding of what is tangential
 _SAME = 1e-13  # L
 _LEAST_FORCE = 1e-9  # EI/L^2; with less the force has no direction to start from
+_UNIT = np.eye(3)
 _SLIGHT = 1e-6  # rad, below which a joint bends across the plane as it does within
 HEAD_ON = 1e-6
 """Cosine of a force with the way across the clamp, below which it has no plane with it."""
@@ -56,6 +58,21 @@ class Bow(NamedTuple):
     """Whether the bead is where its link is tangential."""
     stable: bool = False
     """Whether it is at rest, and the energy of vibrissa and contact is least there."""
+
+
+class _Bent(NamedTuple):
+    """The loaded part of a chain."""
+
+    angles: Floats
+    """Shape (n,) [rad]."""
+    levers: Floats
+    """Of the force, shape (n,) [L]."""
+    ways: Floats
+    """Cosines and sines of the angles, shape (2, n)."""
+    along: float
+    """From the first joint to the bead, along the clamp's tangent [L]."""
+    aside: float
+    """To the side [L]."""
 
 
 class Forecast:
@@ -81,10 +98,17 @@ class Forecast:
         self._law, self._tangent, self._radius = law, tangent, radius
         self._k = contact_stiffness
         self._joints, self._lengths = layout.joints, layout.lengths
-        self._ends = np.append(layout.joints[1:], 1.0)
+        self._begins: list[float] = layout.joints.tolist()
         self._springs = 1 / layout.compliances
 
-    def rest(self, start: Bow, surface: Feature, foot: Floats) -> Bow | None:
+    def rest(
+        self,
+        start: Bow,
+        surface: Feature,
+        foot: Floats,
+        near: Floats | None = None,
+        far: float = math.inf,
+    ) -> Bow | None:
         """The equilibrium to which Newton's method leads.
 
         Parameters
@@ -95,19 +119,30 @@ class Forecast:
             What is touched.
         foot : array, shape (3,)
             Position of the foot [L].
+        near : array, shape (3,), optional
+            Where the bead's centre is to be, about [L].
+        far : float
+            A step away from there that leads farther than this leads nowhere [L].
 
         Returns
         -------
         Bow or None
-            None if it leads nowhere, or to where nothing presses.
+            None if Newton's method leads nowhere, or to where nothing presses.
         """
-        bow, basis = start, surface.basis
-        first = basis @ (foot + self._joints[0] * self._tangent - surface.point)
-        before, not_halved = math.inf, 0
+        bow, before, apart, not_halved = start, math.inf, math.inf, 0
+        onto = surface.basis @ self._tangent
+        clamp = foot + self._begins[0] * self._tangent
+        first = surface.basis @ (clamp - surface.point)
         for _ in range(_ITERATIONS):
             if bow.force @ bow.force < _LEAST_FORCE**2:
                 return None
-            stepped = self._step(bow, basis, first)
+            bent = self._bent(bow)
+            if near is not None:
+                away = clamp + bent.along * self._tangent + bent.aside * bow.side - near
+                before_that, apart = apart, math.sqrt(away @ away)
+                if apart > max(far, before_that):
+                    return None
+            stepped = self._step(bow, bent, surface.basis, first, onto)
             if stepped is None:
                 return None
             bow, size = stepped
@@ -184,73 +219,79 @@ class Forecast:
         array, shape (3,)
             [L]
         """
-        levers = self._levers(bow)
+        bent = self._bent(bow)
+        along = self._begins[0] + bent.along
+        return np.asarray(foot + along * self._tangent + bent.aside * bow.side)
+
+    def _bent(self, bow: Bow) -> _Bent:
+        """Of the links up to the contact, and two at least: LAPACK asks for it."""
+        link = bow.link
+        levers = self._lengths[: max(link, 1) + 1].copy()
+        levers[link:] = 0.0
+        levers[link] = bow.s - self._begins[link]
         angles = bow.angles[: len(levers)]
-        along = self._joints[0] + float(levers @ np.cos(angles))
-        across = float(levers @ np.sin(angles))
-        return np.asarray(foot + along * self._tangent + across * bow.side)
+        ways = np.array([np.cos(angles), np.sin(angles)])
+        along, aside = (ways @ levers).tolist()
+        return _Bent(angles, levers, ways, along, aside)
 
-    def _levers(self, bow: Bow) -> Floats:
-        """Of the force, of the links up to the contact, and two at least: LAPACK asks for it."""
-        levers = self._lengths[: max(bow.link, 1) + 1].copy()
-        levers[bow.link :] = 0.0
-        levers[bow.link] = bow.s - self._joints[bow.link]
-        return levers
-
-    def _step(self, bow: Bow, basis: Floats, first: Floats) -> tuple[Bow, float] | None:
+    def _step(
+        self, bow: Bow, bent: _Bent, basis: Floats, first: Floats, onto_tangent: Floats
+    ) -> tuple[Bow, float] | None:
         """One step, and its size."""
         parts, slides, link, side = len(basis), int(bow.sliding), bow.link, bow.side
-        levers = self._levers(bow)
+        angles, levers, ways, reach, aside = bent
         count = len(levers)
-        angles = bow.angles[:count]
-        cos, sin = np.cos(angles), np.sin(angles)
+        along, across = float(bow.force @ self._tangent), float(bow.force @ side)
+        if abs(across) <= HEAD_ON * abs(along):
+            return None
         bends = angles.copy()
         bends[1:] -= angles[:-1]
         slope, second = self._law(bends)
         springs = self._springs[:count]
         slope, second = slope * springs, second * springs
-        along, across = float(bow.force @ self._tangent), float(bow.force @ side)
-        if abs(across) <= HEAD_ON * abs(along):
-            return None
+        # Of the force across the links and along them, and of its parts.
+        turned = np.array([[across, -along], [0.0, -1.0], [1.0, 0.0], [along, across]]) @ ways
         # Right-hand sides: the imbalance, the levers of the force's parts, the link's own.
         right = np.zeros((3 + slides, count))
-        np.multiply(levers, -sin, out=right[1])
-        np.multiply(levers, cos, out=right[2])
-        right[0] = along * right[1] + across * right[2] - slope
-        right[0, :-1] += slope[1:]
         if slides:
-            right[-1, link] = across * cos[link] - along * sin[link]
-        beside = -second[1:]
-        pressed = along * right[2] - across * right[1]
+            right[3, link] = turned[0, link]
+        turned *= levers
+        right[:3] = turned[:3]
+        right[0] -= slope
+        right[0, :-1] += slope[1:]
+        beside, pressed = -second[1:], turned[3]
         own = second + pressed
         own[:-1] -= beside
         *_, found, failed = dgtsv(beside, own, beside, right.T)
         if failed:
             return None
-        # Their turns are free + bent (force's parts, slide): into the rows of the contact.
+        # Their turns are free + bent (force's parts, slide): into the rows of the contact. With a
+        # force that turns about the clamp's tangent the whole chain turns.
+        swing = aside / across
+        (a, a1, a2, *a3), (b, b1, b2, *b3), *of_slide = (right[1:] @ found).tolist()
+        if slides:
+            ((c, c1, c2, c3),) = of_slide
+            cos, sin = ways[:, link].tolist()
+            inner = [
+                [a + reach, swing - a1, -a2, -a3[0] - cos],
+                [b + aside, -b1, swing - b2, -b3[0] - sin],
+                [c + along * cos + across * sin, -c1 - cos, -c2 - sin, -c3],
+            ]
+        else:
+            inner = [[a + reach, swing - a1, -a2], [b + aside, -b1, swing - b2]]
         onto = np.zeros((2 + slides, parts + slides))
-        onto[0, :parts], onto[1, :parts] = basis @ self._tangent, basis @ side
+        onto[0, :parts], onto[1, :parts] = onto_tangent, basis @ side
         if slides:
             onto[2, -1] = 1.0
-        products = onto.T @ (right[1:] @ found)
-        rows, rest = products[:, 1:] @ -onto, products[:, 0]
+        products = onto.T @ np.array(inner)
+        rows, rest = products[:, 1:] @ onto, products[:, 0]
         force = basis @ bow.force
         size = math.sqrt(force @ force)
-        reach, aside = right[2].sum(), -right[1].sum()
         held = self._radius / size - 1 / self._k
-        plane = onto[:2, :parts]
-        # With a force that turns about the clamp's tangent the whole chain turns.
-        swing = aside / across
         own_rows = rows[:parts, :parts]
-        own_rows += swing * (plane.T @ plane)
         own_rows -= (self._radius / size**3 * force)[:, None] * force
-        own_rows.flat[:: parts + 1] += held - swing
-        rest[:parts] += first + reach * plane[0] + aside * plane[1] - held * force
-        if slides:
-            tilt = cos[link] * plane[0] + sin[link] * plane[1]
-            rows[:parts, -1] -= tilt
-            rows[-1, :parts] -= tilt
-            rest[-1] += along * cos[link] + across * sin[link]
+        own_rows += (held - swing) * _UNIT[:parts, :parts]
+        rest[:parts] += first - held * force
         *_, change, failed = dgesv(rows, rest)
         if failed:
             return None
@@ -258,8 +299,10 @@ class Forecast:
         turns = found[:, 0] + found[:, 1:] @ parted
         more = change[:parts]
         aslant = math.sqrt(max(more @ more - parted[:2] @ parted[:2], 0.0))
-        swung = aslant / abs(across) * max(float(sin.max()), -float(sin.min()))
-        most = max(float(turns.max()), -float(turns.min()), swung)
+        most = float(np.abs(turns).max())
+        swung = aslant / abs(across)
+        if swung > most:
+            most = max(most, swung * float(np.abs(ways[1]).max()))
         slide = float(change[-1]) if slides else 0.0
         largest = max(most, abs(slide))
         if not math.isfinite(largest):
@@ -300,17 +343,17 @@ class Forecast:
 
     def _slid_or_held(self, bow: Bow) -> Bow:
         """Whether the bead slides, or is at the tip, and held there."""
-        if self._ends[-1] - bow.s < _SAME:
+        if 1.0 - bow.s < _SAME:
             last = float(bow.angles[-1])
             slope = math.cos(last) * (bow.force @ self._tangent)
             slope += math.sin(last) * (bow.force @ bow.side)
             return bow._replace(sliding=bool(slope > _OUTWARD * np.linalg.norm(bow.force)))
-        return bow._replace(sliding=bow.s > self._joints[0])
+        return bow._replace(sliding=bow.s > self._begins[0])
 
     def _slid(self, bow: Bow, by: float) -> tuple[int, float]:
         """Along the vibrissa, whose links beyond the contact are straight."""
-        s = max(min(bow.s + by, 1.0), float(self._joints[0]))
-        return int(self._ends[:-1].searchsorted(s)), s
+        s = max(min(bow.s + by, 1.0), self._begins[0])
+        return bisect_left(self._begins, s, 1) - 1, s
 
 
 def _negative(own: Floats, beside: Floats) -> int:

@@ -4,9 +4,12 @@ Damped by its material it goes straight towards the state that would be at rest 
 to had no end; at the next edge the next face says where that is.
 """
 
+from functools import partial
+
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from mujoco_models.space.forecast import Bow
 from mujoco_models.space.model import SpaceModel
 from mujoco_models.space.rest import Rest, Settled
 from mujoco_models.space.surface import STAYS, Feature, features_around
@@ -42,7 +45,9 @@ def over_faces(rest: Rest, held: Settled, foot: Floats, far: float) -> Settled |
         model.place(foot, state.configuration)
         left = None
         for surface in features_around(model, state.link, centre):
-            found = rest.settle(state, surface, foot, foot)
+            sought = partial(_use, rest, surface, foot)
+            reach = np.inf if surface.flat else far  # a way on is along a face
+            found = rest.settle(state, surface, foot, foot, held.touch.centre, reach, sought)
             if found is None or not found.stable:
                 continue
             by = found.touch.centre - centre
@@ -58,6 +63,13 @@ def over_faces(rest: Rest, held: Settled, foot: Floats, far: float) -> Settled |
         if float(np.linalg.norm(centre - held.touch.centre)) > far:
             return None
     return None
+
+
+def _use(rest: Rest, surface: Feature, foot: Floats, bow: Bow) -> bool:
+    """Whether a vibrissa that will rest there lands, or goes on along a face."""
+    if surface.flat:
+        return bow.stable
+    return bow.stable and surface.missed_at(bow.link, rest.centre(bow, foot)) < STAYS
 
 
 def _room(model: SpaceModel, surface: Feature, link: int, centre: Floats, by: Floats) -> float:

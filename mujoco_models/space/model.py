@@ -99,7 +99,7 @@ class SpaceModel:
         """Number of the joint that each velocity belongs to."""
         self.shared = model.jnt_type[0] == mujoco.mjtJoint.mjJNT_BALL
         """Whether the velocities of a joint turn about axes that it carries along."""
-        self._first = np.unique(model.jnt_bodyid, return_index=True)[1]
+        self._anchors = np.unique(model.jnt_bodyid, return_index=True)[1][self.joint_of]
         weight = model.body_invweight0[self._links, 0]
         k = contact_stiffness * (1 - _IMPEDANCE) * weight
         model.geom_solref[self._beads] = np.column_stack([-k, -2 * np.sqrt(k)])
@@ -137,9 +137,9 @@ class SpaceModel:
         return np.asarray(self.data.cdof[:, :3])
 
     @property
-    def joints(self) -> Floats:
-        """Where the joints are, shape (n_joints, 3) [L]."""
-        return np.asarray(self.data.xanchor[self._first])
+    def anchors(self) -> Floats:
+        """Where the joint of each velocity is, shape (nv, 3) [L]."""
+        return np.asarray(self.data.xanchor[self._anchors])
 
     @property
     def tangents(self) -> Floats:
@@ -235,8 +235,8 @@ class SpaceModel:
         model.geom_rbound[body] = np.hypot(circle.radius, length)
         model.geom_pos[body] = self.data.geom_xpos[body] = circle.centre
 
-    def turning(self, link: int, touch: Touch, step: float) -> Floats:
-        """How MuJoCo's normal turns as the bead's centre moves, by central differences.
+    def curved(self, link: int, touch: Touch, step: float) -> tuple[Floats, Floats]:
+        """How fast and about what MuJoCo's normal turns as the bead moves, by central differences.
 
         Parameters
         ----------
@@ -249,17 +249,41 @@ class SpaceModel:
 
         Returns
         -------
-        array, shape (3, 3)
-            Symmetric, no eigenvalue below 0: the body is convex [1/L].
+        rates : array, shape (2,)
+            Ascending; below 0 by rounding only: the body is convex [1/L].
+        ways : array, shape (2, 3)
+            Unit vectors across the normal, into which it turns if the bead moves along them.
         """
-        sides, rates = across(touch.normal), np.empty((2, 3))
-        for side, rate in zip(sides, rates, strict=True):
-            rate[:] = self._nearest(link, touch.centre + step * side)[0]
-            rate -= self._nearest(link, touch.centre - step * side)[0]
-        found = rates @ sides.T / (2 * step)
-        values, ways = np.linalg.eigh((found + found.T) / 2)
-        ways = ways.T @ sides
-        return np.asarray((ways.T * np.maximum(values, 0.0)) @ ways)
+        one, other = sides = across(touch.normal)
+        by_one, by_other = (
+            (sides @ (self._nearest(link, ahead)[0] - self._nearest(link, behind)[0])).tolist()
+            for ahead, behind in (
+                (touch.centre + step * one, touch.centre - step * one),
+                (touch.centre + step * other, touch.centre - step * other),
+            )
+        )
+        mixed, half = (by_one[1] + by_other[0]) / 2, (by_one[0] - by_other[1]) / 2
+        mean, apart = (by_one[0] + by_other[1]) / 2, math.hypot(half, mixed)
+        angle = math.atan2(mixed, half) / 2
+        cos, sin = math.cos(angle), math.sin(angle)
+        ways = np.array([[-sin, cos], [cos, sin]]) @ sides
+        return np.array([mean - apart, mean + apart]) / (2 * step), ways
+
+    def turning(self, link: int, touch: Touch, step: float) -> Floats:
+        """How MuJoCo's normal turns as the bead's centre moves.
+
+        Parameters
+        ----------
+        link, touch, step
+            As of `curved`.
+
+        Returns
+        -------
+        array, shape (3, 3)
+            Symmetric, no eigenvalue below 0 [1/L].
+        """
+        rates, ways = self.curved(link, touch, step)
+        return np.asarray((ways.T * np.maximum(rates, 0.0)) @ ways)
 
     def probe(self, link: int, centre: Floats) -> Touch:
         """The nearest point to a bead wherever it is.

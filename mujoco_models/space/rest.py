@@ -61,7 +61,9 @@ class Rest:
         surface: Surface,
         begin: Floats,
         foot: Floats,
-        sought: Callable[[int, Floats], bool] = lambda link, centre: True,
+        near: Floats | None = None,
+        far: float = np.inf,
+        sought: Callable[[Bow], bool] = lambda bow: True,
     ) -> Settled | None:
         """The equilibrium to which Newton's method leads.
 
@@ -75,8 +77,10 @@ class Rest:
             What is touched.
         begin, foot : array, shape (3,)
             Where the foot was at `start`, and where it is now [L].
+        near, far
+            Where the bead is to be, about, as of `Forecast.rest`.
         sought : callable
-            Whether a contact by that link, with the bead's centre there, is of any use.
+            Whether what is foreseen is of any use.
 
         Returns
         -------
@@ -88,14 +92,15 @@ class Rest:
         if bow is None:
             along = self.balance.along(start, surface, foot - begin)
             return self._settled(along, None, surface, foot)
-        assert self._forecast is not None
-        bow = self.foresee(bow, surface, foot)
-        if bow is None or not sought(bow.link, self._forecast.centre(bow, foot)):
+        bow = self.foresee(bow, surface, foot, near, far)
+        if bow is None or not sought(bow):
             return None
         return self.confirm(bow, surface, foot)
 
-    def follow(self, held: Settled, begin: Floats, foot: Floats) -> Settled | None:
-        """The equilibrium on the same surface to which Newton's method leads.
+    def follow(
+        self, held: Settled, begin: Floats, foot: Floats, far: float = np.inf
+    ) -> Settled | None:
+        """The stable equilibrium on the same surface to which Newton's method leads.
 
         Parameters
         ----------
@@ -103,6 +108,8 @@ class Rest:
             Where it begins.
         begin, foot : array, shape (3,)
             Where the foot was, and where it is now [L].
+        far : float
+            How far from where it was the bead may be, as of `Forecast.rest` [L].
 
         Returns
         -------
@@ -110,9 +117,13 @@ class Rest:
             As of `settle`.
         """
         if held.bow is None:
-            return self.settle(held.state, held.surface, begin, foot)
-        bow = self.foresee(held.bow, held.surface, foot)
-        return None if bow is None else self.confirm(bow, held.surface, foot)
+            found = self.settle(held.state, held.surface, begin, foot)
+        else:
+            bow = self.foresee(held.bow, held.surface, foot, held.touch.centre, far)
+            if bow is None or not bow.stable:
+                return None
+            found = self.confirm(bow, held.surface, foot)
+        return found if found is not None and found.stable else None
 
     def between(self, held: Settled, found: Settled, share: float) -> Settled:
         """Where to begin between two equilibria on the same surface.
@@ -134,7 +145,14 @@ class Rest:
         assert self._forecast is not None
         return held._replace(bow=self._forecast.between(held.bow, found.bow, share) or held.bow)
 
-    def foresee(self, bow: Bow, surface: Surface, foot: Floats) -> Bow | None:
+    def foresee(
+        self,
+        bow: Bow,
+        surface: Surface,
+        foot: Floats,
+        near: Floats | None = None,
+        far: float = np.inf,
+    ) -> Bow | None:
         """Where it will rest, as far as is known without MuJoCo.
 
         Parameters
@@ -145,6 +163,8 @@ class Rest:
             What is touched.
         foot : array, shape (3,)
             Position of the foot [L].
+        near, far
+            Where the bead is to be, about, as of `Forecast.rest`.
 
         Returns
         -------
@@ -152,7 +172,25 @@ class Rest:
             None if Newton's method leads nowhere.
         """
         assert self._forecast is not None and isinstance(surface, Feature)
-        return self._forecast.rest(bow, surface, foot)
+        return self._forecast.rest(bow, surface, foot, near, far)
+
+    def centre(self, bow: Bow, foot: Floats) -> Floats:
+        """Of the bead of what is foreseen.
+
+        Parameters
+        ----------
+        bow : Bow
+            The forecast.
+        foot : array, shape (3,)
+            Position of the foot [L].
+
+        Returns
+        -------
+        array, shape (3,)
+            [L]
+        """
+        assert self._forecast is not None
+        return self._forecast.centre(bow, foot)
 
     def confirm(self, bow: Bow, surface: Surface, foot: Floats) -> Settled | None:
         """The equilibrium by MuJoCo's own balance, next to a forecast.

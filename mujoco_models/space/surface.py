@@ -6,6 +6,7 @@ MuJoCo's normals next to the contact say: they do not turn on a face, about an e
 way, at a corner two.
 """
 
+import math
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -101,10 +102,12 @@ class Feature(NamedTuple):
         return self._touched(self.model.centre(link, s))
 
     def _touched(self, centre: Floats) -> Touch:
-        away = self.span @ (centre - self.point)
-        distance = float(away @ self.normal) if self.flat else float(np.linalg.norm(away))
-        normal = self.normal if self.flat else away / distance
-        return Touch(centre, normal, distance - self.model.radius)
+        away = centre - self.point
+        if self.flat:
+            return Touch(centre, self.normal, float(away @ self.normal) - self.model.radius)
+        away = self.span @ away
+        distance = math.sqrt(away @ away)
+        return Touch(centre, away / distance, distance - self.model.radius)
 
     def turning(self, link: int, touch: Touch) -> Floats:
         """About an edge or a corner."""
@@ -173,11 +176,11 @@ def surface_at(model: SpaceModel, link: int, touch: Touch) -> Surface:
     apart = touch.distance + model.radius
     n = touch.normal
     for step in _STEPS:
-        values, ways = np.linalg.eigh(model.turning(link, touch, step))
-        values = values * apart
-        if ((values < _FLAT) | (values > _SHARP)).all():
+        rates, ways = model.curved(link, touch, step)
+        rates = rates * apart
+        if ((rates < _FLAT) | (rates > _SHARP)).all():
             break
-    basis = np.concatenate([n[None], ways.T[values > (_FLAT + _SHARP) / 2]])
+    basis = np.concatenate([n[None], ways[rates > (_FLAT + _SHARP) / 2]])
     return Feature(model, touch.centre - apart * n, n, basis, basis.T @ basis)
 
 
@@ -200,8 +203,9 @@ def features_around(model: SpaceModel, link: int, centre: Floats) -> list[Featur
     """
     faces: list[Feature] = []
     edges: list[Feature] = []
+    ring = _ring(model.probe(link, centre).normal)
     for size in _RINGS:
-        for way in _ring(model.probe(link, centre).normal):
+        for way in ring:
             touch = model.probe(link, centre + size * model.radius * way)
             if any(np.abs(touch.normal - one.normal).max() < _SAME_FACE for one in faces):
                 continue

@@ -14,6 +14,7 @@ from scipy.optimize import brentq, minimize_scalar
 from analytic.problem.arrays import Floats
 from mujoco_models.space.balance import State
 from mujoco_models.space.descent import descend
+from mujoco_models.space.forecast import Bow
 from mujoco_models.space.hop import over_faces
 from mujoco_models.space.model import SpaceModel
 from mujoco_models.space.rest import Rest, Settled
@@ -27,10 +28,12 @@ _EVENT = 5e-4  # L, to which a change of phase is enclosed
 # are halved there.
 _LEAP, _LEAST_LEAP = 5.0, 0.02  # of the step; L
 _LEAP_ON_FACE = 0.3  # L; a side that lies on a face touches anywhere along it
+_ASTRAY = 2.0  # of that; Newton's method that leads farther is not on its way there
 _LANDING = 0.12  # L, of the contact: what comes to rest farther away depends on its motion
 _AHEAD = 0.0, 1e-3, 4e-3  # L, of the foot, for a way down that does not begin
 _CROSSED = 1e-4  # L, to which it is enclosed where a contact leaves a face, an edge or a corner
 _STEADY = 2e-3  # L, of the contact that goes on as it was beyond
+_ASTRAY_BESIDE = 10 * _STEADY  # a step that leads farther does not end there
 _SHORTER, _LONGER = 4.0, 2.0  # times the step where Newton's method fails, and where not
 # How far before and beyond the place where a line says it leaves it is looked for, in turn; None
 # is half-way.
@@ -253,12 +256,11 @@ class Walk:
         """The stable equilibrium on the same branch, of a mesh on the same face, edge or corner."""
         held, step = self._held, goal - self._at
         assert held is not None
-        found = self._rest.follow(start or held, self._foot(self._at), self._foot(goal))
-        if found is None or not found.stable:
-            return None
         on_face = isinstance(held.surface, Feature) and held.surface.flat
         farthest = _LEAP_ON_FACE if on_face else max(_LEAP * step, _LEAST_LEAP)
-        return found if _apart(found, held) <= farthest else None
+        start = start or held
+        found = self._rest.follow(start, self._foot(self._at), self._foot(goal), _ASTRAY * farthest)
+        return found if found is not None and _apart(found, held) <= farthest else None
 
     def _left(self, found: Settled, goal: float) -> float:
         """At about which share of a step the contact leaves its face, edge or corner."""
@@ -304,14 +306,15 @@ class Walk:
         self, held: Settled, state: State, surface: Surface, foot: Floats
     ) -> Settled | None:
         """The stable equilibrium on a face, edge or corner, if it is next to the one before."""
+        near = held.touch.centre
 
-        def sought(link: int, centre: Floats) -> bool:
-            near = float(np.linalg.norm(centre - held.touch.centre)) < _STEADY
-            return near and not (
-                isinstance(surface, Feature) and surface.missed_at(link, centre) >= STAYS
-            )
+        def sought(bow: Bow) -> bool:
+            centre = self._rest.centre(bow, foot)
+            if not bow.stable or float(np.linalg.norm(centre - near)) >= _STEADY:
+                return False
+            return isinstance(surface, Feature) and surface.missed_at(bow.link, centre) < STAYS
 
-        found = self._rest.settle(state, surface, foot, foot, sought)
+        found = self._rest.settle(state, surface, foot, foot, near, _ASTRAY_BESIDE, sought)
         if found is None or not (found.stays and found.stable):
             return None
         return found if _apart(found, held) < _STEADY else None
