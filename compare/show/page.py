@@ -15,7 +15,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from analytic.problem.files import write_whole
-from compare.show.style import BLUE, BODY, FAINT, GREEN, GREY, INK, ORANGE, PAPER, PINK
+from compare.show.style import BLUE, BODY, FAINT, GREEN, GREY, INK, ORANGE, PAPER, PINK, PNG_LEVEL
 
 _THEMED = {
     INK: "currentColor",
@@ -174,7 +174,7 @@ def png(figure: Figure, dots_per_inch: int = 150) -> bytes:
     bytes
         The file.
     """
-    return _drawn(figure, "png", dpi=dots_per_inch)
+    return _drawn(figure, "png", dpi=dots_per_inch, pil_kwargs={"compress_level": PNG_LEVEL})
 
 
 def save_figure(figure: Figure, path: Path) -> Path:

@@ -48,10 +48,9 @@ def _palette(sample: list[Image.Image]) -> NDArray[np.uint8]:
     Pillow looks colours up in cells of four values a channel, so one colour a cell is enough, and a
     second would be mistaken for it: white for the nearly white.
     """
-    pixels = np.stack([np.asarray(image) for image in sample]).reshape(-1, 3)
-    packed, counts = np.unique(pixels @ [1 << 16, 1 << 8, 1], return_counts=True)
-    frequent = packed[np.argsort(-counts)]
-    frequent = np.stack([frequent >> 16, frequent >> 8 & 255, frequent & 255], axis=1)
+    pixels = np.stack([np.asarray(image.convert("RGBA")) for image in sample])
+    packed, counts = np.unique(pixels.view(np.uint32), return_counts=True)  # a word sorts fast
+    frequent = packed[np.argsort(-counts)].view(np.uint8).reshape(-1, 4)[:, :3]
     _, first = np.unique(frequent // 4, axis=0, return_index=True)
     scale = np.rint(255 * CURVATURE_COLOURS(np.linspace(0, 1, _CURVATURE_SHARE))[:, :3])
     others = frequent[np.sort(first)[: 256 - _CURVATURE_SHARE]]

@@ -8,6 +8,7 @@ from PIL import Image
 
 from analytic.problem.arrays import Integers
 from analytic.problem.files import write_whole
+from compare.show.style import PNG_LEVEL
 
 STILL_DPI = 150
 """Pixels an inch: a still may be printed."""
@@ -49,6 +50,6 @@ def save_stills(images: Iterable[Image.Image], folder: Path) -> list[Path]:
     written = []
     for number, image in enumerate(images, start=1):
         buffer = io.BytesIO()
-        image.save(buffer, "PNG", dpi=(STILL_DPI, STILL_DPI))
+        image.save(buffer, "PNG", dpi=(STILL_DPI, STILL_DPI), compress_level=PNG_LEVEL)
         written.append(write_whole(folder / f"still-{number}.png", buffer.getvalue()))
     return written

@@ -27,6 +27,7 @@ from compare.show.style import (
 LINE: dict[str, Any] = {"color": REFERENCE, "linewidth": 3.0}
 """How the reference is drawn: so wide that dots upon it hide it nowhere."""
 _DOTS = {"color": CANDIDATE, "marker": "o", "markeredgewidth": 0, "linestyle": ""}
+_BELOW, _BESIDE = 21, 38  # points between axes and labels: numbers of five characters
 _BEYOND_TIP = 1.1  # L; as far as a noisy contact is drawn
 
 
@@ -45,6 +46,21 @@ def dots(comparison: Comparison) -> dict[str, Any]:
     """
     size = 2.0 if len(comparison.candidate.table) > 100 else 3.5
     return {**_DOTS, "markersize": size}
+
+
+def place_labels(ax: Axes) -> None:
+    """Put the labels of axes past their numbers, whatever these are.
+
+    To measure the numbers, as is done otherwise, takes as long as to draw them.
+
+    Parameters
+    ----------
+    ax : Axes
+        Of their final size, with room for the labels.
+    """
+    pixels = ax.figure.dpi / 72  # a point
+    ax.xaxis.set_label_coords(0.5, -_BELOW * pixels / ax.bbox.height)
+    ax.yaxis.set_label_coords(-_BESIDE * pixels / ax.bbox.width, 0.5)
 
 
 def foot(readings: Readings) -> Floats:

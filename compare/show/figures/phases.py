@@ -9,12 +9,13 @@ from compare.show.figures.over_foot import (
     foot,
     foot_label,
     on_vibrissa,
+    place_labels,
     shade_reference,
 )
 from compare.show.figures.thinning import draw
 from compare.show.style import CANDIDATE, GREY, PAGE_WIDTH, REFERENCE, SMALL, label
 
-_AXES = {"left": 0.095, "right": 0.99, "top": 0.98, "bottom": 0.15, "hspace": 0.08}
+_AXES = {"left": 0.107, "right": 0.99, "top": 0.98, "bottom": 0.15, "hspace": 0.08}
 
 
 def phase_criterion(comparison: Comparison) -> Figure:
@@ -41,6 +42,7 @@ def phase_criterion(comparison: Comparison) -> Figure:
         draw(axes[1], x, on_vibrissa(1 - judged.shortfall), **style)
     for ax, expected in zip(axes, (0, 1), strict=True):
         shade_reference(ax, comparison)
+        place_labels(ax)
         ax.axhline(expected, color=GREY, linewidth=0.8, linestyle="--")
     axes[0].set_ylabel(r"$(2F_{Ay} - M_{Az}^2)\,/\,2f$" + "\nzero in Phase B")
     axes[1].set_ylabel("contact $s_1$ / $L$\none in Phase A")

@@ -18,6 +18,7 @@ from compare.show.figures.over_foot import (
     foot_label,
     key,
     on_vibrissa,
+    place_labels,
     reading_label,
     scaled,
     shade_reference,
@@ -41,9 +42,8 @@ _PANEL = (4.8, 4.0)  # inches
 # picture would take longer than to draw it.
 _AXES = {"left": 0.155, "right": 0.98, "top": 0.93, "bottom": 0.25, "hspace": 0.2}
 _ROW_OF_AXES = {
-    "left": 0.064, "right": 0.992, "top": 0.94, "bottom": 0.15, "hspace": 0.16, "wspace": 0.25,
+    "left": 0.076, "right": 0.992, "top": 0.94, "bottom": 0.15, "hspace": 0.16, "wspace": 0.25,
 }  # fmt: skip
-_LABEL = -0.135  # of the axes' width; where the label's right edge is
 
 
 def readings(comparison: Comparison) -> Figure:
@@ -122,7 +122,6 @@ def _panel(comparison: Comparison, name: str) -> Figure:
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.2, 1], gridspec_kw=_AXES)
     _draw_reading(upper, lower, comparison, name)
     lower.set_ylabel("difference")
-    lower.yaxis.set_label_coords(_LABEL, 0.5)
     handles, labels = key(upper)
     figure.legend(handles, labels, loc="lower center", ncols=2, fontsize=SMALL, frameon=False)
     return figure
@@ -132,13 +131,14 @@ def _draw_reading(upper: Axes, lower: Axes, comparison: Comparison, name: str) -
     """A reading of both sweeps above, their difference below."""
     for ax in (upper, lower):
         shade_reference(ax, comparison)
+        place_labels(ax)
     reference, candidate = comparison.reference, comparison.candidate
     judged = comparison.judged["reference"]
     curve = with_fold(reference, judged.phase, foot(reference), scaled(reference, judged, name))
     draw(upper, *curve, label=label(reference.source), **LINE)
     points = foot(candidate), scaled(candidate, comparison.judged["candidate"], name)
     draw(upper, *points, label=label(candidate.source), **dots(comparison))
-    upper.set_title(reading_label(reference, name), fontsize=LARGE)
+    upper.set_title(reading_label(reference, name), fontsize=LARGE, y=1.0)
     lower.axhline(0, color=INK, linewidth=0.8)
     draw(lower, *_difference(comparison, name), **dots(comparison) | {"markersize": _ALONE})
     lower.set_xlabel(foot_label(reference))
