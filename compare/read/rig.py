@@ -20,14 +20,11 @@ from compare.read.assumed import BEAM_WANTED, assumed_of
 from compare.read.case_file import read_beam
 from compare.read.dialect import read_text_table
 from compare.read.suffixes import TEXTS
-from compare.read.units import DIMENSIONS, unit_in_si
+from compare.read.units import DIMENSIONS, OWN_UNITS, unit_in_si
 
 Source: TypeAlias = "str | Path | pd.DataFrame | Mapping[str, ArrayLike]"
 
 _TURN = 0.02  # of the stage's travel; a shorter way back is the stage's noise
-OWN_UNITS = "units_of_the_file"
-"""In the provenance of a sweep: units that nobody named, but its file."""
-
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
 _WHOLE_SWEEP = 0.5  # of the stage's travel; what goes less far is no sweep of its own
 

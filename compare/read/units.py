@@ -13,6 +13,9 @@ from analytic.problem.errors import InputError
 if TYPE_CHECKING:
     import pint
 
+OWN_UNITS = "units_of_the_file"
+"""In the provenance of a sweep: units that nobody named, but its file."""
+
 DIMENSIONS = {"foot_x": "m", "force_x": "N", "force_y": "N", "moment_z": "N m"}
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from analytic.from_clamp.earlier.sensed import Answer, Sensed
 from analytic.problem.arrays import Floats
@@ -131,6 +130,8 @@ def _up_to_zero(
     `left` returns the moment that is left at a state, and its rate; `size` is what it is at first.
     """
     m, n = start.shape
+    from scipy.integrate import solve_ivp  # slow to load, and few methods need it
+
     way = solve_ivp(
         lambda _, state: rate(state.reshape(m, n)).ravel(),
         (0.0, 1.0),

@@ -1,6 +1,7 @@
 """What one sweep has: its events, doubts, contacts, and its distance from other sweeps of a rig."""
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -10,12 +11,14 @@ from rich.text import Text
 
 from analytic import CLAMP_READINGS, PHASES, Readings
 from compare.commands.terminal.console import console, print_line
-from compare.measure.repeats import Repeat
 from compare.read.assumed import ASSUMED
-from compare.read.passes import Pass
-from compare.read.rig import OWN_UNITS
+from compare.read.units import OWN_UNITS
 from compare.show.quantities import quantity
 from compare.show.style import PHASE_LETTERS
+
+if TYPE_CHECKING:
+    from compare.measure.repeats import Repeat
+    from compare.read.passes import Pass
 
 _MEANINGS = {
     "touches again": ": another part of the vibrissa would lie in the object, no readings",
@@ -145,7 +148,7 @@ def print_reconstruction(readings: Readings, found: pd.DataFrame, method: str) -
     print_line(f"{readings.source}{by}: {'; '.join(words)}")
 
 
-def print_passes(passes: Sequence[Pass], repeats: Mapping[tuple[str, str], Repeat]) -> None:
+def print_passes(passes: "Sequence[Pass]", repeats: "Mapping[tuple[str, str], Repeat]") -> None:
     """Print what was read of each pass, what was not used, and how far passes repeat each other.
 
     Parameters

@@ -1,5 +1,7 @@
 """How far sweeps disagree, and why."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pandas as pd
 from rich.table import Column, Table
@@ -8,16 +10,18 @@ from rich.text import Text
 from analytic import CLAMP_READINGS, Beam
 from compare.commands.terminal.console import console, print_line
 from compare.comparison import Comparison
-from compare.explain.budget import Budget
-from compare.explain.motion import MotionBudget
-from compare.show.engines import ManyEngines
 from compare.show.figures.budget_bars import headline
 from compare.show.quantities import quantity
-from compare.show.side_by_side import SideBySide
 from compare.show.validity import validation_lines
 from compare.show.verdict import why
-from compare.simulate.fastest import Fastest
-from compare.simulate.target import Followed
+
+if TYPE_CHECKING:
+    from compare.explain.budget import Budget
+    from compare.explain.motion import MotionBudget
+    from compare.show.engines import ManyEngines
+    from compare.show.side_by_side import SideBySide
+    from compare.simulate.fastest import Fastest
+    from compare.simulate.target import Followed
 
 
 def print_comparison(comparison: Comparison) -> None:
@@ -72,7 +76,7 @@ def _summary(comparison: Comparison) -> Table:
     return table
 
 
-def print_budget(found: Budget, case: str) -> None:
+def print_budget(found: "Budget", case: str) -> None:
     """Print the parts, the verdict and the suspects.
 
     Parameters
@@ -91,7 +95,7 @@ def print_budget(found: Budget, case: str) -> None:
         )
 
 
-def _budget_table(found: Budget, case: str) -> Table:
+def _budget_table(found: "Budget", case: str) -> Table:
     table = Table("part", *CLAMP_READINGS, title=Text(f"Budget of {case}, rms +- uncertainty"))
     for name, readings in found.parts.items():
         cells = [f"{p.rms:.1e} +- {p.uncertainty:.0e}" for p in readings.values()]
@@ -104,7 +108,7 @@ def _budget_table(found: Budget, case: str) -> Table:
     return table
 
 
-def print_advice(advice: Followed) -> None:
+def print_advice(advice: "Followed") -> None:
     """Print the advised settings, with what was predicted and measured of them.
 
     Parameters
@@ -127,7 +131,7 @@ def print_advice(advice: Followed) -> None:
         print_line("  The target was missed: ask for a little less.")
 
 
-def print_motion_budget(found: MotionBudget, case: str) -> None:
+def print_motion_budget(found: "MotionBudget", case: str) -> None:
     """Print the parts of a disagreement in motion, and the verdict.
 
     Parameters
@@ -152,7 +156,7 @@ def print_motion_budget(found: MotionBudget, case: str) -> None:
         print_line(f"Diverged, and left out: {', '.join(found.left_out)}.")
 
 
-def print_fastest(found: Fastest) -> None:
+def print_fastest(found: "Fastest") -> None:
     """Print the fastest motion with a wanted error, and what was tried.
 
     Parameters
@@ -188,7 +192,7 @@ def print_at_rest(rest: Comparison, motion: Comparison) -> None:
         print_line(f"{what}: {', '.join(sizes)}{late}")
 
 
-def print_side_by_side(found: SideBySide) -> None:
+def print_side_by_side(found: "SideBySide") -> None:
     """Print the candidates against the reference and, if there are several, against each other.
 
     Parameters
@@ -225,7 +229,7 @@ def print_side_by_side(found: SideBySide) -> None:
     console().print(between)
 
 
-def print_engines(many: ManyEngines) -> None:
+def print_engines(many: "ManyEngines") -> None:
     """Print each engine against the closed form, and what the disagreement is made of.
 
     Parameters

@@ -7,8 +7,7 @@ import pytest
 from analytic import SENSED, Beam, Case, InputError, Readings, circle, named_case, solve_sweep
 from compare import read_measured
 from compare.read.assumed import ASSUMED
-from compare.read.rig import OWN_UNITS
-from compare.read.units import is_unit, unit_in_si
+from compare.read.units import OWN_UNITS, is_unit, unit_in_si
 
 BEAM = Beam(0.05, 2e-6, 0.25e-3)  # m, N m^2, m
 FILE_UNITS = (1e-3, 1e-3, 1e-3, 1e-6)  # mm, mN, mN, mN mm
