@@ -1,6 +1,5 @@
 """The vibrissa: an inextensible elastic beam with a round tip, uniform or not, straight or not."""
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -18,6 +17,7 @@ from analytic.problem.beam_checks import (
     checked_rigidity,
 )
 from analytic.problem.errors import InputError
+from analytic.problem.numbers import LARGEST
 from analytic.problem.unloaded import Unloaded
 
 Varying: TypeAlias = float | Callable[[Floats], Floats] | Sequence[tuple[float, float]] | Along
@@ -59,8 +59,9 @@ class Beam:
     ------
     InputError
         If a value is not finite, length or rigidity is somewhere not positive, the units of force
-        and moment that follow overflow, the radius is negative or not small against the length, the
-        tip's is not positive or larger, or the vibrissa at rest is curved back to the foot line.
+        and moment that follow are out of range, the radius is negative or not small against the
+        length, the tip's is not positive or larger, or the vibrissa at rest is curved back to the
+        foot line.
     """
 
     length: float = 1.0
@@ -87,7 +88,7 @@ class Beam:
             raise InputError(
                 "beam.flexural_rigidity",
                 f"{self.base_rigidity:g} with a length of {self.length:g}",
-                "such that EI/L^2 and EI/L are numbers",
+                f"such that EI/L^2 and EI/L are {1 / LARGEST:g} to {LARGEST:g}",
                 "choose units nearer to the case",
             )
 
@@ -239,6 +240,7 @@ class Beam:
 
     def _has_units(self) -> bool:
         try:
-            return 0 < self.force_unit < math.inf and 0 < self.moment_unit < math.inf
+            units = self.force_unit, self.moment_unit
+            return min(units) >= 1 / LARGEST and max(units) <= LARGEST
         except (OverflowError, ZeroDivisionError):
             return False

@@ -9,7 +9,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 
-_LARGEST = 1e150  # its square is a number still
+LARGEST = 1e150  # its square is a number still, and so is its inverse
 
 
 def is_finite_number(value: object) -> TypeGuard[float]:
@@ -69,7 +69,7 @@ def finite(name: str, value: object) -> float:
     InputError
         If it is none.
     """
-    if not (is_finite_number(value) and abs(value) <= _LARGEST):
+    if not (is_finite_number(value) and abs(value) <= LARGEST):
         raise InputError(name, value, "a finite number", "correct it")
     return float(value)
 
@@ -94,8 +94,8 @@ def positive(name: str, value: object) -> float:
     InputError
         If it is none.
     """
-    if not (is_finite_number(value) and 1 / _LARGEST <= value <= _LARGEST):
-        allowed = f"positive and finite ({1 / _LARGEST:g} to {_LARGEST:g})"
+    if not (is_finite_number(value) and 1 / LARGEST <= value <= LARGEST):
+        allowed = f"positive and finite ({1 / LARGEST:g} to {LARGEST:g})"
         raise InputError(name, value, allowed, "correct the number or its sign")
     return float(value)
 
@@ -161,7 +161,7 @@ def points_of(name: str, value: object) -> Floats:
         raise InputError(
             name, f"of shape {points.shape}", "three or more points (x, y)", "add some"
         )
-    wrong = ~(np.abs(points) <= _LARGEST).all(axis=1)
+    wrong = ~(np.abs(points) <= LARGEST).all(axis=1)
     if wrong.any():
         i = int(np.argmax(wrong))
         raise InputError(f"{name} {i}", points[i], "finite", "correct or drop it")

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 
-from analytic import SENSED, InputError, Readings
+from analytic import InputError, Readings
 from compare.align.offset import (
     Offset,
     checked_offset,
@@ -21,9 +21,8 @@ from compare.measure.disagreement import Disagreement, Occurrence, disagreements
 from compare.sense.noise import scales
 from compare.sense.phases import Classification, classify, confusion
 from compare.sense.record import Record, inspect_record
+from compare.sense.size import check_size
 from compare.sense.transitions import TRANSITIONS, locate_transitions, snap_off
-
-_LARGEST = 1e40  # of the beam's units; a sixth power still is a number
 
 
 @dataclass(frozen=True, repr=False)
@@ -135,7 +134,7 @@ def measure(
         offset is ambiguous.
     """
     for which, sweep in (("reference", reference), ("candidate", candidate)):
-        _check_size(which, sweep)
+        check_size(which, sweep)
     scales(reference)
     records = {"reference": inspect_record(reference)}
     if records["reference"].retreats:
@@ -199,19 +198,3 @@ def _held_alike(reference: Readings, candidate: Readings) -> Readings:
     if support is None or {"support", "digest"} & candidate.provenance.keys():
         return candidate
     return replace(candidate, provenance={**candidate.provenance, "support": support})
-
-
-def _check_size(which: str, sweep: Readings) -> None:
-    """Raise InputError for numbers whose squares and cubes would overflow."""
-    beam = sweep.beam
-    units = (beam.length, beam.force_unit, beam.force_unit, beam.moment_unit)
-    for name, unit in zip(SENSED, units, strict=True):
-        values = sweep.values(name)[sweep.trusted]
-        largest = np.abs(values).max(initial=0.0)
-        if not largest / unit < _LARGEST:
-            raise InputError(
-                f"{name} of the {which} ({sweep.source})",
-                f"{largest:.3g}",
-                f"less than {_LARGEST:g} of the beam's units ({unit:.3g})",
-                "check the units, and the beam",
-            )

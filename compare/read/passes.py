@@ -15,6 +15,7 @@ from compare.read.rig import read_sweeps
 from compare.read.rig_file import Rig
 from compare.read.suffixes import TEXTS
 from compare.sense.record import Record, inspect_record
+from compare.sense.size import check_size
 
 _FEWEST = 5  # rows of a stretch whose mean is a zero, and of a pass
 
@@ -172,6 +173,7 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
     table = raw.table.assign(**dict(zip(CLAMP_READINGS, values, strict=True)))
     provenance = {"pass": name, "direction": direction, "dropped": dropped}
     readings = Readings(table, raw.beam, f"measured, {name}", provenance)
+    check_size("pass", readings)
     by_reading = (dict(zip(CLAMP_READINGS, x.tolist(), strict=True)) for x in (zero, drift))
     return Pass(
         name,

@@ -111,6 +111,8 @@ def flawed(folder, old, new, name="rig.toml"):
         ('unit = "mN mm"', 'unit = "mm"', "a unit of N m"),
         ('column = "Fx"', 'column = "F_x"', "column 'F_x' of .*missing"),
         ("gain = 1.02", "gain = 0", "gain"),
+        ("gain = 1.02", "gain = 1e200", r"force_x of the pass .*less than 1e\+40"),
+        ('"2e-6 N m^2"', "1e-320", "flexural_rigidity .*1e-150"),
         ("gain = 1.02", "gian = 1.02", "did you mean gain"),
         ('column = "pass"', 'column = "run"', "column 'run'"),
         ('free_before = "5 mm"', 'free_before = "-5 mm"', "free_before"),

@@ -185,6 +185,7 @@ def test_what_is_no_profile(change, said):
         (lambda: Beam(length=10**400), "beam.length"),
         (lambda: Beam(length=1e200, radius=0), "EI/L^2"),
         (lambda: Beam(length=1e-200, radius=0), "EI/L^2"),
+        (lambda: Beam(flexural_rigidity=1e-320), "EI/L^2"),
         (lambda: catenary(0.5, -0.8).scaled(0), "profile.scale = 0"),
         (lambda: catenary(0.5, -0.8).offset(-1), "parallel curve = -1"),
         (lambda: polygon("square"), "list of points"),
