@@ -6,7 +6,7 @@ and the engine has only to confirm what was found. Nothing of it is in a reading
 does not confirm, its own balance corrects.
 """
 
-import math
+import numpy as np
 
 from mujoco_models.model.balance import Balance
 from mujoco_models.sweep.newton import Newton
@@ -38,15 +38,19 @@ def forecast(model: Balance, foot_x: float, start: State, numerics: Numerics) ->
     if len(model.obstacle.corners):
         return None
     picture = Picture(model, start.forces, numerics.ahead)
-    newton, state = Newton(picture, numerics), start
+    newton, state, lookout = Newton(picture, numerics), start, model.lookout
     for _ in range(numerics.forecasts):
         contacts = picture.look(foot_x, state.angles)
         if contacts is None or picture.is_inside(contacts):
             return None
-        x, y = contacts.normal[contacts.distance.argmin()].tolist()
-        slope = math.atan2(x, -y)
-        model.lookout.face(slope)  # each window rounds the obstacle's vertices anew
+        touching = contacts.loaded
+        if model.obstacle.faceted or not np.count_nonzero(touching):
+            touching = contacts.distance == contacts.distance.min()
+        slope = float(contacts.slope[touching].mean())  # one circle is best amid all that touch
+        seen = lookout.window
+        lookout.face(slope)
         before, state = state, newton.step(state, contacts)
-        if turned(state.angles, before.angles) < numerics.foreseen:
+        # What was seen by another window is not quite the obstacle that the engine has.
+        if lookout.window == seen and turned(state.angles, before.angles) < numerics.foreseen:
             return State(state.angles, state.forces, slope=slope)
     return None

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.linalg.lapack import dposv
 from scipy.optimize import nnls
 
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.arrays import Booleans, Complexes, Floats, Integers
 from mujoco_models.model.balance import Mechanics
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.sweep.numerics import Numerics
@@ -84,7 +84,7 @@ class Newton:
         curvature = self._curvature(contacts)
         along, across = levers(contacts, model.joint_positions())
         slides = model.slides(contacts)
-        sliding = bool(slides.any())
+        sliding = np.count_nonzero(slides) > 0
         distance, force = contacts.distance, self._forces(state, contacts, slides)
         comes = along
         if sliding:
@@ -96,24 +96,22 @@ class Newton:
         loaded = force > 0
         part = min(numerics.stiffening, model.contact_stiffness / 2)
         rest = model.contact_stiffness - part * loaded
-        held = comes[loaded]
-        moments = of_links(model.elastic_moments()) - part * distance[loaded] @ held
+        pressed = loaded.nonzero()[0]
+        held = comes.take(pressed, axis=0)
+        moments = of_links(model.elastic_moments()) - part * distance.take(pressed) @ held
         if sliding:
             moments -= np.maximum(-model.contact_stiffness * distance, 0) @ (comes - along)
         springs = (1 + inertia) * model.stiffness(state.angles)
-        stiff = np.full(len(held), part)
-        stiffness = self._stiffness(
-            springs, contacts, slides, force, curvature, across, held, stiff
-        )
+        stiffness = self._stiffness(springs, contacts, slides, force, curvature, across, held, part)
         rows = np.concatenate([moments[None], comes])
         turns, self._doubled = stiffness.solve(rows, self._doubled)
         nearer = comes @ turns.T  # by the moments, and by a unit of force at each contact
         compliance = nearer[:, 1:].copy()
-        compliance.flat[:: len(force) + 1] += 1 / rest
+        compliance.reshape(-1)[:: len(force) + 1] += 1 / rest
         forces = _unilateral(compliance, distance + nearer[:, 0], loaded)
         step = turns[0] + forces @ turns[1:]
         whole = forces * model.contact_stiffness / rest
-        shorter = min(1.0, numerics.largest_turn / max(float(np.abs(step).max()), 1e-300))
+        shorter = min(1.0, numerics.largest_turn / max(step.max(), -step.min(), 1e-300))
         step[1:] -= step[:-1].copy()
         return State(
             state.angles + shorter * step,
@@ -130,7 +128,7 @@ class Newton:
         curvature: Floats,
         across: Floats,
         held: Floats,
-        stiff: Floats,
+        stiff: float,
     ) -> Stiffness:
         """That of the springs, of turning levers and normals, and of what is held in contact."""
         on_side = contacts.on_side | slides
@@ -138,9 +136,9 @@ class Newton:
         links = force @ across
         # ... and the normal turns as a bead slides along the contour.
         turns = -force * curvature
-        turning = ~on_side & (turns != 0)
-        directions = [held, across[turning]]
-        weights = [stiff, turns[turning]]
+        turning = np.where(on_side, 0.0, turns).nonzero()[0]
+        directions = [held, across.take(turning, axis=0)]
+        weights = [stiff] * len(held) + turns.take(turning).tolist()
         # A corner stays where it is and the normal turns with its link; so it does where beads
         # slide, about the contour's centre of curvature.
         for i in (on_side & (force > 0)).nonzero()[0]:
@@ -153,8 +151,8 @@ class Newton:
                 link = np.zeros(len(couple))
                 link[own] = size
                 directions += [(couple + link)[None], (couple - link)[None]]
-                weights.append(np.array([0.5, -0.5]) / size)
-        return Stiffness(springs, links, np.concatenate(directions), np.concatenate(weights))
+                weights += [0.5 / size, -0.5 / size]
+        return Stiffness(springs, links, np.concatenate(directions), np.array(weights))
 
     def _forces(self, state: State, contacts: Contacts, slides: Booleans) -> Floats:
         """The forces of `state` at these contacts, shape (n,) [EI/L^2].
@@ -165,7 +163,7 @@ class Newton:
         touch = np.where(contacts.fused, -1, contacts.touch) if self._cornered else contacts.touch
         force = np.array([state.forces.get(i, 0.0) for i in touch.tolist()])
         if not self._cornered:
-            if (slides & contacts.loaded).any() and not force[slides].any():
+            if np.count_nonzero(slides & contacts.loaded) and not force[slides].any():
                 force[np.where(slides, contacts.distance, np.inf).argmin()] = state.load
             return force
         beads, links = len(self._model.layout.beads), len(self._model.layout.joints)
@@ -203,10 +201,10 @@ class Newton:
             old = np.array([row.get(bead, -1) for bead in now.bead.tolist()], dtype=int)
             known, before = old >= 0, Touch(*(part[old] for part in before))
         turn = np.abs(angles - before.normal_angle)
-        turn[turn < self._numerics.same_normal] = 0.0
-        slid = np.hypot(*(now.position - before.position).T)
+        turn *= turn >= self._numerics.same_normal
+        slid = np.abs(in_plane(now.position - before.position))
         moved = known & (slid > 0)  # or another window shows the same place
-        if moved.all():
+        if np.count_nonzero(moved) == len(moved):
             return np.asarray(turn / slid)
         found = self._mean_curvature(contacts.distance, angles)
         np.divide(turn, slid, out=found, where=moved)
@@ -235,14 +233,29 @@ def levers(contacts: Contacts, joints: Floats) -> tuple[Floats, Floats]:
     along, across : array, shape (n, n_links)
         Along the normals, and along the contour, negative if that is the way of its slope [L/rad].
     """
-    # From joint to joint, and from where a contact's link begins straight to the contact.
-    beyond = np.arange(len(joints) + 1) > contacts.link[:, None]
-    way = np.empty((2, *beyond.shape))
-    way[:, :, :-1] = joints.T[:, None]
-    np.copyto(way, contacts.point.T[:, :, None], where=beyond)
-    arm = way[:, :, 1:] - way[:, :, :-1]
-    (x, y), (right, up) = contacts.normal.T[:, :, None], arm
-    return y * right - x * up, x * right + y * up
+    # From joint to joint, and from where a contact's link begins straight to the contact. An arrow
+    # times the conjugate of the normal is what of it is along the normal, and across to the left.
+    places, count = in_plane(joints), len(joints)
+    beyond = np.arange(count + 1) > contacts.link[:, None]
+    way = np.where(beyond, in_plane(contacts.point)[:, None], np.append(places, 0))
+    arm = (way[:, 1:] - way[:, :-1]) * in_plane(contacts.normal).conj()[:, None]
+    return -arm.imag, arm.real
+
+
+def in_plane(vectors: Floats) -> Complexes:
+    """Vectors of the plane as complex numbers.
+
+    Parameters
+    ----------
+    vectors : array, shape (n, 2)
+        Theirs.
+
+    Returns
+    -------
+    array of complex, shape (n,)
+        x + iy.
+    """
+    return np.ascontiguousarray(vectors).view(complex)[:, 0]
 
 
 def of_links(moments: Floats) -> Floats:
@@ -272,11 +285,12 @@ def _unilateral(compliance: Floats, gap: Floats, guess: Booleans) -> Floats:
     for _ in range(_TRIALS):
         force, held = np.zeros(len(gap)), guess.nonzero()[0]
         if held.size:
-            _, force[held], failed = dposv(compliance[held[:, None], held], -gap[held])
+            pressed = compliance.take(held, axis=0).take(held, axis=1)
+            _, force[held], failed = dposv(pressed, -gap.take(held))
             if failed:
                 break
         wrong = np.where(guess, force, compliance @ force + gap) < 0
-        if not wrong.any():
+        if not np.count_nonzero(wrong):
             return force
         guess = guess ^ wrong
     root = np.linalg.cholesky(compliance)

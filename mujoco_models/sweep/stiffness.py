@@ -67,12 +67,12 @@ class Stiffness:
             If the stiffness is not finite.
         """
         rows = np.concatenate([moments, self.directions])
-        if not math.isfinite(self.springs.sum() + self.links.sum() + rows.sum()):
+        if not math.isfinite((self.springs + self.links).sum() + rows.sum()):
             raise DivergedError("the stiffness is not finite")
         found = self._attempt(0, rows)
         if found is not None:
             return found, 0
-        if (pulls := self.weights < 0).any():
+        if np.count_nonzero(pulls := self.weights < 0):
             # A corner that turns the normal weighs a thousand times what the beam does: without it
             # there are steps, with as large an addition to all springs there are hardly any.
             rest = Stiffness(
@@ -98,9 +98,9 @@ class Stiffness:
             return None if negative else turns.T
         plain, low = turns[:, :count], turns[:, count:]
         within = self.directions @ low
-        within.flat[:: len(within) + 1] += 1 / self.weights
+        within.reshape(-1)[:: len(within) + 1] += 1 / self.weights
         factors, pivots, met, singular = dsysv(within, self.directions @ plain)
-        of_weights = sum(weight > 0 for weight in self.weights.tolist())
+        of_weights = np.count_nonzero(self.weights > 0)
         if singular or negative + _positive(factors, pivots) != of_weights:
             return None
         return np.asarray((plain - low @ met).T)
@@ -145,5 +145,6 @@ def _positive(factors: Floats, pivots: Integers) -> float:
     Bunch and Kaufman's blocks have the same inertia: those of two rows, whose pivots are negative,
     have an eigenvalue of either sign.
     """
-    rows = zip(factors.diagonal().tolist(), pivots.tolist(), strict=True)
-    return sum(0.5 if pivot < 0 else float(value > 0) for value, pivot in rows)
+    single = pivots >= 0
+    positive = np.count_nonzero(factors.diagonal()[single] > 0)
+    return positive + np.count_nonzero(~single) / 2
