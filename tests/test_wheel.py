@@ -63,10 +63,10 @@ COMMANDS = {
     "space": (0, "space space.toml --out space --engine mujoco"),
     "side-by-side": (1, "side-by-side a/analytic.parquet a/mujoco-chain.parquet --out side"),
     "reconstruct": (0, "reconstruct a/analytic.parquet --out a"),
-    "calibrate": (0, "calibrate mine.toml a/analytic.parquet --fit clamp_stiffness --out a"),
+    "calibrate": (0, "calibrate mine.toml a/analytic.parquet --fit flexural_rigidity --out a"),
     "rig": (0, "rig rig.csv --rig rig.toml --out passes"),
     "methods": (0, "methods mine.toml --out methods"),
-    "run": (1, "run mine.toml --out runs/mine --budget"),
+    "run": (1, "run mine.toml --out runs/mine"),
     "report": (1, "report runs/mine"),
     "budget": (1, "budget mine.toml --out b"),  # undecided: ten segments
     "findings": (0, "findings runs --out found"),
@@ -77,7 +77,7 @@ COMMANDS = {
     "view": (2, "view mine.toml"),  # there is no display
 }
 # Those that start processes of their own are started as users do, which takes one process each.
-STARTED = ("run", "study")
+STARTED = ("budget", "study")
 IN_TURN = """
 import contextlib, io, json, sys
 from compare.commands.main import main

@@ -152,8 +152,9 @@ def test_strange_environments(tmp_path, strange):
     """Same files, same exit code; what the encoding lacks is written as an escape."""
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("LC_", "LANG"))}
     (tmp_path / "größe.csv").write_text("ü,é\n1,2\n", encoding="utf-8")
+    drawn = ["--figures"] if "MPLBACKEND" in strange else []
     for words, code in (
-        (["analytic", "parabola", "--stations", "30", "--out", "ä", "--figures"], 0),
+        (["analytic", "parabola", "--stations", "30", "--out", "ä", *drawn], 0),
         (["compare", "ä/analytic.parquet", "ä/analytic.parquet", "--out", "ü"], 0),
         (["reconstruct", "größe.csv"], 2),
     ):

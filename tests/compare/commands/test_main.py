@@ -37,28 +37,21 @@ def test_run_writes_what_it_promises(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_coarse_beam_disagrees(tmp_path):
-    (tmp_path / "case.toml").write_text(CASE)
-    done = vibrissa("run", "case.toml", cwd=tmp_path)
-    assert done.returncode == 1
-    assert "allowed" in done.stdout
-    assert (tmp_path / "results" / "small object" / "report.html").exists()
-
-
-@pytest.mark.slow
 @pytest.mark.usefixtures("in_turn")
-def test_a_run_with_its_budget(tmp_path):
+def test_a_coarse_beam_disagrees_and_its_budget_says_why(tmp_path):
     (tmp_path / "case.toml").write_text(CASE)
-    done = vibrissa("run", "case.toml", "--budget", "--out", "runs/it", cwd=tmp_path)
+    done = vibrissa("run", "case.toml", "--budget", cwd=tmp_path)
     assert done.returncode == 1, done.stderr
+    assert "allowed" in done.stdout
     assert "The largest part is discretisation" in done.stdout
-    found = json.loads((tmp_path / "runs" / "it" / "budget.json").read_text())
+    written = tmp_path / "results" / "small object"
+    found = json.loads((written / "budget.json").read_text())
     assert found["blame"] == "discretisation"
     assert list(found["convergence"]) == ["10", "20", "40"]
-    assert 'id="budget"' in (tmp_path / "runs" / "it" / "report.html").read_text()
-    done = vibrissa("findings", "runs", cwd=tmp_path)
+    assert 'id="budget"' in (written / "report.html").read_text()
+    done = vibrissa("findings", "results", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "| small object | chain | 10 |" in (tmp_path / "runs" / "README.md").read_text()
+    assert "| small object | chain | 10 |" in (tmp_path / "results" / "README.md").read_text()
     assert vibrissa("findings", "nowhere", cwd=tmp_path).returncode == 2
 
 

@@ -60,10 +60,30 @@ def test_two_processes_on_one_study(folder):
     assert len(pd.read_parquet(folder / "out" / "runs")) == 400
 
 
-@pytest.fixture
-def cluster(tmp_path):
-    """A scheduler and two workers, each a process of its own."""
-    file = tmp_path / "scheduler.json"
+def peak_memory(folder: Path, runs: int) -> int:
+    text = EVENTS_ONLY.replace("count = 10", f"count = {runs // 4}")
+    (folder / "grid.toml").write_text(text)
+    code = (
+        "import sys, resource; from compare.commands.main import app; app(standalone_mode=False); "
+        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, "study", "grid.toml", "--out", f"out-{runs}"],
+        cwd=folder, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    return int(done.stdout.split()[-1])
+
+
+def test_memory_is_flat_in_the_number_of_runs(tmp_path):
+    few, many = peak_memory(tmp_path, 100), peak_memory(tmp_path, 2_000)
+    assert many < 1.2 * few
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
+    """A scheduler and two workers, each a process of its own; the last test here ends the first."""
+    place = tmp_path_factory.mktemp("cluster")
+    file = place / "scheduler.json"
     dask = [sys.executable, "-m", "dask"]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     scheduler = subprocess.Popen(
@@ -75,7 +95,7 @@ def cluster(tmp_path):
     workers = [
         subprocess.Popen(
             [*dask, "worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-dashboard",
-             "--local-directory", str(tmp_path)], **quiet,
+             "--no-nanny", "--local-directory", str(place)], **quiet,
         )
         for _ in range(2)
     ]  # fmt: skip
@@ -118,22 +138,3 @@ def test_a_scheduler_that_goes_loses_nothing(folder, cluster):
     assert before > 0
     again = vibrissa("study", "grid.toml", "--out", "out", cwd=folder)
     assert f"{before} of them done already" in again.stdout
-
-
-def peak_memory(folder: Path, runs: int) -> int:
-    text = EVENTS_ONLY.replace("count = 10", f"count = {runs // 4}")
-    (folder / "grid.toml").write_text(text)
-    code = (
-        "import sys, resource; from compare.commands.main import app; app(standalone_mode=False); "
-        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code, "study", "grid.toml", "--out", f"out-{runs}"],
-        cwd=folder, capture_output=True, text=True, check=True,
-    )  # fmt: skip
-    return int(done.stdout.split()[-1])
-
-
-def test_memory_is_flat_in_the_number_of_runs(tmp_path):
-    few, many = peak_memory(tmp_path, 100), peak_memory(tmp_path, 2_000)
-    assert many < 1.2 * few
