@@ -2,8 +2,10 @@
 
 from collections.abc import Callable
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebvander
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 
@@ -11,6 +13,7 @@ _MAX_ITERATIONS = 120  # bisection alone needs 53, and 64 more to pass from 1 to
 _ROUNDING = 2 * float(np.finfo(float).eps)  # of a zero, relative
 _NODES = np.cos(np.pi * (np.arange(13) + 0.5) / 13)  # of a polynomial's, about a likely place
 _EACH = np.arange(_NODES.size)
+_TO_CHEBYSHEV = chebvander(_NODES, _NODES.size - 1).T * np.where(_EACH > 0, 2, 1)[:, None] / 13
 _NEAR = 0.1  # of the width between the bounds: up to so far from that place
 _AGREED = 1e-13  # of that width: polynomials of one degree less and of this one agree
 _AT_ONCE, _ASIDE = 64, 15  # so many numbers take hardly longer than one; at most, on either side
@@ -93,27 +96,97 @@ def smooth_zeros(
     """
     if not low.size:
         return low
-    width = high - low
-    centre = np.clip(likely, low + _NEAR * width, high - _NEAR * width)
-    centre = np.where(np.isfinite(centre), centre, low + width / 2)
-    x = centre[:, None] + (_NEAR * width)[:, None] * _NODES
-    f = _values(function, np.arange(low.size), x)
-    with np.errstate(all="ignore"):  # values that coincide: no polynomial
-        shares = f[:, None, :] / (f[:, None, :] - f[:, :, None])
-        shares[:, _EACH, _EACH] = 1.0
-        weighted = shares.prod(axis=2) * (_NEAR * width)[:, None] * _NODES
-        ahead = weighted.sum(axis=1)
-        # Without the first value or the last one it is a polynomial of one degree less.
-        doubt = np.maximum(
-            np.abs((weighted[:, 1:] / shares[:, 1:, 0]).sum(axis=1) - ahead),
-            np.abs((weighted[:, :-1] / shares[:, :-1, -1]).sum(axis=1) - ahead),
-        )
-        found: Floats = centre + ahead
-    crosses = np.signbit(f[:, 0]) != np.signbit(f[:, -1])
-    left = np.flatnonzero(~(crosses & (doubt <= _AGREED * np.abs(width))))
+    about = Surroundings.of(low, high, likely)
+    found, known = about.zeros(_values(function, np.arange(low.size), about.places))
+    left = np.flatnonzero(~known)
     if left.size:
         found[left] = zeros(lambda which, at: function(left[which], at), low[left], high[left])
     return found
+
+
+class Surroundings(NamedTuple):
+    """Places about likely zeros, those of Chebyshev's polynomials, for interpolation."""
+
+    centre: Floats
+    """Shape (n,)."""
+    radius: Floats
+    """Up to how far on either side, shape (n,)."""
+
+    @classmethod
+    def of(cls, low: Floats, high: Floats, likely: Floats) -> "Surroundings":
+        """Between bounds.
+
+        Parameters
+        ----------
+        low, high : array, shape (n,)
+            The bounds.
+        likely : array, shape (n,)
+            Where the zeros are, nearly; anything where that is not known.
+
+        Returns
+        -------
+        Surroundings
+            A fifth of the way from one bound to the other.
+        """
+        width = high - low
+        centre = np.clip(likely, low + _NEAR * width, high - _NEAR * width)
+        return cls(np.where(np.isfinite(centre), centre, low + width / 2), _NEAR * width)
+
+    @property
+    def places(self) -> Floats:
+        """The places, shape (n, 13)."""
+        return np.asarray(self.centre[:, None] + self.radius[:, None] * _NODES)
+
+    def zeros(self, values: Floats) -> tuple[Floats, Booleans]:
+        """Where functions vanish, by Lagrange's inverse interpolation.
+
+        Parameters
+        ----------
+        values : array, shape (n, 13)
+            Theirs at the places.
+
+        Returns
+        -------
+        found : array, shape (n,)
+            The zeros.
+        known : array of bool, shape (n,)
+            Whether the sign changes among the places and polynomials through one value less agree.
+        """
+        f = values
+        with np.errstate(all="ignore"):  # values that coincide: no polynomial
+            shares = f[:, None, :] / (f[:, None, :] - f[:, :, None])
+            shares[:, _EACH, _EACH] = 1.0
+            weighted = shares.prod(axis=2) * self.radius[:, None] * _NODES
+            ahead = weighted.sum(axis=1)
+            # Without the first value or the last one it is a polynomial of one degree less.
+            doubt = np.maximum(
+                np.abs((weighted[:, 1:] / shares[:, 1:, 0]).sum(axis=1) - ahead),
+                np.abs((weighted[:, :-1] / shares[:, :-1, -1]).sum(axis=1) - ahead),
+            )
+            known = doubt <= _AGREED / _NEAR * np.abs(self.radius)
+        crosses = np.signbit(f[:, 0]) != np.signbit(f[:, -1])
+        return self.centre + ahead, np.asarray(crosses & known)
+
+    def between(self, values: Floats, x: Floats) -> Floats:
+        """What functions are elsewhere among the places, by the polynomials through the values.
+
+        Parameters
+        ----------
+        values : array, shape (m, n, 13)
+            Those of m functions at the places.
+        x : array, shape (n, k)
+            Where.
+
+        Returns
+        -------
+        array, shape (m, n, k)
+            As exact as the values, if the functions are smooth; NaN beyond the radius.
+        """
+        share = (x - self.centre[:, None]) / self.radius[:, None]
+        with np.errstate(invalid="ignore"):
+            weights = np.cos(np.arccos(share)[..., None] * _EACH) @ _TO_CHEBYSHEV
+        found: Floats = np.einsum("mnj,nkj->mnk", values, weights)
+        return found
 
 
 def zero(function: Callable[[Floats], Floats], low: float, high: float) -> float:

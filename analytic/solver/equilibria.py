@@ -22,7 +22,7 @@ from analytic.solver.elastica import (
     span_by_excess,
     tangent_span,
 )
-from analytic.solver.tip import has_tip_state, tip_excess
+from analytic.solver.tip import tip_state
 
 
 class Equilibria(NamedTuple):
@@ -269,29 +269,11 @@ def equilibria_at(point: ContourPoint) -> Equilibria:
         alpha = point.alpha[tip]
         with np.errstate(invalid="ignore"):  # straight, against an upright side: out of reach
             lowest = end.up[tip] / loaded.q[tip]
-        excess[tip] = tip_excess(alpha, point.eta[tip], lowest)
-        of_tip = span(excess[tip], alpha)
+        excess[tip], of_tip = tip_state(alpha, point.eta[tip], lowest)
         for values, at_tip in zip((*loaded, *end), (*of_tip, *frame(of_tip, alpha)), strict=True):
             values[tip] = at_tip
         root_f[tip] = of_tip.q
     return Equilibria(point, excess, loaded, root_f, tangent, end)
-
-
-def within_reach(point: ContourPoint) -> Booleans:
-    """Whether a vibrissa can rest against contour points.
-
-    Parameters
-    ----------
-    point : ContourPoint
-        Where the centreline's contour is touched; arrays of shape (n,).
-
-    Returns
-    -------
-    array of bool, shape (n,)
-        Where `equilibria_at` has a state.
-    """
-    found = tangent_contact(point)
-    return np.asarray(_fits(found) | has_tip_state(point.alpha, point.eta))
 
 
 def _fits(tangential: Equilibria) -> Booleans:

@@ -16,9 +16,10 @@ import numpy as np
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import ContourPoint
 from analytic.problem.contours.many import Contours
-from analytic.problem.roots import smooth_zeros, zeros
+from analytic.problem.roots import Surroundings, smooth_zeros, zeros
 from analytic.solver.contact_length import surplus_and_rate
-from analytic.solver.equilibria import equilibria_at, within_reach
+from analytic.solver.equilibria import equilibria_at
+from analytic.solver.tip import within_reach
 
 _COARSE = 65  # samples of the whole contour to begin with
 _TURN = 0.1  # rad; the largest change of the slope angle between neighbours
@@ -27,7 +28,8 @@ _TRUST = 0.05  # by how much a mean slope may lie outside those at the ends, of 
 _FLAT = 1e-12  # L; changes of the foot position and the surplus that are rounding, or nearly
 _LEVELS = 40  # of halving: a cell is rounding then
 _ASIDE = 1e-3  # of a cell: next to a fold x0 is higher by far more than rounding there
-_AT_END, _INSIDE = 2, 16  # times that so many points are put where the reach ends
+_AT_END = 2  # times points are put where the reach ends
+_INSIDE = np.linspace(0, 1, 18)[1:-1]  # of a cell, where they are
 _MOST = 2000  # points more: beyond, derivatives are lost in rounding, as next to an upright side
 
 _Values = TypeVar("_Values", Floats, Booleans)
@@ -260,8 +262,10 @@ def folded(centrelines: Contours, grid: Grid) -> tuple[Grid, Samples, Grid]:
         if not new.t.size:
             break
         grid, samples = _more(centrelines, grid, samples, new)
-    folds, beside = _folds(centrelines, grid, samples)
-    grid, samples = _more(centrelines, grid, samples, beside)
+    folds, beside, found = _folds(centrelines, grid, samples)
+    if folds.t.size:
+        grid, values = _merged(grid, tuple(samples), beside, tuple(found))
+        samples = Samples(*values)
     reached = _before_first(grid, np.isnan(samples.foot_x))
     return grid.part(reached), Samples(*(values[reached] for values in samples)), folds
 
@@ -273,19 +277,24 @@ def _to_end_of_reach(centrelines: Contours, grid: Grid) -> tuple[Grid, ContourPo
     it, within a small part of a cell.
     """
     point = centrelines.at(*grid)
-    gone = ~within_reach(point)
+    gone = ~within_reach(point.alpha, point.eta)
     gone[grid.begins] = False
+    reached = _before_first(grid, gone)
+    first = np.flatnonzero(reached[:-1] & ~reached[1:] & grid.cells) + 1
+    if not first.size:
+        return grid, point
+    owner, row = np.repeat(grid.owner[first], _INSIDE.size), np.arange(first.size)
+    high, low = grid.t[first - 1], grid.t[first]
     for _ in range(_AT_END):
-        first = np.flatnonzero(gone)
-        if not first.size:
-            return grid, point
-        first = first[np.unique(grid.owner[first], return_index=True)[1]]
-        fraction = np.linspace(0, 1, _INSIDE + 2)[1:-1]
-        t = grid.t[first - 1, None] + (grid.t[first] - grid.t[first - 1])[:, None] * fraction
-        new = Grid(np.repeat(grid.owner[first], _INSIDE), t.ravel())
+        t = high[:, None] + (low - high)[:, None] * _INSIDE
+        new = Grid(owner, t.ravel())
         more = centrelines.at(*new)
+        passed = ~within_reach(more.alpha, more.eta)
         point = ContourPoint(*_merged(grid, tuple(point), new, tuple(more))[1])
-        grid, (gone,) = _merged(grid, (gone,), new, (~within_reach(more),))
+        grid, (gone,) = _merged(grid, (gone,), new, (passed,))
+        edges = np.concatenate([high[:, None], t, low[:, None]], axis=1)
+        end = np.argmax(np.append(passed.reshape(t.shape), np.ones((row.size, 1), bool), 1), axis=1)
+        high, low = edges[row, end], edges[row, end + 1]
     reached = _before_first(grid, np.append(False, gone[:-1] & grid.cells))
     return grid.part(reached), ContourPoint(*(values[reached] for values in point))
 
@@ -298,11 +307,11 @@ def _before_first(grid: Grid, chosen: Booleans) -> Booleans:
     return np.asarray(so_far == np.repeat(before, np.diff(np.append(begins, grid.t.size))))
 
 
-def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> tuple[Grid, Grid]:
+def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> tuple[Grid, Grid, Samples]:
     """Where the foot position is least between neighbours, if it may be less than all before.
 
-    The second grid has the points on either side of them, too: if x0 is lower there, the derivative
-    was inexact.
+    The second grid, with the states there, has the points on either side of them, too: if x0 is
+    lower there, the derivative was inexact.
     """
     foot_x, rate = samples.foot_x, samples.rate
     before = np.where(np.isnan(rate[:-1]), 1.0, rate[:-1])
@@ -314,15 +323,31 @@ def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> tuple[Grid, G
     owner, high, low = grid.owner[turns], grid.t[turns], grid.t[turns + 1]
     first = grid.t[grid.begins][owner]
 
-    def rates(turn: Integers, at: Floats) -> Floats:
-        found = _sample(centrelines, Grid(owner[turn], at)).rate
-        return np.where(at == first[turn], 1.0, np.where(np.isnan(found), -1.0, found))
+    def rates(turn: Integers, at: Floats, found: Samples) -> Floats:
+        return np.where(at == first[turn], 1.0, np.where(np.isnan(found.rate), -1.0, found.rate))
 
     likely = _least_of_cubic(low, high, *(x[turns + i] for x in samples[:2] for i in (1, 0)))
-    t = smooth_zeros(rates, low, high, likely)
+    about = Surroundings.of(low, high, likely)
+    turn, places = np.repeat(np.arange(turns.size), about.places.shape[1]), about.places.ravel()
+    there = _sample(centrelines, Grid(owner[turn], places))
+    t, known = about.zeros(rates(turn, places, there).reshape(about.places.shape))
+    left = np.flatnonzero(~known)
+    t[left] = zeros(
+        lambda which, at: rates(
+            left[which], at, _sample(centrelines, Grid(owner[left[which]], at))
+        ),
+        low[left],
+        high[left],
+    )
     aside = _ASIDE * (high - t)
-    every = np.append(t, [np.maximum(t - aside, low), np.minimum(t + aside, high)])
-    return Grid(owner, t), Grid(np.tile(owner, 3), every)
+    every = np.stack([t, np.maximum(t - aside, low), np.minimum(t + aside, high)], axis=1)
+    values = about.between(np.stack(there).reshape(len(there), *about.places.shape), every)
+    left = np.flatnonzero(~(known & np.isfinite(values[0]).all(axis=1)))
+    if left.size:
+        exact = _sample(centrelines, Grid(np.repeat(owner[left], 3), every[left].ravel()))
+        values[:, left] = np.stack(exact).reshape(len(exact), *every[left].shape)
+    beside = Grid(np.repeat(owner, 3), every.ravel())
+    return Grid(owner, t), beside, Samples(*values.reshape(len(values), -1))
 
 
 def _least_of_cubic(

@@ -1,5 +1,7 @@
 """Phase A: how far the tip has turned that rests on a contour point of given slope and height."""
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy.special import ellipe, ellipk
 
@@ -14,8 +16,10 @@ from analytic.solver.elastica import (
 )
 
 _MAX_ITERATIONS = 60  # bisection alone would halve the bracket to round-off in 53
+_STEPS = 3  # of Halley's method, before those that need more of them are enclosed
 _CLOSE = 1e-5  # of a step of third order, relative: the next one would change round-off only
 
+_LEAST = 1e-40  # of the sag: less is rounding, but the square root of this one is not zero
 _ROUNDING = float(np.finfo(float).eps)  # of the height [L]
 
 
@@ -73,8 +77,10 @@ def tangent_height(alpha: Floats) -> Floats:
     return frame(tangential, alpha).up / tangential.q
 
 
-def has_tip_state(alpha: Floats, eta: Floats) -> Booleans:
-    """Whether a tip can rest on contour points that are not below tangential contact.
+def within_reach(alpha: Floats, eta: Floats) -> Booleans:
+    """Whether a vibrissa can rest against contour points.
+
+    What it touches with its side is lower than what its tip can rest on there.
 
     Parameters
     ----------
@@ -84,16 +90,16 @@ def has_tip_state(alpha: Floats, eta: Floats) -> Booleans:
     Returns
     -------
     array of bool, shape (n,)
-        False where no vibrissa that bends one way ends there.
+        False where no vibrissa that bends one way ends.
     """
     return np.asarray((eta < greatest_height(alpha)) & (np.abs(alpha) < np.pi / 2))
 
 
-def tip_excess(alpha: Floats, eta: Floats, lowest: Floats | None = None) -> Floats:
-    """Excess rotation w of the tip of a vibrissa that touches at slope `alpha` and height `eta`.
+def tip_state(alpha: Floats, eta: Floats, lowest: Floats | None = None) -> tuple[Floats, Span]:
+    """The vibrissa whose tip touches at slope `alpha` and height `eta`.
 
     The height falls steadily as the tip turns, from `greatest_height` to tangential contact, and
-    sqrt(1 - height) is nearly proportional to the rotation (0.516 u at alpha > 0, 0.5 u at
+    sqrt(1 - height) is nearly proportional to the rotation w (0.516 u at alpha > 0, 0.5 u at
     alpha = 0): Halley's method on it needs two steps, and a bracket keeps it safe. Its unknown is
     p = sqrt(sin(w/2)), in which the height is smooth even where the clamp moment vanishes.
 
@@ -106,22 +112,53 @@ def tip_excess(alpha: Floats, eta: Floats, lowest: Floats | None = None) -> Floa
 
     Returns
     -------
-    array, shape (n,)
-        [rad]; NaN where the point is out of reach: no vibrissa that bends one way ends there.
+    excess : array, shape (n,)
+        Excess rotation of the tip [rad].
+    loaded : Span
+        The integrals.
+        Both are NaN where the point is out of reach: no vibrissa that bends one way ends there.
     """
-    excess = np.full_like(alpha, np.nan)
-    # Against an upright side the vibrissa is straight and carries no load.
     top = greatest_height(alpha)
+    # Against an upright side the vibrissa is straight and carries no load.
     active = np.flatnonzero((eta < top) & (np.abs(alpha) < np.pi / 2))
-    alpha, sag = alpha[active], np.sqrt(np.maximum(1 - eta[active], 0.0))
-    lowest = tangent_height(alpha) if lowest is None else lowest[active]
-    p, high = _start(alpha, sag, np.sqrt(1 - top[active]), np.sqrt(1 - lowest))
-    low = np.zeros_like(alpha)
-    for _ in range(_MAX_ITERATIONS):
-        if active.size == 0:
-            return excess
+    found = np.full((4, alpha.size), np.nan)
+    if active.size:
+        alpha, sag = alpha[active], np.sqrt(np.maximum(1 - eta[active], 0.0))
+        # A little beyond tangential contact, where nothing is singular: a root there stays inside.
+        high = np.sqrt(np.sin((np.pi / 2 - np.abs(alpha)) / 2)) * (1 + 1e-6)
+        lowest = tangent_height(alpha) if lowest is None else lowest[active]
+        p = _start(alpha, sag, np.sqrt(1 - top[active]), np.sqrt(1 - lowest), high)
+        found[:, active] = _turned(alpha, sag, p, high)
+    return found[0], Span(*found[1:])
+
+
+def _turned(alpha: Floats, sag: Floats, p: Floats, high: Floats) -> Floats:
+    """Excess and integrals, shape (4, n), of tips that have sunk by the square of `sag`."""
+    start = p
+    with np.errstate(all="ignore"):  # hardly bent: no step
+        for _ in range(_STEPS):
+            tried = _tried(p, alpha)
+            step = _halley(p, tried, sag)[1]
+            new = p - step
+            # After a small enough step the next would change round-off only.
+            close = np.abs(step) <= _CLOSE * new
+            if close.all():
+                break
+            p = new
+        found: Floats = tried.turned_to(new)
+    poor = np.flatnonzero(~(close & (new <= high)))
+    if poor.size:
+        found[:, poor] = _enclosed(alpha[poor], sag[poor], start[poor], high[poor])
+    return found
+
+
+def _enclosed(alpha: Floats, sag: Floats, p: Floats, high: Floats) -> Floats:
+    """What `_turned` has, by the same steps, but halves of a bracket where one leaves it."""
+    found, left, low = np.empty((4, p.size)), np.arange(p.size), np.zeros_like(p)
+    for last in range(_MAX_ITERATIONS, 0, -1):
         with np.errstate(divide="ignore", invalid="ignore"):  # hardly bent: no step, but a half
-            deviation, step = _halley(p, alpha, sag)
+            tried = _tried(p, alpha)
+            deviation, step = _halley(p, tried, sag)
         low = np.where(deviation < 0, p, low)
         high = np.where(deviation > 0, p, high)
         new = p - step
@@ -129,34 +166,29 @@ def tip_excess(alpha: Floats, eta: Floats, lowest: Floats | None = None) -> Floa
         # Where the height agrees to a rounding it is done: hardly bent, steps would go to and fro.
         agrees = np.abs(deviation) * np.abs(deviation + 2 * sag) <= _ROUNDING
         new = np.where(inside, new, np.where(agrees, p, (low + high) / 2))
-        # After a small enough step the next would change round-off only; halving goes on.
-        done = agrees | (np.abs(new - p) <= np.where(inside, _CLOSE, 1e-15) * new)
-        p = new
-        if done.any():
-            excess[active[done]] = 2 * np.arcsin(p[done] ** 2)
-            going = ~done
-            active, p, low, high = active[going], p[going], low[going], high[going]
-            alpha, sag = alpha[going], sag[going]
-    excess[active] = 2 * np.arcsin(p**2)  # halved to rounding
-    return excess
+        done = agrees | (np.abs(new - p) <= np.where(inside, _CLOSE, 1e-15) * new) | (last == 1)
+        found[:, left] = tried.turned_to(new)
+        left = left[~done]
+        if not left.size:
+            break
+        p, low, high, alpha, sag = (x[~done] for x in (new, low, high, alpha, sag))
+    return found
 
 
-def _start(alpha: Floats, sag: Floats, first: Floats, last: Floats) -> tuple[Floats, Floats]:
-    """Where to begin, within 10 % of p, and the largest p.
+def _start(alpha: Floats, sag: Floats, first: Floats, last: Floats, high: Floats) -> Floats:
+    """Where to begin, within 10 % of p, given the largest p.
 
     The sag is taken for a quadratic function of p: from `first`, where the clamp moment vanishes,
     with its slope there, first/(q sqrt(-sin(alpha))) for alpha < 0 and 0 else, to `last`, in
     tangential contact.
     """
-    high = np.sqrt(np.sin((np.pi / 2 - np.abs(alpha)) / 2))
     slope = np.zeros_like(alpha)
     bent = np.flatnonzero(alpha < 0)
     slope[bent] = first[bent] / (2 * ellipk(_m(alpha[bent])) * np.sqrt(-np.sin(alpha[bent])))
     square = np.maximum((last - first - slope * high) / (high * high), 0.0)
-    way = np.maximum(sag - first, 1e-300)
-    p = 2 * way / (slope + np.sqrt(slope * slope + 4 * square * way))
-    # A little beyond tangential contact, where nothing is singular: a root there stays inside.
-    return np.minimum(p, high), high * (1 + 1e-6)
+    way = np.maximum(sag - first, _LEAST)
+    p: Floats = 2 * way / (slope + np.sqrt(slope * slope + 4 * square * way))
+    return np.minimum(p, high / (1 + 1e-6))
 
 
 def _m(alpha: Floats) -> Floats:
@@ -164,22 +196,48 @@ def _m(alpha: Floats) -> Floats:
     return np.sin(np.minimum(alpha, 0.0) / 2) ** 2
 
 
-def _halley(p: Floats, alpha: Floats, sag: Floats) -> tuple[Floats, Floats]:
+class _Tried(NamedTuple):
+    """Tips of some rotation, with the integrals and how they change by it."""
+
+    excess: Floats
+    loaded: Span
+    by_excess: Span
+    twice: Span
+    up: tuple[Floats, Floats, Floats]
+    """Height times sqrt(f), and its derivatives."""
+
+    def turned_to(self, p: Floats) -> Floats:
+        """Excess and integrals, shape (4, n), a step of third order away.
+
+        What these terms leave is rounding then.
+        """
+        excess = 2 * np.arcsin(p * p)
+        turned = excess - self.excess
+        found = [excess]
+        for x, x_w, x_ww in zip(self.loaded, self.by_excess, self.twice, strict=True):
+            found.append(x + turned * (x_w + turned / 2 * x_ww))
+        return np.array(found)
+
+
+def _tried(p: Floats, alpha: Floats) -> _Tried:
+    w = 2 * np.arcsin(p * p)
+    loaded = span(w, alpha)
+    by_w = span_by_excess(loaded, w, alpha)
+    twice = span_by_excess_twice(loaded, by_w, w, alpha)
+    sine, cosine = np.sin(alpha), np.cos(alpha)
+    up, up_w, up_ww = (s.C * sine + s.S * cosine for s in (loaded, by_w, twice))
+    return _Tried(w, loaded, by_w, twice, (up, up_w, up_ww))
+
+
+def _halley(p: Floats, tried: _Tried, sag: Floats) -> tuple[Floats, Floats]:
     """How much farther the tip has sunk than `sag`, as a root, and Halley's step of p."""
     square = p * p
     cosine = np.sqrt(1 - square * square)  # of w/2
-    w = 2 * np.arcsin(square)
-    loaded = span(w, alpha)
-    by_w = span_by_excess(loaded, w, alpha)
-    by_w_twice = span_by_excess_twice(loaded, by_w, w, alpha)
-    sine, cosine_alpha = np.sin(alpha), np.cos(alpha)
-
-    def up(s: Span) -> Floats:
-        return s.C * sine + s.S * cosine_alpha
-
-    height = up(loaded) / loaded.q
-    fall = (height * by_w.q - up(by_w)) / loaded.q
-    fall_w = (height * by_w_twice.q - 2 * fall * by_w.q - up(by_w_twice)) / loaded.q
+    q, q_w, q_ww = tried.loaded.q, tried.by_excess.q, tried.twice.q
+    up, up_w, up_ww = tried.up
+    height = up / q
+    fall = (height * q_w - up_w) / q
+    fall_w = (height * q_ww - 2 * fall * q_w - up_ww) / q
     reached = np.sqrt(np.maximum(1 - height, 0.0))
     # By w, the root's slope is fall/(2 reached); w by p is 4 p/cosine.
     slope = fall / (2 * reached)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
-from analytic.problem.roots import smooth_zeros, zero, zeros
+from analytic.problem.roots import Surroundings, smooth_zeros, zero, zeros
 
 EPS = float(np.finfo(float).eps)
 
@@ -69,3 +69,20 @@ def test_a_wrong_guess_and_a_jump_cost_calls_and_no_digits(
     found, calls = _nearly_known([np.nan, likely[1]] if unknown else likely, jump)
     np.testing.assert_allclose(found, [0.3, 0.6], rtol=16 * EPS)
     assert calls > 1
+
+
+def test_what_functions_are_near_their_zeros_is_interpolated() -> None:
+    about = Surroundings.of(np.array([2.0, 3.0]), np.array([4.0, 3.3]), np.array([3.1, 3.14]))
+    found, known = about.zeros(np.sin(about.places))
+    assert known.all()
+    np.testing.assert_allclose(found, np.pi, rtol=16 * EPS)
+    values = about.between(np.stack([np.cos(about.places), np.exp(about.places)]), found[:, None])
+    # A rounding of an angle is one of twelve times as much in the last of thirteen cosines.
+    expected = np.array([-1, np.exp(np.pi)])[:, None, None]
+    np.testing.assert_allclose(values, np.broadcast_to(expected, values.shape), rtol=48 * EPS)
+    assert np.isnan(about.between(np.sin(about.places)[None], np.array([[2.0], [3.0]]))).all()
+
+
+def test_a_step_is_no_zero_that_interpolation_knows() -> None:
+    about = Surroundings.of(np.zeros(1), np.ones(1), np.full(1, 0.5))
+    assert not about.zeros(np.sign(about.places - 0.51))[1].any()
