@@ -71,8 +71,9 @@ def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> 
         state = State(angles, dict(zip(contacts.touch[pressed].tolist(), force, strict=True)))
         step = newton.step(state, contacts).angles - angles
         turn = turned(step, np.zeros(len(step)))
+        near = replace(state, slope=float(contacts.slope[contacts.distance.argmin()]))
         if turn < _AT_REST:
-            return replace(state, slope=float(contacts.slope[contacts.distance.argmin()]))
+            return near
         steps = [scale * step for scale in _SHORTER]
         if turn < _ON_A_FACET:
             steps.insert(0, secant.better(angles, step))
@@ -80,7 +81,7 @@ def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> 
         tried = ((s, _energy(picture, foot_x, angles + s)) for s in steps)
         lower = next(((s, energy) for s, energy in tried if energy <= most), None)
         if lower is None:
-            return None
+            return near if turn < _ON_A_FACET else None
         taken, energy = lower
         while _ON_A_FACET <= turn < _STRIDE:
             farther = _energy(picture, foot_x, angles + 2 * taken)
@@ -90,7 +91,7 @@ def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> 
         angles = angles + taken
         if turned(angles, start.angles) > numerics.left_turn:
             return State(angles, {})  # it lets go, if the engine says so
-    return None
+    return near
 
 
 def _energy(picture: Picture, foot_x: float, angles: Floats) -> float:
