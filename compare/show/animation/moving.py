@@ -5,12 +5,14 @@ from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
+from matplotlib.text import Text
 from PIL import Image
 
 
 def pictures(
     canvas: Any,  # noqa: ANN401  # matplotlib does not type what is used of it
     moving: Sequence[Artist],
+    heading: Text,
     show: Callable[[int], None],
     stations: Iterable[int],
     advance: Callable[[], None],
@@ -24,6 +26,8 @@ def pictures(
         Of the figure.
     moving : sequence of Artist
         What differs from station to station, the lowest first.
+    heading : Text
+        Says the same at many stations, and is drawn once for all of these.
     show : callable
         Puts them where they are at a station.
     stations : iterable of int
@@ -40,13 +44,19 @@ def pictures(
     """
     figure = canvas.figure
     figure.set_dpi(dpi)
-    for artist in moving:
+    for artist in (*moving, heading):
         artist.set_animated(True)
     canvas.draw()
     still = canvas.copy_from_bbox(figure.bbox)
+    headed: dict[str, Any] = {}
     for station in stations:
         show(int(station))
-        canvas.restore_region(still)
+        said = heading.get_text()
+        if said not in headed:
+            canvas.restore_region(still)
+            figure.draw_artist(heading)
+            headed[said] = canvas.copy_from_bbox(figure.bbox)
+        canvas.restore_region(headed[said])
         for artist in moving:
             figure.draw_artist(artist)
         yield Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")

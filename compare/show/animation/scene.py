@@ -44,7 +44,7 @@ class Scene:
             view.frame(_SIZE)
         self._add_header(motions)
         self._phase = self._figure.text(0.985, 0.955, "", ha="right", fontsize=12, weight="bold")
-        self._moving = [*(a for part in self._parts for a in part.moving), self._phase]
+        self._moving = [a for part in self._parts for a in part.moving]
 
     def images(
         self,
@@ -69,7 +69,7 @@ class Scene:
             In colour.
         """
         moving = sorted(self._moving, key=lambda artist: artist.zorder)
-        return pictures(self._canvas, moving, self._show, stations, advance, dpi)
+        return pictures(self._canvas, moving, self._phase, self._show, stations, advance, dpi)
 
     def _show(self, station: int) -> None:
         for part in self._parts:

@@ -116,7 +116,7 @@ class _Moving:
         )  # fmt: skip
         self._phase = self._figure.text(0.98, 0.955, "", ha="right", fontsize=12, weight="bold")
         self._artists: list[Artist] = [
-            self._line, self._dots, self._contact, *(mark for mark, _ in self._marks), self._phase,
+            self._line, self._dots, self._contact, *(mark for mark, _ in self._marks),
         ]  # fmt: skip
 
     def images(
@@ -126,7 +126,9 @@ class _Moving:
         dpi: int = _DPI,
     ) -> Iterator[Image.Image]:
         """A picture of each station."""
-        return pictures(self._canvas, self._artists, self._show, stations, advance, dpi)
+        return pictures(
+            self._canvas, self._artists, self._phase, self._show, stations, advance, dpi
+        )
 
     def _add_curves(self, ax: Axes, names: tuple[str, ...], unit: float, title: str) -> None:
         for name, colour in zip(names, (BLUE, ORANGE, GREEN), strict=True):
