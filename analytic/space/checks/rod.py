@@ -34,23 +34,52 @@ def integrate_rod(
     place, direction, moment : array, shape (points, 3)
         Relative to the foot [L], of length 1, and in the section [EI/L].
     """
+    place, along, bending = integrate_rods(
+        tangent, force[None], moment[None], np.array([length]), points
+    )
+    return place[0], along[0], bending[0]
+
+
+def integrate_rods(
+    tangent: Floats, force: Floats, moment: Floats, length: Floats, points: int = 2
+) -> tuple[Floats, Floats, Floats]:
+    """March many rods from the same clamp together, each by the same share of its length.
+
+    Parameters
+    ----------
+    tangent : array, shape (3,)
+        Of the clamp.
+    force, moment : array, shape (n, 3)
+        Of the clamp, dimensionless; force and moment act on the vibrissa.
+    length : array, shape (n,)
+        Arc lengths to march [L].
+    points : int
+        How many states are wanted of each, at equal distances, both ends among them.
+
+    Returns
+    -------
+    place, direction, moment : array, shape (n, points, 3)
+        Relative to the foot [L], of length 1, and in the section [EI/L].
+    """
+    n = len(length)
 
     def rate(_: float, state: Floats) -> Floats:
-        away, along = state[:3], state[3:]
+        away, along = state.reshape(2, n, 3)
         bending = moment - np.cross(away, force)
-        return np.concatenate([along, np.cross(along, bending)])
+        rates = length[:, None] * np.stack([along, np.cross(along, bending)])
+        return np.asarray(rates.ravel())
 
-    found = solve_ivp(
+    marched = solve_ivp(
         rate,
-        (0.0, length),
-        np.concatenate([np.zeros(3), tangent]),
+        (0.0, 1.0),
+        np.concatenate([np.zeros(3 * n), np.tile(tangent, n)]),
         method="DOP853",
         rtol=_TOLERANCE,
         atol=_TOLERANCE,
-        t_eval=np.linspace(0.0, length, points),
+        t_eval=np.linspace(0.0, 1.0, points),
     )
-    place, along = found.y[:3].T, found.y[3:].T
-    return place, along, moment - np.cross(place, force)
+    place, along = marched.y.reshape(2, n, 3, points).swapaxes(2, 3)
+    return place, along, moment[:, None] - np.cross(place, force[:, None])
 
 
 def rod_residuals(readings: SpatialReadings) -> Floats:
@@ -77,11 +106,13 @@ def rod_residuals(readings: SpatialReadings) -> Floats:
     moment = readings.values(*MOMENT) / beam.moment_unit
     reach = readings.values("contact_arc_length") / beam.length
     phase = readings.table["phase"].to_numpy()
-    for i in np.flatnonzero(readings.touching):
-        place, along, end = (
-            values[-1]
-            for values in integrate_rod(readings.clamp_tangent, force[i], moment[i], reach[i])
-        )
+    touching = np.flatnonzero(readings.touching)
+    if not touching.size:
+        return missed
+    marched = integrate_rods(
+        readings.clamp_tangent, force[touching], moment[touching], reach[touching]
+    )
+    for i, place, along, end in zip(touching, *(states[:, -1] for states in marched), strict=True):
         axis = (contact[i] + beam.radius * normal[i] - foot[i]) / beam.length
         away = float(along @ normal[i])
         missed[i] = max(
@@ -105,7 +136,7 @@ def deflected_rods(readings: SpatialReadings) -> Floats:
     Returns
     -------
     array, shape (stations, 34, 3)
-        From clamp to tip [length]; NaN where there are no readings.
+        From clamp to tip [length]; NaN where there are no readings, or none of a contact.
     """
     beam, tangent = readings.beam, readings.clamp_tangent
     foot = readings.values(*FOOT)
@@ -114,11 +145,12 @@ def deflected_rods(readings: SpatialReadings) -> Floats:
     reach = readings.values("contact_arc_length") / beam.length
     lines = np.full((len(foot), _SHOWN + 1, 3), np.nan)
     share = np.linspace(0, 1, _SHOWN + 1)[:, None]
-    for i in np.flatnonzero(readings.trusted):
-        if not readings.touching[i]:
-            lines[i] = foot[i] + share * beam.length * tangent
-            continue
-        place, along, _ = integrate_rod(tangent, force[i], moment[i], min(reach[i], 1.0), _SHOWN)
-        tip = place[-1] + max(0.0, 1 - reach[i]) * along[-1]
-        lines[i] = foot[i] + beam.length * np.vstack([place, tip])
+    free = readings.trusted & ~readings.touching
+    lines[free] = foot[free, None] + share * beam.length * tangent
+    bent = np.flatnonzero(readings.touching & np.isfinite(reach))
+    if bent.size:
+        loaded = np.minimum(reach[bent], 1.0)
+        place, along, _ = integrate_rods(tangent, force[bent], moment[bent], loaded, _SHOWN)
+        tip = place[:, -1:] + (1 - loaded)[:, None, None] * along[:, -1:]
+        lines[bent] = foot[bent, None] + beam.length * np.concatenate([place, tip], axis=1)
     return lines
