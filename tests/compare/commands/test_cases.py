@@ -17,6 +17,7 @@ def test_the_papers_figures(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("name", [name for name in REAL_CASE_NAMES if name != "whisker"])
 def test_cases_beyond_the_paper(tmp_path, name):
     done = vibrissa("analytic", name, "--figures", "--certified", "--out", ".", cwd=tmp_path)

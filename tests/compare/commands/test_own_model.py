@@ -35,6 +35,7 @@ def folder(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("undrawn")
 def test_run_compares_it_with_the_closed_form(folder):
     done = vibrissa("run", "case.toml", "--out", "out", cwd=folder)
     assert done.returncode in (0, 1), done.stderr

@@ -68,6 +68,7 @@ def rig(tmp_path) -> Path:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("undrawn")
 def test_compare_with_a_rig(rig):
     """Own columns, units, an unknown offset, noise; without stating the last two it fails."""
     words = ("compare", "analytic.parquet", "rig.csv", *RIG_COLUMNS, "--out", "out")
@@ -92,6 +93,7 @@ def test_compare_with_a_rig(rig):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("undrawn")
 def test_a_case_is_a_reference_and_its_offset_is_applied(rig):
     """The vibrissa, the limits and the name are the case's."""
     (rig / "own").mkdir()
@@ -170,6 +172,7 @@ def test_an_offset_that_nothing_determines_is_one_line(rig):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("undrawn")
 def test_tolerances_from_files(tmp_path):
     """A case file's are those of its runs, a file's those of a comparison."""
     limits = '[tolerances]\nrms = { limit = 1e-9, reason = "to see it fail" }\n'

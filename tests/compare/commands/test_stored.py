@@ -48,6 +48,7 @@ def test_the_report_of_a_run_again(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("undrawn")
 def test_a_report_of_two_sweeps_that_nobody_compared_yet(tmp_path, sweep):
     sweep.write(tmp_path / "analytic.parquet")
     sweep.write(tmp_path / "mujoco-rod.parquet")

@@ -49,6 +49,7 @@ def rig(path, rigidity):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("undrawn")
 def test_a_disagreement_within_and_beyond_what_is_uncertain(tmp_path):
     (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
     for rigidity, resolved in ((2.06e-6, False), (2.3e-6, True)):
@@ -110,6 +111,7 @@ def test_a_budget_is_the_uncertainty_of_the_numerics(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("undrawn")
 def test_a_stored_run_keeps_its_validation(tmp_path):
     (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
     job = load_job(str(tmp_path / "case.toml"))

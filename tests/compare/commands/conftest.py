@@ -1,0 +1,13 @@
+"""Commands without the pictures of their reports, for tests of what else they do."""
+
+import pytest
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Pages have no pictures: to draw one report's takes as long as ten comparisons.
+
+    That they are drawn is tested by `test_main`, and in `tests/compare/show`.
+    """
+    monkeypatch.setattr("compare.show.report.FIGURES", {})
+    monkeypatch.setattr("compare.show.report._figures", lambda *_: {})
