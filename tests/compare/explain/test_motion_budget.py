@@ -1,4 +1,7 @@
-"""The budget of a sweep in motion: planted parts are found, and what is none of them is left."""
+"""The budget of a sweep in motion: planted parts are found, and what is none of them is left.
+
+That of a real sweep closes on the page `mujoco_models/README.md`, whose commands are run.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -9,7 +12,6 @@ import pytest
 from analytic import CLAMP_READINGS, Readings, Sweep, named_case, solve_sweep
 from compare.explain.motion import motion_budget, slower_and_finer, slower_and_finer_of_model
 from mujoco_models import Motion, OwnModel
-from tests.compare.command import vibrissa
 
 CASE = replace(named_case("catenary"), sweep=Sweep(80))
 EXACT = solve_sweep(CASE)
@@ -139,14 +141,3 @@ def test_the_contacts_are_the_same_in_all_of_them():
     assert {m.solref for name, m in stock.items() if name != "ours"} == {(0.7, 1.0)}
     assert stock["ours"].solref is None
     assert stock["ours"].speed == stock["quarter"].speed
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("in_turn")
-def test_the_command_closes_the_budget_of_a_real_sweep(tmp_path):
-    """Observed: rate 5.9e-3, damping 2.7e-3, at rest 4.4e-3, unexplained 9e-4 +- 2e-3."""
-    words = ("--speed", "0.2", "--obstacle", "primitive", "--segments", "20", "--out", "out")
-    done = vibrissa("budget", "catenary", *words, cwd=tmp_path)
-    assert done.returncode == 0, done.stdout
-    assert "The budget closes; at rest dominates" in done.stdout
-    assert (tmp_path / "out" / "motion-budget.json").is_file()
