@@ -60,6 +60,9 @@ def budget(
         check_target(target)
     if job.motion is not None:
         return _in_motion(job, changes.folder(out, job.case.name), target)
+    from compare.simulate.workers import SWEEPERS, start_server
+
+    start_server(SWEEPERS)  # it imports while we do
     with output_folder(changes.folder(out, job.case.name)) as folder:
         from analytic.problem.files import write_whole
         from compare.commands import terminal

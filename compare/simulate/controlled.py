@@ -1,13 +1,15 @@
 """The budget of a case: all the sweeps that it takes, on all cores."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor
+from contextlib import contextmanager
 
 from analytic import Case, InputError, Readings, solve_sweep
 from compare.explain.budget import Budget, budget
 from compare.explain.changes import controlled_changes
 from compare.explain.variations import on_polygon, variations
-from compare.simulate.workers import Workers, available_cores
+from compare.simulate.workers import SWEEPERS, Workers, available_cores
+from mujoco_models import simulate_sweep
 from mujoco_models.settings import Settings
 
 
@@ -39,14 +41,15 @@ def measure_budget(
     """
     smooth = has_primitive(case)
     changes = controlled_changes(settings, smooth, has_corners(case, settings))
-    runs = simulate_all(case, changes, advance)
-    faceted = None
-    if smooth and settings.obstacle == "mesh":
-        past_facets = on_polygon(case, settings.contour_points)
-        # A check, which must not cost the budget the stations where it has no solution.
-        if (past_facets.table["status"] != "diverged").all():
-            faceted = past_facets
-    return budget(solve_sweep(case), runs, variations(case), faceted), runs
+    with _sweeping(case, changes, advance) as await_all:
+        exact, varied, faceted = solve_sweep(case), variations(case), None
+        if smooth and settings.obstacle == "mesh":
+            past_facets = on_polygon(case, settings.contour_points)
+            # A check, which must not cost the budget the stations where it has no solution.
+            if (past_facets.table["status"] != "diverged").all():
+                faceted = past_facets
+        runs = await_all()
+    return budget(exact, runs, varied, faceted), runs
 
 
 def simulate_all(
@@ -73,16 +76,31 @@ def simulate_all(
     MemoryError
         If the system ends a worker, as it does when memory is short.
     """
+    with _sweeping(case, changes, advance) as await_all:
+        return await_all()
+
+
+@contextmanager
+def _sweeping(
+    case: Case, changes: Mapping[str, Settings], advance: Callable[[], None]
+) -> Iterator[Callable[[], dict[str, Readings]]]:
+    """Begin all sweeps; what it yields waits for them."""
     # The longest first, so that no core waits for it at the end.
     longest_first = sorted(set(changes.values()), key=lambda s: -s.segments)
-    with Workers(min(len(longest_first), available_cores())) as pool:
-        sweeps = {settings: pool.submit(sweep_alone, case, settings) for settings in longest_first}
+    with Workers(min(len(longest_first), available_cores()), SWEEPERS) as pool:
+        sweeps = {
+            settings: pool.submit(simulate_sweep, case, settings) for settings in longest_first
+        }
         for sweep in sweeps.values():
             sweep.add_done_callback(lambda _: advance())
-        try:
-            return {name: sweeps[settings].result() for name, settings in changes.items()}
-        except BrokenExecutor as error:
-            raise MemoryError("the system ended a worker process") from error
+
+        def await_all() -> dict[str, Readings]:
+            try:
+                return {name: sweeps[settings].result() for name, settings in changes.items()}
+            except BrokenExecutor as error:
+                raise MemoryError("the system ended a worker process") from error
+
+        yield await_all
 
 
 def sweep_alone(case: Case, settings: Settings) -> Readings:
@@ -100,8 +118,6 @@ def sweep_alone(case: Case, settings: Settings) -> Readings:
     Readings
         Of the sweep.
     """
-    from mujoco_models import simulate_sweep  # MuJoCo is imported only where it is used
-
     return simulate_sweep(case, settings)
 
 

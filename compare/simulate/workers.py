@@ -13,6 +13,8 @@ from typing import NoReturn
 
 from analytic import InputError
 
+SWEEPERS = ("mujoco_models.sweep.sweep",)
+"""What workers that sweep in MuJoCo share."""
 _START = 120.0  # s; a worker is there within one or two, on a crowded machine within ten
 
 
@@ -53,10 +55,10 @@ class Workers(ProcessPoolExecutor):
         if getattr(current_process(), "_inheriting", False):
             # A worker reads its leader's script first, and that would start workers without end.
             raise SystemExit(1)
-        server = preload and "forkserver" in get_all_start_methods()
+        server = preload and _has_server()
         context = get_context("forkserver" if server else "spawn")
         if server:
-            context.set_forkserver_preload(list(preload))
+            start_server(preload)
         self._watched, self._held = context.Pipe(duplex=False)
         super().__init__(count, context, _begin_work, (self._watched,))
         try:
@@ -96,6 +98,28 @@ class Workers(ProcessPoolExecutor):
         trace: TracebackType | None,
     ) -> None:
         self.shutdown(wait=error is None, cancel_futures=error is not None)
+
+
+def start_server(preload: tuple[str, ...]) -> None:
+    """Let a server import what its workers share, while their leader goes on.
+
+    Does nothing where there is no such server, or if it runs already.
+
+    Parameters
+    ----------
+    preload : tuple of str
+        Modules, as of `Workers`.
+    """
+    if _has_server():
+        from multiprocessing import forkserver
+
+        forkserver.set_forkserver_preload(list(preload))
+        with _nothing_from_here():
+            forkserver.ensure_running()
+
+
+def _has_server() -> bool:
+    return "forkserver" in get_all_start_methods()
 
 
 @contextmanager
