@@ -120,11 +120,10 @@ def along(centrelines: Contours, first: Floats, last: Floats) -> Grid:
     # Dense at both ends: x0 starts like a square root at first contact and folds before the last.
     fraction = (1 - np.cos(np.linspace(0, np.pi, _COARSE))) / 2
     coarse = first[:, None] + (last - first)[:, None] * fraction
-    owner = np.repeat(np.arange(len(centrelines)), _COARSE)
-    grid = Grid(owner[:0], first[:0]).with_points(
-        owner, np.clip(coarse, last[:, None], first[:, None]).ravel()
-    )
-    grid = grid.with_points(np.arange(len(centrelines)), centrelines.lowest)
+    coarse = np.clip(coarse, last[:, None], first[:, None])
+    every = np.column_stack([coarse, centrelines.lowest])
+    owner = np.repeat(np.arange(len(centrelines)), every.shape[1])
+    grid = Grid(owner[:0], first[:0]).with_points(owner, every.ravel())
     for i, contour in enumerate(centrelines.contours):
         breaks = contour.breaks()
         breaks = breaks[(breaks > last[i]) & (breaks < first[i])]

@@ -15,7 +15,7 @@ from analytic.problem.contours.many import Contours
 from analytic.solver.branch import Branch
 from analytic.solver.grid import Samples
 
-_STEPS = 4  # of Newton's method on a cubic, from a parabola that is close to it
+_STEPS = 2  # of Newton's method on a cubic, from a parabola that is close to it
 _DROP = 0.6  # of a hardly bent cantilever's tip, times its deflection squared [1/L]
 _TURN = 1.5  # of its tip, by the deflection [rad/L]
 

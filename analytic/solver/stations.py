@@ -93,9 +93,9 @@ def _newton(
     step = np.full_like(t, np.inf)
     going = np.arange(t.size)
     for _ in range(_ITERATIONS):
-        owner, foot_x, low, high = stations.part(going)
+        owner, foot_x, low, high = stations
         with np.errstate(all="ignore"):  # folds and first contacts: what is not finite is no step
-            states = contact(centrelines.at(owner, t), excess, tangent[going])
+            states = contact(centrelines.at(owner, t), excess, tangent)
             too_high, too_far, extent = _misses(states, foot_x, t)
             missed = np.fmax(np.abs(too_high), np.abs(too_far)) / extent
         missed = np.where(np.isnan(missed), np.inf, missed)
@@ -104,23 +104,25 @@ def _newton(
             best, less = now, missed < np.inf
         else:
             less = missed <= best.missed[going]
-            best.replace(going[less], now.part(less))
+            if going.size == best.t.size and less.all():
+                best = now
+            else:
+                best.replace(going[less], now.part(less))
         fine = np.where(step <= _LAST, _ROUNDED, _FINEST)
         enough = (missed <= fine) | (~less & (missed <= _EXACT))
         more = np.flatnonzero(~((enough & (step <= _CLOSE)) | (missed == 0)))
         if not more.size:
             break
-        going, now = going[more], now.part(more)
-        t, excess = now.t, now.states.excess
-        with np.errstate(all="ignore"):
-            step_t, step_w = _steps(now.states, too_high[more], too_far[more])
-        step_t = np.where(np.isfinite(step_t), step_t, 0.0)
-        step_w = np.where(np.isfinite(step_w), step_w, 0.0)
-        new_t = np.clip(t - step_t, low[more], high[more])
         with np.errstate(all="ignore"):  # as much as the rotation itself, or more, is no last step
+            step_t, step_w = _steps(states, too_high, too_far)
+            step_t = np.where(np.isfinite(step_t), step_t, 0.0)
+            step_w = np.where(np.isfinite(step_w), step_w, 0.0)
+            new_t = np.minimum(np.maximum(t - step_t, low), high)
             turned = np.where(step_w == 0, 0.0, np.abs(step_w) / excess)
-        step = np.maximum(np.abs(new_t - t), turned)
-        t, excess = new_t, np.clip(excess - step_w, excess / 10, _MOST_TURNED)
+            step = np.maximum(np.abs(new_t - t), turned)[more]
+            new_excess = np.minimum(np.maximum(excess - step_w, excess / 10), _MOST_TURNED)
+        t, excess = new_t[more], new_excess[more]
+        going, stations, tangent = going[more], stations.part(more), tangent[more]
     assert best is not None
     return best
 
