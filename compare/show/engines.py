@@ -16,7 +16,15 @@ from compare.explain.split import Split, split
 from compare.show.colophon import colophon
 from compare.show.page import document, inline_svg, png, render
 from compare.show.side_by_side import SideBySide, picture, seconds_per_station, side_by_side
-from compare.show.style import LARGE, READING_COLOURS, READING_MARKERS, SMALL, SYMBOLS, label
+from compare.show.style import (
+    AT_TOP,
+    LARGE,
+    READING_COLOURS,
+    READING_MARKERS,
+    SMALL,
+    SYMBOLS,
+    label,
+)
 
 _DECADE = 10.0  # of time, drawn at least
 
@@ -281,7 +289,7 @@ def error_against_time(many: ManyEngines) -> Figure:
         ax.set_xlim(middle / np.sqrt(_DECADE), middle * np.sqrt(_DECADE))
     for formatter in (ax.xaxis.set_major_formatter, ax.xaxis.set_minor_formatter):
         formatter(LogFormatter(minor_thresholds=(1.5, 0.4)))  # 50, not 5 x 10^1
-    ax.set_title(f"{label(many.case.name)}: error against time", fontsize=LARGE)
+    ax.set_title(f"{label(many.case.name)}: error against time", fontsize=LARGE, y=AT_TOP)
     ax.set_xlabel("processor time a station [ms], building the model included")
     ax.set_ylabel("rms relative to the largest magnitude")
     ax.grid(which="both", alpha=0.25)

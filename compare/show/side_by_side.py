@@ -12,7 +12,7 @@ from analytic import CLAMP_READINGS, Readings
 from compare.comparison import Comparison, compare
 from compare.show.figures.over_foot import foot_label, shade_reference
 from compare.show.figures.thinning import draw
-from compare.show.style import LARGE, LINE_STYLES, SERIES, SMALL, SYMBOLS, label
+from compare.show.style import AT_TOP, LARGE, LINE_STYLES, SERIES, SMALL, SYMBOLS, label
 
 
 @dataclass(frozen=True)
@@ -153,7 +153,7 @@ def picture(found: SideBySide) -> Figure:
                 label=label(candidate),
             )
         ax.ticklabel_format(axis="y", scilimits=(-2, 2))
-        ax.set_title(SYMBOLS[name], fontsize=LARGE)
+        ax.set_title(SYMBOLS[name], fontsize=LARGE, y=AT_TOP)
         ax.set_xlabel(foot_label(first.reference))
     axes[0].set_ylabel(f"difference from {label(found.reference)}\nrelative to largest magnitude")
     handles, labels = axes[0].get_legend_handles_labels()

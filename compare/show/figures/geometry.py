@@ -20,6 +20,7 @@ from compare.show.figures.over_foot import foot, on_vibrissa, place_labels
 from compare.show.figures.thinning import cloud, draw
 from compare.show.quantities import quantity
 from compare.show.style import (
+    AT_TOP,
     BODY,
     FAINT,
     GREEN,
@@ -60,7 +61,7 @@ def geometry(comparison: Comparison) -> Figure:
         phase = comparison.judged[which].phase
         _draw_shapes(ax, readings, phase)
         _draw_object(ax, readings, phase)
-        ax.set_title(f"{which}: {label(readings.source)}", loc="left", fontsize=NORMAL, y=1.0)
+        ax.set_title(f"{which}: {label(readings.source)}", loc="left", fontsize=NORMAL, y=AT_TOP)
         ax.set_ylabel("$y$ / $L$")
         ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
     foot_x, beam = foot(comparison.reference), comparison.reference.beam

@@ -7,7 +7,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from compare.show.page import short
-from compare.show.style import BLUE, BODY, GREEN, GREY, INK, ORANGE, PAPER, PHASE_NAMES, SMALL
+from compare.show.style import (
+    AT_TOP,
+    BLUE,
+    BODY,
+    GREEN,
+    GREY,
+    INK,
+    ORANGE,
+    PAPER,
+    PHASE_NAMES,
+    SMALL,
+)
 
 _LEVELS = ((BLUE, "o"), (ORANGE, "s"), (GREEN, "^"))  # by level of noise
 _DARK = -2.2  # decades; more is so dark that words on it are white
@@ -38,7 +49,9 @@ def picture(found: pd.DataFrame, title: str) -> Figure:
     axes = figure.subplots(1, max(len(phases), 1), squeeze=False, sharey=True)[0]
     for ax, phase in zip(axes, phases, strict=False):
         _draw(ax, found[found["phase"] == phase], methods)
-        ax.set_title(f"{PHASE_NAMES[phase]}, {_count(found, phase)} contacts", fontsize=SMALL + 1)
+        ax.set_title(
+            f"{PHASE_NAMES[phase]}, {_count(found, phase)} contacts", fontsize=SMALL + 1, y=AT_TOP
+        )
     axes[0].set_yticks(range(len(methods)), methods)
     axes[0].invert_yaxis()
     handles, labels = axes[0].get_legend_handles_labels()
@@ -102,7 +115,7 @@ def side_by_side(found: pd.DataFrame, title: str) -> Figure:
                 color=PAPER if size > _DARK else INK,
             )  # fmt: skip
         ax.set_xticks(range(len(kinds)), kinds, rotation=35, ha="right", fontsize=SMALL)
-        ax.set_title(PHASE_NAMES[phase], fontsize=SMALL + 1)
+        ax.set_title(PHASE_NAMES[phase], fontsize=SMALL + 1, y=AT_TOP)
     axes[0].set_yticks(range(len(methods)), methods, fontsize=SMALL)
     bar = figure.colorbar(image, ax=axes, label="median error / $L$", shrink=0.8)
     bar.set_ticks(

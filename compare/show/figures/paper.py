@@ -19,6 +19,7 @@ from analytic import (
 from compare.show.figures.geometry import at_equal_scales
 from compare.show.figures.over_foot import foot, unit
 from compare.show.style import (
+    AT_TOP,
     FAINT,
     GREEN,
     INK,
@@ -130,7 +131,7 @@ def profile(readings: Readings) -> Figure:
         ax.plot(x / scale, y / scale, ".", color=colour, label=name)
     ax.set_xlabel(r"$\xi$ / $L$")
     ax.set_ylabel(r"$\eta$ / $L$")
-    ax.set_title(label(readings.provenance["profile"]), fontsize=NORMAL)
+    ax.set_title(label(readings.provenance["profile"]), fontsize=NORMAL, y=AT_TOP)
     figure.legend(loc="outside lower center", ncols=2, frameon=False)
     at_equal_scales(figure, [ax], 6.5)
     return figure

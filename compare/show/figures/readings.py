@@ -26,6 +26,7 @@ from compare.show.figures.over_foot import (
 )
 from compare.show.figures.thinning import draw
 from compare.show.style import (
+    AT_TOP,
     CANDIDATE,
     INK,
     LARGE,
@@ -138,7 +139,7 @@ def _draw_reading(upper: Axes, lower: Axes, comparison: Comparison, name: str) -
     draw(upper, *curve, label=label(reference.source), **LINE)
     points = foot(candidate), scaled(candidate, comparison.judged["candidate"], name)
     draw(upper, *points, label=label(candidate.source), **dots(comparison))
-    upper.set_title(reading_label(reference, name), fontsize=LARGE, y=1.0)
+    upper.set_title(reading_label(reference, name), fontsize=LARGE, y=AT_TOP)
     lower.axhline(0, color=INK, linewidth=0.8)
     draw(lower, *_difference(comparison, name), **dots(comparison) | {"markersize": _ALONE})
     lower.set_xlabel(foot_label(reference))

@@ -6,7 +6,7 @@ from analytic import CLAMP_READINGS
 from compare.comparison import Comparison
 from compare.show.figures.over_foot import foot_label, shade_reference
 from compare.show.figures.thinning import draw
-from compare.show.style import BLUE, GREY, INK, PAGE_WIDTH, SKY, SMALL, SYMBOLS
+from compare.show.style import AT_TOP, BLUE, GREY, INK, PAGE_WIDTH, SKY, SMALL, SYMBOLS
 from compare.validate.validation import Validation
 
 _EXPANDED = 2  # standard uncertainties, at one station of one reading
@@ -49,6 +49,7 @@ def validation_picture(comparison: Comparison, found: Validation) -> Figure:
             f"{SYMBOLS[name]}: rms {one.error:.1e}, {said} "
             f"(limit {one.limit:.1e} = {one.coverage:.2f} $u_\\mathrm{{val}}$)",
             fontsize=SMALL + 1,
+            y=AT_TOP,
         )
         ax.set_ylabel("of the largest magnitude", fontsize=SMALL)
         ax.tick_params(labelsize=SMALL)

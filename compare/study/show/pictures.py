@@ -11,7 +11,7 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
-from compare.show.style import FAINT, GREY, INK, LINE_STYLES, ORANGE, SERIES, SMALL, label
+from compare.show.style import AT_TOP, FAINT, GREY, INK, LINE_STYLES, ORANGE, SERIES, SMALL, label
 from compare.study.show.questions import Question
 from compare.study.show.results import WORST, StudyResults, together
 from compare.study.show.slices import Line, lines, plane, words
@@ -93,7 +93,7 @@ def maps(found: StudyResults, question: Question) -> dict[str, Figure]:
             _dress(ax, done[across], across, "x")
             _dress(ax, done[up], up, "y")
             title = ", ".join(filter(None, (beam, f"at {words(held)}" if held else "")))
-            ax.set_title(label(title), fontsize=SMALL)
+            ax.set_title(label(title), fontsize=SMALL, y=AT_TOP)
             drawn["-".join(filter(None, (across, up, beam)))] = figure
     return drawn
 
@@ -166,7 +166,7 @@ def _over_axis(found: StudyResults, question: Question, axis: str, cut: list[Lin
     ax.grid(axis="y", color=FAINT, alpha=0.35, linewidth=0.6)
     held = {key: value for key, value in cut[0].held.items() if key != varying}
     if held:
-        ax.set_title(f"at {label(words(held))}", fontsize=SMALL)
+        ax.set_title(f"at {label(words(held))}", fontsize=SMALL, y=AT_TOP)
     if len(cut) > 1:
         title = _label(varying) if varying else None
         figure.legend(
