@@ -274,6 +274,10 @@ class Lookout:
             return False
         points, depths = contacts.point[beads], contacts.distance[beads]
         depths = depths + self.radii[contacts.touch[beads]]
+        # No point of the object is nearer than a tangent, which mostly says enough.
+        least = self._obstacle.from_tangents(points, contacts.slope[beads])
+        if np.abs(least - depths).max() < _OVERLOOKED:
+            return False
         gap = self._obstacle.gap(self.window, points)
         if gap is not None and np.abs(gap[0] - depths).max() < _OVERLOOKED:
             return False

@@ -27,7 +27,7 @@ _BAD_STATES = (
     mujoco.mjtWarning.mjWARN_BADQVEL,
     mujoco.mjtWarning.mjWARN_BADQACC,
 )
-_FULL = [mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL]
+_FULL = np.array([mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL], int)
 ROUNDING = 1e-13  # L, of a contact's depth: that of its place, which all joints before it add to
 _DISTINCT = 1e-2  # of the largest; beads side by side share a load in ways that hardly differ
 _IMPEDANCE = 0.9  # MuJoCo's d; with the stiffness set below it cancels out of the law at rest

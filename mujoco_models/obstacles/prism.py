@@ -164,6 +164,11 @@ class Prism(Faceted):
         normal: Floats = (off.take(here) / distance).view(float).reshape(-1, 2)
         return distance, normal
 
+    def from_tangents(self, points: Floats, slope: Floats) -> Floats:
+        """From the lines of facets."""
+        facet = np.minimum(self.vertex(slope), len(self.facet_angles) - 1)
+        return self._below(points, facet)[0]
+
     def _under(self, points: Floats, facet: Integers) -> Integers:
         """The facets nearest to the points, shape (n,), by those that are near to them.
 

@@ -182,6 +182,23 @@ class Obstacle(ABC):
         """
         return None
 
+    def from_tangents(self, points: Floats, slope: Floats) -> Floats:
+        """How far points are below tangents of the contour; asked of upright obstacles only.
+
+        Parameters
+        ----------
+        points : array, shape (n, 2)
+            Positions [L].
+        slope : array, shape (n,)
+            Slope angles of the tangents, one for each point [rad].
+
+        Returns
+        -------
+        array, shape (n,)
+            No point is nearer to the contour than that [L].
+        """
+        raise TypeError(f"{type(self).__name__} is not upright")
+
     def is_cut(self, polyline: Floats) -> bool:
         """Whether a piece of a polyline is inside; asked of obstacles with corners only.
 
