@@ -21,7 +21,9 @@ from analytic.solver.contact_length import surplus_and_rate
 from analytic.solver.equilibria import equilibria_at
 from analytic.solver.tip import within_reach
 
-_COARSE = 65  # samples of the whole contour to begin with
+# Samples of the whole contour to begin with, as shares of the way along it. They are dense at both
+# ends: x0 starts like a square root at first contact and folds before the last.
+_COARSE = (1 - np.cos(np.linspace(0, np.pi, 65))) / 2
 _TURN = 0.1  # rad; the largest change of the slope angle between neighbours
 _RISE = 0.15  # the largest change of the height, relative
 _TRUST = 0.05  # by how much a mean slope may lie outside those at the ends, of the larger one
@@ -117,9 +119,7 @@ def along(centrelines: Contours, first: Floats, last: Floats) -> Grid:
     Grid
         With the zeros of the surplus, the lowest point and those next to each break of a contour.
     """
-    # Dense at both ends: x0 starts like a square root at first contact and folds before the last.
-    fraction = (1 - np.cos(np.linspace(0, np.pi, _COARSE))) / 2
-    coarse = first[:, None] + (last - first)[:, None] * fraction
+    coarse = first[:, None] + (last - first)[:, None] * _COARSE
     coarse = np.clip(coarse, last[:, None], first[:, None])
     every = np.column_stack([coarse, centrelines.lowest])
     owner = np.repeat(np.arange(len(centrelines)), every.shape[1])
