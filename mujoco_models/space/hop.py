@@ -9,13 +9,13 @@ from functools import partial
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from mujoco_models.space.balance import State
 from mujoco_models.space.forecast import Bow
-from mujoco_models.space.model import SpaceModel
 from mujoco_models.space.rest import Rest, Settled
-from mujoco_models.space.surface import STAYS, Feature, features_around
+from mujoco_models.space.surface import BESIDE, STAYS, Feature, features_around, features_at
 
 _FACES = 40  # over which a vibrissa hops at once
-_EDGE = 5e-4  # L, to which the end of a face is enclosed
+_EDGE = 1e-4  # L, to which the end of a face is enclosed
 
 
 def over_faces(rest: Rest, held: Settled, foot: Floats, far: float) -> Settled | None:
@@ -42,27 +42,49 @@ def over_faces(rest: Rest, held: Settled, foot: Floats, far: float) -> Settled |
         return None
     state, centre, begin = held.state, held.touch.centre, model.contact(held.touch)
     for _ in range(_FACES):
-        model.place(foot, state.configuration)
-        left = None
-        for surface in features_around(model, state.link, centre):
-            sought = partial(_use, rest, surface, foot)
-            reach = np.inf if surface.flat else far  # a way on is along a face
-            found = rest.settle(state, surface, foot, foot, held.touch.centre, reach, sought)
-            if found is None or not found.stable:
-                continue
-            by = found.touch.centre - centre
-            if found.stays:
-                away = float(np.linalg.norm(model.contact(found.touch) - begin))
-                return found if away <= far else None
-            share = _room(model, surface, found.state.link, centre, by)
-            if share > 0 and left is None:
-                left = found.state, centre + share * by
-        if left is None:
+        # Only where nothing that meets here leads on, what is next to it: a face beyond a corner
+        # may hold a vibrissa that goes another way.
+        found = None
+        for seen in (features_at, features_around):
+            surfaces = seen(model, state.link, centre)
+            found = _on(rest, surfaces, state, centre, foot, far)
+            if found is not None:
+                break
+        if found is None:
             return None
-        state, centre = left
+        if isinstance(found, Settled):
+            away = float(np.linalg.norm(model.contact(found.touch) - begin))
+            return found if away <= far else None
+        state, centre = found
         if float(np.linalg.norm(centre - held.touch.centre)) > far:
             return None
     return None
+
+
+def _on(
+    rest: Rest,
+    surfaces: list[Feature],
+    state: State,
+    centre: Floats,
+    foot: Floats,
+    far: float,
+) -> Settled | tuple[State, Floats] | None:
+    """Where it comes to rest on one of some surfaces, or where a face of them has ended."""
+    model, left = rest.model, None
+    start = model.contact(model.probe(state.link, centre))
+    for surface in surfaces:
+        sought = partial(_use, rest, surface, foot)
+        reach = np.inf if surface.flat else far  # a way on is along a face
+        found = rest.settle(state, surface, foot, foot, centre, reach, sought)
+        if found is None or not found.stable:
+            continue
+        if found.stays:
+            return found
+        by = model.contact(found.touch) - start
+        share = _room(surface, found.state.link, start, by)
+        if share > 0 and left is None:
+            left = found.state, start + share * by + model.radius * surface.normal
+    return left
 
 
 def _use(rest: Rest, surface: Feature, foot: Floats, bow: Bow) -> bool:
@@ -72,13 +94,13 @@ def _use(rest: Rest, surface: Feature, foot: Floats, bow: Bow) -> bool:
     return bow.stable and surface.missed_at(bow.link, rest.centre(bow, foot)) < STAYS
 
 
-def _room(model: SpaceModel, surface: Feature, link: int, centre: Floats, by: Floats) -> float:
-    """How much of a way is along a face."""
+def _room(surface: Feature, link: int, start: Floats, by: Floats) -> float:
+    """How much of a way of the contact is along a face."""
     size = float(np.linalg.norm(by))
-    first = min(1.0, 2 * model.radius / max(size, 1e-300))
+    first = min(1.0, 2 * BESIDE / max(size, 1e-300))
 
     def stays(share: float) -> bool:
-        return surface.missed_at(link, centre + share * by) < STAYS
+        return surface.missed_at(link, start + share * by + BESIDE * surface.normal) < STAYS
 
     if not surface.flat or not stays(first):
         return 0.0

@@ -21,6 +21,9 @@ _STEPS = (
 )  # L, over which normals are compared: smaller where the first is unclear
 _FLAT, _SHARP = 0.1, 0.9  # of 1/distance: how fast normals turn that do not turn, or do
 _RINGS = 0.25, 1.0  # radii of the vibrissa; an edge's fan of normals is narrower than that
+BESIDE = 2e-4
+"""From where next to the body it is looked for what meets at a contact [L]: twice as far as that
+may be from the edge over which it goes."""
 STAYS = 1e-8
 """How far a feature and the mesh may be apart where they are one [L]: its place and direction are
 found to that, over its length; what has left it by less has hardly moved."""
@@ -184,13 +187,37 @@ def surface_at(model: SpaceModel, link: int, touch: Touch) -> Surface:
     return Feature(model, touch.centre - apart * n, n, basis, basis.T @ basis)
 
 
+def features_at(model: SpaceModel, link: int, centre: Floats) -> list[Feature]:
+    """The faces and the edges of a mesh that meet where a bead touches, faces first.
+
+    They are looked for from next to the body, where the fans of normals of edges are narrow.
+
+    Parameters
+    ----------
+    model : SpaceModel
+        Of a mesh.
+    link : int
+        Whose bead.
+    centre : array, shape (3,)
+        Where it is [L].
+
+    Returns
+    -------
+    list of Feature
+        Each once.
+    """
+    touch = model.probe(link, centre)
+    low = model.contact(touch) + BESIDE * touch.normal
+    return _features(model, link, low + BESIDE * _ring(touch.normal))
+
+
 def features_around(model: SpaceModel, link: int, centre: Floats) -> list[Feature]:
     """The faces and the edges of a mesh next to a bead, faces first.
 
     Parameters
     ----------
     model : SpaceModel
-        Placed, of a mesh.
+        Of a mesh.
     link : int
         Whose bead.
     centre : array, shape (3,)
@@ -201,19 +228,24 @@ def features_around(model: SpaceModel, link: int, centre: Floats) -> list[Featur
     list of Feature
         Each once.
     """
+    ring = _ring(model.probe(link, centre).normal)
+    rings = [centre + size * model.radius * ring for size in _RINGS]
+    return _features(model, link, np.concatenate(rings))
+
+
+def _features(model: SpaceModel, link: int, places: Floats) -> list[Feature]:
+    """What a bead touches in some places."""
     faces: list[Feature] = []
     edges: list[Feature] = []
-    ring = _ring(model.probe(link, centre).normal)
-    for size in _RINGS:
-        for way in ring:
-            touch = model.probe(link, centre + size * model.radius * way)
-            if any(np.abs(touch.normal - one.normal).max() < _SAME_FACE for one in faces):
-                continue
-            found = surface_at(model, link, touch)
-            assert isinstance(found, Feature)
-            known = faces if found.flat else edges
-            if all(np.abs(found.span - one.span).max() > _SAME_NORMAL for one in known):
-                known.append(found)
+    for place in places:
+        touch = model.probe(link, place)
+        if any(np.abs(touch.normal - one.normal).max() < _SAME_FACE for one in faces):
+            continue
+        found = surface_at(model, link, touch)
+        assert isinstance(found, Feature)
+        known = faces if found.flat else edges
+        if all(np.abs(found.span - one.span).max() > _SAME_NORMAL for one in known):
+            known.append(found)
     return faces + edges
 
 

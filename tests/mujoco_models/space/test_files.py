@@ -4,8 +4,17 @@ import pytest
 
 from analytic.space import solve_space
 from mujoco_models import simulate_space
-from tests.fuzz.space import judge
+from tests.fuzz.space import events, judge, trial
 from tests.mujoco_models.space.files import FILES, oblique
+
+
+@pytest.mark.slow
+def test_over_an_edge_next_to_a_corner_nothing_beyond_the_corner_holds(tmp_path):
+    # 7e-4 L beside the corner; the face beyond has a stable state 0.02 L away, the other way.
+    case = trial(82001, tmp_path, stations=8)
+    slips = [events(sweep(case), "slip-off") for sweep in (solve_space, simulate_space)]
+    assert slips[1] == pytest.approx(slips[0], abs=5e-4)  # of 40 links; found on 1.5e-4 L
+    assert len(slips[0]) == 1
 
 
 @pytest.mark.trial
