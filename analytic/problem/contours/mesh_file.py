@@ -2,7 +2,7 @@
 
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,13 +11,11 @@ from analytic.problem.contours.simplify import thinned
 from analytic.problem.errors import InputError
 from analytic.problem.files import as_path, regular_file
 
-if TYPE_CHECKING:
-    from trimesh import Trimesh
-
 SUFFIXES = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf")
 _ASCII = bytes(range(128)) + 128 * b"?"
 _LARGEST = 256_000_000  # bytes; an STL file of 5 million faces
 _ROUNDING = 1e-5  # of the volume: files hold single precision
+_ONE_PLACE = 1e-8  # of the extent: vertices that are as near are one
 _FLAT = 1e-7  # of the extent: likewise
 # Odd numbers without a pattern, to scatter what is multiplied by them.
 _HASH = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dtype=np.uint64)
@@ -40,10 +38,20 @@ class Body(NamedTuple):
 
 
 class _Read(NamedTuple):
-    mesh: "Trimesh"
-    """In units of `size`, about `middle`; vertices at one place are one."""
+    vertices: Floats
+    """In units of `size`, about `middle`; those at one place are one."""
+    faces: Integers
     middle: Floats
     size: float
+
+    def sides(self) -> Integers:
+        """A number for each side of each triangle, ascending.
+
+        Half of it, rounded down, is that of the edge; even and odd are its two directions.
+        """
+        begins, ends = self.faces.ravel(), np.roll(self.faces, -1, axis=1).ravel()
+        edges = np.minimum(begins, ends) * len(self.vertices) + np.maximum(begins, ends)
+        return np.sort(2 * edges + (begins < ends))
 
 
 def read_body(file: str | Path, hull: bool, tolerance: float) -> Body:
@@ -77,16 +85,16 @@ def read_body(file: str | Path, hull: bool, tolerance: float) -> Body:
 
     file = as_path(file, "mesh file")
     read = _load(file)
-    mesh, middle, size = read
-    if not hull and not mesh.is_watertight:
+    size, sides = read.size, read.sides()
+    if not hull and not _is_closed(sides):
         raise InputError(
             f"mesh {file}",
-            f"open{_hole(read)}",
+            f"open{_hole(read, sides)}",
             "watertight",
             "close its holes, or take its hull (hull = true)",
         )
     try:
-        kept, miss = thinned(np.asarray(mesh.vertices), tolerance / size, _MOST_VERTICES)
+        kept, miss = thinned(read.vertices, tolerance / size, _MOST_VERTICES)
         body, volume = _hull(kept)
     except QhullError as error:
         raise InputError(f"mesh {file}", "flat", "a solid", "check it") from error
@@ -98,32 +106,43 @@ def read_body(file: str | Path, hull: bool, tolerance: float) -> Body:
             f"{file} has too many vertices",
         )
     if not hull:
-        _check_convex(read, volume, file)
-    return body._replace(vertices=middle + size * body.vertices, miss=miss * size)
+        _check_convex(read, sides, volume, file)
+    return body._replace(vertices=read.middle + size * body.vertices, miss=miss * size)
 
 
-def _hole(read: _Read) -> str:
+def _is_closed(sides: Integers) -> bool:
+    """Whether each edge has two faces."""
+    edges = sides // 2
+    if len(edges) % 2:
+        return False
+    paired = (edges[::2] == edges[1::2]).all()
+    return bool(paired and (edges[1:-1:2] != edges[2::2]).all())
+
+
+def _hole(read: _Read, sides: Integers) -> str:
     """Where an edge has one face only; empty if some have more than two instead."""
-    mesh, middle, size = read
-    edges, counts = np.unique(mesh.edges_sorted, axis=0, return_counts=True)
+    edges, counts = np.unique(sides // 2, return_counts=True)
     rims = edges[counts == 1]
     if not len(rims):
         return ""
-    x, y, z = middle + size * mesh.vertices[rims[0]].mean(axis=0)
+    ends = read.vertices[list(divmod(int(rims[0]), len(read.vertices)))]
+    x, y, z = read.middle + read.size * ends.mean(axis=0)
     return f" at ({x:.4g}, {y:.4g}, {z:.4g})"
 
 
-def _check_convex(read: _Read, hull: float, file: Path) -> None:
-    """Refuse a mesh that fills less than the volume of its hull."""
-    mesh, middle, size = read
-    corners = mesh.triangles - mesh.vertices.mean(axis=0)
+def _check_convex(read: _Read, sides: Integers, hull: float, file: Path) -> None:
+    """Refuse a closed mesh that fills less than the volume of its hull."""
+    corners = (read.vertices - read.vertices.mean(axis=0))[read.faces]
     cones = np.einsum("nd,nd->n", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
-    if not mesh.is_winding_consistent:
+    if not (sides.reshape(-1, 2) % 2 == [0, 1]).all():
         cones = np.abs(cones)  # whichever way the faces look
     volume = abs(float(cones.sum()))
     if volume < (1 - _ROUNDING) * hull:
+        import trimesh
+
+        mesh = trimesh.Trimesh(read.vertices, read.faces, process=False)
         dent = int(np.argmax(mesh.face_adjacency_projections * np.sign(mesh.volume)))
-        x, y, z = middle + size * mesh.vertices[mesh.face_adjacency_edges[dent, 0]]
+        x, y, z = read.middle + read.size * read.vertices[mesh.face_adjacency_edges[dent, 0]]
         raise InputError(
             f"mesh {file}",
             f"filling {volume / hull:.2%} of its convex hull, dented at "
@@ -154,7 +173,8 @@ def _load(file: Path) -> _Read:
                 found = trimesh.load_mesh(source, file_type=kind, process=False, **options)
                 points = np.asarray(found.vertices, dtype=float).reshape(-1, 3)
                 faces = np.asarray(found.faces).reshape(-1, 3)
-            size = float(np.ptp(points[faces], axis=(0, 1)).max()) if len(faces) else 0.0
+            points, faces = _merged(points, faces, points)
+            size = float(np.ptp(points, axis=0).max()) if len(faces) else 0.0
     except ImportError as error:  # of what trimesh needs for some files only
         package = error.name or str(error)
         raise InputError(
@@ -176,21 +196,20 @@ def _load(file: Path) -> _Read:
         raise InputError(
             f"mesh {file}", f"of size {size:.3g}", "between 1e-90 and 1e90", "change its unit"
         )
-    points, faces = _merged(points, faces)
-    middle = points[faces].mean(axis=(0, 1))
-    mesh = trimesh.Trimesh((points - middle) / size, faces, process=False)
-    mesh.remove_unreferenced_vertices()
-    mesh.merge_vertices()  # with an absolute tolerance: hence in units of its size
-    one, two, three = mesh.faces.T  # slivers close it
-    mesh.update_faces((one != two) & (two != three) & (three != one))
-    if len(mesh.faces) < 4:  # a vertex far away makes all others one
+    middle = np.bincount(faces.ravel()) @ points / faces.size
+    vertices = (points - middle) / size
+    # What is as near as rounding is at one place too.
+    vertices, faces = _merged(vertices, faces, np.rint(vertices / _ONE_PLACE))
+    one, two, three = faces.T  # slivers close it
+    faces = faces[(one != two) & (two != three) & (three != one)]
+    if len(faces) < 4:  # a vertex far away makes all others one
         raise InputError(
             f"mesh {file}",
-            f"of size {size:.3g} with {len(mesh.faces)} faces that are not next to nothing",
+            f"of size {size:.3g} with {len(faces)} faces that are not next to nothing",
             "a solid of four or more",
             "check its vertices",
         )
-    return _Read(mesh, middle, size)
+    return _Read(vertices, faces, middle, size)
 
 
 def _triangles(found: dict[str, Any]) -> tuple[Floats, Integers]:
@@ -200,21 +219,24 @@ def _triangles(found: dict[str, Any]) -> tuple[Floats, Integers]:
     return points, np.arange(len(points)).reshape(-1, 3)
 
 
-def _merged(points: Floats, faces: Integers) -> tuple[Floats, Integers]:
-    """Points that are alike to the last digit once each: an STL file repeats every vertex.
+def _merged(points: Floats, faces: Integers, places: Floats) -> tuple[Floats, Integers]:
+    """Points of faces, those at one place once: an STL file repeats every vertex.
 
-    Without sorting them: by one number for each, whose points are then compared.
+    Without sorting them: by one number for each, whose places are then compared.
     """
-    bits = np.ascontiguousarray(points + 0.0).view(np.uint64)  # + 0.0 turns -0.0 into 0.0
+    bits = np.ascontiguousarray(places + 0.0).view(np.uint64)  # + 0.0 turns -0.0 into 0.0
     bits ^= bits >> np.uint64(29)  # numbers of single precision end with so many zeros
     import pandas as pd  # slow to load, and few cases have a mesh
 
     codes, numbers = pd.factorize((bits * _HASH).sum(axis=1))
     first = np.empty(len(numbers), dtype=np.intp)
     first[codes[::-1]] = np.arange(len(points))[::-1]
-    if not np.array_equal(points[first][codes], points):  # two points with one number
-        return points, faces
-    return points[first], codes[faces]
+    if not np.array_equal(places[first][codes], places):  # two places with one number
+        first, codes = np.unique(places, axis=0, return_index=True, return_inverse=True)[1:]
+    faces = codes.ravel()[faces]
+    used = np.zeros(len(first), dtype=bool)
+    used[faces] = True
+    return points[first[used]], (np.cumsum(used) - 1)[faces]
 
 
 def _in_ascii(content: bytes, kind: str) -> BytesIO:
@@ -222,7 +244,7 @@ def _in_ascii(content: bytes, kind: str) -> BytesIO:
     text = len(content)
     if kind == "ply":
         text = content.find(b"end_header") + 1
-    elif kind == "stl" and content[84:].count(b"\0"):  # a binary one has no text but its header
+    elif kind == "stl" and content.find(b"\0", 84) >= 0:  # a binary one has no text but its header
         text = 80
     return BytesIO(content[:text].translate(_ASCII) + content[text:])
 

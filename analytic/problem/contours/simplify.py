@@ -42,7 +42,7 @@ def thinned(points: Floats, tolerance: float, most: int) -> tuple[Floats, float]
     mixed, enough = np.random.default_rng(0).permutation(len(points)), False
     for _ in range(_ROUNDS):
         enough = enough or len(kept) == most
-        asked = everyone if enough else mixed[: max(_SAMPLE, _EACH * len(kept))]
+        asked = everyone if enough else np.sort(mixed[: max(_SAMPLE, _EACH * len(kept))])
         outside, face = _outside(points[asked], points[kept])
         miss = float(outside.max())
         if len(asked) == len(points) and (miss <= allowed or len(kept) == most):
