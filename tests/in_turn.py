@@ -11,7 +11,7 @@ from concurrent.futures import Executor, Future
 class InTurn(Executor):
     """Does in this process, one after the other, what it is given."""
 
-    def __init__(self, count: int) -> None:
+    def __init__(self, count: int, preload: tuple[str, ...] = ()) -> None:
         assert count >= 1
 
     def submit(self, act, /, *args, **kwargs) -> Future:

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import cache
 
 import mujoco
 import numpy as np
@@ -29,6 +30,7 @@ pytestmark = pytest.mark.usefixtures("in_turn")
 
 CASE = named_case("parabola")
 GRID = Sweep(80, float(CASE.foot_x[0]), float(CASE.foot_x[-1]))
+known = cache(variations)
 
 
 def measured(claimed: Case, made: Case, settings: Settings) -> Budget:
@@ -37,7 +39,7 @@ def measured(claimed: Case, made: Case, settings: Settings) -> Budget:
         name: replace(simulate_sweep(made, changed), beam=claimed.beam)
         for name, changed in controlled_changes(settings).items()
     }
-    return budget(solve_sweep(claimed), runs, variations(claimed))
+    return budget(solve_sweep(claimed), runs, known(claimed))
 
 
 def total(found: Budget, part: str) -> float:
@@ -227,7 +229,7 @@ def test_a_shifted_stage_is_suspected():
         )
         for name, changed in controlled_changes(Settings(segments=20)).items()
     }
-    found = budget(solve_sweep(case), shifted, variations(case))
+    found = budget(solve_sweep(case), shifted, known(case))
     assert found.suspects[0].name == "foot_x"
     assert found.suspects[0].change == pytest.approx(0.005, rel=0.1)
 
@@ -290,7 +292,7 @@ def test_friction_left_on_is_suspected():
         name: replace(run, table=run.table.assign(**{n: run.values(n) + more[n] for n in more}))
         for name, run in runs.items()
     }
-    assert_friction(budget(smooth, rubbing, variations(case)))
+    assert_friction(budget(smooth, rubbing, known(case)))
 
 
 def assert_friction(found: Budget):
