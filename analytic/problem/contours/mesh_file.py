@@ -89,9 +89,9 @@ def read_body(file: str | Path, hull: bool, tolerance: float) -> Body:
     if not hull and not _is_closed(sides):
         raise InputError(
             f"mesh {file}",
-            f"open{_hole(read, sides)}",
+            _fault(read, sides),
             "watertight",
-            "close its holes, or take its hull (hull = true)",
+            "mend it, or take its hull (hull = true)",
         )
     try:
         kept, miss = thinned(read.vertices, tolerance / size, _MOST_VERTICES)
@@ -119,15 +119,15 @@ def _is_closed(sides: Integers) -> bool:
     return bool(paired and (edges[1:-1:2] != edges[2::2]).all())
 
 
-def _hole(read: _Read, sides: Integers) -> str:
-    """Where an edge has one face only; empty if some have more than two instead."""
+def _fault(read: _Read, sides: Integers) -> str:
+    """What is wrong with a mesh that is not closed, and where: a rim rather than a ridge."""
     edges, counts = np.unique(sides // 2, return_counts=True)
-    rims = edges[counts == 1]
-    if not len(rims):
-        return ""
-    ends = read.vertices[list(divmod(int(rims[0]), len(read.vertices)))]
+    worst = np.flatnonzero(counts != 2)
+    one = worst[np.argmin(counts[worst])]
+    ends = read.vertices[list(divmod(int(edges[one]), len(read.vertices)))]
     x, y, z = read.middle + read.size * ends.mean(axis=0)
-    return f" at ({x:.4g}, {y:.4g}, {z:.4g})"
+    what = "open" if counts[one] == 1 else f"with {counts[one]} faces on one edge"
+    return f"{what} at ({x:.4g}, {y:.4g}, {z:.4g})"
 
 
 def _check_convex(read: _Read, sides: Integers, hull: float, file: Path) -> None:

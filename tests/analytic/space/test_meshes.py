@@ -118,10 +118,12 @@ def test_a_mesh_in_millimetres_and_inside_out(tmp_path):
 def test_meshes_that_cannot_be_touched_are_refused_in_one_line(tmp_path):
     whole = ball()
     hole = trimesh.Trimesh(whole.vertices, whole.faces[5:], process=False)
+    doubled = trimesh.Trimesh(whole.vertices, [*whole.faces, whole.faces[7]], process=False)
     dented = whole.copy()
     dented.vertices[0] *= [1, 0.4, 1]
     for mesh, says, near in (
         (hole, "open at", whole.triangles_center[:5]),
+        (doubled, "with 3 faces on one edge at", whole.triangles_center[7:8]),
         (dented, "dented at", dented.vertices[:1]),
     ):
         with pytest.raises(InputError, match=says) as refused:
