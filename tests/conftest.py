@@ -25,6 +25,7 @@ def in_turn(monkeypatch):
     """Budgets are swept in this process."""
     for module in ("controlled", "moving"):
         monkeypatch.setattr(f"compare.simulate.{module}.Workers", InTurn)
+    monkeypatch.setattr("compare.simulate.workers.start_server", lambda preload: None)
 
 
 @cache
