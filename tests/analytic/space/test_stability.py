@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from analytic.space import Scene, contact_at, cylinder, ellipsoid, second_variation
+from analytic.space import Scene, contact_at, cylinder, ellipsoid, polyhedron, second_variation
 from analytic.space.solver.rod import Plane
 from analytic.space.solver.stability import margin
 from tests.analytic.space.second_variation import least_eigenvalue
@@ -11,6 +11,13 @@ from tests.analytic.space.second_variation import least_eigenvalue
 UP, RADIUS = np.array([0.0, 1.0, 0.0]), 0.02
 STATES = 200
 NEUTRAL = 1e-3  # of the scaled form: next to that 60 elements may see the other sign
+
+
+def by_elements(body, state):
+    force, plane = state.force, state.plane
+    moment = np.sqrt(force) * state.loaded.moment * plane.across
+    loads = state.foot, -force * plane.normal, moment, state.arc_length, plane.normal
+    return least_eigenvalue(lambda x: body.nearest(x, 0.25).normal, UP, (*loads, state.tangent), 60)
 
 
 @pytest.mark.slow
@@ -32,15 +39,38 @@ def test_the_second_variation_agrees_with_finite_elements():
             continue
         free = random.uniform(0.2, 1) if tangent else random.uniform(0.05, np.pi / 2 - alpha)
         state = contact_at(scene, place, free, tangent)
-        force, plane = state.force, state.plane
-        moment = np.sqrt(force) * state.loaded.moment * plane.across
-        loads = state.foot, -force * plane.normal, moment, state.arc_length, plane.normal
         form = second_variation(state, RADIUS)
         if abs(margin(form)) < NEUTRAL:
             continue
-        least = least_eigenvalue(
-            lambda x, body=body: body.nearest(x, 0.25).normal, UP, (*loads, tangent), 60
-        )
+        least = by_elements(body, state)
         assert (margin(form) > 0) == (least > 0), (tangent, alpha, margin(form), least)
         seen[tangent, least > 0] += 1
     assert min(seen.values()) > STATES / 20
+
+
+@pytest.mark.slow
+def test_it_does_so_on_edges_and_corners_of_meshes():
+    random, seen = np.random.default_rng(11), {}
+    while sum(seen.values()) < STATES / 2:
+        points = random.normal(size=(random.integers(6, 30), 3)) * random.uniform(0.2, 2, 3)
+        body = polyhedron(points + np.array([0, random.uniform(0.3, 1.5), 0]))
+        one, other, third = random.permutation(body.corners[random.integers(len(body.faces))])
+        on_edge = random.random() < 0.7
+        point = one + random.uniform(0.2, 0.8) * (other - one) if on_edge else third
+        normals = body.normals_at(point)
+        normal = random.dirichlet(np.ones(len(normals))) @ normals
+        place = point + 0.25 * normal / np.linalg.norm(normal)
+        alpha = Plane.of(UP, body.nearest(place, 0.25).normal).alpha
+        if len(normals) < 2 or not 0.05 < alpha < np.pi / 2 - 0.06:
+            continue
+        tangent = random.random() < 0.5
+        free = random.uniform(0.2, 1) if tangent else random.uniform(0.05, np.pi / 2 - alpha)
+        state = contact_at(Scene(body, UP, RADIUS), place, free, tangent)
+        form = second_variation(state, RADIUS)
+        if abs(margin(form)) < NEUTRAL:
+            continue
+        stable = margin(form) > 0
+        assert stable == (by_elements(body.feature(state.spot), state) > 0), (tangent, on_edge)
+        seen[on_edge, tangent, stable] = seen.get((on_edge, tangent, stable), 0) + 1
+    assert all(seen[True, tangent, stable] for tangent in (True, False) for stable in (True, False))
+    assert all(seen[False, tangent, False] for tangent in (True, False))
