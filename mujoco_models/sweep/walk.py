@@ -115,7 +115,8 @@ class Walk(Generic[Model]):
         while True:
             trial = self._onward(self._in_pace(step), target)
             if walls:
-                trial = walls.aim([*self._trail, (self._foot_x, self._state)], self._follows)
+                aim = walls.aim([*self._trail, (self._foot_x, self._state)], self._follows)
+                trial = self._onward(self._in_pace(aim - self._foot_x), aim)
             state, ended = self._near_rest(trial), False
             if self._follows(state):
                 self._accept(trial, state)
