@@ -8,8 +8,6 @@ the turns of the links, not of the joints between them, which makes a step linea
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg.lapack import dposv
-from scipy.optimize import nnls
 
 from analytic.problem.arrays import Booleans, Complexes, Floats, Integers
 from mujoco_models.model.balance import Mechanics
@@ -17,8 +15,7 @@ from mujoco_models.model.contacts import Contacts
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.state import State
 from mujoco_models.sweep.stiffness import Stiffness
-
-_TRIALS = 5  # of sets of contacts that may be the loaded ones
+from mujoco_models.sweep.unilateral import unilateral
 
 
 class Touch(NamedTuple):
@@ -105,11 +102,9 @@ class Newton:
         stiffness = self._stiffness(springs, contacts, slides, force, curvature, across, held, part)
         rows = np.concatenate([moments[None], comes])
         turns, self._doubled = stiffness.solve(rows, self._doubled)
-        nearer = comes @ turns.T  # by the moments, and by a unit of force at each contact
-        compliance = nearer[:, 1:].copy()
-        compliance.reshape(-1)[:: len(force) + 1] += 1 / rest
-        forces = _unilateral(compliance, distance + nearer[:, 0], loaded)
-        step = turns[0] + forces @ turns[1:]
+        freely, by_force = turns[0], turns[1:]
+        forces = unilateral(comes, by_force, 1 / rest, distance + comes @ freely, loaded)
+        step = freely + forces @ by_force
         whole = forces * model.contact_stiffness / rest
         shorter = min(1.0, numerics.largest_turn / max(step.max(), -step.min(), 1e-300))
         step[1:] -= step[:-1].copy()
@@ -274,24 +269,3 @@ def of_links(moments: Floats) -> Floats:
     found = moments.copy()
     found[:-1] -= moments[1:]
     return found
-
-
-def _unilateral(compliance: Floats, gap: Floats, guess: Booleans) -> Floats:
-    """Contact forces f >= 0 that minimise f.compliance.f/2 + gap.f, shape (n,).
-
-    What pulls is let go and what is cut is pressed, until nothing does; usually at once. If that
-    goes round in circles, an active-set method that never does finds them.
-    """
-    for _ in range(_TRIALS):
-        force, held = np.zeros(len(gap)), guess.nonzero()[0]
-        if held.size:
-            pressed = compliance.take(held, axis=0).take(held, axis=1)
-            _, force[held], failed = dposv(pressed, -gap.take(held))
-            if failed:
-                break
-        wrong = np.where(guess, force, compliance @ force + gap) < 0
-        if not np.count_nonzero(wrong):
-            return force
-        guess = guess ^ wrong
-    root = np.linalg.cholesky(compliance)
-    return np.asarray(nnls(root.T, -np.linalg.solve(root, gap))[0])

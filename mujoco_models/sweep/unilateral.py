@@ -1,0 +1,114 @@
+"""Which contacts push, and how hard, in a quadratic model of the energy.
+
+A beam that lies on a facet may rest on thousands of beads. What those give way by follows from the
+turns of far fewer links, but for each one's own softness: Sherman, Morrison and Woodbury's formula
+makes the cost linear in the contacts.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg.lapack import dposv
+from scipy.optimize import nnls
+
+from analytic.problem.arrays import Booleans, Floats, Integers
+
+_TRIALS = 5  # of sets of contacts that may be the loaded ones
+
+
+class Few(NamedTuple):
+    """The compliance of contacts as a matrix.
+
+    Attributes
+    ----------
+    whole : array, shape (n, n)
+        [L^3/EI].
+    """
+
+    whole: Floats
+
+    def forces(self, held: Integers, gap: Floats) -> Floats | None:
+        """What closes the gaps of those that are held; None if that is not stable."""
+        among = self.whole.take(held, axis=0).take(held, axis=1)
+        _, found, failed = dposv(among, -gap)
+        return None if failed else found
+
+    def moved(self, force: Floats) -> Floats:
+        """How far forces move all contacts."""
+        return np.asarray(self.whole @ force)
+
+
+class Many(NamedTuple):
+    """The same where contacts outnumber the links, which is what its rank is.
+
+    Attributes
+    ----------
+    comes, turns : array, shape (n, n_links)
+        How far each contact moves as a link turns, and how links turn under a unit of its force.
+    soft : array, shape (n,)
+        The contacts' own [L^3/EI].
+    """
+
+    comes: Floats
+    turns: Floats
+    soft: Floats
+
+    @property
+    def whole(self) -> Floats:
+        """As a matrix."""
+        return np.asarray(self.comes @ self.turns.T + np.diag(self.soft))
+
+    def forces(self, held: Integers, gap: Floats) -> Floats | None:
+        """What closes the gaps of those that are held; None if that is not stable."""
+        comes, stiff = self.comes[held], 1 / self.soft[held]
+        pushed = self.turns[held].T * stiff
+        links = np.linalg.solve(np.eye(comes.shape[1]) + pushed @ comes, pushed @ gap)
+        return np.asarray(-stiff * (gap - comes @ links))
+
+    def moved(self, force: Floats) -> Floats:
+        """How far forces move all contacts."""
+        return np.asarray(self.comes @ (force @ self.turns) + self.soft * force)
+
+
+def unilateral(comes: Floats, turns: Floats, soft: Floats, gap: Floats, guess: Booleans) -> Floats:
+    """Contact forces that push, or are zero where a gap stays open.
+
+    What pulls is let go and what is cut is pressed, until nothing does; usually at once. If that
+    goes round in circles, an active-set method that never does finds them.
+
+    Parameters
+    ----------
+    comes, turns : array, shape (n, n_links)
+        How far each contact moves as a link turns, and how links turn under a unit of its force.
+    soft : array, shape (n,)
+        Each contact's own compliance [L^3/EI].
+    gap : array, shape (n,)
+        How far off contacts are without any force, negative if they would be cut [L].
+    guess : array of bool, shape (n,)
+        Those that may push.
+
+    Returns
+    -------
+    array, shape (n,)
+        f >= 0 that minimises f.C.f/2 + gap.f with the compliance C of them all [EI/L^2].
+    """
+    compliance: Few | Many
+    if len(gap) > comes.shape[1]:
+        compliance = Many(comes, turns, soft)
+    else:
+        whole = comes @ turns.T
+        whole.reshape(-1)[:: len(gap) + 1] += soft
+        compliance = Few(whole)
+    for _ in range(_TRIALS):
+        force, held = np.zeros(len(gap)), guess.nonzero()[0]
+        if held.size:
+            found = compliance.forces(held, gap.take(held))
+            if found is None:
+                break
+            force[held] = found
+        wrong = np.where(guess, force, compliance.moved(force) + gap) < 0
+        if not np.count_nonzero(wrong):
+            return force
+        guess = guess ^ wrong
+    root = np.linalg.cholesky(compliance.whole)
+    return np.asarray(nnls(root.T, -np.linalg.solve(root, gap))[0])
