@@ -140,11 +140,12 @@ def _turned(alpha: Floats, sag: Floats, p: Floats, high: Floats) -> Floats:
             tried = _tried(p, alpha)
             step = _halley(p, tried, sag)[1]
             new = p - step
-            # After a small enough step the next would change round-off only.
+            # After a small enough step the next would change round-off only. That is not done to
+            # one because another needs it: what a tip is does not depend on the others.
             close = np.abs(step) <= _CLOSE * new
             if close.all():
                 break
-            p = new
+            p = np.where(close, p, new)
         found: Floats = tried.turned_to(new)
     poor = np.flatnonzero(~(close & (new <= high)))
     if poor.size:

