@@ -16,7 +16,7 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 _TRIALS = 5  # of sets of contacts that may be the loaded ones
 
 
-class Few(NamedTuple):
+class _Few(NamedTuple):
     """The compliance of contacts as a matrix.
 
     Attributes
@@ -38,7 +38,7 @@ class Few(NamedTuple):
         return np.asarray(self.whole @ force)
 
 
-class Many(NamedTuple):
+class _Many(NamedTuple):
     """The same where contacts outnumber the links, which is what its rank is.
 
     Attributes
@@ -92,13 +92,13 @@ def unilateral(comes: Floats, turns: Floats, soft: Floats, gap: Floats, guess: B
     array, shape (n,)
         f >= 0 that minimises f.C.f/2 + gap.f with the compliance C of them all [EI/L^2].
     """
-    compliance: Few | Many
+    compliance: _Few | _Many
     if len(gap) > comes.shape[1]:
-        compliance = Many(comes, turns, soft)
+        compliance = _Many(comes, turns, soft)
     else:
         whole = comes @ turns.T
         whole.reshape(-1)[:: len(gap) + 1] += soft
-        compliance = Few(whole)
+        compliance = _Few(whole)
     for _ in range(_TRIALS):
         force, held = np.zeros(len(gap)), guess.nonzero()[0]
         if held.size:

@@ -74,6 +74,7 @@ class Walk(Generic[Model]):
         self._shown = self._state
         self._budget = self._numerics.budget
         self._lost: str | None = None
+        self._dead_end: tuple[float, str] | None = None  # where no step leads on, and why
         self._smooth = True  # no step was taken in vain at this station and the last one
         self._curved = not model.layout.vibrissa.is_straight
         turn = model.obstacle.largest_curvature * model.layout.spacing
@@ -126,12 +127,15 @@ class Walk(Generic[Model]):
                 self._smooth, in_vain = False, True
                 ended = abs(trial - self._foot_x) <= least
                 step = (trial - self._foot_x) / 2
+                if self._dead_end and self._dead_end[0] == self._foot_x:
+                    return self._dead_end[1]  # there is no way on by smaller steps
                 if walls or state.stance is not self._state.stance or self._jumped(state):
                     walls.add(trial, state, self._foot_x)
             end = walls.nearest if walls else trial
             if ended or (walls and abs(end - self._foot_x) <= self._least(walls.beyond)):
                 trouble = self._decide((self._foot_x + end) / 2, target)
                 if trouble is not None:
+                    self._dead_end = self._foot_x, trouble
                     return trouble
                 walls.leave_behind(self._foot_x, target)
                 step = target - self._foot_x

@@ -91,7 +91,7 @@ def read_body(file: str | Path, hull: bool, tolerance: float) -> Body:
             f"mesh {file}",
             _fault(read, sides),
             "watertight",
-            "mend it, or take its hull (hull = true)",
+            "fix it, or take its hull (hull = true)",
         )
     try:
         kept, miss = thinned(read.vertices, tolerance / size, _MOST_VERTICES)

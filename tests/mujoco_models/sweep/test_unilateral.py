@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
-from mujoco_models.sweep.unilateral import Few, Many, unilateral
+from mujoco_models.sweep.unilateral import _Few, _Many, unilateral
 
 STIFF = 1e4
 
@@ -34,7 +34,7 @@ def test_what_pushes_closes_its_gap_and_the_others_stay_open(seed, contacts, lin
 @pytest.mark.parametrize("guessed", [False, True])
 def test_any_guess_leads_to_the_forces_of_another_method(guessed):
     comes, turns, soft, gap = drawn(1, 40, 6)
-    root = np.linalg.cholesky(Many(comes, turns, soft).whole)
+    root = np.linalg.cholesky(_Many(comes, turns, soft).whole)
     expected = nnls(root.T, -np.linalg.solve(root, gap))[0]
     found = unilateral(comes, turns, soft, gap, np.full(40, guessed))
     np.testing.assert_allclose(found, expected, atol=1e-8 * expected.max())
@@ -42,8 +42,8 @@ def test_any_guess_leads_to_the_forces_of_another_method(guessed):
 
 def test_many_contacts_are_reckoned_with_as_few_are():
     comes, turns, soft, gap = drawn(2, 30, 5)
-    many, held = Many(comes, turns, soft), np.arange(0, 30, 2)
-    few = Few(many.whole)
+    many, held = _Many(comes, turns, soft), np.arange(0, 30, 2)
+    few = _Few(many.whole)
     force = few.forces(held, gap[held])
     # Soft contacts share what stiff links cannot move: rounding grows with stiffness.
     np.testing.assert_allclose(many.forces(held, gap[held]), force, rtol=1e-8, atol=1e-12 * STIFF)
