@@ -116,8 +116,7 @@ class Walk(Generic[Model]):
         while True:
             trial = self._onward(self._in_pace(step), target)
             if walls:
-                aim = walls.aim([*self._trail, (self._foot_x, self._state)], self._follows)
-                trial = self._onward(self._in_pace(aim - self._foot_x), aim)
+                trial = walls.aim([*self._trail, (self._foot_x, self._state)], self._follows)
             state, ended = self._near_rest(trial), False
             if self._follows(state):
                 self._accept(trial, state)

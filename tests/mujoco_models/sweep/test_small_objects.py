@@ -132,3 +132,11 @@ def test_a_way_that_has_come_to_its_end_is_not_sought_again_from_each_station(
     assert (found.table["status"] == "unsettled").sum() > 50
     assert any("so soft" in reason for reason in found.provenance["unsettled"])
     assert evaluations < 10_000  # observed 2,900
+
+
+@pytest.mark.slow
+def test_a_state_that_has_become_a_neighbour_is_gone_to_at_once(tmp_path):
+    """Shorter steps towards it failed at the same place, until 5,000 evaluations were spent."""
+    drawn = trial(1090083, tmp_path)
+    found = simulate_sweep(drawn.case, drawn.settings)
+    assert (found.table["status"] == "ok").all()
