@@ -103,24 +103,6 @@ def _sweeping(
         yield await_all
 
 
-def sweep_alone(case: Case, settings: Settings) -> Readings:
-    """One MuJoCo sweep, in a process of its own.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    settings : Settings
-        The numerics.
-
-    Returns
-    -------
-    Readings
-        Of the sweep.
-    """
-    return simulate_sweep(case, settings)
-
-
 def has_primitive(case: Case) -> bool:
     """Whether MuJoCo's smooth primitive can stand for the case's contour.
 

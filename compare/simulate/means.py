@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic import CLAMP_READINGS, Case, Readings
-from compare.simulate.controlled import sweep_alone
+from mujoco_models import simulate_sweep
 from mujoco_models.settings import Settings
 
 _PARTS = 8  # of the way from station to station
@@ -34,11 +34,11 @@ def sweep_as_means(case: Case, settings: Settings, average: float) -> Readings:
         A station without a mean, since a place near it is not at rest, is ``"unsettled"``.
     """
     if average == 0:
-        return sweep_alone(case, settings)
+        return simulate_sweep(case, settings)
     first, last = (float(x) for x in case.foot_x[[0, -1]])
     stations = case.sweep.stations
     dense = replace(case.sweep, stations=(stations - 1) * _PARTS + 1, start=first, stop=last)
-    found = sweep_alone(replace(case, sweep=dense), settings)
+    found = simulate_sweep(replace(case, sweep=dense), settings)
     table = found.table.iloc[::_PARTS].reset_index(drop=True)
     places = np.arange(len(found.table))
     offsets = average * _PARTS * np.linspace(-0.5, 0.5, _PARTS + 1)

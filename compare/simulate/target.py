@@ -8,7 +8,7 @@ from analytic import Case, Readings, solve_sweep
 from compare.explain.advice import Advice, advise, seconds_a_station
 from compare.explain.budget import Budget, largest_rms
 from compare.explain.changes import coarser_mesh
-from compare.simulate.controlled import sweep_alone
+from mujoco_models import simulate_sweep
 from mujoco_models.settings import Settings
 
 
@@ -74,9 +74,9 @@ def follow_advice(
         If no settings reach the target.
     """
     base = Settings(**runs["base"].provenance["settings"])
-    coarser = sweep_alone(case, coarser_mesh(base))
+    coarser = simulate_sweep(case, coarser_mesh(base))
     predicted = advise(found, runs, coarser, target)
-    made = sweep_alone(case, predicted.settings)
+    made = simulate_sweep(case, predicted.settings)
     return Followed(
         target, predicted, largest_rms(solve_sweep(case), made), seconds_a_station(made)
     )

@@ -1,5 +1,6 @@
 """Corners: what two polygons can touch each other with, and nothing held that should slide."""
 
+import mujoco
 import numpy as np
 import pandas as pd
 import pytest
@@ -189,3 +190,20 @@ def test_a_facet_of_a_thousandth_is_flat_however_single_precision_turns_it(tmp_p
     drawn = trial(880018, tmp_path)
     found = simulate_sweep(drawn.case, drawn.settings)
     assert (found.table["status"] == "ok").all()
+
+
+@pytest.mark.parametrize("profile", [SQUARE, LEANING, regular(24)])
+def test_links_that_are_not_searched_have_no_contact(profile):
+    """Bent at random, near the object and far from it, some of them right through it."""
+    case = Case(profile=profile, sweep=Sweep(stations=60))
+    model = set_out(case, Settings(segments=30)).model
+    draw = np.random.default_rng(1)
+    touched = 0
+    for _ in range(400):
+        bends = draw.normal(scale=0.05, size=30) + draw.normal(scale=0.05)
+        model.imbalance(float(draw.uniform(-1.5, 1.5)), bends)
+        found = [contact.geom.tolist() for contact in model.data.contact]
+        mujoco.mj_collision(model.model, model.data)
+        assert found == [contact.geom.tolist() for contact in model.data.contact]
+        touched += len(found) > 0
+    assert touched > 50
