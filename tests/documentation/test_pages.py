@@ -1,8 +1,11 @@
 """Every block of code and every command of every page is run; links lead somewhere."""
 
+import contextlib
 import doctest
+import io
 import os
 import re
+import shlex
 import subprocess
 import sys
 from collections.abc import Iterable
@@ -14,6 +17,7 @@ import typer
 
 from compare.commands.main import app
 from compare.read.tables import CaseFile
+from tests.compare.command import Done, vibrissa
 from tests.documentation.blocks import PAGES, ROOT, Block, blocks
 
 WITH_CODE = [page for page in PAGES if any(block.runs for block in blocks(page))]
@@ -23,8 +27,9 @@ _OF_MAKE = ("MAKE", "MFLAGS", "ARGS", "CASE")  # what `make test-all ARGS=...` h
 
 
 @pytest.fixture
-def folder(tmp_path) -> Path:
+def folder(tmp_path, monkeypatch) -> Path:
     """A user's folder: `make` there is this project's, with the Python that runs the tests."""
+    monkeypatch.setenv("COLUMNS", "120")
     tools = tmp_path / "bin"
     tools.mkdir()
     make = tools / "make"
@@ -41,28 +46,56 @@ def folder(tmp_path) -> Path:
 
 def run(some: Iterable[Block], folder: Path) -> None:
     """Run blocks in one folder, in their order; check what they print."""
-    path = f"{folder.parent / 'bin'}:{BIN}:{os.environ['PATH']}"
-    plain = {k: v for k, v in os.environ.items() if not k.startswith(_OF_MAKE)}
     for block in some:
         if block.file:
             (folder / block.file).write_text(block.text)
         if not block.runs:
             continue
-        shell = ["bash", "-euo", "pipefail", "-c", block.text]
-        command = shell if block.language == "sh" else [sys.executable, "-c", block.text]
-        done = subprocess.run(
-            command,
-            cwd=folder,
-            env=plain | {"PATH": path, "PYTHONPATH": f"{folder}:{ROOT}", "COLUMNS": "120"},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        done = _python(block, folder) if block.language == "python" else _commands(block, folder)
         assert done.returncode == 0, f"{block}\n{done.stdout}{done.stderr}"
         if block.prints is not None:
             matches = doctest.OutputChecker().check_output
             flags = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
             assert matches(block.prints, done.stdout, flags), f"{block} prints\n{done.stdout}"
+
+
+def _python(block: Block, folder: Path) -> Done:
+    """In this process: a fresh one would take longer to import than most blocks to run."""
+    out = io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(out):
+        patch.chdir(folder)
+        patch.syspath_prepend(folder)
+        exec(compile(block.text, str(block), "exec"), {"__name__": "__main__"})
+    return Done(0, out.getvalue(), "")
+
+
+def _commands(block: Block, folder: Path) -> Done:
+    """In this process if all are ours, up to the first that fails; else by a shell, as users do."""
+    lines = block.text.replace("\\\n", " ").splitlines()
+    commands = [shlex.split(line, comments=True) for line in lines]
+    if any(command[0] != "vibrissa" or "||" in command for command in commands):
+        return _shell(block, folder)
+    said = ["", ""]
+    for _, *words in commands:
+        done = vibrissa(*words, cwd=folder)
+        said = [said[0] + done.stdout, said[1] + done.stderr]
+        if done.returncode != 0:
+            break
+    return Done(done.returncode, *said)
+
+
+def _shell(block: Block, folder: Path) -> Done:
+    path = f"{folder.parent / 'bin'}:{BIN}:{os.environ['PATH']}"
+    plain = {k: v for k, v in os.environ.items() if not k.startswith(_OF_MAKE)}
+    done = subprocess.run(
+        ["bash", "-euo", "pipefail", "-c", block.text],
+        cwd=folder,
+        env=plain | {"PATH": path, "PYTHONPATH": f"{folder}:{ROOT}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    return Done(done.returncode, done.stdout, done.stderr)
 
 
 def test_quick_blocks_of_the_front_page(folder):
@@ -75,7 +108,7 @@ def test_the_whole_page(page, folder):
     run(blocks(page), folder)
 
 
-def _commands(page: Path) -> list[str]:
+def _named(page: Path) -> list[str]:
     """Every command in the page's text and blocks, up to the end of the line or the back quote."""
     text = (ROOT / page).read_text(encoding="utf-8")
     return re.findall(r"(?:^|`|\$ |/)((?:vibrissa|make)\b[^`\n#|]*)", text, re.M)
@@ -85,7 +118,7 @@ def _commands(page: Path) -> list[str]:
 def test_commands_and_options_exist(page):
     group: Any = typer.main.get_command(app)
     targets = set(re.findall(r"^([a-z0-9-]+):", (ROOT / "Makefile").read_text(), re.M))
-    for command in _commands(page):
+    for command in _named(page):
         words = command.split()
         if words[0] == "make":
             asked = [w for w in words[1:] if "=" not in w and not w.endswith('"')]
