@@ -1,7 +1,8 @@
 """One sweep's readings: the table that every engine, rig and comparison speaks."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields, replace
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -91,11 +92,13 @@ class Readings:
         columns: Mapping[str, Floats | Integers],
         beam: Beam,
         source: str,
-        provenance: Mapping[str, Any],
+        provenance: Callable[[], Mapping[str, Any]],
+        snap_off: float | None,
     ) -> "Readings":
         """Readings of a solver's own columns, which are not checked.
 
-        The table is made when it is first asked for: many sweeps are asked for their snap-off only.
+        Table and provenance are made when they are first asked for: many sweeps are asked for their
+        snap-off only.
 
         Parameters
         ----------
@@ -105,8 +108,10 @@ class Readings:
             The vibrissa.
         source : str
             Who solved it.
-        provenance : mapping
-            Of the form that `Readings` asks for.
+        provenance : callable
+            Makes one of the form that `Readings` asks for.
+        snap_off : float, optional
+            The foot position that the provenance has [length].
 
         Returns
         -------
@@ -114,18 +119,24 @@ class Readings:
             What `Readings` of the same is, in a tenth of the time.
         """
         found = object.__new__(cls)
-        parts = {"_columns": columns, "beam": beam, "source": source, "provenance": provenance}
+        to_make = {"table": partial(as_table, columns), "provenance": provenance}
+        parts = {"beam": beam, "source": source, "snap_off": snap_off, "_to_make": to_make}
         found.__dict__.update(parts)
         return found
 
     if not TYPE_CHECKING:
 
-        def __getattr__(self, name: str) -> pd.DataFrame:
-            columns = self.__dict__.get("_columns")
-            if name != "table" or columns is None:
+        def __getattr__(self, name: str) -> pd.DataFrame | Mapping[str, Any]:
+            make = self.__dict__.get("_to_make", {}).get(name)
+            if make is None:
                 raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
-            self.__dict__["table"] = as_table(columns)
-            return self.__dict__["table"]
+            made = self.__dict__[name] = make()
+            del self._to_make[name]
+            return made
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What copies and files of Python's have: nothing that is still to be made."""
+        return {part.name: getattr(self, part.name) for part in fields(self)}
 
     @classmethod
     def of(
@@ -176,7 +187,7 @@ class Readings:
             provenance = {**provenance, "rows_without_foot_x": lost}
         return cls(table, Beam() if beam is None else beam, source, provenance)
 
-    @property
+    @cached_property
     def snap_off(self) -> float | None:
         """Foot position of the snap-off [length], if the source located it (`provenance`)."""
         value = self.provenance.get("events", {}).get("snap_off")

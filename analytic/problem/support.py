@@ -57,7 +57,7 @@ def check_support(clamp_stiffness: object, friction: object, beam: Beam, signed:
             f"within {_MOST_TURNED / beam.length:.6g} of zero",
             f"beyond, {overhangs}",
         )
-    if beam.unloaded.most_turned > _MOST_TURNED * (1 + 1e-12):
+    if isinstance(natural, Along) and beam.unloaded.most_turned > _MOST_TURNED * (1 + 1e-12):
         raise InputError(
             "beam.natural_curvature",
             f"such that the vibrissa turns by {beam.unloaded.most_turned:.6g} rad",

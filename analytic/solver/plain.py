@@ -1,7 +1,7 @@
 """Sweeps of the paper's vibrissa, many at once."""
 
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, partial
 from importlib.metadata import version
 
 import numpy as np
@@ -65,8 +65,12 @@ def solve_plain(cases: Sequence[Case]) -> list[Readings]:
     for case, count, branch in zip(cases, counts, branches, strict=True):
         # Copies: readings that are kept do not keep those of all.
         own = {name: x[begin : begin + count].copy() for name, x in columns.items()}
-        known = case.beam, "analytic", provenance(case, branch.events())
-        found.append(Readings.solved(own, *known) if finite else Readings(as_table(own), *known))
+        record = partial(provenance, case, branch.events())
+        if finite:
+            snap_off = float(branch.foot_x[-1]) * case.beam.length
+            found.append(Readings.solved(own, case.beam, "analytic", record, snap_off))
+        else:
+            found.append(Readings(as_table(own), case.beam, "analytic", record()))
         begin += count
     return found
 
