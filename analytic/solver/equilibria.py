@@ -19,6 +19,7 @@ from analytic.solver.elastica import (
     frame,
     least_rotation,
     span,
+    span_by_alpha,
     span_by_excess,
     tangent_span,
 )
@@ -223,7 +224,39 @@ def contact(point: ContourPoint, excess: Floats, tangent: Booleans) -> Equilibri
         Whether or not they reach the point at the tip, or fit on the vibrissa.
     """
     excess = np.where(tangent, np.pi / 2 - np.abs(point.alpha), excess)
-    loaded = span(excess, point.alpha)
+    return _contact(point, excess, span(excess, point.alpha), tangent)
+
+
+def contact_beside(states: Equilibria, point: ContourPoint, excess: Floats) -> Equilibria:
+    """Contacts so near to known ones that their integrals follow without being computed.
+
+    Parameters
+    ----------
+    states : Equilibria
+        The known ones.
+    point : ContourPoint
+        Where the centreline's contour is touched; arrays of shape (n,).
+    excess : array, shape (n,)
+        As `contact` has it.
+
+    Returns
+    -------
+    Equilibria
+        Of the same phases, exact to the first order in how far slope and rotation differ.
+    """
+    alpha, tangent = states.point.alpha, states.tangent
+    excess = np.where(tangent, np.pi / 2 - np.abs(point.alpha), excess)
+    # By the root of the excess they are smooth where the clamp's moment vanishes.
+    before, after = np.sqrt(states.excess), np.sqrt(excess)
+    turned, leant = 2 * before * (after - before), point.alpha - alpha
+    by_excess = span_by_excess(states.span, states.excess, alpha)
+    by_alpha = span_by_alpha(states.span, by_excess, alpha)
+    rates = zip(states.span, by_excess, by_alpha, strict=True)
+    loaded = Span(*(x + turned * x_w + leant * x_a for x, x_w, x_a in rates))
+    return _contact(point, excess, loaded, tangent)
+
+
+def _contact(point: ContourPoint, excess: Floats, loaded: Span, tangent: Booleans) -> Equilibria:
     end = frame(loaded, point.alpha)
     with np.errstate(divide="ignore", invalid="ignore"):
         root_f = np.where(tangent, end.up / point.eta, loaded.q)

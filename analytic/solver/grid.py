@@ -121,7 +121,9 @@ def along(centrelines: Contours, first: Floats, last: Floats) -> Grid:
     """
     coarse = first[:, None] + (last - first)[:, None] * _COARSE
     coarse = np.clip(coarse, last[:, None], first[:, None])
-    every = np.column_stack([coarse, centrelines.lowest])
+    # Left of the lowest point the excess is counted from another rotation.
+    lowest = centrelines.lowest
+    every = np.column_stack([coarse, lowest, np.nextafter(lowest, -np.inf)])
     owner = np.repeat(np.arange(len(centrelines)), every.shape[1])
     grid = Grid(owner[:0], first[:0]).with_points(owner, every.ravel())
     for i, contour in enumerate(centrelines.contours):
@@ -327,9 +329,14 @@ def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> tuple[Grid, G
 
     likely = _least_of_cubic(low, high, *(x[turns + i] for x in samples[:2] for i in (1, 0)))
     about = Surroundings.of(low, high, likely)
-    turn, places = np.repeat(np.arange(turns.size), about.places.shape[1]), about.places.ravel()
-    there = _sample(centrelines, Grid(owner[turn], places))
-    t, known = about.zeros(rates(turn, places, there).reshape(about.places.shape))
+    # And one in the cell before, if there is one: near the end of reach cubics are poor.
+    previous = np.maximum(turns - 1, 0)
+    middle = (high + np.where(grid.owner[previous] == owner, grid.t[previous], high)) / 2
+    places = np.column_stack([about.places, middle])
+    turn, at = np.repeat(np.arange(turns.size), places.shape[1]), places.ravel()
+    there = _sample(centrelines, Grid(owner[turn], at))
+    sampled = np.stack(there).reshape(len(there), *places.shape)
+    t, known = about.zeros(rates(turn, at, there).reshape(places.shape)[:, :-1])
     left = np.flatnonzero(~known)
     t[left] = zeros(
         lambda which, at: rates(
@@ -340,12 +347,14 @@ def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> tuple[Grid, G
     )
     aside = _ASIDE * (high - t)
     every = np.stack([t, np.maximum(t - aside, low), np.minimum(t + aside, high)], axis=1)
-    values = about.between(np.stack(there).reshape(len(there), *about.places.shape), every)
+    values = about.between(sampled[:, :, :-1], every)
     left = np.flatnonzero(~(known & np.isfinite(values[0]).all(axis=1)))
     if left.size:
         exact = _sample(centrelines, Grid(np.repeat(owner[left], 3), every[left].ravel()))
         values[:, left] = np.stack(exact).reshape(len(exact), *every[left].shape)
-    beside = Grid(np.repeat(owner, 3), every.ravel())
+    every = np.concatenate([every, places[:, [0, -1]]], axis=1)
+    values = np.concatenate([values, sampled[:, :, [0, -1]]], axis=2)
+    beside = Grid(np.repeat(owner, every.shape[1]), every.ravel())
     return Grid(owner, t), beside, Samples(*values.reshape(len(values), -1))
 
 

@@ -9,16 +9,16 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.many import Contours
 from analytic.problem.roots import zeros
 from analytic.solver.branch import Branch
-from analytic.solver.equilibria import Equilibria, contact, equilibria_at, tip_rates
+from analytic.solver.equilibria import Equilibria, contact, contact_beside, equilibria_at, tip_rates
 from analytic.solver.starts import Stations, located
 
 _EPS = float(np.finfo(float).eps)
 _ITERATIONS = 25  # of Newton's method; 2 or 3 are usual, some 20 close to a fold
 _CLOSE = 1e-6  # of a step, relative; after it the misses are seen, not only what they should be
-_LAST = 1e-9  # of a step, relative; another one would change rounding only
+_LAST = 1e-8  # of the last step: what is of second order in it is rounding
+_LAST_TURN = 1e-7  # of its rotation, relative
 _MOST_TURNED = np.pi / 2  # rad of excess; from there the end would point back at the clamp
 _FINEST = 4 * _EPS  # of the misses: another step would only try other roundings
-_ROUNDED = 16 * _EPS  # of the misses after such a step
 _EXACT = 64 * _EPS  # of the misses, in units of the extent: some roundings of the closed forms
 
 
@@ -36,6 +36,13 @@ class _Iterate(NamedTuple):
         """Put others in the place of some."""
         self.t[where], self.missed[where] = new.t, new.missed
         self.states.replace(where, new.states)
+
+    def improved(self, where: Integers, new: "_Iterate", better: Booleans) -> "_Iterate":
+        """With others in the place of some where they are better."""
+        if better.all() and where.size == self.t.size:
+            return new
+        self.replace(where[better], new.part(better))
+        return self
 
 
 def solve_stations(
@@ -68,7 +75,7 @@ def solve_stations(
     if poor.size:
         few = stations.part(poor)
         enclosed = _enclose(centrelines, few, behind[poor])
-        start = enclosed.t, enclosed.states.excess
+        start = enclosed.t.copy(), enclosed.states.excess
         refined = _newton(centrelines, few, enclosed.states.tangent, start)
         better = _admissible(refined.states) & (refined.missed < enclosed.missed)
         found.replace(poor, enclosed)
@@ -96,47 +103,49 @@ def _newton(
         owner, foot_x, low, high = stations
         with np.errstate(all="ignore"):  # folds and first contacts: what is not finite is no step
             states = contact(centrelines.at(owner, t), excess, tangent)
-            too_high, too_far, extent = _misses(states, foot_x, t)
-            missed = np.fmax(np.abs(too_high), np.abs(too_far)) / extent
-        missed = np.where(np.isnan(missed), np.inf, missed)
-        now = _Iterate(t, missed, states)
-        if best is None:
-            best, less = now, missed < np.inf
-        else:
-            less = missed <= best.missed[going]
-            if going.size == best.t.size and less.all():
-                best = now
-            else:
-                best.replace(going[less], now.part(less))
-        fine = np.where(step <= _LAST, _ROUNDED, _FINEST)
-        enough = (missed <= fine) | (~less & (missed <= _EXACT))
-        more = np.flatnonzero(~((enough & (step <= _CLOSE)) | (missed == 0)))
-        if not more.size:
+        now, too_high, too_far = _seen(t, states, foot_x)
+        less = now.missed < np.inf if best is None else now.missed <= best.missed[going]
+        best = now if best is None else best.improved(going, now, less)
+        enough = (now.missed <= _FINEST) | (~less & (now.missed <= _EXACT))
+        done = (enough & (step <= _CLOSE)) | (now.missed == 0)
+        if done.all():
             break
         with np.errstate(all="ignore"):  # as much as the rotation itself, or more, is no last step
             step_t, step_w = _steps(states, too_high, too_far)
             step_t = np.where(np.isfinite(step_t), step_t, 0.0)
             step_w = np.where(np.isfinite(step_w), step_w, 0.0)
             new_t = np.minimum(np.maximum(t - step_t, low), high)
-            turned = np.where(step_w == 0, 0.0, np.abs(step_w) / excess)
-            step = np.maximum(np.abs(new_t - t), turned)[more]
             new_excess = np.minimum(np.maximum(excess - step_w, excess / 10), _MOST_TURNED)
-        t, excess = new_t[more], new_excess[more]
+            moved = np.abs(new_t - t)
+            turned = np.where(step_w == 0, 0.0, np.abs(step_w) / excess)
+        t, excess = new_t, new_excess
+        small = (moved <= _LAST) & (turned <= _LAST_TURN) & np.isfinite(step)
+        last = np.flatnonzero(small)
+        if last.size:
+            with np.errstate(all="ignore"):
+                point = centrelines.at(owner[last], t[last])
+                near = contact_beside(states.part(last), point, excess[last])
+            beside = _seen(t[last], near, foot_x[last])[0]
+            best = best.improved(going[last], beside, beside.missed <= best.missed[going[last]])
+        more = np.flatnonzero(~(done | small))
+        if not more.size:
+            break
+        t, excess, step = t[more], excess[more], np.maximum(moved, turned)[more]
         going, stations, tangent = going[more], stations.part(more), tangent[more]
     assert best is not None
     return best
 
 
-def _misses(states: Equilibria, foot_x: Floats, at: Floats) -> tuple[Floats, Floats, Floats]:
-    """By how much the contact lies above and behind the contour's point [L]; unit of roundings."""
-    height = states.frame.up / states.root_f
+def _seen(t: Floats, states: Equilibria, foot_x: Floats) -> tuple[_Iterate, Floats, Floats]:
+    """Iterates, and by how much each contact lies above and behind the contour's point [L]."""
     point = states.point
-    # A rounding of the parameter moves the point by the stretch times that.
-    return (
-        height - point.eta,
-        foot_x - states.foot_x,
-        np.maximum.reduce([np.ones_like(height), np.abs(point.xi), point.stretch * np.abs(at)]),
-    )
+    with np.errstate(all="ignore"):
+        height = states.frame.up / states.root_f
+        too_high, too_far = height - point.eta, foot_x - states.foot_x
+        # A rounding of the parameter moves the point by the stretch times that.
+        extent = np.maximum(np.maximum(1.0, np.abs(point.xi)), point.stretch * np.abs(t))
+        missed = np.fmax(np.abs(too_high), np.abs(too_far)) / extent
+    return _Iterate(t, np.where(np.isnan(missed), np.inf, missed), states), too_high, too_far
 
 
 def _steps(states: Equilibria, too_high: Floats, too_far: Floats) -> tuple[Floats, Floats]:
@@ -180,6 +189,4 @@ def _enclose(centrelines: Contours, stations: Stations, behind: Floats) -> _Iter
     first = np.isnan(states.excess)
     excess = np.where(first, behind * 1e-3, states.excess)
     states = contact(centrelines.at(owner, t), excess, states.tangent)
-    too_high, too_far, extent = _misses(states, foot_x, t)
-    missed = np.fmax(np.abs(too_high), np.abs(too_far)) / extent
-    return _Iterate(t, missed, states)
+    return _seen(t, states, foot_x)[0]
