@@ -31,12 +31,13 @@ pytestmark = pytest.mark.usefixtures("in_turn")
 CASE = named_case("parabola")
 GRID = Sweep(80, float(CASE.foot_x[0]), float(CASE.foot_x[-1]))
 known = cache(variations)
+swept = cache(simulate_sweep)  # refined, one budget's base is often another's
 
 
 def measured(claimed: Case, made: Case, settings: Settings) -> Budget:
     """The budget of sweeps of the case `made`, which claim to be of the case `claimed`."""
     runs = {
-        name: replace(simulate_sweep(made, changed), beam=claimed.beam)
+        name: replace(swept(made, changed), beam=claimed.beam)
         for name, changed in controlled_changes(settings).items()
     }
     return budget(solve_sweep(claimed), runs, known(claimed))
@@ -264,6 +265,7 @@ def rubbing(monkeypatch):
         self.pulled = self.beam.moments(pulled)
         return self.beam.moments(self.moments()) + self.pulled
 
+    monkeypatch.setattr(f"{__name__}.swept", simulate_sweep)  # others' sweeps do not rub
     monkeypatch.setattr(BeamModel, "imbalance", rub)
     monkeypatch.setattr(BeamModel, "relieved", lambda m: relieved(m) + m.pulled)
     monkeypatch.setattr(BeamModel, "elastic_moments", lambda m: elastic_moments(m) + m.pulled)
@@ -285,7 +287,7 @@ def test_friction_left_on_is_suspected():
     both = (smooth.table["phase"] != "free") & (rough.table["phase"] != "free")
     more = {n: np.where(both, rough.values(n) - smooth.values(n), 0) for n in CLAMP_READINGS}
     runs = {
-        name: simulate_sweep(case, changed)
+        name: swept(case, changed)
         for name, changed in controlled_changes(Settings(segments=20)).items()
     }
     rubbing = {

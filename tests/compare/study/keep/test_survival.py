@@ -24,6 +24,15 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory) -> pd.DataFrame:
+    """The table of that study where nothing happens to it."""
+    place = tmp_path_factory.mktemp("undisturbed")
+    (place / "grid.toml").write_text(FEW_HUNDRED)
+    assert vibrissa("study", "grid.toml", "--out", "out", cwd=place).returncode == 0
+    return results(place / "out")
+
+
 def start(folder, *more, out="out"):
     command = [*COMMAND, "study", "grid.toml", "--out", out, *more]
     return subprocess.Popen(
@@ -32,8 +41,7 @@ def start(folder, *more, out="out"):
 
 
 @pytest.mark.parametrize("times", [3, pytest.param(20, marks=pytest.mark.trial)])
-def test_killed_many_times(folder, times):
-    vibrissa("study", "grid.toml", "--out", "undisturbed", cwd=folder)
+def test_killed_many_times(folder, undisturbed, times):
     chance = random.Random(6)
     seen: set[str] = set()
     for _ in range(times):
@@ -46,17 +54,16 @@ def test_killed_many_times(folder, times):
             assert seen <= now  # nothing that was complete is lost
             seen = now
     assert vibrissa("study", "grid.toml", "--out", "out", cwd=folder).returncode == 0
-    pd.testing.assert_frame_equal(results(folder / "out"), results(folder / "undisturbed"))
+    pd.testing.assert_frame_equal(results(folder / "out"), undisturbed)
     assert not pd.read_parquet(folder / "out" / "runs")["run"].duplicated().any()
 
 
-def test_two_processes_on_one_study(folder):
+def test_two_processes_on_one_study(folder, undisturbed):
     processes = [start(folder) for _ in range(2)]
     for process in processes:
         _, error = process.communicate(timeout=300)
         assert (process.returncode, error) == (0, "")
-    vibrissa("study", "grid.toml", "--out", "alone", cwd=folder)
-    pd.testing.assert_frame_equal(results(folder / "out"), results(folder / "alone"))
+    pd.testing.assert_frame_equal(results(folder / "out"), undisturbed)
     assert len(pd.read_parquet(folder / "out" / "runs")) == 400
 
 
@@ -112,12 +119,11 @@ def cluster(tmp_path_factory):
         process.wait()
 
 
-def test_a_cluster_gives_the_same_table(folder, cluster):
+def test_a_cluster_gives_the_same_table(folder, cluster, undisturbed):
     address, _ = cluster
     done = vibrissa("study", "grid.toml", "--out", "out", "--scheduler", address, cwd=folder)
     assert (done.returncode, done.stderr) == (0, "")
-    vibrissa("study", "grid.toml", "--out", "pool", cwd=folder)
-    pd.testing.assert_frame_equal(results(folder / "out"), results(folder / "pool"))
+    pd.testing.assert_frame_equal(results(folder / "out"), undisturbed)
 
 
 def rows_in_journals(folder: Path) -> int:
