@@ -219,10 +219,11 @@ class Lookout:
         points = scene.bead_positions(beads)
         near = obstacle.near(points, distance)
         beads, points = beads[near], points[near]
-        # What is no prism is true to the contour about its window only.
-        seen = obstacle.upright and len(beads)
-        if seen and (gap := obstacle.gap(self.window, points)) is not None:
-            beads = beads[gap[0] < self.radii[beads] + _CLEAR]
+        if len(beads) and (gap := obstacle.gap(self.window, points)) is not None:
+            touches = gap[0] < self.radii[beads] + _CLEAR
+            if not obstacle.upright:  # it is true to the contour about its window only
+                touches[obstacle.near(points, self._radius - _OVERLOOKED)] = True
+            beads = beads[touches]
         return frozenset(beads.tolist())
 
     def overlooked(self, contacts: Contacts) -> float | None:
