@@ -91,7 +91,9 @@ class Newton:
 
         # A part of each loaded contact's stiffness convexifies the model, the rest is compliance.
         loaded = force > 0
-        part = min(numerics.stiffening, model.contact_stiffness / 2)
+        faceted = model.obstacle.faceted
+        part = numerics.stiffening_of_facets if faceted else numerics.stiffening
+        part = min(part, model.contact_stiffness / 2)
         rest = model.contact_stiffness - part * loaded
         pressed = loaded.nonzero()[0]
         held = comes.take(pressed, axis=0)

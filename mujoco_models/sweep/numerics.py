@@ -29,7 +29,11 @@ class Numerics:
     stiffening : float
         So much of each loaded contact's stiffness convexifies the quadratic model [EI/L^3], at most
         half of it; the rest is the contact's compliance. Next to rest that is as good as any other
-        split, and Newton's method is quadratic. It matters on the way: at 1e2 the model leaves
+        split, and Newton's method is quadratic. It matters on the way: at 1e3 the model is not
+        convex short of a fold already, the contour's curvature is left out of it, and to come to
+        rest takes twenty evaluations; above 1e6 forecasts take more steps.
+    stiffening_of_facets : float
+        The same past facets, whose curvature is not known well. At 1e2 the model leaves
         the branch 1.9e-3 L before the catenary's fold, and descents take it there, in three times
         the time; at 10 stations run out of their budget. From 1e2 to 1e6 the snap-off moves by less
         than 7e-5 L.
@@ -116,7 +120,8 @@ class Numerics:
     in_vain: int = 8
     slow: float = 0.2
     learns: float = 1e-3
-    stiffening: float = 1e3
+    stiffening: float = 1e5
+    stiffening_of_facets: float = 1e3
     nearly: float = 1e3
     forecasts: int = 5
     foreseen: float = 1e-6
