@@ -6,6 +6,7 @@ curvature, and it follows the contact. MuJoCo's distance of a sphere from a cyli
 so its normals are exact; those of an ellipsoid come out of a search and are good to 1e-7 only.
 """
 
+from functools import cached_property
 from typing import NamedTuple
 
 import mujoco
@@ -165,8 +166,12 @@ class Primitive(Obstacle):
 
     def place(self, slope: Floats) -> Floats:
         """Number of the circle, with a fraction."""
-        number = np.arange(len(self._circles.slope), dtype=float)
-        return np.asarray(np.interp(slope, self._circles.slope, number))
+        return np.asarray(np.interp(slope, self._circles.slope, self._number))
+
+    @cached_property
+    def _number(self) -> Floats:
+        """Those of all circles, shape (n_circles,)."""
+        return np.arange(len(self._circles.slope), dtype=float)
 
     def window_of(self, place: float) -> int:
         """The nearest circle."""
