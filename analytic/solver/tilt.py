@@ -18,7 +18,6 @@ as for every imperfect column of the same kind.
 """
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
@@ -71,6 +70,8 @@ def slip_off(profile: Contour, tilt: float, beam: Beam | None = None) -> float |
     least = int(np.nanargmin(foot_x))
     if least == _GRID - 1:
         return None
+    from scipy.optimize import minimize_scalar  # slow to load
+
     found = minimize_scalar(
         lambda t: float(_foot_x(centreline, np.array([t]), tilt)[0]),
         bounds=(grid[least + 1], grid[least - 1]),

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy.interpolate import CubicSpline, make_interp_spline
 
 from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Floats, Integers, Words
@@ -219,6 +218,8 @@ def interpolant(x: Floats, values: Floats) -> Callable[..., Any]:
     callable
         Of places, and of the order of the derivative (0 by default).
     """
+    from scipy.interpolate import CubicSpline, make_interp_spline  # slow to load
+
     places, which, counts = np.unique(x, return_inverse=True, return_counts=True)
     if len(places) < len(x):
         order = np.argsort(which, kind="stable")

@@ -8,7 +8,6 @@ from functools import lru_cache
 from typing import Literal, TypeAlias
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from analytic import (
     CLAMP_READINGS,
@@ -239,6 +238,8 @@ def _sweep(case: Case) -> tuple[Floats, Floats]:
 
 def _extended(points: Floats, beyond: float) -> Floats:
     """A contour, shape (points, 2), extrapolated at either end, unless it is vertical there."""
+    from scipy.interpolate import CubicSpline  # slow to load
+
     way = np.append(0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
     first, last = CubicSpline(way, points)([-beyond, way[-1] + beyond])
     before = [first] if first[0] < points[0, 0] else []

@@ -13,11 +13,9 @@ where each of them swings is known, and by how much shows in their differences.
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.interpolate import BSpline
 
 from analytic.problem.arrays import Booleans, Floats
 
-_DEGREE = 3
 _STATIONS = 10  # to an interval of the spline that the swing's size is
 _FEWEST = 20  # stations that it is worth taking from
 _MEAN = 1 / 12  # of (d/h - 1/2)^2, which the power of h has
@@ -75,8 +73,8 @@ def _swing(joints: Floats, contact: Floats) -> Floats:
 
 
 def _basis(count: int) -> Floats:
-    """Cubic splines over the stations' numbers, shape (count, splines)."""
-    ends = np.linspace(0, 1, 1 + max(1, count // _STATIONS))
-    knots = np.concatenate([np.zeros(_DEGREE), ends, np.ones(_DEGREE)])
-    places = np.linspace(0, 1, count)
-    return np.asarray(BSpline.design_matrix(places, knots, _DEGREE).toarray())
+    """Cubic B-splines over the stations' numbers, shape (count, splines)."""
+    intervals = max(1, count // _STATIONS)
+    place = np.linspace(0, intervals, count)
+    away = np.abs(np.subtract.outer(place, np.arange(-1, intervals + 2)))
+    return np.asarray((np.maximum(2 - away, 0) ** 3 - 4 * np.maximum(1 - away, 0) ** 3) / 6)

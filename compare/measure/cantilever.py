@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
 from analytic.problem.arrays import Floats
@@ -30,6 +29,7 @@ def tip_of(loads: Floats) -> Floats:
 
 def _tip(alpha: float) -> tuple[float, float]:
     """Of alpha = sqrt(P L^2/EI); the tip's slope is found from the length."""
+    from scipy.optimize import brentq  # slow to load
 
     def length(slope: float) -> float:
         m, start = _modulus(slope)

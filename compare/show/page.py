@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 from matplotlib import rc_context
 from matplotlib.figure import Figure
@@ -119,6 +118,8 @@ def render(package: str, template: str, **values: Any) -> str:  # noqa: ANN401
     str
         The page.
     """
+    from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined  # slow to load
+
     is_markdown = template.endswith(".md.j2")
     environment = Environment(
         loader=ChoiceLoader([PackageLoader(package), PackageLoader("compare.show")]),

@@ -3,7 +3,6 @@
 from analytic.problem.case import Case
 from analytic.problem.contours.solid import ConvexMesh
 from analytic.problem.errors import InputError
-from mujoco_models.obstacles.file_mesh import FileMesh
 from mujoco_models.obstacles.primitive import Primitive
 from mujoco_models.obstacles.prism import Prism
 from mujoco_models.obstacles.protocol import Obstacle
@@ -47,5 +46,7 @@ def _made(case: Case, settings: Settings) -> Obstacle:
         return Primitive.of(case)
     solid = case.profile.scaled(1 / case.beam.length).solid
     if isinstance(solid, ConvexMesh):
+        from mujoco_models.obstacles.file_mesh import FileMesh  # what finds hulls is slow to load
+
         return FileMesh(case, solid, settings.corner_radius)
     return Prism.of(case, settings.contour_points, settings.corner_radius)

@@ -10,7 +10,6 @@ from functools import cache
 
 import mujoco
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from analytic.problem.arrays import Floats, Integers
 from mujoco_models.obstacles.protocol import GEOM
@@ -41,12 +40,8 @@ def add_room(spec: mujoco.MjSpec, count: int) -> None:
     vertices = np.column_stack(
         [across * np.cos(_GOLDEN * number), across * np.sin(_GOLDEN * number), height]
     )
-    hull = ConvexHull(vertices)
-    begin, second, third = vertices[hull.simplices].transpose(1, 0, 2)
-    inward = (np.cross(second - begin, third - begin) * begin).sum(axis=1) < 0
-    faces = np.where(inward[:, None], hull.simplices[:, ::-1], hull.simplices)
     mesh = spec.add_mesh(name=GEOM)
-    mesh.uservert, mesh.userface = vertices.ravel(), faces.ravel()
+    mesh.uservert = vertices.ravel()  # without faces, it has those of its hull
     spec.worldbody.add_geom(
         name=mesh.name,
         type=mujoco.mjtGeom.mjGEOM_MESH,

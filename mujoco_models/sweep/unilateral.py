@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg.lapack import dposv
-from scipy.optimize import nnls
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 
@@ -110,5 +109,7 @@ def unilateral(comes: Floats, turns: Floats, soft: Floats, gap: Floats, guess: B
         if not np.count_nonzero(wrong):
             return force
         guess = guess ^ wrong
+    from scipy.optimize import nnls  # slow to load, and few sweeps need it
+
     root = np.linalg.cholesky(compliance.whole)
     return np.asarray(nnls(root.T, -np.linalg.solve(root, gap))[0])

@@ -1,7 +1,6 @@
 """The curve of a reading between the last stations before a snap-off, where it bends."""
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from analytic import Readings
 from analytic.problem.arrays import Floats, Words
@@ -47,6 +46,8 @@ def with_fold(readings: Readings, phase: Words, x: Floats, y: Floats) -> tuple[F
     through = y[first : last + 1]
     if len(root) < _FEWEST or (np.diff(root) >= 0).any() or not np.isfinite(through).all():
         return x, y
+    from scipy.interpolate import CubicSpline  # slow to load
+
     spline = CubicSpline(root[::-1], through[::-1])
     parabola = np.polynomial.Polynomial.fit(root[-3:], through[-3:], 2)
     sure = abs(spline(0.0) - parabola(0.0)) < _UNSURE * np.nanmax(np.abs(y))
