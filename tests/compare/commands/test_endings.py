@@ -29,6 +29,20 @@ engines.simulate_sweep = announced
 from compare.commands.main import main
 main()
 """
+# One command after the other, each of which ends with the code given before it.
+IN_TURN = """
+import sys
+from compare.commands.main import main
+
+for command in " ".join(sys.argv[1:]).split(" then "):
+    code, *sys.argv[1:] = command.split()
+    try:
+        main()
+    except SystemExit as ended:
+        assert ended.code == int(code), (command, ended.code)
+    else:
+        raise AssertionError(command)
+"""
 PIPES = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
 
 
@@ -152,18 +166,18 @@ def test_strange_environments(tmp_path, strange):
     """Same files, same exit code; what the encoding lacks is written as an escape."""
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("LC_", "LANG"))}
     (tmp_path / "größe.csv").write_text("ü,é\n1,2\n", encoding="utf-8")
-    drawn = ["--figures"] if "MPLBACKEND" in strange else []
-    for words, code in (
-        (["analytic", "parabola", "--stations", "30", "--out", "ä", *drawn], 0),
-        (["compare", "ä/analytic.parquet", "ä/analytic.parquet", "--out", "ü"], 0),
-        (["reconstruct", "größe.csv"], 2),
-    ):
-        done = subprocess.run(
-            [*COMMAND, *words], cwd=tmp_path, env={**environment, **strange},
-            capture_output=True, check=False,
-        )  # fmt: skip
-        assert done.returncode == code, (words, done.stderr)
-        assert done.stderr.count(b"\n") == (code == 2), (words, done.stderr)
+    drawn = "--figures" if "MPLBACKEND" in strange else ""
+    commands = (
+        f"0 analytic parabola --stations 30 --out ä {drawn}"
+        " then 0 compare ä/analytic.parquet ä/analytic.parquet --out ü"
+        " then 2 reconstruct größe.csv"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", IN_TURN, *commands.split()],
+        cwd=tmp_path, env={**environment, **strange}, capture_output=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.count(b"\n") == 1, done.stderr  # of the last one
     assert (tmp_path / "ü" / "report.html").exists()
 
 

@@ -11,6 +11,7 @@ FAST = ("--segments", "10", "--obstacle", "primitive", "--stations", "40", "--sp
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("undrawn")
 def test_run_compares_with_the_closed_form_and_with_rest(tmp_path):
     done = vibrissa("run", "catenary", *FAST, "--out", "out", cwd=tmp_path)
     assert done.returncode == 1

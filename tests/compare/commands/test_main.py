@@ -37,7 +37,7 @@ def test_run_writes_what_it_promises(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("in_turn")
+@pytest.mark.usefixtures("in_turn", "undrawn")
 def test_a_coarse_beam_disagrees_and_its_budget_says_why(tmp_path):
     (tmp_path / "case.toml").write_text(CASE)
     done = vibrissa("run", "case.toml", "--budget", cwd=tmp_path)
