@@ -91,7 +91,7 @@ def relax(
             if lookout.move_window(obstacle.place(slopes)):
                 continue
             if unwatched := lookout.unwatched():
-                lookout.watch(lookout.watched | unwatched)
+                lookout.watch(lookout.watched | spread(unwatched, numerics.at_once))
                 continue
             if (missed := lookout.overlooked(contacts)) is not None:
                 lookout.use_window(obstacle.window_of(missed))
@@ -213,6 +213,27 @@ def graded(model: Balance, loaded: dict[int, float], reach: int) -> frozenset[in
     out = out[out > reach]
     far = np.concatenate([first - out, last + out])
     return near | frozenset(far[(far >= 0) & (far < count)].tolist())
+
+
+def spread(beads: frozenset[int], count: int) -> frozenset[int]:
+    """So many of these beads, from the first one to the last.
+
+    A beam that has sprung through the obstacle touches with thousands, and rests on a few of them.
+
+    Parameters
+    ----------
+    beads : frozenset of int
+        Their numbers.
+    count : int
+        The most.
+
+    Returns
+    -------
+    frozenset of int
+        Their numbers.
+    """
+    every = -(-len(beads) // count)
+    return frozenset(sorted(beads)[::every])
 
 
 def one_bead_a_link(model: Balance) -> frozenset[int]:
