@@ -53,17 +53,23 @@ def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> 
     Returns
     -------
     State or None
-        Not known to be at rest; None if fewer than two beads share the load, past sharp corners,
-        inside the object, or if nothing is found. The lookout faces what is touched.
+        Not known to be at rest; None past sharp corners, inside the object, or if nothing is found.
+        The lookout faces what is touched. Where one bead that slides is loaded, the picture has it
+        hung up on the next one that does not, and the engine's way to rest is short.
     """
-    if len(start.forces) < 2 or len(model.obstacle.corners):
+    if len(model.obstacle.corners):
         return None
-    picture = Picture(model, start.forces, numerics.ahead)
+    picture = Picture(model, start.forces, numerics.ahead, follow=True)
     newton, secant = _OnFacets(picture, numerics), Secant()
     angles = start.angles
     for _ in range(_STEPS):
         contacts = picture.look(foot_x, angles)
-        if contacts is None or picture.is_inside(contacts):
+        if contacts is None:
+            return None
+        slope = float(contacts.slope[contacts.distance.argmin()])
+        # On the side that is foreseen it is pushed out where it has come from, however deep it is.
+        elsewhere = start.slope is None or abs(slope - start.slope) > numerics.largest_shift
+        if elsewhere and picture.is_inside(contacts):
             return None
         model.lookout.follow_contact(contacts)
         pressed = np.flatnonzero(contacts.loaded)
@@ -71,24 +77,25 @@ def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> 
         state = State(angles, dict(zip(contacts.touch[pressed].tolist(), force, strict=True)))
         step = newton.step(state, contacts).angles - angles
         turn = turned(step, np.zeros(len(step)))
-        near = replace(state, slope=float(contacts.slope[contacts.distance.argmin()]))
+        near = replace(state, slope=slope)
         if turn < _AT_REST:
             return near
-        steps = [scale * step for scale in _SHORTER]
+        places = [angles + scale * step for scale in _SHORTER]
         if turn < _ON_A_FACET:
-            steps.insert(0, secant.better(angles, step))
+            places.insert(0, angles + secant.better(angles, step))
         most = picture.energy(contacts) * (1 + _ROUNDING)
-        tried = ((s, _energy(picture, foot_x, angles + s)) for s in steps)
-        lower = next(((s, energy) for s, energy in tried if energy <= most), None)
+        tried = ((place, _energy(picture, foot_x, place)) for place in places)
+        lower = next(((place, energy) for place, energy in tried if energy <= most), None)
         if lower is None:
             return near if turn < _ON_A_FACET else None
-        taken, energy = lower
+        there, energy = lower
         while _ON_A_FACET <= turn < _STRIDE:
-            farther = _energy(picture, foot_x, angles + 2 * taken)
+            beyond = 2 * there - angles
+            farther = _energy(picture, foot_x, beyond)
             if farther >= energy:
                 break
-            turn, taken, energy = 2 * turn, 2 * taken, farther
-        angles = angles + taken
+            turn, there, energy = 2 * turn, beyond, farther
+        angles = there
         if turned(angles, start.angles) > numerics.left_turn:
             return State(angles, {})  # it lets go, if the engine says so
     return near

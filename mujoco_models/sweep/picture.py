@@ -11,6 +11,8 @@ from mujoco_models.model.contacts import Contacts
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 # Gauss and Legendre's rule from the unbent joint to the bent one: where, and with which weight.
 _RULE = list(zip(((1 + _NODES) / 2).tolist(), (_WEIGHTS / 2).tolist(), strict=True))
+_MOVES = 8  # from beads to beads; two are usual, where a beam slides over a needle
+_FARTHER = 2 ** np.arange(8) - 1  # reaches: where the contact is looked for, all at once
 
 
 class Picture:
@@ -24,6 +26,8 @@ class Picture:
         The beads that touch.
     reach : int
         How many more on either side may come to touch.
+    follow : bool
+        Whether a contact that slides on to other beads is followed.
 
     Attributes
     ----------
@@ -31,20 +35,30 @@ class Picture:
         Theirs [L].
     """
 
-    def __init__(self, model: Balance, loaded: Collection[int], reach: int = 0) -> None:
+    def __init__(
+        self, model: Balance, loaded: Collection[int], reach: int = 0, *, follow: bool = False
+    ) -> None:
         self._model, self.layout, self.obstacle = model, model.layout, model.obstacle
         self.contact_stiffness = model.contact_stiffness
         self.contact_curvature = model.contact_curvature
         self.stiffness = model.stiffness
-        end = len(self.layout.beads)
-        first, last = max(min(loaded) - reach, 0), min(max(loaded) + reach + 1, end)
-        self._beads: Integers = np.arange(first, last)
+        self._reach, self._moves = reach, _MOVES if follow else 0
+        self._angles = np.zeros(len(self.layout.joints))
+        self._joints = self._along = self.layout.base.T
+        self._looked: tuple[float, int] | None = None  # with the foot and by the window
+        self._seen: Contacts | None = None
+        first, last = min(loaded), max(loaded)
+        self._width = last - first
+        self._show(first)
+
+    def _show(self, first: int) -> None:
+        """Look at as many beads as touched at first, from one on, and those about them."""
+        begin, end = max(first - self._reach, 0), first + self._width + self._reach + 1
+        self._beads: Integers = np.arange(begin, min(end, len(self.layout.beads)))
         self._links = self.layout.links[self._beads]
         self._places = self.layout.beads[self._beads]
-        self._from_link = self.layout.from_links[:, self._beads]
-        self.radii = model.lookout.radii[self._beads]
+        self.radii = self._model.lookout.radii[self._beads]
         self._none = np.zeros(len(self._beads), dtype=bool)
-        self._joints, self._angles = self.layout.base, np.zeros(len(self.layout.joints))
 
     def look(self, foot_x: float, angles: Floats) -> Contacts | None:
         """Where a configuration touches; what else is asked is of that.
@@ -54,37 +68,75 @@ class Picture:
         foot_x : float
             Foot position [L].
         angles : array, shape (n_joints,)
-            Joint angles [rad].
+            Joint angles [rad]; not changed between two looks.
 
         Returns
         -------
         Contacts or None
             Of the beads; None if the obstacle says nothing of that.
         """
-        layout, self._angles = self.layout, angles
+        looked = foot_x, self._model.lookout.window
+        if angles is self._angles and looked == self._looked:
+            return self._seen
+        layout, self._angles, self._looked = self.layout, angles, looked
         heading = layout.headings + angles.cumsum()
-        along = np.array([-np.sin(heading), np.cos(heading)])
-        joints = np.zeros(along.shape)
-        joints[:, 1:] = (layout.chords * along)[:, :-1].cumsum(axis=1)
-        joints[0] += foot_x + layout.base[0, 0]
-        joints[1] += layout.base[0, 1]
-        ahead, (across, onward) = along[:, self._links], self._from_link
-        points = joints[:, self._links] + onward * ahead
-        points[0] += across * ahead[1]
-        points[1] -= across * ahead[0]
-        gap = self.obstacle.gap(self._model.lookout.window, points.T)
+        self._along = np.array([-np.sin(heading), np.cos(heading)])
+        self._joints = np.zeros(self._along.shape)
+        self._joints[:, 1:] = (layout.chords * self._along)[:, :-1].cumsum(axis=1)
+        self._joints[0] += foot_x + layout.base[0, 0]
+        self._joints[1] += layout.base[0, 1]
+        self._seen = self._contacts()
+        for _ in range(self._moves):
+            nearer = self._nearer(self._seen)
+            if nearer is None:
+                break
+            self._show(max(nearer - self._width // 2, 0))
+            self._seen = self._contacts()
+        return self._seen
+
+    def _contacts(self) -> Contacts | None:
+        """Those of the beads that are looked at."""
+        points, no = self._points(self._beads), self._none
+        gap = self.obstacle.gap(self._model.lookout.window, points)
         if gap is None:
             return None
-        distance, normal = gap
-        self._joints, no = joints.T, self._none
-        distance = distance - self.radii
+        distance, normal = gap[0] - self.radii, gap[1]
         return Contacts(
-            self._beads, self._links, no, points.T, self._places, normal, distance, no, False
+            self._beads, self._links, no, points, self._places, normal, distance, no, False
         )
+
+    def _points(self, beads: Integers) -> Floats:
+        """Where beads are, shape (n_beads, 2) [L]."""
+        links, (across, onward) = self.layout.links[beads], self.layout.from_links[:, beads]
+        ahead = self._along[:, links]
+        points = self._joints[:, links] + onward * ahead
+        points[0] += across * ahead[1]
+        points[1] -= across * ahead[0]
+        return np.asarray(points.T)
+
+    def _nearer(self, contacts: Contacts | None) -> int | None:
+        """A bead about which the nearest one may be, if that is not in the midst of those seen.
+
+        Along a beam the distance from a convex object falls, and then it rises.
+        """
+        if contacts is None:
+            return None
+        nearest, last = int(contacts.distance.argmin()), len(self._beads) - 1
+        if 0 < nearest < last:
+            return None
+        way = self._reach if nearest else -self._reach
+        onward = self._beads[nearest] + way * _FARTHER
+        onward = onward[(onward >= 0) & (onward < len(self.layout.beads))]
+        if len(onward) == 1:
+            return None  # there the beam ends
+        gap = self.obstacle.gap(self._model.lookout.window, self._points(onward))
+        if gap is None:
+            return None
+        return int(onward[(gap[0] - self._model.lookout.radii[onward]).argmin()])
 
     def joint_positions(self) -> Floats:
         """Where the joints are."""
-        return self._joints
+        return np.asarray(self._joints.T)
 
     def elastic_moments(self) -> Floats:
         """The beam's own moment at each joint, from the stiffness on the way there."""

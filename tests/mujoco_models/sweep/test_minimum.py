@@ -77,5 +77,14 @@ def test_a_minimum_is_at_rest_for_mujoco_too(at_the_tip):
     ahead = replace(state, angles=state.angles + 1e-4)
     found = minimum(model, foot_x, ahead, Numerics())
     assert np.abs(model.imbalance(foot_x, found.angles)).max() < 1e-8
-    one = replace(state, forces={min(state.forces): state.load})
-    assert minimum(model, foot_x, one, Numerics()) is None
+
+
+@pytest.mark.parametrize("beads", [0, 30, -60])
+def test_a_contact_is_followed_from_bead_to_bead(at_the_tip, beads):
+    """It may have slid on by many since it was seen last."""
+    walk, foot_x = at_the_tip
+    model, state = walk.model, walk._state
+    one = replace(state, forces={min(state.forces) + beads: state.load})
+    found = minimum(model, foot_x, one, Numerics())
+    assert set(found.forces) == set(state.forces)
+    assert np.abs(model.imbalance(foot_x, found.angles)).max() < 1e-8
