@@ -98,7 +98,7 @@ def smooth_zeros(
         return low
     about = Surroundings.of(low, high, likely)
     found, known = about.zeros(_values(function, np.arange(low.size), about.places))
-    left = np.flatnonzero(~known)
+    left = (~known).nonzero()[0]
     if left.size:
         found[left] = zeros(lambda which, at: function(left[which], at), low[left], high[left])
     return found

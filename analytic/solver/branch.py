@@ -9,7 +9,7 @@ left of a foot position holds the state there.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import TypeAlias
 
 import numpy as np
@@ -147,11 +147,10 @@ def trace(many: Contours, reaches: Sequence[tuple[float, float]]) -> list[Branch
     owner = np.repeat(np.arange(len(many)), counts)
     middles = np.concatenate([(t[1:] + t[:-1]) / 2 for t, _ in parts])
     tangent = surplus_and_rate(many.at(owner, middles))[0] < 0
+    bounds = pairwise([0, *accumulate(counts)])
     return [
-        Branch(*part, cells, float(lowest))
-        for part, cells, lowest in zip(
-            parts, np.split(tangent, np.cumsum(counts)[:-1]), many.lowest, strict=True
-        )
+        Branch(*part, tangent[begin:end], lowest)
+        for part, (begin, end), lowest in zip(parts, bounds, many.lowest.tolist(), strict=True)
     ]
 
 

@@ -297,7 +297,7 @@ def equilibria_at(point: ContourPoint) -> Equilibria:
     found = tangent_contact(point)
     excess, loaded, root_f, _, end = found[1:]
     tangent = _fits(found)
-    tip = np.flatnonzero(~tangent)
+    tip = (~tangent).nonzero()[0]
     if tip.size:
         alpha = point.alpha[tip]
         with np.errstate(invalid="ignore"):  # straight, against an upright side: out of reach

@@ -9,6 +9,7 @@ The grids of many contours are made at once, one after the other in the same arr
 whose a point is. What is done to one grid does not depend on the others.
 """
 
+from itertools import pairwise
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -63,12 +64,13 @@ class Grid(NamedTuple):
     @property
     def cells(self) -> Booleans:
         """Whether a point and the next one are of one contour, shape (n - 1,)."""
-        return np.asarray(self.owner[1:] == self.owner[:-1])
+        same: Booleans = self.owner[1:] == self.owner[:-1]
+        return same
 
     @property
     def begins(self) -> Integers:
-        """The number of each contour's first point."""
-        return np.concatenate([[0], np.flatnonzero(~self.cells) + 1])
+        """The number of each contour's first point; every contour has one."""
+        return self.owner.searchsorted(np.arange(self.owner[-1] + 1))
 
     def part(self, chosen: Booleans) -> "Grid":
         """Some of the points.
@@ -134,7 +136,7 @@ def along(centrelines: Contours, first: Floats, last: Floats) -> Grid:
             grid = grid.with_points(np.full(beside.size, i), beside)
     point = centrelines.at(*grid)
     for _ in range(_LEVELS):
-        turn, rise = np.abs(np.diff(point.alpha)), np.abs(np.diff(point.eta))
+        turn, rise = np.abs(_steps(point.alpha)), np.abs(_steps(point.eta))
         steep = (turn > _TURN) | (rise > _RISE * np.minimum(point.eta[1:], point.eta[:-1]))
         new = grid.middles(steep)
         if not new.t.size:
@@ -157,7 +159,7 @@ def doubtful(t: Floats, value: Floats, rate: Floats) -> Booleans:
     array of bool, shape (n - 1,)
         Where the mean slope does not lie between those at the ends.
     """
-    change, width = np.diff(value), np.diff(t)
+    change, width = _steps(value), _steps(t)
     with np.errstate(all="ignore"):  # between points that differ by a rounding only, or contours
         mean = change / width
     low, high = np.minimum(rate[1:], rate[:-1]), np.maximum(rate[1:], rate[:-1])
@@ -172,7 +174,7 @@ def _with_phase_changes(centrelines: Contours, grid: Grid, point: ContourPoint) 
     most = np.bincount(grid.owner, minlength=len(centrelines)) + _MOST
     for _ in range(_LEVELS):
         # How near the surplus can come to zero, if it goes on as steeply as at either end.
-        steepest = np.fmax(np.abs(rate[1:]), np.abs(rate[:-1])) * -np.diff(grid.t)
+        steepest = np.fmax(np.abs(rate[1:]), np.abs(rate[:-1])) * -_steps(grid.t)
         near = np.minimum(np.abs(value[1:]), np.abs(value[:-1])) < 2 * steepest
         new = _allowed(grid, grid.middles(doubtful(grid.t, value, rate) & near), most)
         if not new.t.size:
@@ -185,7 +187,7 @@ def _with_phase_changes(centrelines: Contours, grid: Grid, point: ContourPoint) 
         found = surplus_and_rate(centrelines.at(*new))[:1]
         grid, (value,) = _merged(grid, (value,), new, found)
     below = value < 0
-    turns = np.flatnonzero(grid.cells & (below[1:] != below[:-1]))
+    turns = (grid.cells & (below[1:] != below[:-1])).nonzero()[0]
     owner = grid.owner[turns]
     high, low = grid.t[turns], grid.t[turns + 1]
 
@@ -206,7 +208,7 @@ def _extrema(centrelines: Contours, grid: Grid, value: Floats, rate: Floats) -> 
         width = grid.t[:-1] - grid.t[1:]
         ahead = (before - after - rate_before * width) / (rate_after - rate_before)
         crosses = after + rate_after * ahead < 0
-    at = np.flatnonzero(dips & crosses)
+    at = (dips & crosses).nonzero()[0]
     owner = grid.owner[at]
 
     def rates(dip: Integers, t: Floats) -> Floats:
@@ -281,7 +283,7 @@ def _to_end_of_reach(centrelines: Contours, grid: Grid) -> tuple[Grid, ContourPo
     gone = ~within_reach(point.alpha, point.eta)
     gone[grid.begins] = False
     reached = _before_first(grid, gone)
-    first = np.flatnonzero(reached[:-1] & ~reached[1:] & grid.cells) + 1
+    first = (reached[:-1] & ~reached[1:] & grid.cells).nonzero()[0] + 1
     if not first.size:
         return grid, point
     owner, row = np.repeat(grid.owner[first], _INSIDE.size), np.arange(first.size)
@@ -305,7 +307,7 @@ def _before_first(grid: Grid, chosen: Booleans) -> Booleans:
     so_far: Integers = np.cumsum(chosen)
     begins = grid.begins
     before = so_far[begins] - chosen[begins]
-    return np.asarray(so_far == np.repeat(before, np.diff(np.append(begins, grid.t.size))))
+    return np.asarray(so_far == before[grid.owner])
 
 
 def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> tuple[Grid, Grid, Samples]:
@@ -320,7 +322,8 @@ def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> tuple[Grid, G
     reached = ~np.isnan(foot_x[:-1])
     least = _least_so_far(grid, foot_x)[:-1]
     lowest = foot_x[:-1] - before * (grid.t[:-1] - grid.t[1:])
-    turns = np.flatnonzero(grid.cells & reached & (before > 0) & (after < 0) & (lowest < least))
+    dips = grid.cells & reached & (before > 0) & (after < 0) & (lowest < least)
+    turns = dips.nonzero()[0]
     owner, high, low = grid.owner[turns], grid.t[turns], grid.t[turns + 1]
     first = grid.t[grid.begins][owner]
 
@@ -337,7 +340,7 @@ def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> tuple[Grid, G
     there = _sample(centrelines, Grid(owner[turn], at))
     sampled = np.stack(there).reshape(len(there), *places.shape)
     t, known = about.zeros(rates(turn, at, there).reshape(places.shape)[:, :-1])
-    left = np.flatnonzero(~known)
+    left = (~known).nonzero()[0]
     t[left] = zeros(
         lambda which, at: rates(
             left[which], at, _sample(centrelines, Grid(owner[left[which]], at))
@@ -348,7 +351,7 @@ def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> tuple[Grid, G
     aside = _ASIDE * (high - t)
     every = np.stack([t, np.maximum(t - aside, low), np.minimum(t + aside, high)], axis=1)
     values = about.between(sampled[:, :, :-1], every)
-    left = np.flatnonzero(~(known & np.isfinite(values[0]).all(axis=1)))
+    left = (~(known & np.isfinite(values[0]).all(axis=1))).nonzero()[0]
     if left.size:
         exact = _sample(centrelines, Grid(np.repeat(owner[left], 3), every[left].ravel()))
         values[:, left] = np.stack(exact).reshape(len(exact), *every[left].shape)
@@ -373,8 +376,8 @@ def _least_of_cubic(
 def _least_so_far(grid: Grid, foot_x: Floats) -> Floats:
     """The least of all foot positions of a contour up to each one."""
     values = np.where(np.isnan(foot_x), np.inf, foot_x)
-    ends = np.flatnonzero(~grid.cells) + 1
-    return np.concatenate([np.minimum.accumulate(part) for part in np.split(values, ends)])
+    bounds = pairwise([*grid.begins.tolist(), values.size])
+    return np.concatenate([np.minimum.accumulate(values[begin:end]) for begin, end in bounds])
 
 
 def _sample(centrelines: Contours, grid: Grid) -> Samples:
@@ -405,6 +408,11 @@ def _merged(
     both = zip(values, found, strict=True)
     merged = tuple(np.concatenate(pair)[order] for pair in both)
     return Grid(owner[order], t[order]), merged
+
+
+def _steps(values: Floats) -> Floats:
+    """From each value to the next, by less than NumPy's `diff` of any order and axis takes."""
+    return values[1:] - values[:-1]
 
 
 def _order(owner: Integers, t: Floats) -> Integers:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from functools import cache, partial
 from importlib.metadata import version
+from itertools import accumulate, pairwise
 
 import numpy as np
 
@@ -49,9 +50,9 @@ def solve_plain(cases: Sequence[Case]) -> list[Readings]:
     touching = (places < first[whose]) & (places >= last[whose])
     columns = _free(foot_x)
     if touching.any():
-        ends = np.cumsum(counts)[:-1]
-        parts = zip(np.split(places, ends), np.split(touching, ends), strict=True)
-        states = solve_stations(centrelines, branches, [here[on] for here, on in parts])
+        bounds = pairwise([0, *accumulate(counts)])
+        held = [places[begin:end][touching[begin:end]] for begin, end in bounds]
+        states = solve_stations(centrelines, branches, held)
         solved = to_columns(states, Units(*units[:, touching]))
         for name in COLUMNS[1:]:
             columns[name][touching] = solved[name]
@@ -105,10 +106,11 @@ def _engine() -> str:
 
 def _free(foot_x: Numbers) -> dict[str, Numbers]:
     """The readings of vibrissae that touch nothing."""
-    columns: dict[str, Numbers] = {name: np.full(foot_x.size, np.nan) for name in COLUMNS}
+    empty = np.full((len(COLUMNS), foot_x.size), np.nan)
+    columns: dict[str, Numbers] = dict(zip(COLUMNS, empty, strict=True))
     columns["foot_x"] = foot_x
     for name in CLAMP_READINGS:
-        columns[name] = np.zeros(foot_x.size)
+        columns[name].fill(0.0)
     columns["phase"] = np.full(foot_x.size, PHASES.index("free"))
     columns["tip_angle"] = np.full(foot_x.size, np.pi / 2)
     columns["status"] = np.full(foot_x.size, STATUSES.index("ok"))

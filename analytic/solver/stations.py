@@ -71,7 +71,7 @@ def solve_stations(
     """
     stations, (tangent, t, excess, behind) = located(centrelines, branches, foot_x)
     found = _newton(centrelines, stations, tangent, (t, excess))
-    poor = np.flatnonzero(~(_admissible(found.states) & (found.missed <= _EXACT)))
+    poor = (~(_admissible(found.states) & (found.missed <= _EXACT))).nonzero()[0]
     if poor.size:
         few = stations.part(poor)
         enclosed = _enclose(centrelines, few, behind[poor])
@@ -83,6 +83,7 @@ def solve_stations(
     return found.states
 
 
+@np.errstate(all="ignore")  # folds and first contacts: what is not finite is no step
 def _newton(
     centrelines: Contours,
     stations: Stations,
@@ -101,8 +102,7 @@ def _newton(
     going = np.arange(t.size)
     for _ in range(_ITERATIONS):
         owner, foot_x, low, high = stations
-        with np.errstate(all="ignore"):  # folds and first contacts: what is not finite is no step
-            states = contact(centrelines.at(owner, t), excess, tangent)
+        states = contact(centrelines.at(owner, t), excess, tangent)
         now, too_high, too_far = _seen(t, states, foot_x)
         less = now.missed < np.inf if best is None else now.missed <= best.missed[going]
         best = now if best is None else best.improved(going, now, less)
@@ -110,24 +110,23 @@ def _newton(
         done = (enough & (step <= _CLOSE)) | (now.missed == 0)
         if done.all():
             break
-        with np.errstate(all="ignore"):  # as much as the rotation itself, or more, is no last step
-            step_t, step_w = _steps(states, too_high, too_far)
-            step_t = np.where(np.isfinite(step_t), step_t, 0.0)
-            step_w = np.where(np.isfinite(step_w), step_w, 0.0)
-            new_t = np.minimum(np.maximum(t - step_t, low), high)
-            new_excess = np.minimum(np.maximum(excess - step_w, excess / 10), _MOST_TURNED)
-            moved = np.abs(new_t - t)
-            turned = np.where(step_w == 0, 0.0, np.abs(step_w) / excess)
+        step_t, step_w = _steps(states, too_high, too_far)
+        step_t = np.where(np.isfinite(step_t), step_t, 0.0)
+        step_w = np.where(np.isfinite(step_w), step_w, 0.0)
+        new_t = np.minimum(np.maximum(t - step_t, low), high)
+        new_excess = np.minimum(np.maximum(excess - step_w, excess / 10), _MOST_TURNED)
+        moved = np.abs(new_t - t)
+        # As much as the rotation itself, or more, is no last step.
+        turned = np.where(step_w == 0, 0.0, np.abs(step_w) / excess)
         t, excess = new_t, new_excess
         small = (moved <= _LAST) & (turned <= _LAST_TURN) & np.isfinite(step)
-        last = np.flatnonzero(small)
+        last = small.nonzero()[0]
         if last.size:
-            with np.errstate(all="ignore"):
-                point = centrelines.at(owner[last], t[last])
-                near = contact_beside(states.part(last), point, excess[last])
+            point = centrelines.at(owner[last], t[last])
+            near = contact_beside(states.part(last), point, excess[last])
             beside = _seen(t[last], near, foot_x[last])[0]
             best = best.improved(going[last], beside, beside.missed <= best.missed[going[last]])
-        more = np.flatnonzero(~(done | small))
+        more = (~(done | small)).nonzero()[0]
         if not more.size:
             break
         t, excess, step = t[more], excess[more], np.maximum(moved, turned)[more]
@@ -139,12 +138,11 @@ def _newton(
 def _seen(t: Floats, states: Equilibria, foot_x: Floats) -> tuple[_Iterate, Floats, Floats]:
     """Iterates, and by how much each contact lies above and behind the contour's point [L]."""
     point = states.point
-    with np.errstate(all="ignore"):
-        height = states.frame.up / states.root_f
-        too_high, too_far = height - point.eta, foot_x - states.foot_x
-        # A rounding of the parameter moves the point by the stretch times that.
-        extent = np.maximum(np.maximum(1.0, np.abs(point.xi)), point.stretch * np.abs(t))
-        missed = np.fmax(np.abs(too_high), np.abs(too_far)) / extent
+    height = states.frame.up / states.root_f
+    too_high, too_far = height - point.eta, foot_x - states.foot_x
+    # A rounding of the parameter moves the point by the stretch times that.
+    extent = np.maximum(np.maximum(1.0, np.abs(point.xi)), point.stretch * np.abs(t))
+    missed = np.fmax(np.abs(too_high), np.abs(too_far)) / extent
     return _Iterate(t, np.where(np.isnan(missed), np.inf, missed), states), too_high, too_far
 
 

@@ -120,7 +120,7 @@ def tip_state(alpha: Floats, eta: Floats, lowest: Floats | None = None) -> tuple
     """
     top = greatest_height(alpha)
     # Against an upright side the vibrissa is straight and carries no load.
-    active = np.flatnonzero((eta < top) & (np.abs(alpha) < np.pi / 2))
+    active = ((eta < top) & (np.abs(alpha) < np.pi / 2)).nonzero()[0]
     found = np.full((4, alpha.size), np.nan)
     if active.size:
         alpha, sag = alpha[active], np.sqrt(np.maximum(1 - eta[active], 0.0))
@@ -147,7 +147,7 @@ def _turned(alpha: Floats, sag: Floats, p: Floats, high: Floats) -> Floats:
                 break
             p = np.where(close, p, new)
         found: Floats = tried.turned_to(new)
-    poor = np.flatnonzero(~(close & (new <= high)))
+    poor = (~(close & (new <= high))).nonzero()[0]
     if poor.size:
         found[:, poor] = _enclosed(alpha[poor], sag[poor], start[poor], high[poor])
     return found
@@ -184,7 +184,7 @@ def _start(alpha: Floats, sag: Floats, first: Floats, last: Floats, high: Floats
     tangential contact.
     """
     slope = np.zeros_like(alpha)
-    bent = np.flatnonzero(alpha < 0)
+    bent = (alpha < 0).nonzero()[0]
     slope[bent] = first[bent] / (2 * ellipk(_m(alpha[bent])) * np.sqrt(-np.sin(alpha[bent])))
     square = np.maximum((last - first - slope * high) / (high * high), 0.0)
     way = np.maximum(sag - first, _LEAST)
