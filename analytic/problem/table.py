@@ -193,10 +193,30 @@ def mirrored_table(table: pd.DataFrame) -> pd.DataFrame:
     pandas.DataFrame
         The same columns; angles are measured from the x-axis as before.
     """
-    changed = {name: 0.0 - table[name] for name in _ODD if name in table}  # keeps 0 from being -0
-    if "tip_angle" in table:
-        changed["tip_angle"] = np.pi - table["tip_angle"]
-    return table.assign(**changed)
+    return table.assign(**_turned_over(table))
+
+
+def mirrored_columns(columns: Mapping[str, Floats | Integers]) -> dict[str, Floats | Integers]:
+    """What `as_table` takes, in a mirror, x to -x.
+
+    Parameters
+    ----------
+    columns : mapping of array, shape (n,)
+        As `as_table` has them.
+
+    Returns
+    -------
+    dict of array, shape (n,)
+        The same columns.
+    """
+    return {**columns, **_turned_over(columns)}
+
+
+def _turned_over(columns: Any) -> dict[str, Any]:  # noqa: ANN401  # a table or a mapping of arrays
+    changed = {name: 0.0 - columns[name] for name in _ODD if name in columns}  # 0 never is -0
+    if "tip_angle" in columns:
+        changed["tip_angle"] = np.pi - columns["tip_angle"]
+    return changed
 
 
 def _parsed(column: "pd.Series[Any]", name: str, place: Place) -> Floats:

@@ -11,7 +11,7 @@ from analytic.problem.case import Case
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS, PHASES, STATUSES
 from analytic.problem.contours.many import Contours
 from analytic.problem.readings import Readings
-from analytic.problem.table import as_table
+from analytic.problem.table import as_table, mirrored_columns
 from analytic.solver.branch import trace
 from analytic.solver.equilibria import Numbers, Units, to_columns
 from analytic.solver.general.residuals import SOLVED
@@ -21,22 +21,24 @@ from analytic.solver.stations import solve_stations
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
 
 
-def solve_plain(cases: Sequence[Case]) -> list[Readings]:
-    """Solve sweeps to the left.
+def solve_plain(given: Sequence[Case]) -> list[Readings]:
+    """Solve sweeps, those to the right as their mirror images.
 
-    Right of the first contact and left of the snap-off the vibrissa is free. Between them the foot
-    position falls along the equilibria, so that each station has one state.
+    In a sweep to the left the vibrissa is free right of the first contact and left of the
+    snap-off. Between them the foot position falls along the equilibria, so that each station has
+    one state.
 
     Parameters
     ----------
-    cases : sequence of Case
-        Of the paper's vibrissa, whose foot moves to the left; at least one.
+    given : sequence of Case
+        Of the paper's vibrissa; at least one.
 
     Returns
     -------
     list of Readings
         As `solve_sweep` has them; what one case is does not matter to the others.
     """
+    cases = [case if case.sweep.direction == "left" else case.mirrored() for case in given]
     counts = [case.sweep.stations for case in cases]
     whose = np.repeat(np.arange(len(cases)), counts)
     units = np.array([Units.of(case.beam) for case in cases]).T[:, whose]
@@ -63,12 +65,15 @@ def solve_plain(cases: Sequence[Case]) -> list[Readings]:
     # Beyond the largest number in the case's units: an error says so.
     finite = not any(np.isinf(x).any() for x in columns.values())
     found, begin = [], 0
-    for case, count, branch in zip(cases, counts, branches, strict=True):
+    for case, count, branch in zip(given, counts, branches, strict=True):
         # Copies: readings that are kept do not keep those of all.
         own = {name: x[begin : begin + count].copy() for name, x in columns.items()}
-        record = partial(provenance, case, branch.events())
+        way = 1.0 if case.sweep.direction == "left" else -1.0
+        events = {name: None if x is None else way * x for name, x in branch.events().items()}
+        own = own if way > 0 else mirrored_columns(own)
+        record = partial(provenance, case, events)
         if finite:
-            snap_off = float(branch.foot_x[-1]) * case.beam.length
+            snap_off = way * float(branch.foot_x[-1]) * case.beam.length
             found.append(Readings.solved(own, case.beam, "analytic", record, snap_off))
         else:
             found.append(Readings(as_table(own), case.beam, "analytic", record()))

@@ -1,7 +1,6 @@
 """The sweep on given foot positions: every station solved, checked and put into one table."""
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -9,6 +8,7 @@ import pandas as pd
 from analytic.checks.certificate import certify
 from analytic.problem.case import Case
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS
+from analytic.problem.errors import require
 from analytic.problem.mirror import solve_either_way
 from analytic.problem.readings import Readings
 from analytic.solver.equilibria import Column
@@ -45,11 +45,9 @@ def solve_sweep(case: Case, certified: bool = False) -> Readings:
         readings. Where friction would not let it slide on as its foot moves, it
         is ``"sticks"``, with the readings of one that does: those depend on what was before.
     """
-    return solve_either_way(case, partial(_solve_leftward, certified=certified))
-
-
-def _solve_leftward(case: Case, certified: bool) -> Readings:
-    readings = solve_plain([case])[0] if case.is_plain else _solve_general(case)
+    require("case", case, Case, "named_case('catenary') makes one")
+    plain = case.is_plain
+    readings = solve_plain([case])[0] if plain else solve_either_way(case, _solve_general)
     return _with_certificate(readings) if certified else readings
 
 

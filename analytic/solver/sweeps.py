@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 from analytic.problem.case import Case
 from analytic.problem.errors import require
-from analytic.problem.mirror import facing
 from analytic.problem.readings import Readings
 from analytic.solver.plain import solve_plain
 from analytic.solver.sweep import solve_sweep
@@ -84,16 +83,12 @@ def _solved(cases: Iterable[Case]) -> Iterator[Readings | Unsolved]:
 def _batch(cases: list[Case]) -> Iterator[Readings | Unsolved]:
     plain = [i for i, case in enumerate(cases) if isinstance(case, Case) and case.is_plain]
     try:
-        leftward = [_leftward(cases[i]) for i in plain]
-        found = dict(zip(plain, solve_plain(leftward) if plain else [], strict=True))
+        solved = solve_plain([cases[i] for i in plain]) if plain else []
+        found = dict(zip(plain, solved, strict=True))
     except Exception:  # a contour's functions may raise anything; one by one, to see whose do
         found = {}
     for i, case in enumerate(cases):
         try:
-            yield facing(case, found[i]) if i in found else solve_sweep(case)
+            yield found[i] if i in found else solve_sweep(case)
         except Exception as error:
             yield Unsolved(case, error)
-
-
-def _leftward(case: Case) -> Case:
-    return case if case.sweep.direction == "left" else case.mirrored()
