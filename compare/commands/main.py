@@ -31,7 +31,7 @@ BAD_INPUT = 2
 _LONGEST = 800  # characters of an error
 # Made between two searches for garbage: what is loaded is none, and looking through all of it again
 # and again took a twentieth of a run.
-_OBJECTS = 100_000
+_OBJECTS = 300_000
 
 app = typer.Typer(
     add_completion=False,
@@ -117,7 +117,9 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):  # what its encoding lacks is written as an escape
             stream.reconfigure(errors="backslashreplace")
-    sys.exit(_run())
+    code = _run()
+    gc.freeze()  # to look for garbage in all that ends with the process took a tenth of a run
+    sys.exit(code)
 
 
 def _run() -> int:

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
-import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.text import Text
 from PIL import Image
@@ -59,5 +58,7 @@ def pictures(
         canvas.restore_region(headed[said])
         for artist in moving:
             figure.draw_artist(artist)
-        yield Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+        pixels = canvas.buffer_rgba()
+        high, wide, _ = pixels.shape
+        yield Image.frombytes("RGB", (wide, high), pixels, "raw", "RGBX")  # all of it is opaque
         advance()
