@@ -15,12 +15,13 @@ from compare.explain.budget import UNRESOLVED, Budget
 from compare.explain.convergence import fitted_orders
 from compare.judge.tolerances import CONVENTION
 from compare.show.colophon import colophon
-from compare.show.figures.budget_bars import headline, panels, picture
+from compare.show.figures.budget_bars import headline, picture
+from compare.show.figures.budget_bars import panels as budget_panels
 from compare.show.figures.geometry import geometry
 from compare.show.figures.order_plot import convergence_picture
 from compare.show.figures.over_foot import unit
 from compare.show.figures.phases import phase_criterion
-from compare.show.figures.readings import reading_panels, readings, snap_off_panels
+from compare.show.figures.readings import at_snap_off, reading_panels, readings
 from compare.show.figures.validation import validation_picture
 from compare.show.page import document, embedded, inline_svg, png, render, words
 from compare.show.quantities import Kind, quantity
@@ -198,40 +199,53 @@ def _figures(
     comparison: Comparison, drawn: Mapping[str, Figure], budget: Budget | None
 ) -> dict[str, list[Markup]]:
     """The page's pictures by the section they are in."""
-    sections: dict[str, Mapping[str, Figure]] = {
-        "geometry": {"both sweeps": drawn["geometry"]},
-        "readings": reading_panels(comparison),
-        "phases": {"both sweeps": drawn["phases"]},
-        "snap-off": snap_off_panels(comparison),
-    }
-    describes = {
-        "geometry": "The object and the vibrissa at stations of the sweep, in {}",
-        "readings": "{} of both models over the foot position, and their difference",
-        "phases": "Phase B's criterion and the contact's arc length over the foot position, {}",
-        "snap-off": "{} of both models around the snap-off, and their difference",
+    panels = reading_panels(comparison)
+    page = {
+        "geometry": _inline(
+            "geometry",
+            "The object and the vibrissa at stations of the sweep, in {}",
+            {"both sweeps": drawn["geometry"]},
+        ),
+        "readings": _inline(
+            "readings", "{} of both models over the foot position, and their difference", panels
+        ),
+        "phases": _inline(
+            "phases",
+            "Phase B's criterion and the contact's arc length over the foot position, {}",
+            {"both sweeps": drawn["phases"]},
+        ),
+        "snap-off": _inline(
+            "snap-off",
+            "{} of both models around the snap-off, and their difference",
+            at_snap_off(panels, comparison),
+        ),
     }
     if "validation" in drawn:
-        sections["validation"] = {"": drawn["validation"]}
-        describes["validation"] = (
-            "E = S - D and twice its standard uncertainty over the foot position"
+        page["validation"] = _inline(
+            "validation",
+            "E = S - D and twice its standard uncertainty over the foot position",
+            {"": drawn["validation"]},
         )
     if budget is not None:
-        sections["budget"] = panels(budget)
-        describes["budget"] = (
-            "Bars: the parts of {}'s disagreement; the table below has the numbers"
+        page["budget"] = _inline(
+            "budget",
+            "Bars: the parts of {}'s disagreement; the table below has the numbers",
+            budget_panels(budget),
         )
         if budget.convergence:
-            sections["convergence"] = {"": convergence_picture(budget.convergence)}
-            describes["convergence"] = (
-                "Disagreement against the number of segments, both logarithmic"
+            page["convergence"] = _inline(
+                "convergence",
+                "Disagreement against the number of segments, both logarithmic",
+                {"": convergence_picture(budget.convergence)},
             )
-    return {
-        section: [
-            inline_svg(figure, f"{section}-{i}", describes[section].format(name))
-            for i, (name, figure) in enumerate(pictures.items())
-        ]
-        for section, pictures in sections.items()
-    }
+    return page
+
+
+def _inline(section: str, describes: str, figures: Mapping[str, Figure]) -> list[Markup]:
+    return [
+        inline_svg(figure, f"{section}-{i}", describes.format(name))
+        for i, (name, figure) in enumerate(figures.items())
+    ]
 
 
 def _sentence(text: str) -> str:

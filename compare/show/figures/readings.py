@@ -1,5 +1,6 @@
 """Clamp readings over the foot position: both models above, their difference below."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -88,13 +89,16 @@ def reading_panels(comparison: Comparison) -> dict[str, Figure]:
     return {name: _panel(comparison, name) for name in SYMBOLS}
 
 
-def snap_off_panels(comparison: Comparison) -> dict[str, Figure]:
-    """Draw the clamp readings around the snap-off.
+def at_snap_off(panels: Mapping[str, Figure], comparison: Comparison) -> dict[str, Figure]:
+    """Show what is around the snap-off in the panels of the clamp readings.
 
     Parameters
     ----------
+    panels : mapping of Figure
+        Of `reading_panels`, drawn by now: they are changed, for others like them would take as long
+        to make as to draw.
     comparison : Comparison
-        Drawn from its readings alone.
+        The same.
 
     Returns
     -------
@@ -106,7 +110,7 @@ def snap_off_panels(comparison: Comparison) -> dict[str, Figure]:
     if not known:
         return {}
     half = _NEAR * float(np.ptp(foot(comparison.reference))) or _NEAR
-    figures = {name: _panel(comparison, name) for name in CLAMP_READINGS}
+    figures = {name: panels[name] for name in CLAMP_READINGS}
     for figure in figures.values():
         for ax in figure.axes:
             ax.set_xlim(min(known) - half, max(known) + half)

@@ -9,7 +9,7 @@ from analytic import CLAMP_READINGS, Readings
 from compare import compare
 from compare.show.figures.geometry import geometry
 from compare.show.figures.phases import phase_criterion
-from compare.show.figures.readings import reading_panels, snap_off_panels
+from compare.show.figures.readings import at_snap_off, reading_panels
 from compare.show.report import report_page, write_report
 from tests.compare.show import sweeps
 from tests.compare.show.pages import Page
@@ -86,8 +86,9 @@ def test_page_and_pictures(pair):
         assert name in page.text
     assert geometry(found).get_size_inches().max() <= 10
     assert phase_criterion(found).axes
-    assert set(reading_panels(found)) >= set(CLAMP_READINGS)
-    for figure in snap_off_panels(found).values():
+    panels = reading_panels(found)
+    assert set(panels) >= set(CLAMP_READINGS)
+    for figure in at_snap_off(panels, found).values():
         low, high = figure.axes[0].get_xlim()
         assert low < high
 
