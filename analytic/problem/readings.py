@@ -216,7 +216,7 @@ class Readings:
 
         That is: no status speaks against them, and none of the four is a gap.
         """
-        finite = np.isfinite(self.table[list(SENSED)].to_numpy(dtype=float)).all(axis=1)
+        finite = np.isfinite([self.values(name) for name in SENSED]).all(axis=0)
         if "status" in self.table:
             finite &= (self.table["status"] == "ok").to_numpy()
         return np.asarray(finite, dtype=bool)

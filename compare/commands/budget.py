@@ -66,7 +66,7 @@ def budget(
     with output_folder(changes.folder(out, job.case.name)) as folder:
         from analytic.problem.files import write_whole
         from compare.commands import terminal
-        from compare.commands.engines import measured_budget
+        from compare.commands.measured_budgets import measured_budget
         from compare.show.report import budget_files
         from compare.simulate.target import follow_advice
 
@@ -88,7 +88,7 @@ def _in_motion(job: "Job", place: Path, target: float | None) -> int:
     with output_folder(place) as folder:
         from analytic.problem.files import write_whole
         from compare.commands import terminal
-        from compare.commands.engines import fastest_motion, measured_motion_budget
+        from compare.commands.measured_budgets import fastest_motion, measured_motion_budget
 
         found, runs = measured_motion_budget(job)
         terminal.print_motion_budget(found, job.case.name)

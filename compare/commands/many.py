@@ -5,7 +5,7 @@ from pathlib import Path
 
 from analytic import InputError, solve_sweep
 from compare.commands import terminal
-from compare.commands.engines import measured_budget
+from compare.commands.measured_budgets import measured_budget
 from compare.commands.options import AGREES, DISAGREES
 from compare.read.case import Job
 from compare.show.engines import EngineRow, ManyEngines, write_engines

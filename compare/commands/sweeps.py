@@ -67,14 +67,15 @@ def run(
             exact.write(folder / "analytic.parquet")
         with waiting("loading MuJoCo"):
             from compare.commands import terminal
-            from compare.commands.engines import at_rest, measured_budget, simulated, sweep_file
+            from compare.commands.engines import at_rest, simulated, sweep_file
             from compare.comparison import compare
             from compare.show.animation import write_animation
             from compare.show.report import Film, write_report
-            from compare.simulate.inspection import faults_of
 
         found = None
         if with_budget:
+            from compare.commands.measured_budgets import measured_budget
+
             found, runs = measured_budget(job)
             candidate = runs["base"]
             candidate.write(folder / sweep_file(job))
@@ -97,6 +98,8 @@ def run(
             terminal.print_sweep(candidate)
             terminal.print_at_rest(compare(exact, rest), compare(rest, candidate))
         if job.model is not None:
+            from compare.simulate.inspection import faults_of
+
             terminal.print_sweep(candidate)
             for line in faults_of(job.model, job.case.beam):
                 terminal.print_line(line)

@@ -3,6 +3,7 @@
 Lengths are printed in units of the vibrissa's length L, whatever the units of the case.
 """
 
+import compare.commands.terminal.artists  # noqa: F401  # before what draws is loaded
 from compare.commands.terminal.console import print_line, print_written, progress
 from compare.commands.terminal.sweeps import (
     note_rows,
