@@ -1,5 +1,7 @@
 """The closed form in space against the plane, against integration, and against symmetry."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -30,10 +32,10 @@ from analytic.space import (
 from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE, MOMENT, NORMAL
 
 AXES, CENTRE = np.array([1.0, 0.7, 1.6]), np.array([0.0, 1.1, 0.0])
-LEANING = (0.1, 1.0, 0.05)
+UPRIGHT, LEANING = (0.0, 1.0, 0.0), (0.1, 1.0, 0.05)
 
 
-def swept(body, points, stations=40, beam=None, tangent=(0, 1, 0), height=0.0):
+def swept(body, points, stations=40, beam=None, tangent=UPRIGHT, height=0.0):
     path = FootPath(points, height, tangent, stations)
     return solve_space(SpatialCase(beam or Beam(), body=body, path=path))
 
@@ -54,6 +56,13 @@ BODIES = {
 }
 
 
+@cache
+def known(name, tangent):
+    """A sweep past one of them that several tests look at."""
+    body, points = BODIES[name]
+    return swept(body, points, 25, tangent=tangent)
+
+
 @pytest.mark.parametrize(
     "name",
     [
@@ -61,10 +70,9 @@ BODIES = {
         for n in BODIES
     ],
 )
-@pytest.mark.parametrize("tangent", [(0, 1, 0), LEANING])
+@pytest.mark.parametrize("tangent", [UPRIGHT, LEANING])
 def test_every_state_satisfies_the_equations_of_the_rod(name, tangent):
-    body, points = BODIES[name]
-    readings = swept(body, points, 25, tangent=tangent)
+    readings = known(name, tangent)
     assert readings.touching.sum() >= 5
     assert np.nanmax(rod_residuals(readings)) < 1e-10
     force, moment = readings.values(*FORCE), readings.values(*MOMENT)
@@ -73,7 +81,7 @@ def test_every_state_satisfies_the_equations_of_the_rod(name, tangent):
 
 
 def test_contacts_lie_on_the_ellipsoid_and_nothing_inside():
-    readings = swept(*BODIES["ellipsoid"], 60)
+    readings = known("ellipsoid", UPRIGHT)
     on = readings.touching
     contact, normal = (readings.values(*names)[on] for names in (CONTACT_POINT, NORMAL))
     outward = (contact - CENTRE) / AXES**2
@@ -159,9 +167,9 @@ def test_a_spheroid_gives_what_its_meridian_gives():
 
 def test_a_mirror_image_reads_the_mirrored_components():
     body, points = BODIES["ellipsoid"]
-    one = swept(body, points, tangent=LEANING)
+    one = known("ellipsoid", LEANING)
     mirror = np.array([1, 1, -1])
-    other = swept(body, np.array(points) * [1, -1], tangent=np.array(LEANING) * mirror)
+    other = swept(body, np.array(points) * [1, -1], 25, tangent=np.array(LEANING) * mirror)
     for names, sign in ((FOOT, mirror), (FORCE, mirror), (MOMENT, -mirror), (NORMAL, mirror)):
         assert np.allclose(
             one.values(*names), other.values(*names) * sign, rtol=0, atol=1e-12, equal_nan=True
