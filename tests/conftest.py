@@ -33,8 +33,12 @@ def exact_sweep(name: str) -> Readings:
     return solve_sweep(named_case(name))
 
 
-@cache
 def simulated_sweep(name: str, settings: Settings = Settings()) -> Readings:  # noqa: B008
+    return _simulated_sweep(name, settings)
+
+
+@cache  # with all arguments: to it a default is not the same as that value, given
+def _simulated_sweep(name: str, settings: Settings) -> Readings:
     return simulate_sweep(named_case(name), settings)
 
 

@@ -24,9 +24,9 @@ def test_agrees(exact, simulated):
 
 
 @pytest.mark.slow
-def test_agrees_four_times_better_with_twice_the_segments(case, exact):
+def test_agrees_four_times_better_with_twice_the_segments(case_name, exact):
     # Observed at most 2.3e-4 and 9.3e-4: a quarter of the above.
-    found = compare(exact, simulate_sweep(case, Settings(segments=80)))
+    found = compare(exact, simulated_sweep(case_name, Settings(segments=80)))
     for name in CLAMP_READINGS:
         assert found.disagreement[name].rms < 5e-4, name
         assert found.disagreement[name].max < 5e-3, name
