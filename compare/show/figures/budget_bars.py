@@ -1,5 +1,7 @@
 """The budget as a picture: what dominates, what remains, and whether that matters."""
 
+import math
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -98,6 +100,9 @@ def _draw(ax: Axes, found: Budget, reading: str) -> None:
     total = found.disagreement[reading]
     largest = max(total, *(part.rms + part.uncertainty for part in parts), UNRESOLVED)
     ax.set_xscale("log")
+    # Decades alone, and written as the numbers beside the bars: the picture takes half the time.
+    ax.xaxis.set_major_formatter(lambda x, _: f"1e{round(math.log10(x))}")
+    ax.minorticks_off()
     ax.set_xlim(_LEAST, 1.5 * largest)
     ax.axvspan(_LEAST, UNRESOLVED, color=_ZONE, alpha=0.6, linewidth=0, zorder=0)
     for name, row, part in zip(names, rows, parts, strict=True):
