@@ -15,7 +15,6 @@ from compare.study.grid.plan import Plan
 from compare.study.work.perform import perform, perform_together
 from compare.study.work.recipe import Recipe
 from mujoco_models import SpatialSettings, simulate_space
-from tests.compare.study.studies import vibrissa
 
 LEANING = """
 [study]
@@ -175,16 +174,16 @@ stations = 10
 
 
 @pytest.mark.slow
-def test_the_command_the_rows_and_the_report(tmp_path):
+def test_the_command_the_rows_and_the_report(tmp_path, command):
     (tmp_path / "grid.toml").write_text(SIMULATED)
-    done = vibrissa("study", "grid.toml", "--out", "out", "--workers", "1", cwd=tmp_path)
+    done = command("study", "grid.toml", "--out", "out", "--workers", "1")
     assert done.returncode == 0, done.stdout + done.stderr
     rows = pd.read_parquet(tmp_path / "out" / "runs")
     assert len(rows) == 4
     worst = rows.set_index(["mujoco.segments", "path.tangent.x"]).disagreement_moment_z_rms
     order = np.log2(worst[8] / worst[16])
     assert (order > 1.5).all()
-    done = vibrissa("study-report", "out", cwd=tmp_path)
+    done = command("study-report", "out")
     assert done.returncode == 0, done.stdout + done.stderr
     page = (tmp_path / "out" / "report.html").read_text()
     assert "falls from" in page
@@ -193,6 +192,6 @@ def test_the_command_the_rows_and_the_report(tmp_path):
     assert {"force_z", "moment_x"} <= set(orders["reading"])
     assert (tmp_path / "out" / "report" / "disagreement-mujoco.segments.png").stat().st_size > 1000
     (tmp_path / "lean.toml").write_text(LEANING)
-    done = vibrissa("study", "lean.toml", "--dry-run", cwd=tmp_path)
+    done = command("study", "lean.toml", "--dry-run")
     assert "16 runs" in done.stdout
     assert done.stderr == ""

@@ -41,7 +41,7 @@ def start(folder, *more, out="out"):
 
 
 @pytest.mark.parametrize("times", [3, pytest.param(20, marks=pytest.mark.trial)])
-def test_killed_many_times(folder, undisturbed, times):
+def test_killed_many_times(folder, undisturbed, command, times):
     chance = random.Random(6)
     seen: set[str] = set()
     for _ in range(times):
@@ -53,7 +53,7 @@ def test_killed_many_times(folder, undisturbed, times):
             now = set(results(folder / "out")["run"])
             assert seen <= now  # nothing that was complete is lost
             seen = now
-    assert vibrissa("study", "grid.toml", "--out", "out", cwd=folder).returncode == 0
+    assert command("study", "grid.toml", "--out", "out").returncode == 0
     pd.testing.assert_frame_equal(results(folder / "out"), undisturbed)
     assert not pd.read_parquet(folder / "out" / "runs")["run"].duplicated().any()
 
@@ -130,7 +130,7 @@ def rows_in_journals(folder: Path) -> int:
     return sum(len(path.read_bytes().splitlines()) for path in folder.glob(".journal*"))
 
 
-def test_a_scheduler_that_goes_loses_nothing(folder, cluster):
+def test_a_scheduler_that_goes_loses_nothing(folder, cluster, command):
     address, scheduler = cluster
     (folder / "grid.toml").write_text(FEW_HUNDRED.replace("100", "500"))
     process = start(folder, "--scheduler", address)
@@ -142,5 +142,5 @@ def test_a_scheduler_that_goes_loses_nothing(folder, cluster):
     assert [line for line in error.splitlines() if "--scheduler" not in line] == []
     before = len(results(folder / "out"))
     assert before > 0
-    again = vibrissa("study", "grid.toml", "--out", "out", cwd=folder)
+    again = command("study", "grid.toml", "--out", "out")
     assert f"{before} of them done already" in again.stdout
