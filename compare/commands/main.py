@@ -31,7 +31,7 @@ BAD_INPUT = 2
 _LONGEST = 800  # characters of an error
 # Made between two searches for garbage: what is loaded is none, and looking through all of it again
 # and again took a twentieth of a run.
-_OBJECTS = 300_000
+_OBJECTS = 400_000
 
 app = typer.Typer(
     add_completion=False,

@@ -29,7 +29,7 @@ _THEMED = {
 }
 _IMAGE_DPI = 180  # of what is too much to be drawn as lines
 _COLOUR = re.compile(r"#[0-9a-f]{6}\b")
-_IDENTIFIER = re.compile(r'(\bid="|href="#|url\(#)')
+_IDENTIFIED = (' id="', 'href="#', "url(#")  # what is followed by an identifier
 _MARKDOWN = re.compile(r"[\\`*~$\[\]]|#(?!\d+;)|(?<!\w)_|_(?!\w)")
 
 
@@ -155,7 +155,8 @@ def inline_svg(figure: Figure, name: str, description: str) -> Markup:
         text = _drawn(figure, "svg", transparent=True, dpi=_IMAGE_DPI, metadata=unnamed).decode()
     text = text[text.index("<svg") :]
     text = _COLOUR.sub(lambda colour: _THEMED.get(colour[0], colour[0]), text)
-    text = _IDENTIFIER.sub(rf"\g<1>{name}-", text)
+    for before in _IDENTIFIED:
+        text = text.replace(before, f"{before}{name}-")
     opening = f'<svg role="img" fill="currentColor" aria-label="{escape(description)}"'
     return Markup(text.replace("<svg", opening, 1))  # drawn here, its words escaped
 
