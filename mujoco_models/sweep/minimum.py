@@ -79,6 +79,8 @@ def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> 
         turn = turned(step, np.zeros(len(step)))
         near = replace(state, slope=slope)
         if turn < _AT_REST:
+            if model.lookout.move_window(model.obstacle.place(contacts.slope[pressed])):
+                continue  # all that share the load are to be seen as the engine will see them
             return near
         places = [angles + scale * step for scale in _SHORTER]
         if turn < _ON_A_FACET:

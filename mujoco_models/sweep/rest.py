@@ -62,7 +62,10 @@ def relax(
     if start.slope is not None:
         lookout.face(start.slope)
     nearly, residual, vain, astray = numerics.nearly * tolerance, np.inf, 0, 0
+    window = lookout.window
     for _ in range(numerics.iterations):
+        if lookout.window != window:  # what came to rest by another one does not count
+            window, best, vain = lookout.window, State(state.angles, state.forces), 0
         before, residual = residual, _largest(model.imbalance(foot_x, state.angles))
         contacts = model.contacts()
         if not held and model.slide_beads(contacts):
