@@ -26,7 +26,7 @@ from mujoco_models.space.settings import SpatialSettings
 
 _SLIGHT = 1e-3  # rad, below which a series is taken
 
-Law: TypeAlias = Callable[[Floats], tuple[Floats, Floats]]
+Law: TypeAlias = Callable[[Floats], tuple[Floats, Floats | float]]
 """Maps the joints' angles to the first two derivatives of their energies, over EI/h."""
 
 
@@ -89,9 +89,9 @@ class SpaceBeam(Protocol):
         """
 
 
-def _bent(angle: Floats) -> tuple[Floats, Floats]:
+def _bent(angle: Floats) -> tuple[Floats, float]:
     """Of theta^2/2."""
-    return angle, np.ones_like(angle)
+    return angle, 1.0
 
 
 def _straddled(angle: Floats) -> tuple[Floats, Floats]:
@@ -111,12 +111,13 @@ class BallChain(SpatialChain):
 
     def bent(self, frame: Floats, side: Floats, angles: Floats) -> Floats:
         """Each ball turns about the same axis, across the plane."""
-        x, _, z = side @ frame
-        half = np.diff(angles, prepend=0.0) / 2
-        return (
-            np.multiply.outer(np.cos(half), [1.0, 0, 0, 0]).ravel()
-            + np.multiply.outer(np.sin(half), [0.0, z, 0.0, -x]).ravel()
-        )
+        x, _, z = (side @ frame).tolist()
+        half = angles / 2
+        half[1:] -= angles[:-1] / 2
+        found = np.zeros((len(angles), 4))
+        found[:, 0], sine = np.cos(half), np.sin(half)
+        found[:, 1], found[:, 3] = z * sine, -x * sine
+        return found.ravel()
 
     def blocks(self, configuration: Floats) -> Floats:
         """Of k theta^2/2, theta the ball's rotation vector."""

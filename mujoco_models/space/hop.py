@@ -1,7 +1,9 @@
-"""Where a vibrissa goes that comes over an edge of a mesh: from face to face.
+"""Where a vibrissa goes that comes over an edge or a corner of a mesh.
 
-Damped by its material it goes straight towards the state that would be at rest if the face it comes
-to had no end; at the next edge the next face says where that is.
+A side that comes over a corner goes on along another edge that meets there: its energy goes down
+from the corner to a stable state on that edge. A tip goes from face to face: damped by its material
+it goes straight towards the state that would be at rest if the face it comes to had no end; at the
+next edge the next face says where that is.
 """
 
 from functools import partial
@@ -12,7 +14,14 @@ from analytic.problem.arrays import Floats
 from mujoco_models.space.balance import State
 from mujoco_models.space.forecast import Bow
 from mujoco_models.space.rest import Rest, Settled
-from mujoco_models.space.surface import BESIDE, STAYS, Feature, features_around, features_at
+from mujoco_models.space.surface import (
+    BESIDE,
+    STAYS,
+    Feature,
+    edges_of,
+    features_around,
+    features_at,
+)
 
 _FACES = 40  # over which a vibrissa hops at once
 _EDGE = 1e-4  # L, to which the end of a face is enclosed
@@ -35,30 +44,52 @@ def over_faces(rest: Rest, held: Settled, foot: Floats, far: float) -> Settled |
     Returns
     -------
     Settled or None
-        None if no face holds it, or the body is none of faces.
+        None if none holds it, if several edges do, or the body is none of faces.
     """
     model = rest.model
     if not model.shape.faceted:
         return None
-    state, centre, begin = held.state, held.touch.centre, model.contact(held.touch)
+    state, centre = held.state, held.touch.centre
     for _ in range(_FACES):
+        here = features_at(model, state.link, centre)
+        if state.sliding:
+            holding = _holding(rest, here, state, centre, foot, far)
+            if len(holding) > 1:
+                return None  # the way down says to which of them
+            if holding:
+                return _within(rest, far, held, holding[0])
         # Only where nothing that meets here leads on, what is next to it: a face beyond a corner
         # may hold a vibrissa that goes another way.
-        found = None
-        for seen in (features_at, features_around):
-            surfaces = seen(model, state.link, centre)
-            found = _on(rest, surfaces, state, centre, foot, far)
-            if found is not None:
-                break
+        found = _on(rest, here, state, centre, foot, far)
+        if found is None:
+            around = features_around(model, state.link, centre, here)
+            found = _on(rest, around, state, centre, foot, far)
         if found is None:
             return None
         if isinstance(found, Settled):
-            away = float(np.linalg.norm(model.contact(found.touch) - begin))
-            return found if away <= far else None
+            return _within(rest, far, held, found)
         state, centre = found
         if float(np.linalg.norm(centre - held.touch.centre)) > far:
             return None
     return None
+
+
+def _within(rest: Rest, far: float, held: Settled, found: Settled) -> Settled | None:
+    """What is found, if the contact is not too far away."""
+    away = float(np.linalg.norm(rest.model.contact(found.touch) - rest.model.contact(held.touch)))
+    return found if away <= far else None
+
+
+def _holding(
+    rest: Rest, here: list[Feature], state: State, centre: Floats, foot: Floats, far: float
+) -> list[Settled]:
+    """Where a side comes to rest on the edges in which the faces meet."""
+    faces = [one for one in here if one.flat]
+    every = [
+        rest.settle(state, edge, foot, foot, centre, far, partial(_use, rest, edge, foot))
+        for edge in edges_of(rest.model, faces, centre)
+    ]
+    return [one for one in every if one is not None and one.stays and one.stable]
 
 
 def _on(

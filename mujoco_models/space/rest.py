@@ -193,7 +193,9 @@ class Rest:
         return self._forecast.centre(bow, foot)
 
     def confirm(self, bow: Bow, surface: Surface, foot: Floats) -> Settled | None:
-        """The equilibrium by MuJoCo's own balance, next to a forecast.
+        """The equilibrium by MuJoCo's own balance, next to a forecast that stays where the mesh is.
+
+        What has left its face, edge or corner is nowhere to rest; it only says where it left.
 
         Parameters
         ----------
@@ -209,7 +211,11 @@ class Rest:
         Settled or None
             As of `settle`.
         """
-        return self._settled(self._bent(bow), bow, surface, foot)
+        assert isinstance(surface, Feature)
+        state, touch = self._bent(bow), surface.touched(self.centre(bow, foot))
+        if surface.missed_at(bow.link, touch.centre) > STAYS:
+            return Settled(state, touch, bow.stable, surface, False, bow)
+        return self._settled(state, bow, surface, foot)
 
     def _settled(
         self, state: State, bow: Bow | None, surface: Surface, foot: Floats

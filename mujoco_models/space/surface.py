@@ -7,6 +7,7 @@ way, at a corner two.
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -28,6 +29,7 @@ STAYS = 1e-8
 """How far a feature and the mesh may be apart where they are one [L]: its place and direction are
 found to that, over its length; what has left it by less has hardly moved."""
 _SAME_NORMAL = 1e-5  # rad, of two edges that are one
+_SAME_PLACE = 1e-6  # L, of two edges that are one: as far as it is touched they are as near
 _SAME_FACE = 1e-12  # rad; next to a face an edge has another normal
 
 
@@ -102,9 +104,21 @@ class Feature(NamedTuple):
 
     def touch(self, link: int, s: float) -> Touch:
         """The foot of the perpendicular."""
-        return self._touched(self.model.centre(link, s))
+        return self.touched(self.model.centre(link, s))
 
-    def _touched(self, centre: Floats) -> Touch:
+    def touched(self, centre: Floats) -> Touch:
+        """The same of a bead wherever it is.
+
+        Parameters
+        ----------
+        centre : array, shape (3,)
+            Where it is to be [L].
+
+        Returns
+        -------
+        Touch
+            Place, normal and distance.
+        """
         away = centre - self.point
         if self.flat:
             return Touch(centre, self.normal, float(away @ self.normal) - self.model.radius)
@@ -149,7 +163,7 @@ class Feature(NamedTuple):
         float
             [L]
         """
-        ours, found = self._touched(centre), self.model.probe(link, centre)
+        ours, found = self.touched(centre), self.model.probe(link, centre)
         apart = found.distance + self.model.radius
         return max(
             abs(ours.distance - found.distance),
@@ -208,10 +222,12 @@ def features_at(model: SpaceModel, link: int, centre: Floats) -> list[Feature]:
     """
     touch = model.probe(link, centre)
     low = model.contact(touch) + BESIDE * touch.normal
-    return _features(model, link, low + BESIDE * _ring(touch.normal))
+    return _features(model, link, low + BESIDE * _ring(touch.normal, 16))
 
 
-def features_around(model: SpaceModel, link: int, centre: Floats) -> list[Feature]:
+def features_around(
+    model: SpaceModel, link: int, centre: Floats, known: Sequence[Feature] = ()
+) -> list[Feature]:
     """The faces and the edges of a mesh next to a bead, faces first.
 
     Parameters
@@ -222,34 +238,89 @@ def features_around(model: SpaceModel, link: int, centre: Floats) -> list[Featur
         Whose bead.
     centre : array, shape (3,)
         Where it is to be [L].
+    known : sequence of Feature
+        Which need not be found again.
 
     Returns
     -------
     list of Feature
-        Each once.
+        Each once, and none of those known.
     """
-    ring = _ring(model.probe(link, centre).normal)
+    ring = _ring(model.probe(link, centre).normal, 8)
     rings = [centre + size * model.radius * ring for size in _RINGS]
-    return _features(model, link, np.concatenate(rings))
+    return _features(model, link, np.concatenate(rings), known)
 
 
-def _features(model: SpaceModel, link: int, places: Floats) -> list[Feature]:
+def edges_of(model: SpaceModel, faces: Sequence[Feature], centre: Floats) -> list[Feature]:
+    """The edges in which faces meet around a corner, or in which two do.
+
+    The fan of an edge's normals is narrow, and what lies next to a corner is mostly faces.
+
+    Parameters
+    ----------
+    model : SpaceModel
+        Of a mesh.
+    faces : sequence of Feature
+        All that meet there, and no others.
+    centre : array, shape (3,)
+        Of a bead next to it [L].
+
+    Returns
+    -------
+    list of Feature
+        One for each pair of neighbours.
+    """
+    if len(faces) < 2:
+        return []
+    normals = np.array([one.normal for one in faces])
+    one, other = (normals @ across(_unit(normals.sum(axis=0))).T).T
+    turn = np.argsort(np.arctan2(other, one))
+    pairs = list(zip(turn, np.roll(turn, -1), strict=True))
+    if len(pairs) == 2:
+        pairs.pop()
+    return [_edge(model, faces[i], faces[j], centre) for i, j in pairs]
+
+
+def _edge(model: SpaceModel, one: Feature, other: Feature, centre: Floats) -> Feature:
+    """In which two faces meet."""
+    normal = _unit(one.normal + other.normal)
+    basis = np.array([normal, _unit(one.normal - other.normal)])
+    heights = [face.normal @ (face.point - centre) for face in (one, other)]
+    down = basis.T @ np.linalg.solve([face.normal @ basis.T for face in (one, other)], heights)
+    return Feature(model, centre + down, normal, basis, basis.T @ basis)
+
+
+def _unit(vector: Floats) -> Floats:
+    return np.asarray(vector / np.linalg.norm(vector))
+
+
+def _features(
+    model: SpaceModel, link: int, places: Floats, known: Sequence[Feature] = ()
+) -> list[Feature]:
     """What a bead touches in some places."""
-    faces: list[Feature] = []
-    edges: list[Feature] = []
+    faces = [one for one in known if one.flat]
+    edges = [one for one in known if not one.flat]
+    before = len(faces), len(edges)
     for place in places:
         touch = model.probe(link, place)
         if any(np.abs(touch.normal - one.normal).max() < _SAME_FACE for one in faces):
             continue
         found = surface_at(model, link, touch)
         assert isinstance(found, Feature)
-        known = faces if found.flat else edges
-        if all(np.abs(found.span - one.span).max() > _SAME_NORMAL for one in known):
-            known.append(found)
-    return faces + edges
+        alike = faces if found.flat else edges
+        if not any(_same(found, one) for one in alike):
+            alike.append(found)
+    return faces[before[0] :] + edges[before[1] :]
 
 
-def _ring(normal: Floats) -> Floats:
-    """Ways along a surface, shape (8, 3)."""
-    angle = np.arange(8) * np.pi / 4
+def _same(one: Feature, other: Feature) -> bool:
+    """Whether two are one."""
+    if np.abs(one.span - other.span).max() > _SAME_NORMAL:
+        return False
+    return bool(np.abs(one.span @ (one.point - other.point)).max() < _SAME_PLACE)
+
+
+def _ring(normal: Floats, count: int) -> Floats:
+    """Ways along a surface, shape (count, 3)."""
+    angle = np.arange(count) * 2 * np.pi / count
     return np.column_stack([np.cos(angle), np.sin(angle)]) @ across(normal)

@@ -237,7 +237,7 @@ class Walk:
             step, beside = goal - self._at, _BESIDE[tries % len(_BESIDE)]
             at = self._at + step / 2
             if beside is not None:
-                about = self._at + self._left(found, goal) * step + beside * _CROSSED
+                about = self._at + self._left(found) * step + beside * _CROSSED
                 at = about if self._at < about < goal else at
             held = self._held
             assert held is not None
@@ -262,15 +262,14 @@ class Walk:
         found = self._rest.follow(start, self._foot(self._at), self._foot(goal), _ASTRAY * farthest)
         return found if found is not None and _apart(found, held) <= farthest else None
 
-    def _left(self, found: Settled, goal: float) -> float:
+    def _left(self, found: Settled) -> float:
         """At about which share of a step the contact leaves its face, edge or corner."""
         held = self._held
         assert held is not None
         if not isinstance(held.surface, Feature):
             return 0.5
-        model, link = self._model, found.state.link
-        model.place(self._foot(goal), found.state.configuration)
-        if held.surface.missed(link, found.state.s) < STAYS:
+        link = found.state.link
+        if held.surface.missed_at(link, found.touch.centre) < STAYS:
             return 0.5  # another link is deeper
         by = found.touch.centre - held.touch.centre
         low, high = 0.0, 1.0
