@@ -15,6 +15,7 @@ from tests.fuzz.space import KINDS, main
         *(pytest.param(seed, marks=pytest.mark.trial) for seed in (105, 120)),  # the last two again
         122,  # along an edge, so slowly that the foot goes on
         2008,  # a tip that lands next to the limit of 0.12 L
+        92107,  # a side that comes over a corner: an edge holds it, and a face beyond its tip
     ],
 )
 def test_a_mesh_has_no_silent_error(seed):

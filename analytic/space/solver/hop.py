@@ -76,13 +76,24 @@ def landing(scene: Scene, start: Contact, begin: Floats, foot: Floats) -> Contac
 def _over_faces(
     scene: Scene, body: Polyhedron, start: Contact, foot: Floats, limit: float
 ) -> Contact | None:
-    """Of a tip on a mesh, in closed form."""
+    """Of a mesh, in closed form; None if only the way down says where.
+
+    A side that comes over a corner goes on along an edge that meets there: on a face it rests only
+    with its tip, or all along it.
+    """
     point, normal, last = start.spot.point, start.spot.normal, start
     for _ in range(_STEPS):
         spot = body.nearest(point + _ABOVE * normal, APART)
         if _apart(spot.point, start.spot.point) > _FARTHEST:
             return None
-        for step in _steps(scene, body, last, spot.point, foot, limit):
+        faces, edges = _features(body.normals_at(spot.point), spot.point)
+        if last.tangent:
+            ways = _steps(scene, body, edges, last, spot.point, foot, limit)
+            on = [_landed(scene, step.target, foot) for step in ways if step.whole]
+            holding = [one for one in on if one is not None]
+            if holding:
+                return holding[0] if len(holding) == 1 else None
+        for step in _steps(scene, body, faces + edges, last, spot.point, foot, limit):
             found = _landed(scene, step.target, foot) if step.whole else None
             if found is not None:
                 return found
@@ -130,11 +141,17 @@ def _next_to(scene: Scene, touching: Touching, foot: Floats) -> Contact | None:
 
 
 def _steps(
-    scene: Scene, body: Polyhedron, last: Contact, point: Floats, foot: Floats, energy: float
+    scene: Scene,
+    body: Polyhedron,
+    features: list[Feature],
+    last: Contact,
+    point: Floats,
+    foot: Floats,
+    energy: float,
 ) -> Iterator[_Step]:
-    """Ways on from a point of the surface, on its faces before those along its edges."""
+    """Ways on from a point of the surface, on faces and along edges that meet there."""
     free = last.arc_length if last.tangent else last.excess
-    for feature in _features(body.normals_at(point), point):
+    for feature in features:
         alone = scene._replace(body=feature)
         above = feature.nearest(point + APART * last.spot.normal, APART).normal
         start = contact_at(alone, point + APART * above, free, last.tangent)
@@ -147,16 +164,16 @@ def _steps(
             yield _Step(room * by, room == 1.0, target)
 
 
-def _features(normals: Floats, point: Floats) -> Iterator[Feature]:
+def _features(normals: Floats, point: Floats) -> tuple[list[Feature], list[Feature]]:
     """The faces that meet at a point, and what may be edges between them."""
-    for n in normals:
-        yield Feature(point, np.zeros((0, 3)), n)
+    faces, edges = [Feature(point, np.zeros((0, 3)), n) for n in normals], []
     for one, other in combinations(normals, 2):
         between, apart = one + other, one - other
         size = float(np.linalg.norm(apart))
         if size > _PARALLEL:
             between = between / np.linalg.norm(between)
-            yield Feature(point, np.stack([between, apart / size]), between)
+            edges.append(Feature(point, np.stack([between, apart / size]), between))
+    return faces, edges
 
 
 def _landed(scene: Scene, target: Contact, foot: Floats) -> Contact | None:
