@@ -15,6 +15,8 @@ from analytic.space.solver.stability import is_stable
 
 _CLOSE = 1e-13  # L of the way, to which events are enclosed
 _BEYOND = 1e-9  # L: a state that is missing at one place only was missed by Newton's method
+_BESIDE = 1e-6  # L: beside a seam, of faces that are 1e-7 rad apart, contacts are on neither
+_PACE = 10.0  # of the foot's, that a contact may have there
 _MISSES = 200  # of these between two stations, and of edges that are crossed
 _BARELY = 1e-7  # L and rad: how far a contact that has just begun is bent
 _LOOSE = 1e-5  # EI/L^2; a contact that ends with less has been released
@@ -113,8 +115,7 @@ class _Walker:
         while at < to:
             if failed - at <= _CLOSE:
                 missed += 1
-                beyond = min(failed + _BEYOND, to)
-                found = self._across(contact, beyond)
+                beyond, found = self._beyond(contact, failed, to)
                 if found is None or missed > _MISSES:
                     return at, contact, False
                 goal, failed = beyond, np.inf
@@ -145,14 +146,24 @@ class _Walker:
         feature = self._scene.body.feature(start.spot)
         return settle(self._scene._replace(body=feature), start, foot)
 
-    def _across(self, start: Contact, travel: float) -> Contact | None:
+    def _beyond(self, contact: Contact, failed: float, to: float) -> tuple[float, Contact | None]:
+        """Where it goes on, and the state there; beside a seam of two faces none is found."""
+        beyond = failed
+        for step in (_BEYOND, _BESIDE):
+            beyond = min(failed + step, to)
+            found = self._across(contact, beyond, _STEADY + _PACE * step)
+            if found is not None:
+                return beyond, found
+        return beyond, None
+
+    def _across(self, start: Contact, travel: float, steady: float) -> Contact | None:
         """On the next face, edge or corner, where the state goes on as it was."""
         foot = self._way.foot(travel)
         ahead = self._on_feature(start, foot)
         if ahead is None:
             return None
         found = self._stable_at(self._there(ahead), travel)
-        return found if found is not None and _apart(found, start) < _STEADY else None
+        return found if found is not None and _apart(found, start) < steady else None
 
     def _there(self, ahead: Contact) -> Contact:
         """The contact with the whole body at the place of one with a feature of it."""
