@@ -1,5 +1,6 @@
 """The command ``vibrissa``: its commands, and what becomes of their errors."""
 
+import atexit
 import gc
 import os
 import sys
@@ -117,9 +118,9 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):  # what its encoding lacks is written as an escape
             stream.reconfigure(errors="backslashreplace")
-    code = _run()
-    gc.freeze()  # to look for garbage in all that ends with the process took a tenth of a run
-    sys.exit(code)
+    # To look for garbage in all that ends with the process took a tenth of a run.
+    atexit.register(gc.freeze)
+    sys.exit(_run())
 
 
 def _run() -> int:
