@@ -32,6 +32,7 @@ _SLACK = 1e-9  # of the energy: rounding
 _NEAR = 0.02  # L, between a chain's contact and the one of the closed form
 _AHEAD = (0.0, 1e-3, 4e-3)  # L of the way: a chain may hold a little longer
 _SLOW, _ASKED = 2e-3, 8  # rad, of a step after which the closed form is asked; how often
+_HELD = 1e-3  # L; a chain that goes no farther in all that holds, others only begin to fall
 _LEAST = 1e-3  # rad, rotation of a tip that is searched for
 
 
@@ -111,12 +112,14 @@ def _down(
     """Of a whole vibrissa, sides and all; the closed form where it comes to rest."""
     onward = (foot - begin) / _apart(foot, begin)
     for ahead in _AHEAD:
-        touching, asked = None, 0
+        since, asked = start.spot.point, 0
         for touching in descend(scene, start, foot + ahead * onward):
             if _apart(touching.place, start.spot.point) > _FARTHEST:
                 return None
             if touching.turned > _SLOW:
                 continue
+            if _apart(touching.place, since) > _HELD:
+                since, asked = touching.place, 0
             found, asked = _next_to(scene, touching, foot), asked + 1
             if found is not None and found.energy <= limit:
                 return found

@@ -17,6 +17,15 @@ def test_over_an_edge_next_to_a_corner_nothing_beyond_the_corner_holds(tmp_path)
     assert len(slips[0]) == 1
 
 
+@pytest.mark.slow
+def test_a_fall_that_begins_slowly_is_followed_to_where_it_lands(tmp_path):
+    # At 1.1007 L a side loses its hold and creeps for the first 0.01 L of its 0.04 L.
+    case = oblique("ball.stl", 0, tmp_path, stations=8)
+    ends = [events(sweep(case), "release") for sweep in (solve_space, simulate_space)]
+    assert ends[1] == pytest.approx(ends[0], abs=5e-4)  # of 40 links; found on 1e-6 L
+    assert len(ends[0]) == 1
+
+
 @pytest.mark.trial
 @pytest.mark.parametrize("file", FILES)
 def test_ten_oblique_ways_agree_with_the_closed_form(file, tmp_path):
@@ -27,5 +36,4 @@ def test_ten_oblique_ways_agree_with_the_closed_form(file, tmp_path):
         assert outcome.rms <= 3e-3, (case.name, outcome)  # of the largest component
         assert not {"silent", "lost", "unsettled"} & set(outcome.flags), (case.name, outcome)
         apart += "slip-off" in outcome.flags  # more than 5e-3 L, or in one only
-    # Whether a side that slides over a corner lands within 0.12 L may hang on its last 1e-4 L.
-    assert apart <= 1
+    assert apart == 0
