@@ -94,7 +94,10 @@ def relax(
             if lookout.move_window(obstacle.place(slopes)):
                 continue
             if unwatched := lookout.unwatched():
-                lookout.watch(lookout.watched | spread(unwatched, numerics.at_once))
+                # Twice as many each time: on a stiff contact all of them may carry a load.
+                most = max(numerics.at_once, len(lookout.watched))
+                lookout.watch(lookout.watched | spread(unwatched, most))
+                best, vain = State(state.angles, state.forces), 0  # fewer beads' rest is none
                 continue
             if (missed := lookout.overlooked(contacts)) is not None:
                 lookout.use_window(obstacle.window_of(missed))
