@@ -127,12 +127,14 @@ class Readings:
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> pd.DataFrame | Mapping[str, Any]:
-            make = self.__dict__.get("_to_make", {}).get(name)
-            if make is None:
+            made = self.__dict__
+            make = made.get("_to_make", {}).get(name)
+            if make is not None:
+                made.setdefault(name, make())  # several threads that ask at once get the same one
+                self._to_make.pop(name, None)
+            if name not in made:
                 raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
-            made = self.__dict__[name] = make()
-            del self._to_make[name]
-            return made
+            return made[name]
 
     def __getstate__(self) -> dict[str, Any]:
         """What copies and files of Python's have: nothing that is still to be made."""

@@ -1,6 +1,8 @@
 """Readings as rigs and users give them, and as files keep them."""
 
 import os
+from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier
 
 import numpy as np
 import pandas as pd
@@ -302,3 +304,17 @@ def test_a_failed_write_leaves_what_was_there(tmp_path, monkeypatch):
         sweep.write(path)
     assert path.read_bytes() == before
     assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_threads_that_ask_at_once_get_the_same_table():
+    """What is made when first asked for is made by whoever comes first."""
+    for _ in range(20):
+        readings, together = solve_sweep(named_case("catenary")), Barrier(4)
+
+        def ask(_, readings=readings, together=together):
+            together.wait()
+            return readings.table, readings.provenance
+
+        with ThreadPoolExecutor(4) as threads:
+            found = list(threads.map(ask, range(4)))
+        assert all(t is readings.table and p is readings.provenance for t, p in found)
