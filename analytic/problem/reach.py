@@ -12,6 +12,8 @@ from analytic.problem.errors import InputError
 from analytic.problem.roots import smooth_zeros
 
 FARTHEST = 1e4  # L, from the origin: positions are then good to 2e-12 L
+_LOOKED_AT = 65  # places at a time, between which the least foot position is then sought
+_AS_CLOSE = 1e-12  # of a contour's parameter: of a foot position, where the contour has a corner
 _SHARES = np.linspace(0, 1, 33)  # of the way from the lowest point to either end
 _BESIDE = np.array([0, -1, 1, -2, 2, -3, 3, -4, 4])  # roundings off a place that is interpolated
 _WIDEST = 1e3  # L; a wider object turns by less than 1e-3 rad while the vibrissa passes
@@ -74,17 +76,16 @@ def out_of_reach(centreline: Contour, last: float, first: float) -> float:
     float
         Foot position [L].
     """
-    from scipy.optimize import minimize_scalar  # slow to load, and stating a case needs none of it
-
-    def foot(t: Floats) -> Floats:
+    low, high = last, first
+    close = max(_AS_CLOSE, 8 * float(np.spacing(max(abs(low), abs(high)))))
+    while True:
+        t = np.linspace(low, high, _LOOKED_AT)
         xi, eta = centreline.place(t)
-        return xi - np.sqrt(np.maximum(0.0, 1 - eta * eta))
-
-    grid = np.linspace(last, first, 257)
-    best = int(np.argmin(foot(grid)))
-    bounds = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
-    found = minimize_scalar(lambda t: foot(np.array([t]))[0], bounds=bounds, method="bounded")
-    return float(found.fun)
+        foot = xi - np.sqrt(np.maximum(0.0, 1 - eta * eta))
+        best = int(np.argmin(foot))
+        low, high = t[max(best - 1, 0)], t[min(best + 1, _LOOKED_AT - 1)]
+        if high - low <= close:
+            return float(foot[best])
 
 
 def _check_place(centreline: Contour, ends: tuple[float, float]) -> None:
