@@ -13,6 +13,8 @@ from scipy.linalg.lapack import dposv
 from analytic.problem.arrays import Booleans, Floats, Integers
 
 _TRIALS = 5  # of sets of contacts that may be the loaded ones
+_MOST = 3  # times the contacts: so many are pressed; usually fewer than there are
+_CUT = 1e-13  # of the largest gap: what rounding leaves open
 
 
 class _Few(NamedTuple):
@@ -109,7 +111,37 @@ def unilateral(comes: Floats, turns: Floats, soft: Floats, gap: Floats, guess: B
         if not np.count_nonzero(wrong):
             return force
         guess = guess ^ wrong
-    from scipy.optimize import nnls  # slow to load, and few sweeps need it
+    return _active_set(compliance, gap)
 
-    root = np.linalg.cholesky(compliance.whole)
-    return np.asarray(nnls(root.T, -np.linalg.solve(root, gap))[0])
+
+def _active_set(compliance: _Few | _Many, gap: Floats) -> Floats:
+    """Contact forces by the method of Lawson and Hanson (*Solving least squares problems*, 1974).
+
+    The contact that is cut deepest is pressed too, one after the other; what would pull then is let
+    go on the way there. The energy falls with each that is added, so that no set comes twice.
+    """
+    force, held = np.zeros(len(gap)), np.zeros(len(gap), dtype=bool)
+    for _ in range(_MOST * len(gap)):
+        left = compliance.moved(force) + gap
+        left[held] = 0.0
+        if left.min() >= -_CUT * np.abs(gap).max():
+            return force
+        pressed = left.argmin()
+        held[pressed] = True
+        while True:
+            wanted = np.zeros(len(gap))
+            found = compliance.forces(held.nonzero()[0], gap[held])
+            if found is None:
+                raise np.linalg.LinAlgError("the stiffness of contacts is not positive definite")
+            wanted[held] = found
+            pulls = held & (wanted < 0)
+            if not pulls.any():
+                break
+            share = force[pulls] / (force[pulls] - wanted[pulls])
+            force += share.min() * (wanted - force)
+            held[pulls.nonzero()[0][share == share.min()]] = False
+            force[~held] = 0.0
+        force = wanted
+        if not held[pressed]:
+            return force  # it would pull at once: rounding is all that is left
+    raise np.linalg.LinAlgError("no set of contacts pushes alone")

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
-from mujoco_models.sweep.unilateral import _Few, _Many, unilateral
+from mujoco_models.sweep.unilateral import _active_set, _Few, _Many, unilateral
 
 STIFF = 1e4
 
@@ -29,6 +29,18 @@ def test_what_pushes_closes_its_gap_and_the_others_stay_open(seed, contacts, lin
     assert (force >= 0).all()
     assert (left > -near).all()
     assert np.abs(force * left).max() < near * (1 + force.max())
+
+
+@given(st.integers(0, 10**6), st.integers(1, 60), st.integers(2, 20))
+@settings(max_examples=100)
+def test_active_set_finds_the_forces_of_another_program(seed, contacts, links):
+    comes, turns, soft, gap = drawn(seed, contacts, links)
+    compliance = _Many(comes, turns, soft)
+    root = np.linalg.cholesky(compliance.whole)
+    expected = nnls(root.T, -np.linalg.solve(root, gap))[0]
+    given = compliance if contacts > links else _Few(compliance.whole)
+    # Soft contacts share what stiff links cannot move: rounding grows with stiffness.
+    np.testing.assert_allclose(_active_set(given, gap), expected, atol=1e-11 * STIFF)
 
 
 @pytest.mark.parametrize("guessed", [False, True])
