@@ -6,19 +6,22 @@ MuJoCo itself is imported when one of them is called, not before.
 import math
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.errors import require
 from analytic.problem.mirror import facing, solve_either_way
 from analytic.problem.readings import Readings
-from analytic.space.problem.case import SpatialCase
-from analytic.space.problem.readings import SpatialReadings
-from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.motion import Motion
-from mujoco_models.own.names import OwnModel
 from mujoco_models.settings import Settings
-from mujoco_models.space.settings import SpatialSettings
+
+if TYPE_CHECKING:
+    from analytic.space.problem.case import SpatialCase
+    from analytic.space.problem.readings import SpatialReadings
+    from mujoco_models.inspect.measured import MeasuredBeam
+    from mujoco_models.own.names import OwnModel
+    from mujoco_models.space.settings import SpatialSettings
 
 
 def simulate_sweep(
@@ -90,11 +93,11 @@ def simulate_sweep(
 
 
 def simulate_space(
-    case: SpatialCase,
-    settings: SpatialSettings | None = None,
+    case: "SpatialCase",
+    settings: "SpatialSettings | None" = None,
     advance: Callable[[], None] = lambda: None,
-    keep: Callable[[SpatialReadings], None] = lambda _: None,
-) -> SpatialReadings:
+    keep: "Callable[[SpatialReadings], None]" = lambda _: None,
+) -> "SpatialReadings":
     """Sweep a case in space in MuJoCo, at rest at every station.
 
     Parameters
@@ -130,6 +133,8 @@ def simulate_space(
     DivergedError
         If the simulation is not a number any more; it names the station.
     """
+    from analytic.space.problem.case import SpatialCase
+    from mujoco_models.space.settings import SpatialSettings
     from mujoco_models.space.sweep import run_space
 
     chosen = SpatialSettings() if settings is None else settings
@@ -282,7 +287,7 @@ def inspect_model(
     torque: str | None = None,
     geoms: str | None = None,
     site: str | None = None,
-) -> MeasuredBeam:
+) -> "MeasuredBeam":
     """Measure what beam a user's own model is; its files are only read.
 
     Parameters
@@ -315,7 +320,7 @@ def inspect_model(
 
 def simulate_model(
     case: Case,
-    model: OwnModel,
+    model: "OwnModel",
     motion: Motion | None = None,
     settings: Settings | None = None,
     advance: Callable[[], None] = lambda: None,

@@ -15,3 +15,5 @@ STATUSES = (
     "sticks",
 )
 COLUMNS = (*SENSED, "phase", *CONTACT, "status")
+WORDS = {"phase": PHASES, "status": STATUSES}
+"""The columns of words, with what may stand in them."""

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 from numpy.typing import ArrayLike
 
 from analytic.problem.arrays import Booleans, Floats, Integers
@@ -15,18 +14,17 @@ from analytic.problem.beam import Beam, Varying
 from analytic.problem.columns import SENSED
 from analytic.problem.errors import InputError, require
 from analytic.problem.files import as_path
+from analytic.problem.places import Place, row_number
 from analytic.problem.provenance import check_provenance
-from analytic.problem.readings_file import read_file, write_file
-from analytic.problem.readings_shown import as_html, as_text, plot
 from analytic.problem.support import (
     beyond_the_paper,
     require_plain,
     support_of,
     support_record,
 )
-from analytic.problem.table import Place, as_table, checked_table, mirrored_table, row_number
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.axes import Axes
 
 
@@ -62,12 +60,16 @@ class Readings:
     Readings.read : from a file.
     """
 
-    table: pd.DataFrame
+    table: "pd.DataFrame"
     beam: Beam = field(default_factory=Beam)
     source: str = "measured"
     provenance: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        import pandas as pd  # slow to load, and solvers do without
+
+        from analytic.problem.table import checked_table
+
         for name, value, kind, remedy in (
             ("table", self.table, pd.DataFrame, "`Readings.of` takes mappings too"),
             ("beam", self.beam, Beam, "as Beam(length=..., flexural_rigidity=...)"),
@@ -119,14 +121,14 @@ class Readings:
             What `Readings` of the same is, in a tenth of the time.
         """
         found = object.__new__(cls)
-        to_make = {"table": partial(as_table, columns), "provenance": provenance}
+        to_make = {"table": partial(_table, columns), "provenance": provenance}
         parts = {"beam": beam, "source": source, "snap_off": snap_off, "_to_make": to_make}
         found.__dict__.update(parts)
         return found
 
     if not TYPE_CHECKING:
 
-        def __getattr__(self, name: str) -> pd.DataFrame | Mapping[str, Any]:
+        def __getattr__(self, name: str) -> "pd.DataFrame | Mapping[str, Any]":
             made = self.__dict__
             make = made.get("_to_make", {}).get(name)
             if make is not None:
@@ -137,13 +139,19 @@ class Readings:
             return made[name]
 
     def __getstate__(self) -> dict[str, Any]:
-        """What copies and files of Python's have: nothing that is still to be made."""
-        return {part.name: getattr(self, part.name) for part in fields(self)}
+        """What copies and files of Python's have: a table that is still to be made is made there.
+
+        So is one that a worker has solved: it need not load what tables take.
+        """
+        make = self.__dict__.get("_to_make", {}).get("table")
+        kept = [part.name for part in fields(self) if make is None or part.name != "table"]
+        unmade = {} if make is None else {"_to_make": {"table": make}}
+        return {**{name: getattr(self, name) for name in kept}, **unmade}
 
     @classmethod
     def of(
         cls,
-        data: pd.DataFrame | Mapping[str, ArrayLike],
+        data: "pd.DataFrame | Mapping[str, ArrayLike]",
         beam: Beam | None = None,
         source: str = "measured",
         provenance: Mapping[str, Any] | None = None,
@@ -180,6 +188,8 @@ class Readings:
         ...              "moment_z": [0, 0.3]}).gaps
         0
         """
+        from analytic.problem.table import checked_table
+
         table = checked_table(_frame(data), source, place)
         lost = int(table["foot_x"].isna().sum())
         provenance = {} if provenance is None else provenance
@@ -288,6 +298,8 @@ class Readings:
         Readings
             With what `provenance` says of events and contour mirrored too.
         """
+        from analytic.problem.table import mirrored_table
+
         provenance = dict(self.provenance)
         if "events" in provenance:
             events = provenance["events"]
@@ -320,6 +332,8 @@ class Readings:
         OSError
             If the file cannot be written.
         """
+        from analytic.problem.readings_file import write_file
+
         metadata = {
             "beam": asdict(self.beam),
             "source": self.source,
@@ -330,7 +344,7 @@ class Readings:
         return path
 
     @staticmethod
-    def read_table(path: str | Path) -> pd.DataFrame:
+    def read_table(path: str | Path) -> "pd.DataFrame":
         """The bare table in a Parquet or CSV file, whatever its columns.
 
         Parameters
@@ -348,6 +362,8 @@ class Readings:
         InputError
             If the file is missing, damaged, too large or no regular file.
         """
+        from analytic.problem.readings_file import read_file
+
         return read_file(as_path(path, "readings file")).table
 
     @classmethod
@@ -372,6 +388,8 @@ class Readings:
             If the file is missing, damaged, too large or not a sweep; the message has line and
             column of a cell that cannot be read.
         """
+        from analytic.problem.readings_file import read_file
+
         path = as_path(path, "readings file")
         content = read_file(path)
         metadata = content.metadata
@@ -409,16 +427,30 @@ class Readings:
         list of matplotlib.axes.Axes
             One a reading: ``force_x``, ``force_y``, ``moment_z``.
         """
+        from analytic.problem.readings_shown import plot
+
         return plot(self.table, self.beam, self.trusted, self.source, axes)
 
     def __repr__(self) -> str:
+        from analytic.problem.readings_shown import as_text
+
         return as_text(self.table, self.beam, self.source, self.gaps, self.beyond_the_paper)
 
     def _repr_html_(self) -> str:
+        from analytic.problem.readings_shown import as_html
+
         return as_html(self.table, repr(self))
 
 
-def _frame(data: pd.DataFrame | Mapping[str, ArrayLike]) -> pd.DataFrame:
+def _table(columns: Mapping[str, Floats | Integers]) -> "pd.DataFrame":
+    from analytic.problem.table import as_table
+
+    return as_table(columns)
+
+
+def _frame(data: "pd.DataFrame | Mapping[str, ArrayLike]") -> "pd.DataFrame":
+    import pandas as pd
+
     if isinstance(data, pd.DataFrame):
         return data
     allowed, remedy = "a DataFrame, or columns of one length by name", "as {'foot_x': [...], ...}"

@@ -1,6 +1,6 @@
 """What may stand in the table of one sweep."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
@@ -9,36 +9,15 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from analytic.problem.arrays import Floats, Integers
-from analytic.problem.columns import COLUMNS, CONTACT, PHASES, SENSED, STATUSES
+from analytic.problem.columns import COLUMNS, CONTACT, SENSED, WORDS
 from analytic.problem.errors import InputError
+from analytic.problem.places import Place, row_number
 
 _ODD = (  # change sign in a mirror, averaged or not
     *("foot_x", "force_x", "moment_z", "contact_angle", "contact_x"),
     *("force_x_raw", "moment_z_raw"),
 )
 _TEXT_FIX = "fix the cell, or leave it empty where nothing was measured"
-
-WORDS = {"phase": PHASES, "status": STATUSES}
-"""The columns of words, with what may stand in them."""
-
-Place = Callable[[int], str]
-"""Where a row of a table stands, in words: ``"line 17 of rig.csv"``."""
-
-
-def row_number(row: int) -> str:
-    """Where a row of a table in memory stands.
-
-    Parameters
-    ----------
-    row : int
-        Its number, counted from 0.
-
-    Returns
-    -------
-    str
-        What an error calls it.
-    """
-    return f"row {row}"
 
 
 def as_numbers(column: "pd.Series[Any]", name: str, place: Place = row_number) -> Floats:

@@ -8,11 +8,11 @@ from numpy.typing import ArrayLike
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
-from analytic.problem.columns import COLUMNS
+from analytic.problem.columns import COLUMNS, WORDS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError, require
 from analytic.problem.support import check_support, is_plain
-from analytic.problem.table import WORDS, in_words
+from analytic.problem.table import in_words
 from analytic.solver.equilibria import Units, equilibria, to_columns
 from analytic.solver.general.clearance import is_clear
 from analytic.solver.general.columns import to_columns as general_columns

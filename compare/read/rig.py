@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike
 from analytic import Beam, Direction, InputError, Readings
 from analytic.problem.arrays import Floats
 from analytic.problem.files import as_path
+from analytic.problem.places import Place, row_number
 from analytic.problem.readings_file import is_ours
-from analytic.problem.table import Place, as_numbers, row_number
+from analytic.problem.table import as_numbers
 from compare.read.assumed import BEAM_WANTED, assumed_of
 from compare.read.case_file import read_beam
 from compare.read.dialect import read_text_table

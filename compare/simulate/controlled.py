@@ -5,6 +5,7 @@ from concurrent.futures import BrokenExecutor
 from contextlib import contextmanager
 
 from analytic import Case, InputError, Readings, solve_sweep
+from analytic.problem.mirror import facing
 from compare.explain.budget import Budget, budget
 from compare.explain.changes import controlled_changes
 from compare.explain.variations import on_polygon, variations
@@ -89,14 +90,19 @@ def _sweeping(
     longest_first = sorted(set(changes.values()), key=lambda s: -s.segments)
     with Workers(min(len(longest_first), available_cores()), SWEEPERS) as pool:
         sweeps = {
-            settings: pool.submit(simulate_sweep, case, settings) for settings in longest_first
+            # As a sweep to the left: in a mirror it is turned here, where tables are loaded.
+            settings: pool.submit(simulate_sweep, _leftward(case), settings)
+            for settings in longest_first
         }
         for sweep in sweeps.values():
             sweep.add_done_callback(lambda _: advance())
 
         def await_all() -> dict[str, Readings]:
             try:
-                return {name: sweeps[settings].result() for name, settings in changes.items()}
+                return {
+                    name: facing(case, sweeps[settings].result())
+                    for name, settings in changes.items()
+                }
             except BrokenExecutor as error:
                 raise MemoryError("the system ended a worker process") from error
 

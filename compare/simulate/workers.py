@@ -13,7 +13,7 @@ from typing import NoReturn
 
 from analytic import InputError
 
-SWEEPERS = ("mujoco_models.sweep.sweep",)
+SWEEPERS = ("mujoco_models.sweep.sweep", "mujoco_models.simulate")
 """What workers that sweep in MuJoCo share."""
 _START = 120.0  # s; a worker is there within one or two, on a crowded machine within ten
 

@@ -7,11 +7,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import pandas as pd
+import numpy as np
 from threadpoolctl import threadpool_limits
 
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
-from analytic.problem.columns import COLUMNS
+from analytic.problem.columns import COLUMNS, WORDS
 from analytic.problem.readings import Readings
 from mujoco_models.errors import DivergedError
 from mujoco_models.sweep.walk import Model, Walk
@@ -103,14 +104,8 @@ def _readings(
     account: Account,
 ) -> Readings:
     """In the units of the case's beam."""
-    table, beam = pd.DataFrame(rows), case.beam
-    units = {"force": beam.force_unit, "moment": beam.moment_unit, "length": beam.length}
-    for kind, names in _UNITS.items():
-        for name in filter(table.columns.__contains__, names):
-            table[name] *= units[kind]
-    if "sideways_stiffness" in table:
-        table["sideways_stiffness"] *= beam.force_unit / beam.length
-    table.insert(0, "foot_x", case.foot_x[: len(rows)])
+    columns, beam = _columns(rows, case), case.beam
+    events = {name: None if x is None else x * beam.length for name, x in walk.events.items()}
     provenance = {
         **case.provenance(),
         **account.provenance,
@@ -118,7 +113,29 @@ def _readings(
         "obstacle": walk.model.obstacle.label,
         "seconds": round(time.process_time() - account.begun, 3),
         "unsettled": dict(doubts),
-        "events": {name: None if x is None else x * beam.length for name, x in walk.events.items()},
+        "events": events,
     }
-    extra = [name for name in table if name not in COLUMNS]
-    return Readings(table[[*COLUMNS, *extra]], beam, account.source, provenance)
+    if any(np.isinf(values).any() for values in columns.values()):
+        from analytic.problem.table import as_table  # slow to load
+
+        # Beyond the largest number in the case's units: an error says so.
+        return Readings(as_table(columns), beam, account.source, provenance)
+    return Readings.solved(columns, beam, account.source, lambda: provenance, events["snap_off"])
+
+
+def _columns(rows: list[dict[str, Any]], case: Case) -> dict[str, Floats | Integers]:
+    """As `analytic.problem.table.as_table` takes them; a station without numbers has NaN."""
+    beam = case.beam
+    units = {"force": beam.force_unit, "moment": beam.moment_unit, "length": beam.length}
+    unit = {name: units[kind] for kind, names in _UNITS.items() for name in names}
+    unit["sideways_stiffness"] = beam.force_unit / beam.length
+    columns: dict[str, Floats | Integers] = {}
+    for name in dict.fromkeys([*COLUMNS, *rows[0]]):
+        if name == "foot_x":
+            columns[name] = case.foot_x[: len(rows)]
+        elif name in WORDS:
+            columns[name] = np.array([WORDS[name].index(row[name]) for row in rows])
+        else:
+            values = np.array([row.get(name, np.nan) for row in rows], dtype=float)
+            columns[name] = values * unit.get(name, 1.0)
+    return columns

@@ -13,8 +13,9 @@ from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError, require
 from analytic.problem.files import as_path
+from analytic.problem.places import Place, row_number
 from analytic.problem.readings_file import read_file, write_file
-from analytic.problem.table import Place, as_numbers, row_number
+from analytic.problem.table import as_numbers
 from analytic.space.problem.numbers import direction
 
 FOOT = ("foot_x", "foot_y", "foot_z")

@@ -59,3 +59,21 @@ def test_help_and_complaints_load_nothing_heavy(tmp_path, words, code):
     *_, ended, loaded = done.stdout.splitlines()
     assert ended == f"ended with {code}", done.stderr
     assert loaded == "loaded"
+
+
+SWEEP = """
+import pickle, sys
+from analytic import Case, Sweep, circle
+from mujoco_models import Settings, simulate_sweep
+case = Case(profile=circle(1.0, (0.0, 0.4)), sweep=Sweep(40))
+found = simulate_sweep(case, Settings(segments=10))
+assert found.snap_off is not None
+sent = pickle.dumps(found)
+print("loaded", *sorted(set(sys.modules) & {"pandas", "pyarrow", "scipy.optimize"}))
+assert pickle.loads(sent).table.equals(found.table)
+"""
+
+
+def test_workers_sweep_without_what_tables_take():
+    done = subprocess.run([sys.executable, "-c", SWEEP], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["loaded"], done.stderr

@@ -1,0 +1,22 @@
+"""Where rows of a table stand, in words."""
+
+from collections.abc import Callable
+
+Place = Callable[[int], str]
+"""Where a row of a table stands, in words: ``"line 17 of rig.csv"``."""
+
+
+def row_number(row: int) -> str:
+    """Where a row of a table in memory stands.
+
+    Parameters
+    ----------
+    row : int
+        Its number, counted from 0.
+
+    Returns
+    -------
+    str
+        What an error calls it.
+    """
+    return f"row {row}"
