@@ -30,6 +30,7 @@ _SAME = 1e-7  # L, between a face that has no end and the mesh
 _PARALLEL = 1e-9  # rad, between faces that have no edge
 _SLACK = 1e-9  # of the energy: rounding
 _NEAR = 0.02  # L, between a chain's contact and the one of the closed form
+_ASTRAY = 0.05  # L; what Newton's method goes so far to find is another contact (observed: 4e-3)
 _AHEAD = (0.0, 1e-3, 4e-3)  # L of the way: a chain may hold a little longer
 _SLOW, _ASKED = 2e-3, 8  # rad, of a step after which the closed form is asked; how often
 _HELD = 1e-3  # L; a chain that goes no farther in all that holds, others only begin to fall
@@ -135,7 +136,7 @@ def _next_to(scene: Scene, touching: Touching, foot: Floats) -> Contact | None:
     for tangent in (False, True):
         free = touching.arc_length if tangent else max(touching.bent, _LEAST)
         trial = contact_at(scene, touching.on_parallel, free, tangent)
-        found = settle(scene, trial, foot)
+        found = settle(scene, trial, foot, _ASTRAY)
         if found is None or _apart(found.spot.point, touching.place) > _NEAR:
             continue
         if is_stable(found, scene.radius):

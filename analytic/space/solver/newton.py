@@ -18,7 +18,7 @@ _SWITCHES = 4  # of the phase
 _PHASE_SLACK = 1e-12  # rad and L: at the limit both phases are the same state
 
 
-def settle(scene: Scene, start: Contact, foot: Floats) -> Contact | None:
+def settle(scene: Scene, start: Contact, foot: Floats, reach: float = np.inf) -> Contact | None:
     """The contact that a foot position has, from one near by.
 
     Parameters
@@ -29,6 +29,8 @@ def settle(scene: Scene, start: Contact, foot: Floats) -> Contact | None:
         Near by, of either phase.
     foot : array, shape (3,)
         The foot [L].
+    reach : float
+        How far from there it is sought [L].
 
     Returns
     -------
@@ -36,7 +38,7 @@ def settle(scene: Scene, start: Contact, foot: Floats) -> Contact | None:
         In its right phase, with the foot there to some roundings; None if there is none near by.
     """
     for _ in range(_SWITCHES):
-        found = _newton(scene, start, foot)
+        found = _newton(scene, start, foot, reach)
         if found is None:
             return None
         limit = np.pi / 2 - found.plane.alpha
@@ -49,7 +51,7 @@ def settle(scene: Scene, start: Contact, foot: Floats) -> Contact | None:
     return None
 
 
-def _newton(scene: Scene, start: Contact, foot: Floats) -> Contact | None:
+def _newton(scene: Scene, start: Contact, foot: Floats, reach: float) -> Contact | None:
     """The contact of given phase; steps are halved while they do not come nearer."""
     if min(start.plane.alpha, start.excess) <= _FLATTEST:
         return None
@@ -66,6 +68,8 @@ def _newton(scene: Scene, start: Contact, foot: Floats) -> Contact | None:
                 break
         if nearer is None:
             break
+        if np.linalg.norm(nearer.spot.point - start.spot.point) > reach:
+            return None
         best, missed = nearer, miss
     return best if missed <= _EXACT * extent else None
 
