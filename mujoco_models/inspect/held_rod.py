@@ -149,8 +149,11 @@ class HeldRod(Sensing):
         """Whether it comes to rest within a time [1/omega]."""
         step, slow = self.model.opt.timestep, _AT_REST * self._length * self._omega
         shortest = max(_SHORTEST / self._omega, self._shortest)
+        self._apply()
+        turns = self._torque.any()
         for i in range(math.ceil(max(longest / self._omega, 2 * shortest) / step)):
-            self._apply()
+            if turns:  # its couple goes with the last edge
+                self._apply()
             mujoco.mj_step(self.model, self.data)
             speed = float(np.abs(self.data.qvel[self.dofs]).max())
             if speed < slow and i * step > shortest:
@@ -162,9 +165,12 @@ class HeldRod(Sensing):
         applied, chain = self.data.xfrc_applied, self.parts.chain
         applied[:] = 0
         applied[chain[-1], :3] = self._force
-        edge = self.tip - self.vertices[-2]
+        before, tip = self.data.flexvert_xpos[list(self.rod.vertices[-2:])]
+        edge = tip - before
         square = edge @ edge
-        couple = np.cross(self._torque, edge) / square
+        couple = np.empty(3)
+        mujoco.mju_cross(couple, self._torque, edge)  # np.cross would take longer than the step
+        couple /= square
         applied[chain[-1], :3] += couple
         applied[chain[-2], :3] -= couple
         applied[self.parts.foot, 3:] = (self._torque @ edge) * edge / square
