@@ -5,6 +5,7 @@ integrated from the clamp by scipy, with the clamp's force as the unknown.
 """
 
 from importlib.metadata import version
+from math import cos, sin
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -38,7 +39,7 @@ class Shooting:
 
         def bend(_, state):
             _, _, slope, kappa = state
-            return np.cos(slope), np.sin(slope), kappa, fx * np.sin(slope) - fy * np.cos(slope)
+            return cos(slope), sin(slope), kappa, fx * sin(slope) - fy * cos(slope)
 
         way = solve_ivp(bend, (0, s), (0, 0, np.pi / 2, moment), "DOP853", rtol=1e-9, atol=1e-11)
         return way.y[:, -1]
