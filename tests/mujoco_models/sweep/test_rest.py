@@ -1,6 +1,7 @@
 """At rest only springs and contacts count: nothing that belongs to the way there."""
 
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -33,11 +34,16 @@ def changed(quantity, factor):
     return add_options
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def usual(request):
+    return swept(request.param)
+
+
+@cache  # a fixture of the module would be made again for each constant
+def swept(beam):
     case = named_case("parabola")
     case = replace(case, sweep=replace(case.sweep, stations=25))
-    settings = Settings(beam=request.param, segments=20)
+    settings = Settings(beam=beam, segments=20)
     return case, settings, simulate_sweep(case, settings)
 
 
@@ -133,7 +139,7 @@ def test_a_stiffness_that_stalls_early_does_not_let_go_early(stiffening):
 def test_how_convex_the_step_is_past_a_smooth_contour_does_not_show(stiffening):
     """Short of the fold the model of 1e3 is not convex; all come to rest in the same states."""
     case, settings = named_case("parabola"), Settings(obstacle="primitive")
-    expected = simulate_sweep(case, settings)
+    expected = simulated_sweep("parabola", settings)
     found = run_sweep(case, settings, numerics=Numerics(stiffening=stiffening))
     assert (found.table["status"] == "ok").all()
     for name in CLAMP_READINGS:
