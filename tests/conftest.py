@@ -12,6 +12,11 @@ from tests.in_turn import InTurn
 collect_ignore = ["examples"]  # for users; run as they would by compare/testing/test_plugin.py
 
 
+def pytest_collection_modifyitems(items):
+    """What takes longest comes first: in the end one core would wait for the other."""
+    items.sort(key=lambda item: "test_wheel.py" not in item.nodeid)
+
+
 @pytest.fixture(autouse=True, scope="session")
 def nothing_is_ignored():
     """A shell in the background ignores interrupts, and so would commands that tests start."""
