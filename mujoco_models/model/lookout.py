@@ -245,9 +245,10 @@ class Lookout:
         carries = contacts.touch[contacts.loaded | contacts.fused].tolist()
         unloaded = np.array(sorted(self.watched.difference(carries)), dtype=int)
         positions = self._scene.bead_positions(unloaded)
-        for suspect in self._obstacle.near(positions, self._radius - _OVERLOOKED):
+        deep = self.radii[unloaded] - _OVERLOOKED
+        for suspect in self._obstacle.near(positions, deep):
             clearance, place = self._obstacle.clearance(positions[suspect])
-            if clearance < self.radii[unloaded[suspect]] - _OVERLOOKED:
+            if clearance < deep[suspect]:
                 return place
         return None
 

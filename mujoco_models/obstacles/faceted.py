@@ -127,7 +127,7 @@ class Faceted(Obstacle):
         slack = min(turn, _SLACK) + 1e-9
         return self._slopes[0] - slack, self._slopes[1] + slack
 
-    def near(self, points: Floats, distance: float) -> Integers:
+    def near(self, points: Floats, distance: float | Floats) -> Integers:
         """Which of the points, shape (n, 2), may be nearer to the contour than `distance`.
 
         The distance from the line of any one facet is not more than that from the polygon. The
@@ -139,6 +139,7 @@ class Faceted(Obstacle):
         if len(found) == 0:
             return found
         points, foot = points[found], (x - bound * aside)[found]
+        distance = distance[found] if isinstance(distance, np.ndarray) else distance
         close = self._below(points, self._inner.searchsorted(foot))[0] < distance
         left, right = self._sides
         x = points[:, 0]

@@ -148,7 +148,7 @@ class Primitive(Obstacle):
         """Whether contacts with these slope angles are within reach."""
         return self._outline.faces(slope)
 
-    def near(self, points: Floats, distance: float) -> Integers:
+    def near(self, points: Floats, distance: float | Floats) -> Integers:
         """By the polygon."""
         return self._outline.near(points, distance)
 

@@ -131,15 +131,15 @@ class Obstacle(ABC):
         """
 
     @abstractmethod
-    def near(self, points: Floats, distance: float) -> Integers:
+    def near(self, points: Floats, distance: float | Floats) -> Integers:
         """Which of the points may be nearer to the contour than a distance.
 
         Parameters
         ----------
         points : array, shape (n, 2)
             Positions [L].
-        distance : float
-            From the contour [L].
+        distance : float, or array of shape (n,)
+            From the contour, one for all or one a point [L].
 
         Returns
         -------

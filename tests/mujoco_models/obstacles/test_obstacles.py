@@ -171,7 +171,9 @@ def test_distance_from_a_corner_is_that_of_the_vertex():
     box = Prism.of(Case(profile=polygon([(0, 0.4), (1, 0.4), (1, 1.4), (0, 1.4)])), 0)
     assert box.clearance(np.array([1.3, 0.0]))[0] == pytest.approx(0.5)
     assert box.clearance(np.array([0.5, 0.41]))[0] == pytest.approx(-0.01)
-    assert box.near(np.array([[0.5, 0.396], [1.3, 0.4], [0.5, 0.39]]), 0.005).tolist() == [0]
+    points = np.array([[0.5, 0.396], [1.3, 0.4], [0.5, 0.39]])
+    assert box.near(points, 0.005).tolist() == [0]
+    assert box.near(points, np.array([0.003, 0.31, 0.011])).tolist() == [1, 2]
 
 
 @pytest.mark.parametrize(
