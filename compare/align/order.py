@@ -4,8 +4,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic import Readings
+from analytic import CLAMP_READINGS, Readings
+from analytic.problem.arrays import Floats
 from compare.sense.record import Record, direction, inspect_record
+
+_ROWS = 400  # that two sweeps are laid over each other by
+_TRIALS, _ROUNDS = 201, 3  # positions tried, and how often the best one is closed in on
+_ALIKE = 0.05  # share of the readings' square that may be left where one way to count explains them
+_CLEARLY = 0.25  # of what the other explanation leaves
 
 
 @dataclass(frozen=True)
@@ -17,6 +23,9 @@ class Order:
     reversed : bool
         The rows run against the reference's, while force and moment have its signs: the last
         station comes first.
+    backwards_from : float or None
+        Its foot positions count the other way, from this origin: the reference's are this number
+        minus the candidate's [length]; None if they count alike.
     sorted : bool
         The rows are in no order of a motion.
     opposite : bool
@@ -24,6 +33,7 @@ class Order:
     """
 
     reversed: bool = False
+    backwards_from: float | None = None
     sorted: bool = False
     opposite: bool = False
 
@@ -34,6 +44,12 @@ class Order:
             return (
                 "rows reversed: foot_x runs the other way than in the reference while force and "
                 "moment have its signs; compared from the last row to the first"
+            )
+        if self.backwards_from is not None:
+            turned = f"{self.backwards_from:.4g} - foot_x" if self.backwards_from else "-foot_x"
+            return (
+                "foot_x counts the other way: it grows where the reference's falls, while force "
+                f"and moment follow the reference row by row; compared with {turned} instead"
             )
         if self.sorted:
             return (
@@ -49,7 +65,8 @@ def in_order(reference: Readings, candidate: Readings) -> tuple[Readings, Record
     The vibrissa bends against the foot's motion, so that a sweep in the opposite direction has a
     ``moment_z`` of the opposite sign as well. That distinguishes it from a file whose rows are
     reversed, and both from a sensor that is wired the wrong way, where the rows run as in the
-    reference.
+    reference. Where only `foot_x` runs the other way, either the rows are reversed or a stage
+    counts its way backwards: which of them lays the readings over the reference's decides.
 
     Parameters
     ----------
@@ -78,8 +95,54 @@ def in_order(reference: Readings, candidate: Readings) -> tuple[Readings, Record
         return candidate, record, Order()
     if turned:
         return candidate, record, Order(opposite=True)
+    origin = _backwards_from(reference, candidate)
+    if origin is not None:
+        turned_back = replace(
+            candidate, table=candidate.table.assign(foot_x=origin - candidate.values("foot_x"))
+        )
+        return turned_back, inspect_record(turned_back), Order(backwards_from=origin)
     turned_round = _taken(candidate, np.arange(len(candidate.table))[::-1])
     return turned_round, inspect_record(turned_round), Order(reversed=True)
+
+
+def _backwards_from(reference: Readings, candidate: Readings) -> float | None:
+    """Origin that foot positions count backwards from; None if reversed rows explain as much."""
+    x_ref, true = _shape(reference)
+    x, seen = _shape(candidate)
+    if len(x_ref) < 2 or not len(x):
+        return None
+    order = np.argsort(x_ref, kind="stable")
+    x_ref, true = x_ref[order], true[:, order]
+
+    def left(at: Floats) -> float:
+        """Share of the readings' square that is left if they were felt at these positions."""
+        there = np.stack([np.interp(at, x_ref, row, left=0.0, right=0.0) for row in true])
+        return float(np.sum((seen - there) ** 2) / np.sum(seen**2))
+
+    def nearest(way: float) -> tuple[float, float]:
+        """What the best origin of that way to count leaves, and the origin."""
+        width = max(float(np.ptp(x_ref)), float(np.ptp(x)))
+        best, reach = float(np.mean(x_ref) - way * np.mean(x)), width
+        for _ in range(_ROUNDS):
+            origins = best + np.linspace(-reach, reach, _TRIALS)
+            best = float(min(origins, key=lambda origin: left(origin + way * x)))
+            reach = 2 * reach / _TRIALS
+        return left(best + way * x), best
+
+    reversed_rows = min(left(x), nearest(1.0)[0])
+    for rest, origin in ((left(-x), 0.0), nearest(-1.0)):
+        if rest <= _ALIKE and rest < _CLEARLY * reversed_rows:
+            return origin
+    return None
+
+
+def _shape(readings: Readings) -> tuple[Floats, Floats]:
+    """Foot positions and readings by their largest magnitudes, which no unit changes."""
+    rows = np.flatnonzero(readings.trusted)
+    rows = rows[:: -(-len(rows) // _ROWS) or 1]
+    values = np.stack([readings.values(name)[rows] for name in CLAMP_READINGS])
+    scale = np.max(np.abs(values), axis=1, initial=0.0, keepdims=True)
+    return readings.values("foot_x")[rows], values / np.where(scale > 0, scale, 1.0)
 
 
 def _taken(readings: Readings, rows: np.ndarray) -> Readings:

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import CLAMP_READINGS, InputError, Readings
-from analytic.problem.arrays import Floats, Integers, Words
+from analytic.problem.arrays import Booleans, Floats, Integers, Words
 from compare.sense.phases import Classification
 
 _SAME_STATION = 1e-9  # L; nearer foot positions are one and the same
@@ -29,7 +29,8 @@ class Alignment:
     counts : dict
         Every station of the candidate in one of: ``compared``; ``free`` (in both); ``one_free``
         (contact in one sweep only, as between two snap-offs); ``untrusted`` (the candidate says so
-        itself); ``reference_untrusted``; ``between_phases`` (no reference stations of one phase on
+        itself); ``dropped`` (zeros where the reference is in contact, between loads of its own);
+        ``reference_untrusted``; ``between_phases`` (no reference stations of one phase on
         both sides, so there is nothing to interpolate); ``outside`` (beyond the reference).
     """
 
@@ -47,6 +48,7 @@ def align(
     candidate: Readings,
     reference_phase: Classification,
     candidate_phase: Classification,
+    dropped: Booleans,
 ) -> Alignment:
     """Pair the candidate's stations with the reference, never across a transition or snap-off.
 
@@ -59,6 +61,8 @@ def align(
         Two sweeps of the same beam.
     reference_phase, candidate_phase : Classification
         Their phases.
+    dropped : array of bool, shape (stations,)
+        Where the candidate reads zero between two loads.
 
     Returns
     -------
@@ -104,9 +108,18 @@ def align(
             covering < 0,
             state == "",
             (state == "free") & (candidate_phase.phase == "free"),
+            dropped & (candidate_phase.phase == "free"),
             (state == "free") | (candidate_phase.phase == "free"),
         ],
-        ["untrusted", "outside", "between_phases", "reference_untrusted", "free", "one_free"],
+        [
+            "untrusted",
+            "outside",
+            "between_phases",
+            "reference_untrusted",
+            "free",
+            "dropped",
+            "one_free",
+        ],
         "compared",
     )
     compared = reasons == "compared"
@@ -134,6 +147,7 @@ _REASONS = (
     "free",
     "one_free",
     "untrusted",
+    "dropped",
     "reference_untrusted",
     "between_phases",
     "outside",

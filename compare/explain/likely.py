@@ -23,6 +23,7 @@ _BETTER = 6.0  # the same, for three constants to be preferred to one cause of o
 _SCATTERED = 0.5  # share of the disagreement's square that jumps from station to station
 _UNSURE = 1.3  # times the scatter's square, to be on the safe side of its estimate
 _FEWEST = 10  # stations
+_FAR_OFF, _SELDOM = 20.0, 0.05  # times the median difference; share of the stations, at the most
 _ROUND_OFF = 1e-12  # of the largest magnitude; nothing below has a cause
 
 
@@ -61,9 +62,12 @@ def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) 
     )
     sound = found.records["candidate"].sound[table["station"].to_numpy()]
     table = table[~window & sound].reset_index(drop=True)
-    if len(table) < _FEWEST or (notes and _agrees(found, table, limits, noise)):
+    if len(table) < _FEWEST:
         return "; ".join(notes) or None
-    cause = _cause(found, table)
+    short = _short(found)
+    if (notes or short) and _agrees(found, table, limits, noise):
+        return "; ".join([*notes, *short])
+    cause = _lone(found, table, limits, noise) or _cause(found, table)
     return (
         "; ".join([*notes, f"beside that {cause}" if notes else cause] if cause else notes) or None
     )
@@ -74,6 +78,40 @@ def _untouched(found: Measurement) -> str | None:
     if (phase == "free").sum() < (phase != "").sum():
         return None
     return "the candidate never touches: its clamp reads no load at any station"
+
+
+def _short(found: Measurement) -> list[str]:
+    """That the sweep does not cover all events of the reference."""
+    if not (beyond := found.beyond()):
+        return []
+    foot_x = found.candidate.values("foot_x")
+    return [
+        f"too short a sweep: it covers foot_x = {foot_x.min():.4g} to {foot_x.max():.4g}, and "
+        f"{' and '.join(beyond)} of the reference lie{'s' * (len(beyond) == 1)} beyond"
+    ]
+
+
+def _lone(
+    found: Measurement, table: pd.DataFrame, limits: Tolerances, noise: NoiseAllowance
+) -> str | None:
+    """Single stations that are far off, if all others agree or nearly all of it is theirs."""
+    error = (_values(table, "candidate") - _values(table, "reference")) / _scale(found)[:, None]
+    size = np.abs(error).max(axis=0)
+    off = size > _FAR_OFF * np.median(size)
+    neighbours = np.append(off[1:], False) & off
+    if not off.any() or neighbours.any() or off.mean() > _SELDOM:
+        return None
+    agree = _agrees(found, table[~off], limits, noise)
+    if not agree and np.sum(error[:, ~off] ** 2) > (1 - _CONVINCING) * np.sum(error**2):
+        return None
+    worst = int(size.argmax())
+    reading = CLAMP_READINGS[int(np.abs(error[:, worst]).argmax())]
+    return (
+        f"single stations: {off.sum()} of {len(off)} compared {'is' if off.sum() == 1 else 'are'} "
+        f"off by up to {size[worst]:.1e} of the largest {reading} (at foot_x = "
+        f"{table['foot_x'].iloc[worst]:.4g}); "
+        + ("all others agree" if agree else "nearly all of the disagreement is theirs")
+    )
 
 
 def _agrees(

@@ -75,7 +75,9 @@ def _record(found: Measurement) -> Iterator[Failure]:
             "order",
             wrong + (steps if record.retreats else "") + f"; {compared}",
             f"its {wrong}",
-            "write the rows in the order of the motion",
+            "write the rows in the order of the motion"
+            if found.order.backwards_from is None
+            else "write foot_x as it counts in the world, along x",
         )
     if found.order.opposite:
         yield Failure(
@@ -180,6 +182,7 @@ def _phases(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> It
 
 def _events(found: Measurement, tolerances: Tolerances) -> Iterator[Failure]:
     limits, length = tolerances.limits(), found.reference.beam.length
+    beyond = found.beyond()
     events = {name: (event, limits["transition"]) for name, event in found.transitions.items()}
     events["snap_off"] = found.snap_off, _of_snap_off(found, limits)
     for name, (event, limit) in events.items():
@@ -188,10 +191,12 @@ def _events(found: Measurement, tolerances: Tolerances) -> Iterator[Failure]:
         allowed = _allowed(Limit(limit * length, limit.reason))
         if event.difference is None:
             which = "candidate" if event.candidate is None else "reference"
+            covers = f", beyond the stretch {_stretch(found)}" if name in beyond else ""
             yield Failure(
                 name,
-                f"at foot_x = {_position(event.candidate)} instead of {_position(event.reference)}",
-                f"{name} is missing in the {which}",
+                f"at foot_x = {_position(event.candidate)} instead of {_position(event.reference)}"
+                f"{covers}",
+                f"{name} is missing in the {which}{covers}",
                 allowed,
             )
             continue
@@ -216,11 +221,15 @@ def _of_snap_off(found: Measurement, limits: Mapping[str, Limit]) -> Limit:
 
 def _stations(found: Measurement, limits: Tolerances) -> Iterator[Failure]:
     limit = limits.limits()["untrusted"]
-    untrusted, all_ = found.alignment.counts["untrusted"], len(found.candidate.table)
+    counts, all_ = found.alignment.counts, len(found.candidate.table)
+    untrusted = counts["untrusted"] + counts["dropped"]
     if untrusted <= limit * all_:
         return
     missing = int(found.records["candidate"].missing.sum())
-    why = f" ({missing} of them lack a number)" if missing else ""
+    reasons = [f"{missing} of them lack a number"] if missing else []
+    if counts["dropped"]:
+        reasons.append(f"{counts['dropped']} of them are filled with zeros amid contact")
+    why = f" ({', '.join(reasons)})" if reasons else ""
     yield Failure(
         "stations",
         f"{untrusted} of {all_} of the candidate are not to be trusted{why}",
@@ -246,6 +255,11 @@ def _share(limit: Limit) -> str:
 
 def _ratio(found: float, allowed: float) -> float:
     return float(found / allowed) if allowed > 0 else math.inf
+
+
+def _stretch(found: Measurement) -> str:
+    foot_x = found.candidate.values("foot_x")
+    return f"that it covers, {_position(foot_x.min())} to {_position(foot_x.max())}"
 
 
 def _position(x: float | None) -> str:

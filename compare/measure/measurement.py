@@ -94,6 +94,23 @@ class Measurement:
         known = counts["free"] + counts["one_free"] + counts["compared"]
         return alike / known if known else None
 
+    def beyond(self) -> list[str]:
+        """Events that the candidate lacks because its sweep does not cover them.
+
+        Returns
+        -------
+        list of str
+            Names of the reference's transitions, and ``"snap_off"``.
+        """
+        foot_x = self.candidate.values("foot_x")
+        return [
+            name
+            for name, event in {**self.transitions, "snap_off": self.snap_off}.items()
+            if event.reference is not None
+            and event.candidate is None
+            and not np.min(foot_x) <= event.reference <= np.max(foot_x)
+        ]
+
     def __repr__(self) -> str:
         """The sweeps, and how far they are apart."""
         far = ", ".join(f"{name} {d.rms:.1e}" for name, d in self.disagreement.items())
@@ -149,18 +166,23 @@ def measure(
     judged = {"reference": classify(reference), "candidate": classify(candidate)}
     comparable = in_units_of(reference, candidate)
     check_unit_of_length(reference, comparable, judged["reference"])
-    shift = (
-        estimate_offset(
+    if offset == "auto" and not order.opposite:
+        shift = estimate_offset(
             reference,
             comparable,
             judged["reference"],
             judged["candidate"] if comparable is candidate else classify(comparable),
         )
-        if offset == "auto"
-        else Offset(checked_offset(offset))
-    )
+    else:  # a sweep the other way has no offset to this one
+        shift = Offset(0.0 if offset == "auto" else checked_offset(offset))
     candidate = without_offset(candidate, shift.value)
-    alignment = align(reference, candidate, judged["reference"], judged["candidate"])
+    alignment = align(
+        reference,
+        candidate,
+        judged["reference"],
+        judged["candidate"],
+        records["candidate"].dropped,
+    )
     ends = snap_off(reference, judged["reference"]), snap_off(candidate, judged["candidate"])
     snap = Occurrence(ends[0][0], ends[1][0], ends[0][1] + ends[1][1] + shift.uncertainty)
     sweeps: Mapping[str, Readings] = {"reference": reference, "candidate": candidate}

@@ -262,7 +262,7 @@ def renamed(
             used[name] = unit
         elif units.get(column):
             own[name] = units[column]
-    for name in set(units) & set(sensed) - set(named):
+    for name in [name for name in sensed if name in units and name not in named]:
         if units[name]:
             named[name], own[name] = as_numbers(table[name], name, place), units[name]
     used |= own

@@ -195,6 +195,12 @@ def _reversed(sweep: Readings, rng: np.random.Generator) -> Readings:
     return _rows(sweep, range(len(sweep.table))[::-1])
 
 
+def _backwards(sweep: Readings, rng: np.random.Generator) -> Readings:
+    """A stage that counts its way the other way, from an origin of its own or the world's."""
+    origin = rng.choice([0.0, rng.uniform(-0.5, 0.5)])
+    return _columns(sweep, foot_x=origin - sweep.values("foot_x"))
+
+
 def _shuffled(sweep: Readings, rng: np.random.Generator) -> Readings:
     return _rows(sweep, rng.permutation(len(sweep.table)))
 
@@ -220,6 +226,14 @@ def _lost(value: float) -> "Sensor":
         return _columns(sweep, **columns)
 
     return made
+
+
+def _spiked(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """One to three single values far off, amid contact."""
+    values, rows = values.copy(), len(values)
+    at = int(rng.uniform(0.3, 0.5) * rows) + 5 * np.arange(rng.integers(1, 4))
+    values[at] += rng.choice([-1, 1]) * rng.uniform(1, 100) * _largest(values)
+    return values
 
 
 def _clipped(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
@@ -301,10 +315,12 @@ MISTAKES: dict[str, Mistake] = {
     "dead channel": Mistake("dead channel", sensed=_one(lambda v, rng: 0 * v)),
     "opposite direction": Mistake("opposite direction of travel", _opposite),
     "reversed rows": Mistake("rows reversed", recorded=_reversed),
+    "foot_x backwards": Mistake("foot_x counts the other way", recorded=_backwards),
     "shuffled rows": Mistake("rows out of order", recorded=_shuffled),
     "repeated rows": Mistake("repeat the row before", recorded=_repeated),
     "gap": Mistake("lack a number", recorded=_lost(np.nan)),
     "dropout": Mistake("filled with zeros", recorded=_lost(0.0)),
+    "spikes": Mistake("single stations", recorded=_one(_spiked)),
     "saturation": Mistake("cut off at the extreme", recorded=_one(_clipped)),
     "no contact": Mistake("never touches", recorded=_free),
     "noise": Mistake("noise: differences jump", sensed=_loud),

@@ -8,10 +8,12 @@ from tests.fuzz.mistakes import MISTAKES, confusion, named
 CHEAP = (
     "opposite direction",
     "reversed rows",
+    "foot_x backwards",
     "shuffled rows",
     "repeated rows",
     "gap",
     "dropout",
+    "spikes",
     "saturation",
     "no contact",
 )

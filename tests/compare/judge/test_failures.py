@@ -31,12 +31,41 @@ def test_the_headline_names_what_failed():
     assert found.likely == "30 of 200 rows lack a number"
 
 
+def test_zeros_amid_contact_are_stations_that_lack_a_reading():
+    """Also under limits that everything else meets; where both sweeps are free they are none."""
+    exact = exact_sweep("parabola")
+    noisy = with_noise(exact, dict.fromkeys(CLAMP_READINGS, 3e-3), 1)
+    table = noisy.table.drop(columns="phase")
+    table.loc[np.arange(60, 120, 6), list(CLAMP_READINGS)] = 0.0
+    dropped = replace(noisy, table=table)
+    found = compare(exact, dropped, noise=3e-3)
+    assert [failure.name for failure in found.exceeded] == ["stations"]
+    assert "10 of them are filled with zeros amid contact" in verdict(found)
+    assert found.likely == "10 of 200 rows are filled with zeros amid contact"
+    assert found.phases_alike() > 0.97
+    assert compare(dropped, dropped).alignment.counts["dropped"] == 0
+
+
 def test_a_missing_snap_off_is_named():
     exact = exact_sweep("parabola")
     short = replace(exact, table=exact.table.iloc[:150].reset_index(drop=True), provenance={})
     found = compare(exact, short)
     assert "snap_off is missing in the candidate" in verdict(found)
     assert "snap_off: at foot_x = nowhere instead of -1.24" in found.failures[-1]
+    assert "beyond the stretch that it covers" in found.failures[-1]
+    assert found.likely is not None
+    assert found.likely.startswith("too short a sweep: it covers foot_x = ")
+
+
+def test_single_stations_that_are_far_off_are_named():
+    exact = exact_sweep("parabola")
+    force = exact.values("force_x").copy()
+    force[[70, 90]] *= 50
+    spiked = replace(exact, table=exact.table.assign(force_x=force))
+    found = compare(exact, spiked)
+    assert found.likely is not None
+    assert found.likely.startswith("single stations: 2 of ")
+    assert found.likely.endswith("all others agree")
 
 
 def test_the_headline_is_the_limit_that_is_exceeded_most():

@@ -1,0 +1,51 @@
+"""Foot positions that count backwards are distinguished from rows that are reversed."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import CLAMP_READINGS, Readings
+from compare import compare
+from compare.align.order import in_order
+from compare.sense.noise import with_noise
+from tests.conftest import exact_sweep
+
+
+def counted_from(sweep: Readings, origin: float) -> Readings:
+    return replace(sweep, table=sweep.table.assign(foot_x=origin - sweep.values("foot_x")))
+
+
+@pytest.mark.parametrize("origin", [0.0, 0.7])
+def test_a_stage_that_counts_backwards(case_name, origin):
+    """It is named, and what it would agree with is compared."""
+    exact = exact_sweep(case_name)
+    noisy = with_noise(exact, dict.fromkeys(CLAMP_READINGS, 1e-3), 4)
+    found = compare(exact, counted_from(noisy, origin), noise=1e-3)
+    assert found.order.backwards_from == pytest.approx(origin, abs=1e-3)
+    assert found.failures[0].startswith("order: foot_x counts the other way")
+    assert found.likely is not None
+    assert "foot_x counts the other way" in found.likely
+    assert found.disagreement["force_y"].rms < 2e-2
+
+
+def test_reversed_rows_are_reversed(case_name):
+    """Beside an unknown origin and unit of the forces, too."""
+    exact = exact_sweep(case_name)
+    table = exact.table.iloc[::-1].reset_index(drop=True)
+    for moved, unit in ((0.0, 1.0), (0.05, 1.0), (0.0, 1000.0)):
+        columns = {name: unit * table[name] for name in CLAMP_READINGS}
+        rows = replace(exact, table=table.assign(foot_x=table["foot_x"] + moved, **columns))
+        assert in_order(exact, rows)[2].reversed
+
+
+def test_what_neither_explains_is_taken_for_reversed_rows():
+    exact = exact_sweep("parabola")
+    values = np.abs(np.random.default_rng(1).normal(size=(200, 3)))
+    strange = exact.table.assign(
+        foot_x=-exact.values("foot_x"),
+        **dict(
+            zip(CLAMP_READINGS, values.T * np.sign(exact.values("moment_z").sum()), strict=True)
+        ),
+    )
+    assert in_order(exact, replace(exact, table=strange))[2].reversed
