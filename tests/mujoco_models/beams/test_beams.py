@@ -7,9 +7,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analytic import CASE_NAMES, InputError, named_case, solve_sweep
+from analytic import CASE_NAMES, InputError, named_case
 from compare import compare
 from mujoco_models import Settings, available_beams, load_tip, simulate_sweep
+from tests.conftest import exact_sweep, simulated_sweep
 
 BEAMS, LACKING = available_beams(), list(available_beams().missing)
 SEGMENTS = np.array([10, 20, 40, 80])
@@ -51,9 +52,8 @@ def test_naive_clamp_is_of_first_order(beam, load):
 @pytest.mark.parametrize("name", CASE_NAMES)
 @pytest.mark.parametrize("beam", BEAMS)
 def test_sweep_agrees_with_the_exact_solution(beam, name):
-    case = named_case(name)
-    simulated = simulate_sweep(case, Settings(beam=beam))
-    found = compare(solve_sweep(case), simulated)
+    simulated = simulated_sweep(name, Settings(beam=beam))
+    found = compare(exact_sweep(name), simulated)
     # Its tangent law stiffens the rod by (curvature h)^2/3, most where the sweep loads it most.
     limit = 2e-3 if beam == "rod" else 1.5e-3
     assert max(d.rms for d in found.disagreement.values()) <= limit
