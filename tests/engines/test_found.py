@@ -123,7 +123,7 @@ def test_odd_lists_of_engines_are_refused(names):
     ("name", "says"),
     [
         ("raises", "RuntimeError: no luck"),
-        ("hangs", "not finished after 20 s"),
+        ("hangs", "not finished after 5 s"),
         ("dies", "its process ended without a word, code 7"),
         ("exits", "SystemExit: enough"),
         ("not-a-number", "without a number in force_x, force_y, moment_z, but with status ok"),
@@ -134,7 +134,9 @@ def test_odd_lists_of_engines_are_refused(names):
 )
 def test_whatever_an_engine_does_there_is_an_outcome_in_time(odd_engines, name, says):
     case = named_case("tip-only")
-    found = sweep_apart(name, case, Settings(segments=5), timeout=20)
+    # Those that end have as long as a busy machine may need to load them.
+    timeout = 5 if name == "hangs" else 300
+    found = sweep_apart(name, case, Settings(segments=5), timeout=timeout)
     assert found.readings is None
     assert says in found.trouble
     assert "\n" not in found.trouble
