@@ -22,7 +22,7 @@ from scipy.optimize import nnls
 
 from analytic.problem.arrays import Floats
 from analytic.space.checks.rod import integrate_rod
-from analytic.space.problem.bodies.body import across
+from analytic.space.problem.bodies.body import Spot, across
 from analytic.space.solver.contact import APART, Contact, Scene
 
 _LINKS = 40
@@ -156,27 +156,24 @@ def _near(scene: Scene, foot: Floats, links: Floats) -> Iterator[_Near]:
     joints = foot + np.vstack([np.zeros(3), np.cumsum(links, axis=0) * length])
 
     @cache
-    def at_joint(joint: int) -> Floats:
-        return scene.body.nearest(joints[joint], APART).normal
+    def at_joint(joint: int) -> Spot:
+        return scene.body.nearest(joints[joint], APART)
 
     link = _LINKS - 1
     while link >= 0:
-        low, high = 0.0, length
-        if at_joint(link + 1) @ links[link] <= 0:
-            low = high
-        elif at_joint(link) @ links[link] >= 0:
-            high = low
-        for _ in range(_HALVINGS):
-            if high == low:
-                break
-            middle = (low + high) / 2
-            spot = scene.body.nearest(joints[link] + middle * links[link], APART)
-            if spot.normal @ links[link] < 0:
-                low = middle
-            else:
-                high = middle
-        along = (low + high) / 2
-        spot = scene.body.nearest(joints[link] + along * links[link], APART)
+        if at_joint(link + 1).normal @ links[link] <= 0:
+            along, spot = length, at_joint(link + 1)
+        elif at_joint(link).normal @ links[link] >= 0:
+            along, spot = 0.0, at_joint(link)
+        else:
+            low, high = 0.0, length
+            for _ in range(_HALVINGS):
+                along = (low + high) / 2
+                spot = scene.body.nearest(joints[link] + along * links[link], APART)
+                if spot.normal @ links[link] < 0:
+                    low = along
+                else:
+                    high = along
         gap = spot.distance - scene.radius
         if gap < _NEAR:
             yield _Near(link, along, gap, spot.normal, spot.point)

@@ -1,6 +1,7 @@
 """Which contact a foot position has: Newton's method on the body's surface, from a near contact."""
 
 from collections.abc import Iterator
+from itertools import islice
 
 import numpy as np
 
@@ -52,7 +53,10 @@ def settle(scene: Scene, start: Contact, foot: Floats, reach: float = np.inf) ->
 
 
 def _newton(scene: Scene, start: Contact, foot: Floats, reach: float) -> Contact | None:
-    """The contact of given phase; steps are halved while they do not come nearer."""
+    """The contact of given phase; steps are halved while they do not come nearer.
+
+    Not so within some roundings, where halves of a step are roundings too.
+    """
     if min(start.plane.alpha, start.excess) <= _FLATTEST:
         return None
     extent = max(1.0, float(np.abs(foot).max()), float(np.abs(start.centre).max()))
@@ -61,7 +65,8 @@ def _newton(scene: Scene, start: Contact, foot: Floats, reach: float) -> Contact
         if missed <= 4 * _EPS * extent:
             break
         nearer = None
-        for trial in _trials(scene, best, foot):
+        tries = 1 if missed <= _EXACT * extent else _HALVINGS
+        for trial in islice(_trials(scene, best, foot), tries):
             miss = _miss(trial, foot)
             if miss < missed:
                 nearer = trial

@@ -22,6 +22,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.solver.elastica import frame, span, span_by_alpha, span_by_excess
 from analytic.solver.equilibria import tip_rates
+from analytic.space.problem.bodies.body import cross
 
 
 class Plane(NamedTuple):
@@ -63,7 +64,7 @@ class Plane(NamedTuple):
     @property
     def across(self) -> Floats:
         """Unit vector normal to the plane."""
-        return np.cross(self.lateral, self.tangent)
+        return cross(self.lateral, self.tangent)
 
 
 class Loaded(NamedTuple):

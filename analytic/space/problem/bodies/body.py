@@ -130,11 +130,22 @@ def across(normal: Floats) -> Floats:
         The three are right-handed: second, third, normal.
     """
     axis = np.eye(3)[np.argmin(np.abs(normal), axis=-1)]
-    first = _cross(axis, normal)
+    first = cross(axis, normal)
     first /= np.linalg.norm(first, axis=-1, keepdims=True)
-    return np.stack([first, _cross(normal, first)], axis=-2)
+    return np.stack([first, cross(normal, first)], axis=-2)
 
 
-def _cross(a: Floats, b: Floats) -> Floats:
-    """As `np.cross`, which takes five times as long to find out which axes are meant."""
+def cross(a: Floats, b: Floats) -> Floats:
+    """As `np.cross`, which takes five times as long to find out which axes are meant.
+
+    Parameters
+    ----------
+    a, b : array, shape (..., 3)
+        Vectors.
+
+    Returns
+    -------
+    array, shape (..., 3)
+        Their products.
+    """
     return a[..., _NEXT] * b[..., _LAST] - a[..., _LAST] * b[..., _NEXT]

@@ -51,6 +51,16 @@ class Polyhedron(Body):
         return np.asarray((self.normals * self.corners.mean(axis=1)).sum(axis=1))
 
     @cached_property
+    def _sides(self) -> Floats:
+        """From each corner of a triangle to the next one, shape (m, 3, 3) [length]."""
+        return np.roll(self.corners, -1, axis=1) - self.corners
+
+    @cached_property
+    def _squares(self) -> Floats:
+        """Of their lengths, shape (m, 3)."""
+        return np.asarray((self._sides**2).sum(axis=2))
+
+    @cached_property
     def _around(self) -> tuple[Integers, Integers]:
         """The triangles at each vertex: where they begin in the list, and the list."""
         order = np.argsort(self.faces.ravel(), kind="stable")
@@ -71,13 +81,15 @@ class Polyhedron(Body):
         tried = np.array([face])
         best = np.inf
         while True:
-            found, weights = _nearest_on(self.corners[tried], x)
+            found, weights = self._nearest_on(tried, x)
             far = ((found - x) ** 2).sum(axis=1)
             nearest = int(np.argmin(far))
             if not far[nearest] < best:
                 break
             best, face = float(far[nearest]), int(tried[nearest])
             point, weight = found[nearest], weights[nearest]
+            if (weight > 0).all():  # within a face, behind whose plane all of the body is
+                break
             tried = self._neighbours(face)
             tried = tried[ahead[tried] > 0]
         tied = np.flatnonzero(far <= (1 + _TIED) * best)
@@ -86,6 +98,28 @@ class Polyhedron(Body):
             chosen = tied[int(np.argmin(beyond))]
             face, point, weight = int(tried[chosen]), found[chosen], weights[chosen]
         return self._spot(x, face, point, weight, apart, float(ahead[face]))
+
+    def _nearest_on(self, tried: Integers, x: Floats) -> tuple[Floats, Floats]:
+        """Nearest points of triangles, and their barycentric coordinates, exactly 0 off a corner.
+
+        After C. Ericson, Real-Time Collision Detection, 2005, section 5.1.5: the nearest of the
+        three edges, or the foot of the perpendicular where that is within.
+        """
+        corners, sides, squares = self.corners[tried], self._sides[tried], self._squares[tried]
+        away, each = x - corners, np.arange(len(tried))
+        d11, d12, d22 = squares[:, 0], -(sides[:, 0] * sides[:, 2]).sum(1), squares[:, 2]
+        along = (away * sides).sum(2)
+        e1, e2 = along[:, 0], -(away[:, 0] * sides[:, 2]).sum(1)
+        area = d11 * d22 - d12 * d12
+        v, w = (d22 * e1 - d12 * e2) / area, (d11 * e2 - d12 * e1) / area
+        within = np.stack([1 - v - w, v, w], axis=1)
+        shares = np.clip(along / squares, 0, 1)
+        side = ((shares[..., None] * sides - away) ** 2).sum(2).argmin(axis=1)
+        share = shares[each, side]
+        edge = np.zeros_like(within)
+        edge[each, side], edge[each, side - 2] = 1 - share, share
+        weights = np.where((within > 0).all(axis=1, keepdims=True), within, edge)
+        return np.einsum("nk,nkc->nc", weights, corners), weights
 
     def _beyond(self, tried: Integers, x: Floats, points: Floats) -> Floats:
         """How much nearer points of some triangles are than the plane through each point allows.
@@ -181,34 +215,6 @@ class Polyhedron(Body):
     def patches(self, centre: Floats, reach: float) -> Floats:
         """Its triangles."""
         return self.corners
-
-
-def _nearest_on(triangles: Floats, x: Floats) -> tuple[Floats, Floats]:
-    """Nearest points of triangles, and their barycentric coordinates, exactly 0 off a corner.
-
-    After C. Ericson, Real-Time Collision Detection, 2005, section 5.1.5: the nearest of the three
-    edges, or the foot of the perpendicular where that is within.
-    """
-    a = triangles[:, 0]
-    one, two = triangles[:, 1] - a, triangles[:, 2] - a
-    away = x - a
-    d11, d12, d22 = (one * one).sum(1), (one * two).sum(1), (two * two).sum(1)
-    e1, e2 = (one * away).sum(1), (two * away).sum(1)
-    area = d11 * d22 - d12 * d12
-    v, w = (d22 * e1 - d12 * e2) / area, (d11 * e2 - d12 * e1) / area
-    weights = np.stack([1 - v - w, v, w], axis=1)
-    outside = (weights <= 0).any(axis=1)
-    best = np.where(outside, np.inf, -1.0)
-    for i, j in ((0, 1), (1, 2), (2, 0)):
-        begin, along = triangles[:, i], triangles[:, j] - triangles[:, i]
-        share = np.clip(((x - begin) * along).sum(1) / (along * along).sum(1), 0, 1)
-        far = ((begin + share[:, None] * along - x) ** 2).sum(1)
-        nearer = far < best
-        best = np.where(nearer, far, best)
-        edge = np.zeros_like(weights)
-        edge[:, i], edge[:, j] = 1 - share, share
-        weights = np.where(nearer[:, None], edge, weights)
-    return np.einsum("nk,nkc->nc", weights, triangles), weights
 
 
 def convex_mesh(

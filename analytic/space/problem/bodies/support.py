@@ -13,10 +13,11 @@ from analytic.space.problem.bodies.body import Body, Spot, across, grid_patches
 
 _STEPS = 80  # of Newton's method on the sphere of normals
 _WIDE = 0.5  # rad, the longest step
-_DIFFERENCE = 1e-3  # rad, of differences of order 6: their error is 1e-13 of a radius of curvature
+_DIFFERENCE = 1e-3  # rad, of differences
 _TESTED = 200  # normals at which a body is looked at when it is stated
 _CLOSE = 4 * float(np.finfo(float).eps)
-_WEIGHTS = ((1, 45 / 60), (2, -9 / 60), (3, 1 / 60))
+_PLAIN = ((1, 1 / 2),)  # of order 2: Newton's method needs no more than 1e-6 of a radius
+_FINE = ((1, 45 / 60), (2, -9 / 60), (3, 1 / 60))  # of order 6: 1e-13 of a radius of curvature
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +86,7 @@ class SmoothBody(Body):
                 best, missed = normal, miss
             if miss <= _CLOSE * max(1.0, float(np.abs(x).max())):
                 break
-            radii = self._radii(normal, sides)
+            radii = self._radii(normal, sides, _PLAIN)
             bend = radii + max(distance, 0.0) * np.eye(2)
             turn = np.linalg.solve(bend, slip) @ sides
             size = float(np.linalg.norm(turn))
@@ -95,7 +96,7 @@ class SmoothBody(Body):
             if size <= _CLOSE:
                 break
         point, sides = self._at(best), across(best)
-        turning = np.linalg.inv(self._radii(best, sides) + apart * np.eye(2))
+        turning = np.linalg.inv(self._radii(best, sides, _FINE) + apart * np.eye(2))
         return Spot(point, best, float((x - point) @ best), sides.T @ turning @ sides)
 
     @cached_property
@@ -107,12 +108,14 @@ class SmoothBody(Body):
     def _at(self, normal: Floats) -> Floats:
         return self.factor * np.asarray(self.point(normal), dtype=float)
 
-    def _radii(self, normal: Floats, sides: Floats) -> Floats:
+    def _radii(
+        self, normal: Floats, sides: Floats, weights: tuple[tuple[int, float], ...]
+    ) -> Floats:
         """Radii of curvature: how the point moves as the normal turns, shape (2, 2)."""
         columns = []
         for side in sides:
             moved = np.zeros(3)
-            for steps, weight in _WEIGHTS:
+            for steps, weight in weights:
                 angle = steps * _DIFFERENCE
                 turned = np.cos(angle) * normal, np.sin(angle) * side
                 moved += weight * (
