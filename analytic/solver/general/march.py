@@ -35,6 +35,7 @@ def _integrals() -> Floats:
 
 
 _TO_NODES = _integrals()
+_SHARES = POINTS[:, None]
 
 
 class Place(NamedTuple):
@@ -175,16 +176,19 @@ def _step(
     h = end - begin
     part = form.part(begin, end)
     s, flexible, natural = (values[1:-1] for values in part)
-    turned = here.theta + h * (_TO_NODES @ natural)  # by the natural curvature
     pull = h * force
-    theta, change = turned + (s - begin) * flexible * here.m, np.full(1, np.inf)
+    # By the natural curvature and the moment at the beginning; the force turns it further.
+    turned = here.theta + h * (_TO_NODES @ (natural + flexible * here.m))
+    pulled = h * pull * flexible
+    theta = turned + np.cos(here.theta) * (_TO_NODES @ (_SHARES * pulled))
+    close = _CLOSE * max(1.0, float(np.abs(theta).max()))
     for _ in range(_ITERATIONS):
-        m = here.m + pull * (_TO_NODES @ np.cos(theta))
-        new = turned + h * (_TO_NODES @ (flexible * m))
-        change = np.abs(new - theta).max(axis=0)
+        new = turned + _TO_NODES @ (pulled * (_TO_NODES @ np.cos(theta)))
+        changes = np.abs(new - theta)
         theta = new
-        if not change.max() > _CLOSE * max(1.0, float(np.abs(theta).max())):
+        if not changes.max() > close:
             break
+    change = changes.max(axis=0)
     cos, sin = np.cos(theta), np.sin(theta)
     along = WEIGHTS @ cos
     m = here.m + pull * (_TO_NODES @ cos)

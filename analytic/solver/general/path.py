@@ -29,6 +29,7 @@ _MOST, _A_BREAK = 1000, 4  # steps tried, and for each break of the contour: ten
 _WITHIN = np.linspace(0, 1, 17)  # of a step, where the phase is looked at
 _POLISHES, _MISSED = 3, 1e-12  # of the points that are kept; roundings of their misses
 _HALVINGS = 20  # of a cell, to begin Newton's method from
+_ROUNDING = 4 * float(np.finfo(float).eps)  # between the two sides of a kink
 
 
 class Path(NamedTuple):
@@ -312,13 +313,19 @@ def _with_turns(curve: Curve, points: list[Point]) -> list[Point]:
     for rate in (_foot_rate, _excess_rate):
         found = points[:1]
         for begin, end in pairwise(points):
-            if rate(begin) < 0 < rate(end) and np.any(begin.z != end.z):
+            if rate(begin) < 0 < rate(end) and not _are_kink(begin, end):
                 least = curve.turn(begin, end, rate)
                 if least is not None:
                     found.append(least)
             found.append(end)
         points = found
     return points
+
+
+def _are_kink(begin: Point, end: Point) -> bool:
+    """Whether two points are the sides of a kink, between which there is nothing to search."""
+    apart, size = np.abs(end.z - begin.z).max(), np.abs(end.z).max()
+    return bool(apart <= _ROUNDING * size)
 
 
 def _foot_rate(point: Point) -> float:
