@@ -49,6 +49,7 @@ Medians of seven pairs repeat within 10 % on a machine with other work to do.
 """
 
 _PAIRS = 7
+_ENOUGH = 0.5  # s, of the other calculation: longer says no more of it
 _COUNT = 100_000  # contacts in an array
 _ON_CONE = 2_000  # of a cone, of which a tenth is beyond the end of the solved curve
 _BATCH = 82  # sweeps: as many as `solve_sweeps` takes at once
@@ -119,8 +120,9 @@ def costs() -> dict[str, Cost]:
 
 def measure(cost: Cost, pairs: int = _PAIRS) -> Measured:
     """A ratio of CPU times, in pairs one after the other."""
-    cost.ours()
-    repeats = max(1, round(_seconds(cost.ours) / max(_seconds(cost.other), 1e-9) / 2))
+    first = _seconds(cost.ours)  # which may import something
+    ours = first if first > _ENOUGH else _seconds(cost.ours)
+    repeats = max(1, round(min(ours / 2, _ENOUGH) / max(_seconds(cost.other), 1e-9)))
     found = []
     for _ in range(pairs):
         ours = _seconds(cost.ours)

@@ -67,13 +67,13 @@ def test_mujoco_slips_off_there():
     for foot_x in np.linspace(0.9, place + 0.02, 30):
         walk.go_to(float(foot_x))
     model.model.body_quat[model.model.body(FOOT).id] = [np.cos(tilt / 2), np.sin(tilt / 2), 0, 0]
-    model.lookout.watch(frozenset(range(len(model.layout.beads))))
-    out = []
+    lookout, out = model.lookout, []
     for ahead in (0.01, 0.004, -0.004):
         model.move_foot(place + ahead)
         for _ in range(10_000):
             moved = model.creep(GENTLE_STEP)
-            model.lookout.follow_contact(model.contacts())
+            lookout.follow_contact(model.contacts())
+            lookout.watch(lookout.watched | lookout.unwatched())
             if moved < 1e-8:
                 break
         model.evaluate()
