@@ -18,10 +18,8 @@ from compare.commands.output import distinct_name, output_folder
 from compare.commands.waiting import waiting
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from analytic.problem.arrays import Floats
-    from analytic.space import Body, SpatialCase, SpatialReadings
+    from analytic.space import Body, Cloud, SpatialCase, SpatialReadings
     from compare.align.frames import Frame
     from compare.read.space import SpaceJob
     from compare.show.report import Film
@@ -110,11 +108,11 @@ def space(
             swept = read_space(readings, found.beam, found.path.tangent, column or (), frame)
         with waiting("reconstructing"):
             points = reconstruct_space(swept, _deviations(swept, noise))
-            cloud = point_cloud(points)
-        terminal.print_line(_reconstructed(points, found))
         complaint = wrench_complaint(points)
         if complaint is not None:
             terminal.print_line(f"readings: {complaint}")
+        cloud = point_cloud(points)
+        terminal.print_line(_reconstructed(cloud, found))
         terminal.print_written(write_whole(folder / "points.csv", points.to_csv(index=False)))
         terminal.print_written(write_ply(cloud, folder / "points.ply"))
         if engine is None:  # else the report has drawn it
@@ -285,12 +283,12 @@ def _solved(readings: "SpatialReadings") -> str:
     return f"{readings.source}: {'; '.join(parts)}"
 
 
-def _reconstructed(points: "pd.DataFrame", case: "SpatialCase") -> str:
+def _reconstructed(cloud: "Cloud", case: "SpatialCase") -> str:
     from numpy import degrees, sqrt
 
-    from analytic.space import misses, point_cloud
+    from analytic.space import misses
 
-    found = misses(point_cloud(points), case.body, case.beam.length)
+    found = misses(cloud, case.body, case.beam.length)
     distances = found.distances / case.beam.length
     return (
         f"{len(distances)} contacts; from the true body {sqrt((distances**2).mean()):.1e} L rms, "

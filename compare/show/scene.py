@@ -1,6 +1,6 @@
 """A sweep in space as it is drawn: the body, the vibrissa, its foot and its contacts."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -9,7 +9,7 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
 from analytic.problem.arrays import Floats, Words
 from analytic.space import Body, SpatialReadings, deflected_rods, reconstruct_space
-from analytic.space.problem.readings import CONTACT_POINT, FOOT
+from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE
 
 _DEPTH = 0.5  # of the scene, at least, over its longest side
 _MARGIN = 0.1  # L, around what moves
@@ -73,7 +73,11 @@ class SweepScene:
                 table.assign(**arc), readings.beam, readings.tangent, readings.source,
                 readings.provenance,
             )  # fmt: skip
-        lines, foot = deflected_rods(readings) / length, readings.values(*FOOT) / length
+        # What is free but for noise is drawn straight.
+        none = readings.trusted & found["torsion"].isna().to_numpy()
+        loads = {name: np.where(none, 0.0, readings.values(name)) for name in FORCE}
+        shown = replace(readings, table=readings.table.assign(**loads))
+        lines, foot = deflected_rods(shown) / length, readings.values(*FOOT) / length
         low, high = _box(np.concatenate([lines[np.isfinite(lines).all(axis=2)], foot]))
         faces = np.empty((0, 3, 3))
         if isinstance(body, np.ndarray):

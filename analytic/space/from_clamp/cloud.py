@@ -53,7 +53,7 @@ def point_cloud(*found: pd.DataFrame) -> Cloud:
     """
     table = pd.concat([f[[*CONTACT_POINT, *NORMAL]] for f in found]).dropna().to_numpy(dtype=float)
     if not len(table):
-        raise InputError("readings", "without a contact", "with a force at a station", "check them")
+        raise InputError("readings", "without a contact", "with one at a station", "check them")
     return Cloud(table[:, :3], table[:, 3:])
 
 

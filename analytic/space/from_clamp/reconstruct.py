@@ -5,11 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from analytic.from_clamp.contact import LONGEST, UNLOADED, contact_bent_right
+from analytic.from_clamp.contact import LONGEST, contact_bent_right
 from analytic.problem.arrays import Floats
-from analytic.problem.errors import InputError
-from analytic.problem.numbers import is_finite_number
 from analytic.problem.support import require_plain
+from analytic.space.from_clamp.noise import COMPONENTS, component_noise, felt
 from analytic.space.problem.readings import (
     CONTACT_POINT,
     FOOT,
@@ -24,7 +23,6 @@ _COVERAGE = 0.95
 _EXACT = 1e-9  # sine of an angle: what rounding leaves of one that vanishes
 _EXPLAINED = 4.0  # standard deviations that noise may explain
 _SUSPICIOUS = 0.02  # share of the moment that must not be there, in the median of a sweep
-_COMPONENTS = (*FORCE, *MOMENT)
 
 
 def reconstruct_space(
@@ -41,7 +39,8 @@ def reconstruct_space(
     readings : SpatialReadings
         Only the nine sensed columns are used, and status.
     noise : mapping, optional
-        Standard deviations of the six components by name, each in its unit; exact if not given.
+        Standard deviations of the six components by name, each in its unit. If not given, they are
+        exact but for what is seen of noise (`component_noise`).
     seed : int
         Of the sampled noise.
 
@@ -52,8 +51,9 @@ def reconstruct_space(
         ``contact_arc_length`` [length], ``phase``; ``uncertainty`` [length], the distance within
         which the true contact lies in 95 % of all cases; ``torsion`` and ``along_force``, the parts
         of the moment along the clamp's tangent and along the force, over its magnitude. Both vanish
-        for a straight isotropic vibrissa without friction. NaN where nothing touches or no vibrissa
-        has such readings; ``phase`` is ``"free"`` there.
+        for a straight isotropic vibrissa without friction; ``torsion_noise`` and
+        ``along_force_noise`` are their standard deviations. NaN where no force stands out from
+        noise or no vibrissa has such readings; ``phase`` is ``"free"`` there.
 
     Raises
     ------
@@ -65,30 +65,42 @@ def reconstruct_space(
     foot = readings.values(*FOOT) / beam.length
     force = readings.values(*FORCE) / beam.force_unit
     moment = readings.values(*MOMENT) / beam.moment_unit
-    felt = readings.trusted & (np.linalg.norm(force, axis=1) > UNLOADED)
-    deviation = _deviations(noise) / np.repeat([beam.force_unit, beam.moment_unit], 3)
+    units = np.repeat([beam.force_unit, beam.moment_unit], 3)
+    known = component_noise(readings, noise)
+    on = felt(readings, known)
+    deviation, stated = (
+        np.array([sizes.get(name, 0.0) for name in COMPONENTS]) / units
+        for sizes in (known, noise or {})
+    )
 
     radius = beam.radius / beam.length
     points = np.full((len(foot), 3), np.nan)
     normals, arc_length = points.copy(), np.full(len(foot), np.nan)
-    torsion, along_force, uncertainty = (arc_length.copy() for _ in range(3))
+    uncertainty, torsion, along_force, torsion_noise, along_noise = (
+        arc_length.copy() for _ in range(5)
+    )
     phase = np.full(len(foot), "free", dtype=object)
-    if felt.any():
-        found = _contacts(foot[felt], force[felt], moment[felt], tangent, radius)
+    if on.any():
+        found = _contacts(foot[on], force[on], moment[on], tangent, radius)
         there = (found[6] >= 0) & (found[6] <= LONGEST)
-        points[felt], normals[felt] = (
+        points[on], normals[on] = (
             np.where(there, part, np.nan).T for part in (found[:3], found[3:6])
         )
-        arc_length[felt] = np.where(there, found[6], np.nan)
-        sizes = np.linalg.norm(moment[felt], axis=1)
-        torsion[felt] = moment[felt] @ tangent / sizes
-        along_force[felt] = -(moment[felt] * found[3:6].T).sum(axis=1) / sizes
-        spread, sine_spread = _spread(
-            foot[felt], force[felt], moment[felt], tangent, radius, deviation, seed
+        arc_length[on] = np.where(there, found[6], np.nan)
+        sizes = np.linalg.norm(moment[on], axis=1)
+        torsion[on] = moment[on] @ tangent / sizes
+        along_force[on] = -(moment[on] * found[3:6].T).sum(axis=1) / sizes
+        torsion_noise[on] = np.sqrt(tangent**2 @ deviation[3:] ** 2) / sizes
+        lever = moment[on] / np.linalg.norm(force[on], axis=1)[:, None]
+        along_noise[on] = (
+            np.sqrt(lever**2 @ deviation[:3] ** 2 + found[3:6].T ** 2 @ deviation[3:] ** 2) / sizes
         )
-        uncertainty[felt] = spread
+        spread, sine_spread = _spread(
+            foot[on], force[on], moment[on], tangent, radius, stated, seed
+        )
+        uncertainty[on] = spread
         tip = found[7] > np.maximum(_EXACT, _EXPLAINED * sine_spread)
-        phase[felt] = np.where(there, np.where(tip, "tip", "tangent"), "free")
+        phase[on] = np.where(there, np.where(tip, "tip", "tangent"), "free")
     columns: dict[str, Floats] = dict(zip(FOOT, (foot * beam.length).T, strict=True))
     columns |= dict(zip(CONTACT_POINT, (points * beam.length).T, strict=True))
     columns |= dict(zip(NORMAL, normals.T, strict=True))
@@ -100,12 +112,16 @@ def reconstruct_space(
             "uncertainty": uncertainty * beam.length,
             "torsion": torsion,
             "along_force": along_force,
+            "torsion_noise": torsion_noise,
+            "along_force_noise": along_noise,
         }
     )
 
 
 def wrench_complaint(found: pd.DataFrame) -> str | None:
-    """What the moments of a sweep say that no frictionless straight vibrissa could.
+    """What force and moment of a sweep say that no frictionless straight vibrissa could.
+
+    What noise may explain is no complaint.
 
     Parameters
     ----------
@@ -117,10 +133,10 @@ def wrench_complaint(found: pd.DataFrame) -> str | None:
     str or None
         One line that names what may be wrong; None if nothing is.
     """
-    torsion, along = (
-        float(np.nanmedian(np.abs(found[name]))) if found[name].notna().any() else 0.0
-        for name in ("torsion", "along_force")
-    )
+    nowhere = _nowhere(found)
+    if nowhere is not None:
+        return nowhere
+    torsion, along = (_beyond_noise(found, name) for name in ("torsion", "along_force"))
     if max(torsion, along) <= _SUSPICIOUS:
         return None
     if along <= _SUSPICIOUS:
@@ -137,6 +153,27 @@ def wrench_complaint(found: pd.DataFrame) -> str | None:
         f"the moment has {torsion:.1%} along the clamp's tangent and {along:.1%} along the force: "
         "the components are in another frame than the world's, or the contact twists the vibrissa"
     )
+
+
+def _nowhere(found: pd.DataFrame) -> str | None:
+    """That most of the forces act nowhere on the vibrissa; None if they do."""
+    on = found["torsion"].notna()
+    nowhere, every = int((on & found["contact_x"].isna()).sum()), int(on.sum())
+    if nowhere <= every / 2:
+        return None
+    return (
+        f"at {nowhere} of {every} stations with a force no point of the vibrissa has such a force "
+        "and moment: signs (they are the clamp's action on the vibrissa), axes, frame or units are "
+        "others"
+    )
+
+
+def _beyond_noise(found: pd.DataFrame, name: str) -> float:
+    """The median size of what must not be there; 0 where noise may explain it."""
+    size = found[name].abs()
+    with np.errstate(divide="ignore", invalid="ignore"):  # exact readings have no noise
+        deviations = (size / found[f"{name}_noise"]).median()
+    return float(size.median()) if deviations > _EXPLAINED else 0.0
 
 
 def _contacts(
@@ -186,13 +223,3 @@ def _spread(
         np.quantile(np.nan_to_num(far, nan=np.inf), _COVERAGE, axis=0, method="higher"),
         np.std(np.array(sines), axis=0),
     )
-
-
-def _deviations(noise: Mapping[str, float] | None) -> Floats:
-    given = {} if noise is None else dict(noise)
-    for name, value in given.items():
-        if name not in _COMPONENTS:
-            raise InputError("noise", repr(name), f"of {', '.join(_COMPONENTS)}", "correct it")
-        if not (is_finite_number(value) and value >= 0):
-            raise InputError(f"noise[{name}]", value, "0 or more", "it is a standard deviation")
-    return np.array([float(given.get(name, 0.0)) for name in _COMPONENTS])

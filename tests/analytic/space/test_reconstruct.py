@@ -18,6 +18,7 @@ from analytic.space import (
     wrench_complaint,
     write_ply,
 )
+from analytic.space.from_clamp.noise import component_noise
 from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE, MOMENT, NORMAL
 
 BODY = ellipsoid((2.0, 1.4, 3.2), (0.0, 2.2, 0.0))
@@ -32,6 +33,17 @@ def readings():
 def changed(readings, **columns):
     table = readings.table.assign(**columns)
     return SpatialReadings(table, readings.beam, readings.tangent, "measured")
+
+
+def with_noise(readings, share, seed):
+    """As a sensor's, alike in x, y and z; and its standard deviations."""
+    random = np.random.default_rng(seed)
+    noise = {}
+    for names in (FORCE, MOMENT):
+        noise |= dict.fromkeys(names, share * np.nanmax(np.abs(readings.values(*names))))
+    noisy = {n: readings.values(n) + random.normal(0, s, len(readings.table))
+             for n, s in noise.items()}  # fmt: skip
+    return changed(readings, **noisy), noise
 
 
 def test_exact_readings_give_the_exact_body(readings):
@@ -61,6 +73,58 @@ def test_the_uncertainty_covers_the_true_contact(readings):
         inside += int((far <= found["uncertainty"])[known].sum())
         total += int(known.sum())
     assert 0.90 < inside / total <= 1
+
+
+@pytest.mark.parametrize("share", [3e-4, 1e-3, 1e-2])
+def test_free_air_is_free_whatever_the_noise(readings, share):
+    """Neither stated nor seen noise is a contact, and what is clear of it is found as before."""
+    on, force = readings.touching, np.linalg.norm(readings.values(*FORCE), axis=1)
+    free, clear = readings.trusted & ~on, on & (force > 20 * share * np.nanmax(force))
+    assert free.sum() > 10
+    assert clear.sum() > 30
+    for seed in range(20):
+        noisy, noise = with_noise(readings, share, seed)
+        for stated in (None, noise) if seed < 2 else (None,):  # its samples take long
+            found = reconstruct_space(noisy, stated)
+            assert (found["phase"] == "free")[free].all()
+            assert found["torsion"].notna()[clear].all()
+            assert found["contact_x"].notna()[clear].mean() > 0.95
+            assert wrench_complaint(found) is None
+
+
+def test_the_noise_that_is_seen_is_that_which_is_there(readings):
+    exact = component_noise(readings)
+    for share in (3e-4, 1e-3, 1e-2):
+        ratios = []
+        for seed in range(20):
+            noisy, noise = with_noise(readings, share, seed)
+            seen = component_noise(noisy)
+            ratios.append([seen[n] / noise[n] for n in noise])
+        assert 0.7 < np.median(ratios) < 2
+    # Stations that lie apart are no noise: every sixth one still shows none.
+    thin = SpatialReadings(readings.table.iloc[::6], readings.beam, readings.tangent, "thin")
+    assert thin.touching.sum() < 15
+    largest = np.nanmax(np.abs(readings.values(*FORCE)))
+    for found in (exact, component_noise(thin)):
+        assert max(found[n] for n in FORCE) < 1e-12 * largest
+    stated = component_noise(readings, {"force_z": 0.1})
+    assert stated["force_z"] == 0.1
+    assert stated["force_x"] == exact["force_x"]
+
+
+def test_forces_that_act_nowhere_are_no_good_readings(readings):
+    opposite = {n: -readings.values(n) for n in (*FORCE, *MOMENT)}
+    complaint = wrench_complaint(reconstruct_space(changed(readings, **opposite)))
+    assert "signs" in complaint
+
+
+def test_a_frame_is_wrong_beyond_noise(readings):
+    """A turn of the moments about x is found beside noise of one per cent."""
+    noisy, noise = with_noise(readings, 0.01, 0)
+    x, y, z = noisy.values(*MOMENT).T
+    turned = dict(zip(MOMENT, (x, -z, y), strict=True))
+    found = reconstruct_space(changed(noisy, **turned), noise)
+    assert "frame" in wrench_complaint(found)
 
 
 def test_a_torsion_and_a_wrong_frame_are_named(readings):

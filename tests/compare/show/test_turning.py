@@ -11,7 +11,17 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from analytic.space import FootPath, SpatialCase, cylinder, polyhedron, solve_space, sphere
+from analytic.space import (
+    SENSED_IN_SPACE,
+    FootPath,
+    SpatialCase,
+    SpatialReadings,
+    cylinder,
+    polyhedron,
+    solve_space,
+    sphere,
+)
+from analytic.space.problem.readings import FORCE, MOMENT
 from compare import compare_space
 from compare.show.scene import SweepScene, faces_within
 from compare.show.spatial import write_spatial_report
@@ -64,6 +74,19 @@ def report(tmp_path_factory):
     exact = solve_space(CASE)
     folder = tmp_path_factory.mktemp("space")
     return write_spatial_report(compare_space(exact, exact), CASE.body, folder)
+
+
+def test_free_air_is_drawn_straight_whatever_the_noise():
+    exact = solve_space(CASE)
+    random = np.random.default_rng(0)
+    columns = {n: exact.values(n) + random.normal(0, 1e-3, 40) for n in (*FORCE, *MOMENT)}
+    table = exact.table[[*SENSED_IN_SPACE]].assign(**columns)
+    scene = SweepScene.of(SpatialReadings(table, exact.beam, exact.tangent), None)
+    free = ~exact.touching
+    assert free.sum() > 10
+    assert (scene.phase == "free")[free].all()
+    tips = scene.foot + np.array([0.0, 1.0, 0.0])
+    assert np.abs(scene.lines[free, -1] - tips[free]).max() < 1e-12
 
 
 @pytest.mark.slow

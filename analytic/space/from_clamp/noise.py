@@ -1,0 +1,99 @@
+"""What noise of the six components hides: the stations at which no force stands out from it."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from analytic.from_clamp.contact import UNLOADED
+from analytic.from_clamp.noise import scatter
+from analytic.problem.arrays import Booleans
+from analytic.problem.errors import InputError
+from analytic.problem.numbers import is_finite_number
+from analytic.space.problem.readings import FORCE, MOMENT, SpatialReadings
+
+COMPONENTS = (*FORCE, *MOMENT)
+_SIGMAS = 5.0  # noise alike in x, y and z makes more of no force once in 65,000 stations
+_BOTH = np.sqrt(2.0)  # where nothing touches, noise of force and of moment make one product
+
+
+def component_noise(
+    readings: SpatialReadings, stated: Mapping[str, float] | None = None
+) -> dict[str, float]:
+    """Standard deviation of each component's noise: what is stated, or seen if that is more.
+
+    What jumps from station to station is seen, as in the plane. Stations that lie far apart seem to
+    jump, too; but one force, wherever it acts and in whatever frame, has no moment along itself:
+    what F . M jumps by is noise and nothing else, and if it is less than what was seen allows, what
+    was seen is so much less noise.
+
+    Parameters
+    ----------
+    readings : SpatialReadings
+        One sweep; only its six components are used, and status.
+    stated : mapping, optional
+        Standard deviation by component, in its unit.
+
+    Returns
+    -------
+    dict
+        By component, in its unit.
+
+    Raises
+    ------
+    InputError
+        If what is stated is none of the components', or no standard deviation.
+    """
+    given = {} if stated is None else dict(stated)
+    for name, value in given.items():
+        if name not in COMPONENTS:
+            raise InputError("noise", repr(name), f"of {', '.join(COMPONENTS)}", "correct it")
+        if not (is_finite_number(value) and value >= 0):
+            raise InputError(f"noise[{name}]", value, "0 or more", "it is a standard deviation")
+    force, moment = readings.values(*FORCE), readings.values(*MOMENT)
+    loaded = readings.trusted & force.any(axis=1)
+    force, moment = force[loaded], moment[loaded]
+    seen = np.array([scatter(values) for values in np.hstack([force, moment]).T])
+    allowed = np.sqrt(moment**2 @ seen[:3] ** 2 + force**2 @ seen[3:] ** 2)
+    product = (force * moment).sum(axis=1)
+    share = min(1.0, _BOTH * scatter(product[allowed > 0] / allowed[allowed > 0]))
+    return {
+        name: max(float(given.get(name, 0.0)), share * float(size))
+        for name, size in zip(COMPONENTS, seen, strict=True)
+    }
+
+
+def least_force(readings: SpatialReadings, noise: Mapping[str, float]) -> float:
+    """The force below which a station is taken for free.
+
+    Parameters
+    ----------
+    readings : SpatialReadings
+        Of whose vibrissa.
+    noise : mapping
+        From `component_noise`.
+
+    Returns
+    -------
+    float
+        [force]
+    """
+    return max(_SIGMAS * max(noise[name] for name in FORCE), UNLOADED * readings.beam.force_unit)
+
+
+def felt(readings: SpatialReadings, noise: Mapping[str, float]) -> Booleans:
+    """Trusted stations with a force that noise does not make.
+
+    Parameters
+    ----------
+    readings : SpatialReadings
+        One sweep.
+    noise : mapping
+        From `component_noise`.
+
+    Returns
+    -------
+    array of bool, shape (stations,)
+        Without noise those of `SpatialReadings.touching`.
+    """
+    force = np.linalg.norm(readings.values(*FORCE), axis=1)
+    return np.asarray(readings.trusted & (force > least_force(readings, noise)))
