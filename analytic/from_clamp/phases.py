@@ -7,14 +7,19 @@ import numpy as np
 
 from analytic.from_clamp.contact import LONGEST, UNLOADED, Held, dimensionless
 from analytic.from_clamp.noise import MEDIAN_OF_NORMAL, checked_noise, largest, reading_noise
-from analytic.problem.arrays import Floats, Words
+from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.readings import Readings
 
-_SIGMAS = 5.0  # a force below so many standard deviations of its noise is none
+_SIGMAS = 5.0  # standard deviations; a force of less is none, a miss of more is no noise
 _BEYOND_TIP = -0.1  # what lies farther beyond the tip is not located
 _UNKNOWN = 1e-3  # of the largest magnitude; too few stations show no noise: alike in all readings
 _STEP = 0.05  # of the largest magnitude, at most, for a derivative
+_SHORT = 0.1  # L; a contact that is clearly short of the tip by more is not at it
+# An unstated coefficient of friction of 1 leaves a criterion of sin(45 degrees) in Phase B, other
+# vibrissae than the stated one less: what clearly has more is not tangential.
+_OBLIQUE = 0.7
+_MODEL = 0.03  # as far as a coarse beam's error moves either condition
 _UNRESOLVED = 0.1  # standard deviations; what meets its phase's condition better shows no noise
 
 
@@ -42,6 +47,21 @@ class Judgement(NamedTuple):
     shortfall: Floats
     shortfall_tolerance: Floats
 
+    @property
+    def neither(self) -> Booleans:
+        """Whether the contact is neither at the tip nor tangential, shape (stations,)."""
+        oblique = np.maximum(_OBLIQUE, _SIGMAS * self.criterion_tolerance)
+        short = _short_of_tip(self.shortfall, self.shortfall_tolerance)
+        return np.asarray(short & (np.abs(self.criterion) > oblique))
+
+    @property
+    def explained(self) -> Booleans:
+        """Whether noise, or a model's error, explains all that is missed of a phase's condition."""
+        at_tip = np.maximum(_MODEL, _SIGMAS * self.shortfall_tolerance)
+        parallel = np.maximum(_MODEL, _SIGMAS * self.criterion_tolerance)
+        tangent = (self.shortfall > 0) & (np.abs(self.criterion) <= parallel)
+        return np.asarray((np.abs(self.shortfall) <= at_tip) | tangent)
+
 
 @np.errstate(divide="ignore", over="ignore", invalid="ignore")  # next to no load: no contact
 def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -> Judgement:
@@ -50,7 +70,9 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
     In Phase B the criterion (26) vanishes and the contact lies short of the tip; in Phase A it is
     the other way round. Each deviation is measured in standard deviations, which the noise of the
     readings gives; the smaller one wins. So no tolerance has to be chosen, and readings that are
-    all a little off, as a coarse beam's are, still fall on the right side.
+    all a little off, as a coarse beam's are, still fall on the right side. Only a contact that is
+    short of the tip by more than a tenth of the length, and by more than noise explains, is never
+    taken to be at it.
 
     The noise is what the readings themselves show (`reading_noise`), and what is stated if that is
     more. Stations that lie too far apart seem to jump; but then their readings meet the conditions
@@ -119,9 +141,10 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
     better = better[~np.isnan(better)]
     met = float(np.median(better)) / MEDIAN_OF_NORMAL if better.size else 1.0
     drowning = np.maximum(stated, seen * (met if met < _UNRESOLVED else 1.0))
-    loaded = f > max(_SIGMAS * np.hypot(*drowning[:2]), UNLOADED)
+    least = max(_SIGMAS * np.hypot(*drowning[:2]), UNLOADED)
+    loaded = f > least
 
-    tangent = of_criterion < of_shortfall
+    tangent = (of_criterion < of_shortfall) | _short_of_tip(shortfall, shortfall_tolerance)
     # A negative deviation belongs to neither phase: it is noise about zero, evidence for its own.
     tangent = np.where(shortfall <= 0, False, np.where(criterion <= 0, True, tangent))
     return Judgement(
@@ -137,6 +160,11 @@ def _shortfall(arc_length: Floats) -> Floats:
     """NaN where no elastica has such readings; a contact beyond the tip is short by less than 0."""
     short = np.where(arc_length >= 0, 1 - arc_length, np.nan)
     return np.where(arc_length > LONGEST, _BEYOND_TIP, short)
+
+
+def _short_of_tip(shortfall: Floats, tolerance: Floats) -> Booleans:
+    """Whether contacts are so far from the tip that nothing else than another place explains it."""
+    return np.asarray(shortfall > np.maximum(_SHORT, _SIGMAS * tolerance))
 
 
 def _spread(of: Floats, step: Floats) -> Floats:

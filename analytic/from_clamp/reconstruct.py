@@ -16,6 +16,7 @@ from analytic.from_clamp.contact import (
     dimensionless,
     sides,
 )
+from analytic.from_clamp.mistaken import likely_mistakes
 from analytic.from_clamp.noise import checked_noise
 from analytic.from_clamp.phases import Judgement, judge_phases
 from analytic.problem.arrays import Booleans, Floats, Words
@@ -30,6 +31,7 @@ _SAMPLES = 400  # of the noise, a station
 _AT_ONCE = 10_000  # stations whose samples are in memory, 130 MB for each number of them
 _COVERAGE = 0.95
 _LARGE = 0.99  # quantile of the forces that is called the largest
+_MANY = 0.2  # of the stations; of good readings with 3 % of noise up to an eighth have no contact
 _CLEAR = 0.1  # of the largest force; with less, noise makes of a contact what it likes
 
 
@@ -67,8 +69,9 @@ def reconstruct(
         A row a station: ``contact_x``, ``contact_y``, ``contact_arc_length`` [length], on the
         body's surface; ``phase``; ``contact_angle`` [rad]; ``status``. NaN and ``"free"`` where no
         force acts, or none that differs from noise; NaN and ``"unexplained"`` where the force
-        and moment are of no such vibrissa: ``status`` is then ``"no elastica"``, or ``"longer than
-        the vibrissa"`` where the contact would be beyond 1.1 L. Phase and status are ``"gap"``
+        and moment are of no such vibrissa: ``status`` is then ``"no elastica"``, ``"longer than
+        the vibrissa"`` where the contact would be beyond 1.1 L, or ``"neither phase"`` where it
+        would clearly be neither at the tip nor tangential. Phase and status are ``"gap"``
         where one of the four is NaN. With `noise` also ``uncertainty``: the true contact point lies
         within this distance of the stated one in 95 % of all cases [length]; infinite where the
         noise allows readings that no elastica has.
@@ -113,11 +116,11 @@ def contact_table(readings: Readings, judged: Judgement) -> pd.DataFrame:
     """
     loaded = judged.phase != "free"
     contact = Held.of(readings).contact(np.where(loaded, dimensionless(readings), np.nan))
-    return _table(readings, contact, loaded, judged.phase)
+    return _table(readings, contact, loaded, judged.phase, judged.neither)
 
 
 def require_beam(found: pd.DataFrame, readings: Readings) -> None:
-    """Ask for the vibrissa, or for its units, if the readings cannot be of the one there is.
+    """Ask for the vibrissa, its units or signs, if the readings cannot be of the one there is.
 
     Parameters
     ----------
@@ -130,7 +133,7 @@ def require_beam(found: pd.DataFrame, readings: Readings) -> None:
     ------
     InputError
         If most stations with a good part of the largest force have contacts beyond the vibrissa's
-        length, or no elastica at all.
+        length, neither at the tip nor tangential, or no elastica at all.
     """
     loaded = clearly_loaded(readings)
     wrong = int((found["status"][loaded] != "ok").sum())
@@ -148,8 +151,40 @@ def require_beam(found: pd.DataFrame, readings: Readings) -> None:
         "vibrissa",
         f"of length {readings.beam.length:g} and flexural rigidity {readings.beam.base_rigidity:g}",
         f"the one that was measured ({impossible} this one)",
-        f"check its units, and those of {readings.source}",
+        f"check its units, and units and signs of {readings.source}{_likely(readings, loaded)}",
     )
+
+
+def doubt(found: pd.DataFrame, readings: Readings) -> str | None:
+    """What to check where many readings, but not most of them, are of no such vibrissa.
+
+    Parameters
+    ----------
+    found : pandas.DataFrame
+        What `reconstruct` made of the readings.
+    readings : Readings
+        The same sweep.
+
+    Returns
+    -------
+    str or None
+        How many stations with a good part of the largest force have no contact, with the likely
+        reason; None if they are a fifth or less, more than noise makes them.
+    """
+    loaded = clearly_loaded(readings)
+    status = found["status"][loaded]
+    wrong = int((~status.isin(["ok", "gap"])).sum())
+    if wrong <= _MANY * len(status):
+        return None
+    return (
+        f"{wrong} of {len(status)} readings under load are of no such vibrissa: check the signs, "
+        f"units and zero of the readings, and the vibrissa{_likely(readings, loaded)}"
+    )
+
+
+def _likely(readings: Readings, loaded: Booleans) -> str:
+    likely = likely_mistakes(readings, loaded)
+    return f"; likely {' or '.join(dict.fromkeys(likely))}" if likely else ""
 
 
 def clearly_loaded(readings: Readings) -> Booleans:
@@ -207,15 +242,18 @@ def reconstruct_by_decision(readings: Readings, tolerance: float = 1e-6) -> pd.D
         end = integrate_span(force_x[near], force_y[near], moment[near], arc_length[near])
         x[near], y[near] = end.x, end.y
     contact = Contact(alpha, np.where(loaded, arc_length, np.nan), sensed[0] + x, y)
-    return _table(readings, contact, loaded, np.where(tangent, "tangent", "tip"))
+    phase = np.where(tangent, "tangent", "tip")
+    return _table(readings, contact, loaded, phase, np.zeros_like(loaded))
 
 
-def _table(readings: Readings, contact: Contact, loaded: Booleans, phase: Words) -> pd.DataFrame:
+def _table(
+    readings: Readings, contact: Contact, loaded: Booleans, phase: Words, neither: Booleans
+) -> pd.DataFrame:
     beam = readings.beam
     x, y = Held.of(readings).surface(contact)
     measured = np.isfinite(dimensionless(readings)).all(axis=0)
     too_long = contact.arc_length > LONGEST
-    explained = measured & (contact.arc_length >= 0) & ~too_long
+    explained = measured & (contact.arc_length >= 0) & ~too_long & ~neither
 
     def where_explained(values: Floats, unit: float) -> Floats:
         return np.where(explained, values * unit, np.nan)
@@ -230,8 +268,8 @@ def _table(readings: Readings, contact: Contact, loaded: Booleans, phase: Words)
             ),
             "contact_angle": contact.alpha,
             "status": np.select(
-                [~measured, explained, ~loaded, too_long],
-                ["gap", "ok", "free", "longer than the vibrissa"],
+                [~measured, explained, ~loaded, too_long, neither],
+                ["gap", "ok", "free", "longer than the vibrissa", "neither phase"],
                 "no elastica",
             ),
         }

@@ -201,6 +201,7 @@ def reconstruct(
 
     from analytic import CLAMP_READINGS, relative_noise, require_beam
     from analytic import reconstruct as reconstruct_contour
+    from analytic.from_clamp.reconstruct import doubt
     from compare.align.offset import checked_offset, without_offset
     from compare.commands import terminal
     from compare.read.rig import read_measured
@@ -230,6 +231,8 @@ def reconstruct(
             end = "" if name == "elastica" else f"-{name}"
             path = write_whole(folder / f"points{end}.csv", points.to_csv(index=False))
             terminal.print_reconstruction(readings, found, name)
+            if name == "elastica" and (why := doubt(found, readings)) is not None:
+                terminal.print_line(why)
             terminal.print_written(path)
             with waiting("drawing"):
                 picture = reconstruction(readings, found)

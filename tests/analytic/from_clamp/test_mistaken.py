@@ -1,0 +1,106 @@
+"""Readings in wrong units, or with wrong signs, are no contacts; which mistake it is, is found."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import (
+    Beam,
+    Case,
+    InputError,
+    Sweep,
+    circle,
+    named_case,
+    reconstruct,
+    relative_noise,
+    require_beam,
+    solve_sweep,
+)
+from analytic.from_clamp.reconstruct import doubt
+from analytic.problem.named import NAMED_TABLES
+from tests.conftest import exact_sweep
+
+RIG = Case(Beam(0.06, 5e-6, 0.2e-3), circle(0.03, lowest=(0.004, 0.025)), Sweep(150))
+FORCES = ("force_x", "force_y")
+
+
+def measured(exact, level, seed=7):
+    noise, draw = relative_noise(exact, level), np.random.default_rng(seed)
+    columns = {n: exact.values(n) + size * draw.standard_normal(150) for n, size in noise.items()}
+    return replace(exact, table=exact.table[["foot_x"]].assign(**columns))
+
+
+def mistaken(readings, **factors):
+    columns = {name: factor * readings.values(name) for name, factor in factors.items()}
+    return replace(readings, table=readings.table.assign(**columns))
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return measured(solve_sweep(RIG), 0.003)
+
+
+@pytest.mark.parametrize(
+    ("factors", "likely"),
+    [
+        (dict.fromkeys(FORCES, 1e3), r"unit of both forces \(1000 times too large\)"),
+        ({"moment_z": 1e-3}, r"unit of moment_z \(1000 times too small\)"),
+        (dict.fromkeys((*FORCES, "moment_z"), 9.80665), r"flexural rigidity \(9.807 times"),
+        (dict.fromkeys((*FORCES, "moment_z"), -1.0), "likely .*all signs"),
+    ],
+)
+def test_readings_of_no_such_vibrissa_are_refused_with_the_likely_mistake(rig, factors, likely):
+    wrong = mistaken(rig, **factors)
+    with pytest.raises(InputError, match=f"units and signs of .*{likely}"):
+        require_beam(reconstruct(wrong), wrong)
+
+
+def test_swapped_forces_are_named(rig):
+    x, y = (rig.values(name) for name in FORCES)
+    wrong = replace(rig, table=rig.table.assign(force_x=y, force_y=x))
+    with pytest.raises(InputError, match="likely force_x and force_y, swapped"):
+        require_beam(reconstruct(wrong), wrong)
+
+
+@pytest.mark.parametrize("name", ["moment_z", "force_x"])
+def test_a_wrong_sign_is_named(rig, name):
+    """Two thirds of its stations might be of a vibrissa that bends to the other side."""
+    wrong = mistaken(rig, **{name: -1.0})
+    said = doubt(reconstruct(wrong), wrong)
+    assert "of no such vibrissa" in said
+    assert said.endswith("likely the sign of moment_z or the sign of force_x")
+
+
+def test_a_contact_at_the_tip_is_at_the_tip(rig):
+    """Forces a thousand times too large put all of them next to the clamp."""
+    found = reconstruct(mistaken(rig, **dict.fromkeys(FORCES, 1e3)))
+    assert not (found["phase"] == "tip").any()
+    neither = found["status"] == "neither phase"
+    assert neither.sum() > 80
+    assert (found["phase"][neither] == "unexplained").all()
+    assert found.loc[neither, ["contact_x", "contact_arc_length"]].isna().all(axis=None)
+
+
+@pytest.mark.parametrize("level", [0.0, 0.001, 0.01, 0.03])
+@pytest.mark.parametrize("name", [name for name in NAMED_TABLES if name != "whisker"])
+def test_good_readings_are_not_doubted(name, level):
+    exact = exact_sweep(name)
+    noise, draw = relative_noise(exact, level), np.random.default_rng(5)
+    stations = len(exact.table)
+    columns = {n: exact.values(n) + s * draw.standard_normal(stations) for n, s in noise.items()}
+    readings = replace(exact, table=exact.table.assign(**columns))
+    found = reconstruct(readings)
+    assert not (found["status"] == "neither phase").any()
+    assert doubt(found, readings) is None
+    require_beam(found, readings)
+
+
+def test_an_unstated_friction_leaves_the_contacts():
+    """The paper's vibrissa is taken for one that rubs: its points stay, none is called a tip's."""
+    exact = solve_sweep(replace(named_case("catenary"), friction=0.5))
+    found = reconstruct(exact.with_friction(0.0))
+    touching = (exact.table["phase"] != "free").to_numpy()
+    assert (found["status"][touching] == "ok").all()
+    tip = found["phase"] == "tip"
+    assert (found["contact_arc_length"][tip] > 0.89).all()
