@@ -76,7 +76,8 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
 
     The noise is what the readings themselves show (`reading_noise`), and what is stated if that is
     more. Stations that lie too far apart seem to jump; but then their readings meet the conditions
-    far better than such noise allows, and no contact is taken for none.
+    far better than such noise allows, and no contact is taken for none. Nor is it where stations
+    without contact show no noise at all, as a simulator's, whose readings may jump amid contact.
 
     Parameters
     ----------
@@ -142,6 +143,8 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
     met = float(np.median(better)) / MEDIAN_OF_NORMAL if better.size else 1.0
     drowning = np.maximum(stated, seen * (met if met < _UNRESOLVED else 1.0))
     least = max(_SIGMAS * np.hypot(*drowning[:2]), UNLOADED)
+    if _silent(f[readings.trusted], least):
+        least = max(_SIGMAS * np.hypot(*stated[:2]), UNLOADED)
     loaded = f > least
 
     tangent = (of_criterion < of_shortfall) | _short_of_tip(shortfall, shortfall_tolerance)
@@ -160,6 +163,19 @@ def _shortfall(arc_length: Floats) -> Floats:
     """NaN where no elastica has such readings; a contact beyond the tip is short by less than 0."""
     short = np.where(arc_length >= 0, 1 - arc_length, np.nan)
     return np.where(arc_length > LONGEST, _BEYOND_TIP, short)
+
+
+def _silent(force: Floats, least: float) -> bool:
+    """Whether readings have no noise without a contact: what jumps amid contact hides no touch.
+
+    The forces that seem too small are then nothing at all, but for a few next to the contact: of a
+    noisy sensor some would be nothing on both sides of some that are not.
+    """
+    force = force[np.isfinite(force)]
+    nothing = force <= UNLOADED
+    felt = np.flatnonzero(~nothing)
+    between = felt.size > 0 and bool(nothing[felt[0] : felt[-1] + 1].any())
+    return not between and 2 * int(nothing.sum()) > int((force <= least).sum())
 
 
 def _short_of_tip(shortfall: Floats, tolerance: Floats) -> Booleans:

@@ -16,6 +16,8 @@ from analytic import (
     relative_noise,
     solve_sweep,
 )
+from analytic.from_clamp.phases import judge_phases
+from tests.conftest import exact_sweep
 
 # Shares of right stations as published for the default sweeps, less what one seed may miss.
 RIGHT = {0.0: 1.0, 1e-4: 0.995, 1e-3: 0.98, 1e-2: 0.9}
@@ -81,3 +83,31 @@ def test_noise_is_a_standard_deviation_by_column(exact, noise, named):
 def test_relative_noise_is_a_share(exact, level):
     with pytest.raises(InputError, match="noise = "):
         relative_noise(exact, level)
+
+
+def test_jumps_amid_contact_hide_no_touch_if_free_stations_are_silent():
+    """As of a coarse chain past corners: readings jump there, and are nothing without contact."""
+    exact = exact_sweep("catenary")
+    touching = np.flatnonzero((exact.table["phase"] != "free").to_numpy())
+    size = relative_noise(exact, 0.002)
+    jumps = np.zeros((3, len(exact.table)))
+    jumps[:, touching[5:]] = np.random.default_rng(3).standard_normal((3, len(touching) - 5))
+    columns = {n: exact.values(n) + s * j for (n, s), j in zip(size.items(), jumps, strict=True)}
+    readings = replace(exact, table=exact.table.assign(**columns))
+    assert (judge_phases(readings).phase[touching[:5]] != "free").all()
+    # What is stated as noise hides them still.
+    assert judge_phases(readings, size).phase[touching[0]] == "free"
+
+
+def test_zeros_amid_noise_are_no_silence():
+    """A sensor's dropouts before the touch, filled with zeros, do not make contacts of noise."""
+    exact = exact_sweep("catenary")
+    free = (exact.table["phase"] == "free").to_numpy()
+    assert free.sum() > 5
+    size, draw = relative_noise(exact, 0.01), np.random.default_rng(3)
+    columns = {n: exact.values(n) + s * draw.standard_normal(len(free)) for n, s in size.items()}
+    dropped = np.flatnonzero(free)[1:4]
+    for values in columns.values():
+        values[dropped] = 0.0
+    readings = replace(exact, table=exact.table.assign(**columns))
+    assert (judge_phases(readings).phase[free] == "free").all()
