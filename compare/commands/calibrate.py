@@ -57,10 +57,11 @@ def calibrate(
     from compare.commands import terminal
     from compare.read.case import load_job
     from compare.read.rig import read_measured
+    from compare.sense.record import without_dropouts
     from compare.show.calibration import calibration_document, calibration_lines
 
     known = load_job(case).case
-    readings = read_measured(file, beam, column or (), known.beam, direction)
+    readings = without_dropouts(read_measured(file, beam, column or (), known.beam, direction))
     with waiting("fitting"):
         sizes = None if level == "auto" else relative_noise(readings, level)
         found = calibrate_case(readings, known, names, sizes)

@@ -205,8 +205,9 @@ def reconstruct(
     from compare.align.offset import checked_offset, without_offset
     from compare.commands import terminal
     from compare.read.rig import read_measured
+    from compare.sense.record import without_dropouts
 
-    readings = read_measured(file, beam, column or (), direction=direction)
+    readings = without_dropouts(read_measured(file, beam, column or (), direction=direction))
     if offset:
         readings = without_offset(readings, checked_offset(offset))
     known = {

@@ -1,11 +1,11 @@
 """What is wrong with a record as such: numbers that are missing, repeated, stuck or cut off."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic import SENSED, Readings
+from analytic import CLAMP_READINGS, SENSED, Readings
 from analytic.problem.arrays import Booleans, Floats
 from compare.sense.noise import scales
 
@@ -145,6 +145,31 @@ def inspect_record(readings: Readings) -> Record:
         gaps=int((steps > _WIDE * median).sum()) if median > 0 else 0,
         widest=float(steps.max()),
         retreats=_retreats(readings, median),
+    )
+
+
+def without_dropouts(readings: Readings) -> Readings:
+    """A sweep without the readings of rows that are filled with zeros amid contact.
+
+    Parameters
+    ----------
+    readings : Readings
+        One sweep.
+
+    Returns
+    -------
+    Readings
+        With gaps at these rows, and how many they are in ``provenance["rows"]["dropped"]``.
+    """
+    dropped = inspect_record(readings).dropped
+    if not dropped.any():
+        return readings
+    gaps = {name: np.where(dropped, np.nan, readings.values(name)) for name in CLAMP_READINGS}
+    rows = {**readings.provenance.get("rows", {}), "dropped": int(dropped.sum())}
+    return replace(
+        readings,
+        table=readings.table.assign(**gaps),
+        provenance={**readings.provenance, "rows": rows},
     )
 
 

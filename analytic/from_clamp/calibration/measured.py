@@ -136,6 +136,8 @@ def _kept(readings: Readings, loaded: Integers) -> Integers:
     x = readings.values("foot_x")
     first, last = x[loaded[0]], x[loaded[-1]]
     kept = readings.trusted & (x >= min(first, last)) & (x <= max(first, last))
+    # Amid contact there is a load: exact zeros are a dropout's.
+    kept &= np.any([readings.values(name) != 0 for name in CLAMP_READINGS], axis=0)
     if loaded[-1] < len(x) - 1:  # it lets go
         kept &= np.abs(x - last) >= _NEXT_TO_SNAP_OFF * abs(last - first)
     _, order = np.unique(np.where(kept, x, np.nan), return_index=True)

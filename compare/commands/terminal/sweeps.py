@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from compare.read.passes import Pass
 
 _MEANINGS = {
-    "touches again": ": another part of the vibrissa would lie in the object, no readings",
+    "touches again": ": another part of the vibrissa touches the object, or would lie in it",
     "chattering": ": the contact was lost more than once, or for 5 % of a station's way",
     "lost": ": no contact, between stations with one",
     "sticks": ": the contact would slide back, which friction prevents as the foot moves on; the "
@@ -71,13 +71,14 @@ def _untrusted(readings: Readings) -> list[str]:
     if "status" not in readings.table:
         return []
     said = []
-    for name, group in readings.table.groupby("status", sort=False)["foot_x"]:
+    for name, group in readings.table.groupby("status", sort=False):
         if name in ("ok", "unsettled"):
             continue
-        ends = (x / readings.beam.length for x in (group.iloc[0], group.iloc[-1]))
+        ends = (group["foot_x"].iloc[i] / readings.beam.length for i in (0, -1))
         where = " to ".join(f"{x:.4f}" for x in ends)
         meaning = _MEANINGS.get(str(name), "")
-        said.append(f"{len(group)} {name} (foot_x {where} L{meaning})")
+        none = "; no readings" if group[list(CLAMP_READINGS)].isna().all(axis=None) else ""
+        said.append(f"{len(group)} {name} (foot_x {where} L{meaning}{none})")
     return said
 
 
@@ -101,6 +102,7 @@ def note_rows(readings: Readings) -> None:
         for name, what in (
             ("out_of_order", "out of order were sorted by foot_x"),
             ("averaged", "averaged with the one before, at the same foot_x"),
+            ("dropped", "filled with zeros amid contact were left out"),
         )
         if (count := rows.get(name))
     ]

@@ -8,7 +8,7 @@ import pytest
 from analytic import CLAMP_READINGS, Readings
 from compare import compare
 from compare.sense.noise import with_noise
-from compare.sense.record import inspect_record
+from compare.sense.record import inspect_record, without_dropouts
 from tests.conftest import exact_sweep
 
 
@@ -78,3 +78,15 @@ def test_the_order_of_the_rows():
         assert said in found.likely
         assert found.disagreement["force_x"].rms == 0  # compared in the order of the motion
         assert found.snap_off.difference == 0
+
+
+def test_dropouts_become_gaps(noisy):
+    """Ten rows filled with zeros amid contact; zeros without a contact stay."""
+    table = noisy.table.copy()
+    columns = list(CLAMP_READINGS)
+    table.loc[range(60, 110, 5), columns] = 0.0
+    table.loc[:2, columns] = 0.0
+    found = without_dropouts(replace(noisy, table=table))
+    assert np.flatnonzero(np.isnan(found.values("force_y"))).tolist() == list(range(60, 110, 5))
+    assert found.provenance["rows"]["dropped"] == 10
+    assert without_dropouts(noisy) is noisy
