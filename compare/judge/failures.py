@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from analytic import Readings
 from compare.judge.allowance import NoiseAllowance
 from compare.judge.tolerances import Limit, Tolerances
 from compare.measure.disagreement import Disagreement
@@ -229,7 +230,8 @@ def _stations(found: Measurement, limits: Tolerances) -> Iterator[Failure]:
     reasons = [f"{missing} of them lack a number"] if missing else []
     if counts["dropped"]:
         reasons.append(f"{counts['dropped']} of them are filled with zeros amid contact")
-    why = f" ({', '.join(reasons)})" if reasons else ""
+    reasons += _statuses(found.candidate)
+    why = f" ({'; '.join(reasons)})" if reasons else ""
     yield Failure(
         "stations",
         f"{untrusted} of {all_} of the candidate are not to be trusted{why}",
@@ -237,6 +239,17 @@ def _stations(found: Measurement, limits: Tolerances) -> Iterator[Failure]:
         f"allowed {float(limit):.1%} ({limit.reason})",
         _ratio(untrusted, limit * all_),
     )
+
+
+def _statuses(readings: Readings) -> Iterator[str]:
+    """How many stations have which status that speaks against them, and where."""
+    if "status" not in readings.table:
+        return
+    length = readings.beam.length
+    for status, foot_x in readings.table.groupby("status", sort=False)["foot_x"]:
+        if status != "ok":
+            where = f"{foot_x.iloc[0] / length:.4g} to {foot_x.iloc[-1] / length:.4g} L"
+            yield f"{len(foot_x)} {status}, foot_x {where}"
 
 
 def _allowed(limit: Limit, noise: float = 0.0) -> str:

@@ -118,3 +118,14 @@ def test_it_fits_a_screen():
             assert len(shown.splitlines()) < 24
     assert "opposite sign of force_y" in repr(found)
     assert [len(ax.lines) for ax in found.plot()] == [2, 2, 2]
+
+
+def test_a_status_is_named_with_its_place():
+    """Where the vibrissa touches again: what is not to be trusted, and where."""
+    exact = exact_sweep("parabola")
+    status = np.where(np.arange(200) // 20 == 4, "touches again", "ok")
+    found = compare(exact, replace(exact, table=exact.table.assign(status=status)))
+    at = exact.values("foot_x")
+    where = f"20 touches again, foot_x {at[80]:.4g} to {at[99]:.4g} L"
+    assert any(where in failure for failure in found.failures)
+    assert where in verdict(found)
