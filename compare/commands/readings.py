@@ -85,7 +85,6 @@ def compare(
     if _in_space(reference):
         given = {
             "--offset": offset != "0",
-            "--noise": noise != "0",
             "--beam": beam,
             "--reference-column": reference_column,
             "--reference-beam": reference_beam,
@@ -98,7 +97,9 @@ def compare(
         require_readings([candidate])
         from compare.commands.space import compare_in_space
 
-        return compare_in_space(reference, candidate, out, column, frame, tolerances)
+        return compare_in_space(
+            reference, candidate, out, column, frame, tolerances, number_or_auto("--noise", noise)
+        )
     if frame != "world":
         raise InputError("--frame", frame, "for sweeps in space only", "leave it out")
     given_offset, given_noise = (

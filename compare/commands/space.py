@@ -182,6 +182,7 @@ def compare_in_space(
     column: list[str] | None,
     frame: Literal["world", "clamp"],
     tolerances: Path | None,
+    noise: float | Literal["auto"],
 ) -> int:
     """Compare a file of readings in space with another or with a case's closed form.
 
@@ -189,7 +190,7 @@ def compare_in_space(
     ----------
     reference : str
         A case file with ``[body]``, or a file of readings in space.
-    candidate, out, column, tolerances
+    candidate, out, column, tolerances, noise
         As `vibrissa compare` takes them.
     frame : {"world", "clamp"}
         Of the candidate's components, and of those that are compared.
@@ -224,7 +225,7 @@ def compare_in_space(
         else:
             exact, called = SpatialReadings.read(reference), distinct_name(Path(reference))
         measured = read_space(candidate, exact.beam, exact.tangent, column or (), frame)
-        comparison = compare_space(exact, measured, limits, frame=frame)
+        comparison = compare_space(exact, measured, limits, noise=noise, frame=frame)
     default = Path("results") / f"{called}-{distinct_name(candidate)}"
     with output_folder(out or default) as folder:
         film = Film.of(folder) if candidate.parent.resolve() == folder.resolve() else None

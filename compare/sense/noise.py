@@ -1,6 +1,6 @@
 """Noise of two sweeps: relative to the reference, as a level, and put on one."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -66,18 +66,20 @@ def noise_level(reference: Readings, candidate: Readings) -> dict[str, float]:
     return {name: float(np.hypot(one[name], other[name])) / scale[name] for name in CLAMP_READINGS}
 
 
-def checked_level(level: float) -> dict[str, float]:
+def checked_level(level: float, names: Sequence[str] = CLAMP_READINGS) -> dict[str, float]:
     """The same relative noise for all readings.
 
     Parameters
     ----------
     level : float
         Standard deviation over each reading's largest magnitude.
+    names : sequence of str
+        The readings.
 
     Returns
     -------
     dict
-        By clamp reading.
+        By reading.
 
     Raises
     ------
@@ -91,7 +93,7 @@ def checked_level(level: float) -> dict[str, float]:
             "'auto', or between 0 and 1",
             "it is relative to each reading's largest magnitude",
         )
-    return dict.fromkeys(CLAMP_READINGS, float(level))
+    return dict.fromkeys(names, float(level))
 
 
 def with_noise(readings: Readings, level: Mapping[str, float], seed: int) -> Readings:

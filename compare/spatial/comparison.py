@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from html import escape
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from compare.spatial.measured import (
     ContactDisagreement,
     SpatialMeasurement,
 )
+from compare.spatial.noise import component_scales, noise_levels, spatial_noise, touching
 
 _SAME_FOOT = 1e-6  # L
 _SAME_BEAM = 1e-9  # of a length or rigidity: what a file's digits leave
@@ -78,7 +79,7 @@ class SpatialComparison(SpatialMeasurement):
         yield (
             f"{self.candidate.source} {'agrees' if self.agrees else 'disagrees'} with "
             f"{self.reference.source}: {name} {one.rms:.1e} rms, the worst "
-            f"({self.tolerances.of(name, 'rms'):g} allowed); contact {self.contact.rms:.1e} L rms; "
+            f"({self.tolerances.of(name, 'rms'):g} allowed); {self._contact()}; "
             f"{int(self.compared.sum())} of {len(self.compared)} stations compared"
         )
         for event, pair in self.events.items():
@@ -92,6 +93,11 @@ class SpatialComparison(SpatialMeasurement):
             yield f"  failed: {failure.clause}"
         if self.remark is not None:
             yield f"  {self.remark}"
+
+    def _contact(self) -> str:
+        if self.contact.stations:
+            return f"contact {self.contact.rms:.1e} L rms"
+        return "contact known at no station"
 
     def to_dict(self) -> dict[str, Any]:
         """What ``comparison.json`` holds.
@@ -108,6 +114,11 @@ class SpatialComparison(SpatialMeasurement):
                 "frame": self.frame,
                 "disagreement": {name: asdict(one) for name, one in self.disagreement.items()},
                 "contact": self.contact.to_dict(),
+                "noise": {
+                    "level": dict(self.noise.readings.level),
+                    "contact": self.noise.contact,
+                    "unknown": self.noise.unknown,
+                },
                 "phases": {"agreement": self.phase_agreement},
                 "events": {name: one.to_dict() for name, one in self.events.items()},
                 "stations": {
@@ -138,6 +149,7 @@ def compare_space(
     candidate: SpatialReadings,
     tolerances: SpatialTolerances | None = None,
     *,
+    noise: float | Literal["auto"] = 0.0,
     frame: Frame = "world",
 ) -> SpatialComparison:
     """Set one sweep in space against another, from their readings alone.
@@ -149,6 +161,10 @@ def compare_space(
         found from its clamp.
     tolerances : SpatialTolerances, optional
         Limits for the verdict.
+    noise : float or "auto"
+        Standard deviation of the components' noise over the largest component of force, or of
+        moment. The limits are widened by what such noise does. ``"auto"`` estimates it from both
+        sweeps. What touches is judged beside the noise that is seen in any case.
     frame : {"world", "clamp"}
         In which the components are compared. Both sweeps' columns are in the world's.
 
@@ -161,14 +177,18 @@ def compare_space(
     ------
     InputError
         If the two are of different beams or clamps, or at other stations, or there is no such
-        frame.
+        frame, or the noise is no share of the largest component.
     """
     for name, given in (("reference", reference), ("candidate", candidate)):
         require(name, given, SpatialReadings, "wrap a table as SpatialReadings(table, beam)")
     if tolerances is not None:
         require("tolerances", tolerances, SpatialTolerances, "see its fields")
     _check_same(reference, candidate)
-    travel, compared = way(reference), reference.touching & candidate.touching
+    scales = component_scales(reference)
+    level = noise_levels(reference, candidate, noise, scales)
+    stated = {name: level[name] * scales[name] for name in level}
+    on, travel = touching(reference, candidate, stated), way(reference)
+    compared = on.reference & on.candidate
     phases = _phases(reference), _phases(candidate)
     same = None
     if phases[0] is not None and phases[1] is not None and compared.any():
@@ -180,12 +200,14 @@ def compare_space(
         travel,
         compared,
         _disagreements(reference, candidate, frame, compared, travel),
-        _contacts(reference, candidate, compared),
+        _contacts(reference, candidate, on.clear),
         same,
-        paired_events(reference, candidate, travel),
+        paired_events(reference, candidate, travel, on),
         {"reference": _counted(reference), "candidate": _counted(candidate)},
         int((reference.trusted & ~candidate.trusted).sum()),
         SpatialTolerances() if tolerances is None else tolerances,
+        spatial_noise(reference, level, stated, on.clear),
+        on,
     )
 
 
@@ -281,7 +303,8 @@ def _contacts(
     distance[~compared] = np.nan
     far = distance[np.isfinite(distance)]
     most = float(far.max()) if far.size else math.nan
-    return ContactDisagreement(_rms(far), most, far.size, tuple(from_clamp), distance)
+    asked = int(compared.sum())
+    return ContactDisagreement(_rms(far), most, far.size, asked, tuple(from_clamp), distance)
 
 
 def _phases(readings: SpatialReadings) -> Words | None:

@@ -4,16 +4,17 @@ from itertools import zip_longest
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Booleans, Floats
 from analytic.space import SpatialReadings
 from compare.measure.disagreement import Occurrence
+from compare.spatial.noise import Touching
 
 _TOUCH, _LEAVING, _ENDS = "touch", "leaving", ("slip-off", "release")
 _Events = list[tuple[str, float, float]]  # kind, way, by how much that is uncertain
 
 
 def paired_events(
-    reference: SpatialReadings, candidate: SpatialReadings, travel: Floats
+    reference: SpatialReadings, candidate: SpatialReadings, travel: Floats, touching: Touching
 ) -> dict[str, Occurrence]:
     """Touches, slip-offs and releases of two sweeps at the same stations.
 
@@ -26,6 +27,8 @@ def paired_events(
         Two sweeps.
     travel : array, shape (stations,)
         Way of the foot to the stations [length].
+    touching : Touching
+        Stations of both that touch.
 
     Returns
     -------
@@ -42,8 +45,8 @@ def paired_events(
                 for kind, at, wide in _recorded(one)
             ]
             if "events" in one.provenance
-            else _shown(one, travel)
-            for one in both
+            else _shown(on, travel)
+            for one, on in zip(both, touching[:2], strict=True)
         ]
     found = {}
     for kind in (_TOUCH, *_ENDS, _LEAVING):
@@ -65,9 +68,8 @@ def _recorded(readings: SpatialReadings) -> _Events:
     ]
 
 
-def _shown(readings: SpatialReadings, travel: Floats) -> _Events:
+def _shown(touching: Booleans, travel: Floats) -> _Events:
     """Midway between the stations before and after, and half of their distance uncertain."""
-    touching = readings.touching
     changes = np.flatnonzero(touching[1:] != touching[:-1])
     return [
         (

@@ -50,38 +50,46 @@ def _components(found: SpatialMeasurement) -> Iterator[Failure]:
     for name, one in found.disagreement.items():
         for kind, size in (("rms", one.rms), ("max", one.max)):
             limit = found.tolerances.of(name, kind)
-            if not size > limit:
+            noise, stations = found.noise.readings, int(found.compared.sum())
+            widen = noise.rms if kind == "rms" else noise.max
+            widened = widen(limit, name, stations)
+            if not size > widened:
                 continue
+            beside = _beside(noise.level[name])
             where = f" at {one.at / length:.4g} L of the way" if kind == "max" else ""
             phase = f", phase {one.phase}" if kind == "max" and one.phase else ""
             yield Failure(
                 name,
                 f"{kind} {size:.2e} of the largest component{where}{phase}",
-                f"{name} is off by {size:.1e} {kind}{where} where {float(limit):.1e} is allowed",
-                f"allowed {float(limit):.2e} ({limit.reason})",
-                _ratio(size, limit),
+                f"{name} is off by {size:.1e} {kind}{where} where {float(limit):.1e} is "
+                f"allowed{beside}",
+                f"allowed {float(limit):.2e}{beside} ({limit.reason})",
+                _ratio(size, widened),
             )
 
 
 def _contacts(found: SpatialMeasurement) -> Iterator[Failure]:
     limits, one = found.tolerances.limits(), found.contact
-    limit, compared = limits["contact"], int(found.compared.sum())
-    if one.rms > limit:
+    limit, noise = limits["contact"], found.noise
+    widened, beside = math.hypot(limit, noise.contact), _beside(noise.contact, " L")
+    if one.rms > widened:
         yield Failure(
             "contact",
             f"{one.rms:.2e} L rms, {one.max:.1e} L at most",
-            f"the contact is off by {one.rms:.1e} L rms where {float(limit):.1e} L is allowed",
-            f"allowed {float(limit):.2e} L ({limit.reason})",
-            _ratio(one.rms, limit),
+            f"the contact is off by {one.rms:.1e} L rms where {float(limit):.1e} L is "
+            f"allowed{beside}",
+            f"allowed {float(limit):.2e} L{beside} ({limit.reason})",
+            _ratio(one.rms, widened),
         )
-    unknown, some = compared - one.stations, limits["untrusted"]
-    if unknown > some * compared:
+    unknown, some = one.asked - one.stations, limits["untrusted"]
+    most = (some + noise.unknown) * one.asked
+    if unknown > most:
         yield Failure(
             "contact",
-            f"at {unknown} of {compared} compared stations the clamp's readings are of no contact",
-            f"{unknown} of {compared} readings are of no contact",
+            f"at {unknown} of {one.asked} compared stations the clamp's readings are of no contact",
+            f"{unknown} of {one.asked} readings are of no contact",
             f"allowed {float(some):.1%} ({some.reason})",
-            _ratio(unknown, some * compared),
+            _ratio(unknown, most),
         )
     share, asked = found.phase_agreement, limits["phase_agreement"]
     if share is not None and share < asked:
@@ -116,6 +124,10 @@ def _events(found: SpatialMeasurement) -> Iterator[Failure]:
             allowed,
             _ratio(abs(apart), limit + wide),
         )
+
+
+def _beside(noise: float, unit: str = "") -> str:
+    return f" beside noise of {noise:.1e}{unit}" if noise else ""
 
 
 def _ratio(found: float, allowed: Limit | float) -> float:

@@ -8,6 +8,7 @@ from analytic.space import SpatialReadings
 from compare.align.frames import Frame
 from compare.judge.spatial import SpatialTolerances
 from compare.measure.disagreement import Occurrence
+from compare.spatial.noise import SpatialNoise, Touching
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,8 @@ class ContactDisagreement:
         NaN if there is no such station.
     stations : int
         How many there are.
+    asked : int
+        At how many both touch with a force that noise cannot hide.
     from_clamp : tuple of str
         The sources that record no contacts: theirs are reconstructed from the clamp.
     distance : array, shape (stations,)
@@ -55,6 +58,7 @@ class ContactDisagreement:
     rms: float
     max: float
     stations: int
+    asked: int
     from_clamp: tuple[str, ...]
     distance: Floats
 
@@ -97,6 +101,10 @@ class SpatialMeasurement:
         Stations of the candidate without readings where the reference has them.
     tolerances : SpatialTolerances
         Limits.
+    noise : SpatialNoise
+        What noise adds to them.
+    touching : Touching
+        Stations that touch.
     """
 
     reference: SpatialReadings
@@ -111,3 +119,5 @@ class SpatialMeasurement:
     statuses: dict[str, dict[str, int]]
     untrusted: int
     tolerances: SpatialTolerances
+    noise: SpatialNoise
+    touching: Touching

@@ -23,6 +23,7 @@ def assert_agreement(
     candidate: SpatialReadings,
     tolerances: SpatialTolerances | None = None,
     *,
+    noise: float | Literal["auto"] = 0.0,
     frame: Frame = "world",
 ) -> SpatialComparison: ...
 
@@ -111,11 +112,10 @@ def compared(
         If one of the two is no `Readings`, nor both are `SpatialReadings`; else as `compare`.
     """
     if isinstance(reference, SpatialReadings):
-        for name, value in (("offset", offset), ("noise", noise)):
-            if value != 0:
-                raise InputError(name, value, "0 in space", "leave it out, or widen the limits")
+        if offset != 0:
+            raise InputError("offset", offset, "0 in space", "leave it out, or widen the limits")
         # What is of another kind, compare_space refuses.
-        return compare_space(reference, candidate, tolerances, frame=frame)  # type: ignore[arg-type]
+        return compare_space(reference, candidate, tolerances, noise=noise, frame=frame)  # type: ignore[arg-type]
     for name, given in (("reference", reference), ("candidate", candidate)):
         if not isinstance(given, Readings):
             raise InputError(

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from analytic.from_clamp.contact import LONGEST, contact_bent_right
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.support import require_plain
 from analytic.space.from_clamp.noise import COMPONENTS, component_noise, felt
 from analytic.space.problem.readings import (
@@ -155,6 +155,41 @@ def wrench_complaint(found: pd.DataFrame) -> str | None:
     )
 
 
+def contacts_moved(
+    readings: SpatialReadings, noise: Mapping[str, float], at: Booleans, seed: int = 0
+) -> Floats:
+    """How far noise moves the contacts that are found, sample by sample.
+
+    Parameters
+    ----------
+    readings : SpatialReadings
+        One sweep.
+    noise : mapping
+        Standard deviations of the six components by name, each in its unit.
+    at : array of bool, shape (stations,)
+        Stations with a force.
+    seed : int
+        Of the samples.
+
+    Returns
+    -------
+    array, shape (400, stations of `at`)
+        Distances [length]; NaN where the disturbed readings are of no contact.
+    """
+    beam = readings.beam
+    deviation = np.array([noise.get(name, 0.0) for name in COMPONENTS])
+    far, _, reach = _samples(
+        readings.values(*FOOT)[at] / beam.length,
+        readings.values(*FORCE)[at] / beam.force_unit,
+        readings.values(*MOMENT)[at] / beam.moment_unit,
+        readings.clamp_tangent,
+        beam.radius / beam.length,
+        deviation / np.repeat([beam.force_unit, beam.moment_unit], 3),
+        seed,
+    )
+    return np.where((reach >= 0) & (reach <= LONGEST), far * beam.length, np.nan)
+
+
 def _nowhere(found: pd.DataFrame) -> str | None:
     """That most of the forces act nowhere on the vibrissa; None if they do."""
     on = found["torsion"].notna()
@@ -209,9 +244,26 @@ def _spread(
     """Where 95 % of the contacts lie that noise makes of each, and the criterion's deviation."""
     if not deviation.any():
         return np.zeros(len(foot)), np.zeros(len(foot))
+    far, sines, _ = _samples(foot, force, moment, tangent, radius, deviation, seed)
+    return (
+        np.quantile(np.nan_to_num(far, nan=np.inf), _COVERAGE, axis=0, method="higher"),
+        np.std(sines, axis=0),
+    )
+
+
+def _samples(
+    foot: Floats,
+    force: Floats,
+    moment: Floats,
+    tangent: Floats,
+    radius: float,
+    deviation: Floats,
+    seed: int,
+) -> tuple[Floats, Floats, Floats]:
+    """Distances of disturbed contacts, criteria and arc lengths, each (samples, stations)."""
     random = np.random.default_rng(seed)
     true = _contacts(foot, force, moment, tangent, radius)
-    far, sines = [], []
+    far, sines, reach = [], [], []
     for _ in range(_SAMPLES):
         disturbed = random.normal(size=(len(foot), 6)) * deviation
         found = _contacts(
@@ -219,7 +271,5 @@ def _spread(
         )
         far.append(np.linalg.norm(found[:3] - true[:3], axis=0))
         sines.append(found[7])
-    return (
-        np.quantile(np.nan_to_num(far, nan=np.inf), _COVERAGE, axis=0, method="higher"),
-        np.std(np.array(sines), axis=0),
-    )
+        reach.append(found[6])
+    return np.array(far), np.array(sines), np.array(reach)

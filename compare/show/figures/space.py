@@ -146,8 +146,8 @@ def contacts_in_space(comparison: SpatialComparison) -> Figure:
     travel = comparison.travel / length
     edges = np.concatenate([travel[:1], (travel[1:] + travel[:-1]) / 2, travel[-1:]])
     sides = (comparison.reference, comparison.candidate)
-    for row, readings in enumerate(sides):
-        phase = np.where(readings.touching, "touching", "free").astype(object)
+    for row, (readings, on) in enumerate(zip(sides, comparison.touching[:2], strict=True)):
+        phase = np.where(on, "touching", "free").astype(object)
         if "phase" in readings.table:
             phase = readings.table["phase"].to_numpy()
         phase = np.where(readings.trusted, phase, "")

@@ -109,6 +109,54 @@ def test_a_foreign_file_is_compared_by_its_clamp_alone(exact):
     assert [one.name for one in found.exceeded] == ["touch"]
 
 
+def with_noise(readings, share, seed, size=1.0):
+    random = np.random.default_rng(seed)
+    columns = {}
+    for names in (FORCE, MOMENT):
+        scale = share * np.nanmax(np.abs(readings.values(*names)))
+        columns |= {n: size * readings.values(n) + random.normal(0, scale, len(readings.table))
+                    for n in names}  # fmt: skip
+    return as_if_foreign(readings, **columns)
+
+
+@pytest.fixture(scope="module")
+def passed():
+    return solve_space(replace(CASE, path=FootPath([[1.3, 0.3], [-1.5, 0.3]], stations=60)))
+
+
+@pytest.mark.parametrize("share", [1e-3, 1e-2])
+def test_noise_neither_touches_nor_fails_what_agrees(passed, share):
+    for seed in range(5):
+        noisy = with_noise(passed, share, seed)
+        for noise in (share, 0.0):
+            found = compare_space(passed, noisy, noise=noise)
+            names = {one.name for one in found.exceeded}
+            assert not names & {"touch", "leaving", "touch 2", "leaving 2"}
+        assert assert_agreement(passed, noisy, noise=share).compared.sum() >= 30
+        assert not compare_space(passed, with_noise(passed, share, seed, 1.05), noise=share).agrees
+    unwidened = compare_space(passed, with_noise(passed, 1e-2, 0))
+    assert not unwidened.agrees  # a limit is widened only by noise that is stated or asked for
+    auto = compare_space(passed, with_noise(passed, share, 0), noise="auto")
+    assert 0.5 * share < auto.noise.readings.level["force_x"] < 3 * share
+
+
+def test_a_touch_that_is_late_is_found_beside_noise(passed):
+    noisy = with_noise(passed, 1e-3, 0)
+    late = passed.touching & (np.cumsum(passed.touching) > 6)
+    columns = {n: np.where(late, noisy.values(n), noisy.values(n) - passed.values(n))
+               for n in (*FORCE, *MOMENT)}  # fmt: skip
+    columns = {n: np.where(passed.touching, v, noisy.values(n)) for n, v in columns.items()}
+    found = compare_space(passed, as_if_foreign(passed, **columns), noise=1e-3)
+    assert "touch" in {one.name for one in found.exceeded}
+
+
+def test_no_contact_is_said_in_words(exact):
+    opposite = {n: -exact.values(n) for n in (*FORCE, *MOMENT)}
+    found = compare_space(exact, as_if_foreign(exact, **opposite))
+    assert "nan" not in str(found)
+    assert found.contact.stations < found.contact.asked
+
+
 def test_frames_turn_the_components_and_nothing_else(exact):
     tangent = np.array([0.3, 0.9, -0.2]) / np.linalg.norm([0.3, 0.9, -0.2])
     axes = clamp_axes(tangent)
@@ -155,7 +203,9 @@ def test_the_gate_raises_with_every_limit(exact):
     with pytest.raises(AssertionError, match="moment_z: rms"):
         assert_agreement(exact, changed(exact, moment_z=1.01 * exact.values("moment_z")))
     with pytest.raises(InputError, match="noise"):
-        assert_agreement(exact, exact, noise=0.01)
+        assert_agreement(exact, exact, noise=1.5)
+    with pytest.raises(InputError, match="offset"):
+        assert_agreement(exact, exact, offset=0.01)
     with pytest.raises(InputError, match="candidate"):
         assert_agreement(exact, object())
 
