@@ -268,7 +268,9 @@ def test_the_command_compares_and_ends_with_the_right_code(tmp_path):
         (("of-40/analytic.parquet", "of-40/mujoco-chain.parquet"), 0, "agrees with"),
         (("of-40/analytic.parquet", "of-3/mujoco-chain.parquet"), 1, "disagrees with"),
         (("case.toml", "other.txt"), 2, "--column"),
-        (("case.toml", "other.txt", *named, "--noise", "0.1"), 2, "--noise"),
+        (("case.toml", "other.txt", *named, "--noise", "0.01"), 0, "agrees with"),
+        (("case.toml", "other.txt", *named, "--noise", "2"), 2, "noise"),
+        (("case.toml", "other.txt", *named, "--offset", "0.1"), 2, "--offset"),
         (("catenary", "of-40/analytic.parquet"), 2, "in space"),
         (("catenary", "other.txt", "--frame", "clamp"), 2, "--frame"),
     ):
