@@ -23,6 +23,7 @@ _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
 # L; from two states at rest that rounding alone puts apart, nothing can be carried on.
 _SAME_PLACE = 1e-12
 _DEEP = 0.25  # of the radius; two sweeps of 390 were lost past polygons, at 0.5 of it and more
+_LITTLE = 1e-3  # of a step; a contact of 5e7 EI/L^3 is not lost then, and rest is 1e-5 of it
 _PACE = 0.8  # of the largest shift of a contact: what is left is for its rate to grow
 # What may follow one state at rest without a snap-off.
 _NEIGHBOURS = {
@@ -219,13 +220,25 @@ class Walk(Generic[Model]):
         if not self._leaves_its_facet(state):
             return state
         # It may have jumped there in a long step, while it is at rest on its own facet, too.
-        last = self._state
-        start = State(last.angles, last.forces, slope=last.slope)
-        stayed = self._relax(foot_x, start, stay=last.slope)
+        stayed = self._on_its_facet(foot_x)
         if stayed.settled and not self._leaves_its_facet(stayed):
             return stayed
         # The model has to be in the state that is gone on from.
         return self._relax(foot_x, state) if self._follows(state) else state
+
+    def _on_its_facet(self, foot_x: float) -> State:
+        """At rest on the facet of the last state, if Newton's method finds that there."""
+        model, numerics, last = self.model, self._numerics, self._state
+        start, step = State(last.angles, last.forces, slope=last.slope), foot_x - self._foot_x
+        if abs(step) >= numerics.confirm_step:
+            # All of the step at once would carry a stiff contact clear of its facet, and the beam
+            # would straighten: a little of it shows how the beam goes along.
+            place, stay = self._foot_x + _LITTLE * step, last.slope
+            near = relax(model, place, start, self._tolerance, numerics, stay=stay)
+            if near.settled and not self._leaves_its_facet(near):
+                angles = last.angles + (near.angles - last.angles) / _LITTLE
+                start = State(angles, near.forces, slope=last.slope)
+        return self._relax(foot_x, start, stay=last.slope)
 
     def _leaves_its_facet(self, state: State) -> bool:
         """Whether the last state rests on a facet between sharp corners, and `state` does not."""
