@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from analytic.from_clamp.contact import LONGEST, contact_bent_right
-from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.support import require_plain
 from analytic.space.from_clamp.noise import COMPONENTS, component_noise, felt
 from analytic.space.problem.readings import (
@@ -19,6 +19,7 @@ from analytic.space.problem.readings import (
 )
 
 _SAMPLES = 400  # of the noise, a station
+_AT_ONCE = 10_000  # stations whose samples are in memory, 130 MB
 _COVERAGE = 0.95
 _EXACT = 1e-9  # sine of an angle: what rounding leaves of one that vanishes
 _EXPLAINED = 4.0  # standard deviations that noise may explain
@@ -156,7 +157,7 @@ def wrench_complaint(found: pd.DataFrame) -> str | None:
 
 
 def contacts_moved(
-    readings: SpatialReadings, noise: Mapping[str, float], at: Booleans, seed: int = 0
+    readings: SpatialReadings, noise: Mapping[str, float], at: Integers, seed: int = 0
 ) -> Floats:
     """How far noise moves the contacts that are found, sample by sample.
 
@@ -166,7 +167,7 @@ def contacts_moved(
         One sweep.
     noise : mapping
         Standard deviations of the six components by name, each in its unit.
-    at : array of bool, shape (stations,)
+    at : array of int
         Stations with a force.
     seed : int
         Of the samples.
@@ -185,7 +186,7 @@ def contacts_moved(
         readings.clamp_tangent,
         beam.radius / beam.length,
         deviation / np.repeat([beam.force_unit, beam.moment_unit], 3),
-        seed,
+        np.random.default_rng(seed),
     )
     return np.where((reach >= 0) & (reach <= LONGEST), far * beam.length, np.nan)
 
@@ -244,11 +245,15 @@ def _spread(
     """Where 95 % of the contacts lie that noise makes of each, and the criterion's deviation."""
     if not deviation.any():
         return np.zeros(len(foot)), np.zeros(len(foot))
-    far, sines, _ = _samples(foot, force, moment, tangent, radius, deviation, seed)
-    return (
-        np.quantile(np.nan_to_num(far, nan=np.inf), _COVERAGE, axis=0, method="higher"),
-        np.std(sines, axis=0),
-    )
+    random, spread, sine_spread = np.random.default_rng(seed), [], []
+    for here in np.array_split(np.arange(len(foot)), len(foot) // _AT_ONCE + 1):
+        far, sines, _ = _samples(
+            foot[here], force[here], moment[here], tangent, radius, deviation, random
+        )
+        far = np.nan_to_num(far, nan=np.inf)
+        spread.append(np.quantile(far, _COVERAGE, axis=0, method="higher"))
+        sine_spread.append(np.std(sines, axis=0))
+    return np.concatenate(spread), np.concatenate(sine_spread)
 
 
 def _samples(
@@ -258,10 +263,9 @@ def _samples(
     tangent: Floats,
     radius: float,
     deviation: Floats,
-    seed: int,
+    random: np.random.Generator,
 ) -> tuple[Floats, Floats, Floats]:
     """Distances of disturbed contacts, criteria and arc lengths, each (samples, stations)."""
-    random = np.random.default_rng(seed)
     true = _contacts(foot, force, moment, tangent, radius)
     far, sines, reach = [], [], []
     for _ in range(_SAMPLES):
