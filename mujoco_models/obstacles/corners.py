@@ -17,6 +17,7 @@ EDGE_PREFIX = "edge"
 LINKS = 2  # the bit of contype and conaffinity by which links and edges collide
 SHARP = 2e-3  # rad; polygons that turn less at all corners are smooth to beads, to 1e-3 of a force
 _TURN = 1e-9  # rad; what turns less is no corner
+_STRAIGHT = 1e-6  # rad; a side that turns less in all is one facet, which ends in two corners
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +69,8 @@ class Corners:
         run, rise = np.diff(vertices, axis=0).T
         angles = np.concatenate([[-np.pi / 2], np.arctan2(rise, run), [np.pi / 2]])
         turn = np.diff(angles)
-        if turn[1:-1].max(initial=0.0) < SHARP and len(vertices) > 2:
+        between = turn[1:-1]
+        if between.sum() > _STRAIGHT and between.max() < SHARP:
             return cls.none()
         sharp = turn > _TURN
         bisector = ((angles[1:] + angles[:-1]) / 2)[sharp]

@@ -27,6 +27,7 @@ _RAMP = 0.05  # of a facet's turn, on either side of its slope angle
 # rad; a facet that straddles the end of reach is touched at its own slope, a corner there with a
 # bead that may be half a spacing off. A polygon of few corners turns by far more at one of them.
 _SLACK = 0.35
+_ROUNDING = 1e-6  # rad; MuJoCo keeps vertices in single precision: a facet's normal was 6e-9 off
 
 
 class Faceted(Obstacle):
@@ -124,7 +125,7 @@ class Faceted(Obstacle):
     def _faced(self) -> tuple[float, float]:
         """The least and the largest slope angle at which a bead or a facet is touched [rad]."""
         turn = float(np.diff(self.facet_angles).max(initial=0.0))
-        slack = min(turn, _SLACK) + 1e-9
+        slack = min(turn, _SLACK) + _ROUNDING
         return self._slopes[0] - slack, self._slopes[1] + slack
 
     def near(self, points: Floats, distance: float | Floats) -> Integers:

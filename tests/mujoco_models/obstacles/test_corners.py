@@ -23,6 +23,7 @@ def regular(corners, radius=0.5, lowest=0.4):
 
 SQUARE = polygon([(-0.3, 1.0), (-0.3, 0.4), (0.3, 0.4), (0.3, 1.0)])
 TRIANGLE = polygon([(-0.6, 0.9), (0.0, 0.35), (0.6, 0.9)])
+STEEP = polygon([(-0.25, 0.75), (-0.1, 1.1), (-0.2, 1.2)])  # its lower side is one facet
 LEANING = polygon([(-0.5, 0.75), (-0.1, 0.35), (0.3, 0.45), (0.45, 0.9)])
 
 
@@ -55,7 +56,10 @@ def disagreement(profile, segments, jumped=0, **options):
 
 @pytest.mark.parametrize(
     "profile",
-    [SQUARE, *(pytest.param(p, marks=pytest.mark.slow) for p in (TRIANGLE, LEANING, regular(24)))],
+    [
+        SQUARE,
+        *(pytest.param(p, marks=pytest.mark.slow) for p in (TRIANGLE, STEEP, LEANING, regular(24))),
+    ],
 )
 def test_polygons_are_as_good_as_smooth_contours(profile):
     # 3/N^2, as past a smooth contour; two beads that hold a corner were off by 5e-2 to 1e-1.
