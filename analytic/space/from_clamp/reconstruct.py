@@ -167,14 +167,14 @@ def contacts_moved(
         One sweep.
     noise : mapping
         Standard deviations of the six components by name, each in its unit.
-    at : array of int
+    at : array of int, shape (touching,)
         Stations with a force.
     seed : int
         Of the samples.
 
     Returns
     -------
-    array, shape (400, stations of `at`)
+    array, shape (400, touching)
         Distances [length]; NaN where the disturbed readings are of no contact.
     """
     beam = readings.beam
