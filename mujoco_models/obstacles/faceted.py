@@ -27,7 +27,9 @@ _RAMP = 0.05  # of a facet's turn, on either side of its slope angle
 # rad; a facet that straddles the end of reach is touched at its own slope, a corner there with a
 # bead that may be half a spacing off. A polygon of few corners turns by far more at one of them.
 _SLACK = 0.35
-_ROUNDING = 1e-6  # rad; MuJoCo keeps vertices in single precision: a facet's normal was 6e-9 off
+# rad; a side that turns less is one facet, whose ends are corners. What touches one there leans by
+# as much as soft contacts give way, and single precision turns the facet's own normal by 6e-9.
+_STRAIGHT = 1e-6
 
 
 class Faceted(Obstacle):
@@ -125,7 +127,7 @@ class Faceted(Obstacle):
     def _faced(self) -> tuple[float, float]:
         """The least and the largest slope angle at which a bead or a facet is touched [rad]."""
         turn = float(np.diff(self.facet_angles).max(initial=0.0))
-        slack = min(turn, _SLACK) + _ROUNDING
+        slack = _SLACK if turn < _STRAIGHT else min(turn, _SLACK)
         return self._slopes[0] - slack, self._slopes[1] + slack
 
     def near(self, points: Floats, distance: float | Floats) -> Integers:

@@ -24,6 +24,7 @@ def regular(corners, radius=0.5, lowest=0.4):
 SQUARE = polygon([(-0.3, 1.0), (-0.3, 0.4), (0.3, 0.4), (0.3, 1.0)])
 TRIANGLE = polygon([(-0.6, 0.9), (0.0, 0.35), (0.6, 0.9)])
 STEEP = polygon([(-0.25, 0.75), (-0.1, 1.1), (-0.2, 1.2)])  # its lower side is one facet
+BLADE = polygon([(-0.57, 0.31), (0.51, 1.08), (-0.33, 0.98)])  # the same, past which it goes far
 LEANING = polygon([(-0.5, 0.75), (-0.1, 0.35), (0.3, 0.45), (0.45, 0.9)])
 
 
@@ -58,7 +59,10 @@ def disagreement(profile, segments, jumped=0, **options):
     "profile",
     [
         SQUARE,
-        *(pytest.param(p, marks=pytest.mark.slow) for p in (TRIANGLE, STEEP, LEANING, regular(24))),
+        *(
+            pytest.param(p, marks=pytest.mark.slow)
+            for p in (TRIANGLE, STEEP, BLADE, LEANING, regular(24))
+        ),
     ],
 )
 def test_polygons_are_as_good_as_smooth_contours(profile):
