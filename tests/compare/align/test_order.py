@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from analytic import CLAMP_READINGS, Readings
@@ -49,3 +50,14 @@ def test_what_neither_explains_is_taken_for_reversed_rows():
         ),
     )
     assert in_order(exact, replace(exact, table=strange))[2].reversed
+
+
+def test_what_both_explain_is_taken_for_reversed_rows():
+    """Readings that rise and fall alike on either side of x = 0."""
+    x = np.linspace(1.0, -1.0, 101)
+    hump = np.exp(-20 * x**2)
+    table = pd.DataFrame({"foot_x": x, **dict.fromkeys(CLAMP_READINGS, hump)})
+    even = Readings(table, exact_sweep("parabola").beam, "even")
+    noisy = with_noise(even, dict.fromkeys(CLAMP_READINGS, 1e-3), 3)
+    rows = replace(even, table=noisy.table.iloc[::-1].reset_index(drop=True))
+    assert in_order(even, rows)[2].reversed
