@@ -66,6 +66,7 @@ class Held(Sensing):
         self.data = mujoco.MjData(self.model)
         self._tip_body = parts.chain[-1]
         self._force, self._torque = np.zeros((2, 3))
+        self._slope = np.full((len(self.dofs), len(self.dofs)), np.nan)
         self.set_back()
 
     def set_back(self) -> None:
@@ -125,12 +126,12 @@ class Held(Sensing):
         """
         data = self.data
         data.qvel[:] = 0
-        mujoco.mj_kinematics(self.model, data)
-        mujoco.mj_comPos(self.model, data)
-        arm = self.tip - data.xipos[self._tip_body]
+        mujoco.mj_fwdPosition(self.model, data)  # where the tip is, before its load is put on it
+        moment = np.empty(3)
+        mujoco.mju_cross(moment, self.tip - data.xipos[self._tip_body], self._force)
         data.xfrc_applied[self._tip_body, :3] = self._force
-        data.xfrc_applied[self._tip_body, 3:] = self._torque + np.cross(arm, self._force)
-        mujoco.mj_forward(self.model, data)
+        data.xfrc_applied[self._tip_body, 3:] = self._torque + moment
+        mujoco.mj_forwardSkip(self.model, data, int(mujoco.mjtStage.mjSTAGE_POS), 0)
         return np.asarray((data.qfrc_smooth + data.qfrc_constraint)[self.dofs])
 
     def stiffness(self) -> Floats:
@@ -156,43 +157,70 @@ class Held(Sensing):
         self.evaluate()
         return np.array(columns).T
 
+    def unload(self) -> None:
+        """Take loads away and put the vibrissa to rest as it is by itself.
+
+        Raises
+        ------
+        InputError
+            As of `rest`.
+        """
+        self.set_back()
+        self.rest()
+
     def rest(self) -> None:
         """Let the vibrissa come to rest under its loads, by Newton's method.
+
+        A slope serves as long as its steps halve what is out of balance, those of other loads too;
+        and they go on to where rounding stops them, since sensors are probed by small loads.
 
         Raises
         ------
         InputError
             If nothing holds a joint, or no rest is found.
         """
+        before = np.inf
         for _ in range(_ITERATIONS):
             residual = self.evaluate()
-            slope = self.stiffness()
-            if not np.isfinite(slope).all():
-                raise InputError(
-                    "model", "with moments that are not finite", "one that has a state at rest",
-                    "if it is a cable of MuJoCo 3 on a mocap body, put that on a slide: its plugin "
-                    "reads the body's place before MuJoCo has written it",
-                )  # fmt: skip
-            scale = np.abs(np.diag(slope))
-            if not scale.min() > 1e-9 * scale.max():
-                body = self.model.dof_bodyid[self.dofs[int(np.argmin(scale))]]
-                name = mujoco.mj_id2name(self.model, mujoco.mjtObj.mjOBJ_BODY, int(body))
-                raise InputError(
-                    f"body {name!r} of the vibrissa", "without a stiffness", "held by a spring",
-                    "give its joint a stiffness, or the bodies an elasticity plugin",
-                )  # fmt: skip
-            if np.abs(residual / scale).max() < _AT_REST:
-                return
+            out = self._out_of_balance(residual)
+            if not out < before / 2:
+                if out < _AT_REST:
+                    return
+                self._slope = self._checked(self.stiffness())
+                out = self._out_of_balance(residual)
             step = np.zeros(self.model.nv)
-            step[self.dofs] = np.linalg.solve(slope, residual)
-            step *= min(1.0, _LONGEST_TURN / np.abs(step).max())
+            step[self.dofs] = np.linalg.solve(self._slope, residual)
+            step *= _LONGEST_TURN / max(np.abs(step).max(), _LONGEST_TURN)
             mujoco.mj_integratePos(self.model, self.data.qpos, step, 1.0)
+            before = out
         raise InputError(
             "model",
-            f"out of balance by {np.abs(residual / scale).max():.1e} rad",
+            f"out of balance by {out:.1e} rad",
             "one that comes to rest with its foot held",
             "look at its joints' limits and equality constraints",
         )
+
+    def _out_of_balance(self, residual: Floats) -> float:
+        """By how much its joints would have to turn, at most [rad]; NaN without a slope yet."""
+        return float(np.abs(residual / np.diag(self._slope)).max())
+
+    def _checked(self, slope: Floats) -> Floats:
+        """A slope all of whose joints something holds, or raise InputError."""
+        if not np.isfinite(slope).all():
+            raise InputError(
+                "model", "with moments that are not finite", "one that has a state at rest",
+                "if it is a cable of MuJoCo 3 on a mocap body, put that on a slide: its plugin "
+                "reads the body's place before MuJoCo has written it",
+            )  # fmt: skip
+        scale = np.abs(np.diag(slope))
+        if not scale.min() > 1e-9 * scale.max():
+            body = self.model.dof_bodyid[self.dofs[int(np.argmin(scale))]]
+            name = mujoco.mj_id2name(self.model, mujoco.mjtObj.mjOBJ_BODY, int(body))
+            raise InputError(
+                f"body {name!r} of the vibrissa", "without a stiffness", "held by a spring",
+                "give its joint a stiffness, or the bodies an elasticity plugin",
+            )  # fmt: skip
+        return slope
 
     def bending(self, axes: Floats) -> Bending:
         """How it bends and vibrates about its present state, by its stiffness and inertia.

@@ -72,6 +72,7 @@ class HeldRod(Sensing):
         hand = np.isin(model.dof_bodyid, [*holders(model, parts.foot)])
         self.model.dof_armature[hand & ~free] += _HELD * self._masses.sum()
         self.data = mujoco.MjData(self.model)
+        self._unloaded: mujoco.MjData | None = None  # at rest, once it is known
         welds = model.eq_type == int(mujoco.mjtEq.mjEQ_WELD)
         self._shortest = _FADES * float(model.eq_solref[welds, 0].max(initial=0.0))
         self.set_back()
@@ -118,6 +119,20 @@ class HeldRod(Sensing):
         aside = np.linalg.norm(place - first - share * way)
         there = 0 < share < 1 and aside < _ON_EDGE * np.linalg.norm(way)
         return np.asarray(first + share * way if there else first)
+
+    def unload(self) -> None:
+        """Take loads away and put the rod to rest as it is by itself.
+
+        Raises
+        ------
+        InputError
+            As of `rest`.
+        """
+        self.set_back()
+        if self._unloaded is None:
+            self.rest()
+            self._unloaded = copy(self.data)
+        mujoco.mj_copyData(self.data, self.model, self._unloaded)
 
     def load(self, force: Floats, torque: Floats) -> None:
         """Load the tip.
@@ -216,8 +231,7 @@ class HeldRod(Sensing):
         """
         natural = self._rigidity / self._length**2
         unit = _SMALL * natural
-        self.set_back()
-        self.rest()
+        self.unload()
         start, slopes = self.tip, self._slopes(axes)
         moment = unit * self._length
         self._put(np.zeros(3), moment * axes[2])
@@ -225,8 +239,7 @@ class HeldRod(Sensing):
         self._put(unit * axes[0], np.zeros(3))
         tip_compliance = float((self.tip - start) @ axes[0]) / unit
         compliances = np.diff(turned[1:], prepend=0.0) / moment
-        self.set_back()
-        self.rest()
+        self.unload()
         s = np.append(0, np.cumsum(np.linalg.norm(np.diff(self.vertices, axis=0), axis=1)))
         arms = np.maximum(s[2:, None] - s[1:-1], 0)
         flexibility = (arms * compliances) @ arms.T

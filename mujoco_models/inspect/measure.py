@@ -96,7 +96,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     """
     _check_constraints(model, parts)
     held = hold(model, parts)
-    held.rest()
+    held.unload()
     axes = sweep_axes(held)
     nodes = np.vstack([held.clamp, held.joints, held.tip])
     s = np.cumsum(np.linalg.norm(np.diff(nodes, axis=0), axis=1))
@@ -105,8 +105,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     squares, damping = bending.squares, bending.damping
     tip_rigidity = length**3 / (3 * bending.tip_compliance)
     joints = _joints(held, s[:-1], bending.compliances, nodes, axes)
-    sensors = [_sensed(held, number, axes, tip_rigidity, length) for number in
-               (parts.force, parts.torque)]  # fmt: skip
+    force, torque = _sensed(held, axes, tip_rigidity, length)
     probe = probe_of(path, thickness(model, parts))
     loads, bent = _bent(held, axes, tip_rigidity / length**2)
     return MeasuredBeam(
@@ -130,8 +129,8 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         medium=(model.opt.density, model.opt.viscosity, float(np.linalg.norm(model.opt.wind))),
         gravity=tuple((axes @ held.gravity).tolist()),
         sag=_sag(held),
-        force=sensors[0],
-        torque=sensors[1],
+        force=force,
+        torque=torque,
         planar=_planar(held, axes[2]),
         self_contacts=self_contacts(model, parts),
         timestep=float(model.opt.timestep),
@@ -168,8 +167,8 @@ def sweep_axes(held: Held | HeldRod) -> Floats:
         for j in range(model.body_jntadr[body], model.body_jntadr[body] + model.body_jntnum[body])
         if model.jnt_type[j] == int(mujoco.mjtJoint.mjJNT_HINGE)
     ]
-    planar = len(hinges) == len(held.dofs) and all(
-        np.linalg.norm(np.cross(hinges[0], axis)) < 1e-6 for axis in hinges
+    planar = len(hinges) == len(held.dofs) and bool(
+        (np.linalg.norm(np.cross(hinges[0], hinges), axis=1) < 1e-6).all()
     )
     z = hinges[0] if planar else _normal(held, np.reshape(hinges, (-1, 3)), y)
     z = _aside(z[None], y)[0]
@@ -263,8 +262,7 @@ def _bent(held: Held | HeldRod, axes: Floats, unit: float) -> tuple[Floats, Floa
         held.rest()
         moved = held.tip - start
         bent.append([moved @ axes[0], -moved @ axes[1]])
-    held.set_back()
-    held.rest()
+    held.unload()
     return loads, np.array(bent)
 
 
@@ -275,20 +273,19 @@ def _sag(held: Held | HeldRod) -> float:
     held.rest()
     sag = float(np.linalg.norm(held.tip - start))
     held.model.opt.gravity[:] = 0
-    held.set_back()
-    held.rest()
+    held.unload()
     return sag
 
 
 def _sensed(
-    held: Held | HeldRod, sensor: int | None, axes: Floats, rigidity: float, length: float
-) -> Sensed | None:
-    """A sensor's readings of small forces and moments on the tip, one after the other."""
-    if sensor is None:
-        return None
-    zero, cutoff = held.sensed(sensor), held.cutoffs[sensor] or np.inf
-    is_force = held.model.sensor_type[sensor] == int(mujoco.mjtSensor.mjSENS_FORCE)
-    by_force, by_moment = np.zeros((2, 3, 3))
+    held: Held | HeldRod, axes: Floats, rigidity: float, length: float
+) -> list[Sensed | None]:
+    """The readings of both sensors of small forces and moments on the tip, one after the other."""
+    sensors = held.parts.force, held.parts.torque
+    if sensors == (None, None):
+        return [None, None]
+    zeros = [np.zeros(3) if sensor is None else held.sensed(sensor) for sensor in sensors]
+    by_force, by_moment = np.zeros((2, 2, 3, 3))
     force, moment = held.small * rigidity / length**2, held.small * rigidity / length
     for i, axis in enumerate(axes):
         for found, size, kind in ((by_force, force, 0), (by_moment, moment, 1)):
@@ -296,10 +293,27 @@ def _sensed(
             loads[kind] = size * axis
             held.load(*loads)
             held.rest()
-            found[:, i] = -(held.sensed(sensor) - zero) / size
+            for turned, sensor, zero in zip(found, sensors, zeros, strict=True):
+                if sensor is not None:
+                    turned[:, i] = -(held.sensed(sensor) - zero) / size
     arm = axes @ (held.tip - held.clamp)
-    held.set_back()
-    held.rest()
+    held.unload()
+    return [
+        None if sensor is None else _seen(held, sensor, axes, arm, by_force[i], by_moment[i])
+        for i, sensor in enumerate(sensors)
+    ]
+
+
+def _seen(
+    held: Held | HeldRod,
+    sensor: int,
+    axes: Floats,
+    arm: Floats,
+    by_force: Floats,
+    by_moment: Floats,
+) -> Sensed:
+    """What a sensor is by its readings of forces and of moments, in columns; at rest."""
+    is_force = held.model.sensor_type[sensor] == int(mujoco.mjtSensor.mjSENS_FORCE)
     turned = by_force if is_force else by_moment
     # Of the moment of a force on the tip about the sensor: M = r x F gives r, by columns of skew.
     skew = np.zeros((3, 3)) if is_force else np.linalg.pinv(turned) @ by_force
@@ -308,6 +322,7 @@ def _sensed(
     name = _name(held.model, mujoco.mjtObj.mjOBJ_SENSOR, sensor)
     offset = axes @ (place - held.clamp)
     lever = offset if is_force else arm - seen
+    cutoff = held.cutoffs[sensor] or np.inf
     return Sensed(name, turned, offset, lever, _feels_contacts(held, sensor), cutoff)
 
 

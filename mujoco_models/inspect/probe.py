@@ -28,7 +28,7 @@ class Probe:
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
-        self._model = model
+        self._model, self._data = model, mujoco.MjData(model)
         self._ball = model.geom(_NAME).id
 
     def weight(self, geom: int, place: Floats, across: Floats, radius: float) -> float | None:
@@ -48,7 +48,8 @@ class Probe:
         float or None
             As of `mujoco_models.model.stiffness.stiffen`; None if they do not touch.
         """
-        data = mujoco.MjData(self._model)
+        data = self._data
+        mujoco.mj_resetData(self._model, data)
         size = self._model.geom_size[self._ball, 0]
         data.mocap_pos[-1] = place + (radius * (1 - _DEPTH) + size) * across
         mujoco.mj_step(self._model, data)

@@ -53,7 +53,7 @@ def run_own(
     with unlogged():
         measured = measure(model, parts, own.file)
         held = hold(model, parts)
-        held.rest()
+        held.unload()
     _check(case, parts, measured)
     moved = replace(
         motion, timestep=measured.timestep / measured.period, integrator=measured.integrator
