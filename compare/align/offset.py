@@ -18,6 +18,7 @@ _FEWEST = 8  # stations that a fit is worth something with
 _FOLD = 2  # last stations before a snap-off: the readings' slope grows without bound there
 _SCAN = 4  # trial offsets a station of the reference
 _MOST = 4000  # trial offsets, and stations that they are tried on
+_AT_ONCE = 50_000  # stations of trials in memory: what the processor keeps at hand
 _HUBER = 2.5  # standard deviations; stations that are farther off count by their sign only
 _ROUND_OFF = 1e-13  # of the largest magnitude
 _USELESS = 0.05  # L; a less certain offset blurs whole phases
@@ -281,15 +282,25 @@ def _scan(
     stride = -(-int(trusted.sum()) // _MOST)
     tried = np.flatnonzero(trusted)[::stride]
     felt = np.where(loaded, seen, 0.0)[:, tried]
-    misfit = np.full(count, np.inf)
-    for i, trial in enumerate(trials):
-        there = x[tried] - trial
+    least = min(loaded.sum(), curve.stations) / 2
+
+    def missed(trials: Floats) -> Floats:
+        """Mean square at each of some offsets; infinite where too little is in common."""
+        there = x[tried] - trials[:, None]
         known = (there >= curve.x[0]) & (there <= curve.x[-1])
         common = known & (there >= first) & (there <= last) & loaded[tried]
-        if common.sum() * stride < min(loaded.sum(), curve.stations) / 2:
-            continue
-        due = np.stack([np.interp(there[known], curve.x, row) for row in curve.values])
-        misfit[i] = np.mean((felt[:, known] - due / scale[:, None]) ** 2)
+        enough = common.sum(axis=1) * stride >= least
+        there, known = there[enough], known[enough]
+        square = np.zeros(len(there))
+        for row, one, size in zip(curve.values, felt, scale, strict=True):
+            miss = np.where(known, one - np.interp(there, curve.x, row) / size, 0.0)
+            square += np.einsum("ij,ij->i", miss, miss)
+        found = np.full(len(trials), np.inf)
+        found[enough] = square / (len(felt) * known.sum(axis=1))
+        return found
+
+    pieces = np.array_split(trials, count * len(tried) // _AT_ONCE + 1)
+    misfit = np.concatenate([missed(piece) for piece in pieces])
     padded = np.concatenate([[np.inf], misfit, [np.inf]])
     minima = np.flatnonzero(np.isfinite(misfit) & (misfit <= padded[:-2]) & (misfit <= padded[2:]))
     return [float(trials[i]) for i in minima[np.argsort(misfit[minima])][:3]]
