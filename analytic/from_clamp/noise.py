@@ -33,10 +33,9 @@ def reading_noise(readings: Readings) -> dict[str, float]:
     dict
         ``force_x``, ``force_y``, ``moment_z``; 0 for fewer than five loaded stations.
     """
-    loaded = readings.trusted & (
-        np.hypot(readings.values("force_x"), readings.values("force_y")) > 0
-    )
-    return {name: scatter(readings.values(name)[loaded]) for name in CLAMP_READINGS}
+    values = {name: readings.values(name) for name in CLAMP_READINGS}
+    loaded = readings.trusted & (np.hypot(values["force_x"], values["force_y"]) > 0)
+    return {name: scatter(column[loaded]) for name, column in values.items()}
 
 
 def scatter(values: Floats) -> float:

@@ -113,7 +113,7 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
     known = np.maximum(seen, stated)
     noise_x, noise_y, noise_m = known if known.any() else _UNKNOWN * magnitudes
 
-    f = np.hypot(force_x, force_y)
+    trusted, f = readings.trusted, np.hypot(force_x, force_y)
     felt = f > UNLOADED
     held = Held.of(readings)
     # What each reading's noise does, all in one solution: the readings, and each of them moved.
@@ -138,12 +138,12 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
 
     of_criterion = np.abs(criterion) / criterion_tolerance
     of_shortfall = np.abs(shortfall) / shortfall_tolerance
-    better = np.fmin(of_criterion, of_shortfall)[felt & readings.trusted]
+    better = np.fmin(of_criterion, of_shortfall)[felt & trusted]
     better = better[~np.isnan(better)]
     met = float(np.median(better)) / MEDIAN_OF_NORMAL if better.size else 1.0
     drowning = np.maximum(stated, seen * (met if met < _UNRESOLVED else 1.0))
     least = max(_SIGMAS * np.hypot(*drowning[:2]), UNLOADED)
-    if _silent(f[readings.trusted], least):
+    if _silent(f[trusted], least):
         least = max(_SIGMAS * np.hypot(*stated[:2]), UNLOADED)
     loaded = f > least
 

@@ -228,9 +228,11 @@ class Readings:
 
         That is: no status speaks against them, and none of the four is a gap.
         """
+        from analytic.problem.table import says
+
         finite = np.isfinite([self.values(name) for name in SENSED]).all(axis=0)
         if "status" in self.table:
-            finite &= (self.table["status"] == "ok").to_numpy()
+            finite &= says(self.table["status"], "ok")
         return np.asarray(finite, dtype=bool)
 
     @property

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic import CLAMP_READINGS, SENSED, InputError, Readings
+from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
 from compare.align.offset import offset_fits
 from compare.sense.phases import Classification, classify
@@ -88,7 +88,8 @@ def check_unit_of_length(
 
 def _magnitudes(readings: Readings) -> Floats:
     """Large magnitudes of the clamp readings under load, shape (3,)."""
-    values = np.abs([readings.values(name)[_loaded(readings)] for name in CLAMP_READINGS])
+    loaded = _loaded(readings)
+    values = np.abs([readings.values(name)[loaded] for name in CLAMP_READINGS])
     return np.quantile(values, _LARGE, axis=1) if values.shape[1] else np.zeros(len(values))
 
 
@@ -99,8 +100,8 @@ def _travel(readings: Readings) -> float:
 
 
 def _loaded(readings: Readings) -> Booleans:
-    values = readings.table[list(SENSED)].to_numpy(dtype=float)
-    force = np.where(readings.trusted, np.hypot(values[:, 1], values[:, 2]), 0.0)
+    force = np.hypot(readings.values("force_x"), readings.values("force_y"))
+    force = np.where(readings.trusted, force, 0.0)
     return np.asarray((force > 0) & (force > _LOADED * np.quantile(force, 0.99)), dtype=bool)
 
 

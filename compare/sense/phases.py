@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from analytic import PHASES, Readings
+from analytic import PHASES, Readings, reconstruct
 from analytic.from_clamp.phases import judge_phases
-from analytic.from_clamp.reconstruct import contact_table
 from analytic.problem.arrays import Floats, Words
+from analytic.problem.table import says
 
 
 @dataclass(frozen=True, repr=False)
@@ -27,8 +27,8 @@ class Classification:
         1 - s1/L of the reconstructed contact: zero in Phase A.
     shortfall_tolerance : array
         Its standard deviation.
-    contact : pandas.DataFrame
-        The contact as `analytic.reconstruct` finds it, a row a station.
+    readings : Readings
+        The sweep.
     """
 
     phase: Words
@@ -36,7 +36,12 @@ class Classification:
     criterion_tolerance: Floats
     shortfall: Floats
     shortfall_tolerance: Floats
-    contact: pd.DataFrame
+    readings: Readings
+
+    @property
+    def contact(self) -> pd.DataFrame:
+        """The contact as `analytic.reconstruct` finds it, a row a station."""
+        return reconstruct(self.readings)
 
     def __repr__(self) -> str:
         """How many stations there are of each phase."""
@@ -71,7 +76,7 @@ def classify(readings: Readings) -> Classification:
     """
     judged = judge_phases(readings)
     phase = np.where(readings.trusted, judged.phase, "")
-    return Classification(phase, *judged[1:], contact_table(readings, judged))
+    return Classification(phase, *judged[1:], readings)
 
 
 def confusion(judged: Classification, truth: Readings) -> pd.DataFrame:
@@ -91,10 +96,9 @@ def confusion(judged: Classification, truth: Readings) -> pd.DataFrame:
         ``tangent``.
     """
     known = (judged.phase != "") & truth.trusted
-    return pd.crosstab(
-        pd.Categorical(truth.table["phase"][known], categories=list(PHASES)),
-        pd.Categorical(judged.phase[known], categories=list(PHASES)),
-        rownames=["truth"],
-        colnames=["judged"],
-        dropna=False,
+    true = np.array([says(truth.table["phase"], phase) for phase in PHASES])
+    seen = np.array([judged.phase == phase for phase in PHASES])
+    rows, columns = (
+        pd.CategoricalIndex(PHASES, categories=PHASES, name=name) for name in ("truth", "judged")
     )
+    return pd.DataFrame((true & known).astype(int) @ seen.T, rows, columns)

@@ -7,6 +7,7 @@ import numpy as np
 
 from analytic import CLAMP_READINGS, SENSED, Readings
 from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.table import says
 from compare.sense.noise import scales
 
 _FEWEST = 3  # equal extremes that are no accident
@@ -113,17 +114,17 @@ def inspect_record(readings: Readings) -> Record:
     Record
         The defects.
     """
-    values = readings.table[list(SENSED)].to_numpy(dtype=float)
+    values = np.stack([readings.values(name) for name in SENSED], axis=1)
     finite = np.isfinite(values).all(axis=1)
     failed = np.zeros(len(values), dtype=bool)
     if "status" in readings.table:
-        failed = (readings.table["status"] != "ok").to_numpy()
+        failed = ~says(readings.table["status"], "ok")
     repeated = np.append(False, (values[1:] == values[:-1]).all(axis=1)) & finite
     dropped = np.zeros(len(values), dtype=bool)
     clipped = np.zeros(len(values), dtype=bool)
     cut = []
     if (values[finite & ~failed][:, 1:] != 0).any():
-        kept = readings.trusted & ~repeated
+        kept = finite & ~failed & ~repeated
         still = np.append(False, (values[1:, 1:] == values[:-1, 1:]).all(axis=1))
         moving = kept & ~(still | np.append(still[1:], False))  # not a clamp at rest
         for name, scale in scales(readings).items():

@@ -22,10 +22,10 @@ def check_size(which: str, sweep: Readings) -> None:
     InputError
         If one is 1e40 of the beam's units or more.
     """
-    beam = sweep.beam
+    beam, trusted = sweep.beam, sweep.trusted
     units = (beam.length, beam.force_unit, beam.force_unit, beam.moment_unit)
     for name, unit in zip(SENSED, units, strict=True):
-        values = sweep.values(name)[sweep.trusted]
+        values = sweep.values(name)[trusted]
         largest = np.abs(values).max(initial=0.0)
         if not largest < _LARGEST * unit:
             raise InputError(
