@@ -29,7 +29,8 @@ def stiffen(
     """
     with np.errstate(over="ignore"):  # of a motion that is about to diverge
         k = stiffness * (1 - impedance) * weight
-    model.geom_solref[geoms] = np.column_stack([-k, -2 * np.sqrt(k)])
+    model.geom_solref[geoms, 0] = -k
+    model.geom_solref[geoms, 1] = -2 * np.sqrt(k)
 
 
 def weights_in_last_step(

@@ -126,8 +126,8 @@ class MovingModel:
         """Make contacts as stiff as stated with the inertia that MuJoCo took in the last step."""
         friction = self._motion.friction or 0.0
         pairs, weight = weights_in_last_step(self.model, self.data, friction)
-        moves = self._surface.moves[pairs]
-        self._stiffen(pairs[moves], np.repeat(weight, moves.sum(axis=1)))
+        # Of each pair, one is the beam's.
+        self._stiffen(pairs[self._surface.moves[pairs]], weight)
 
     def _check_step(self, motion: Motion, geoms: Integers) -> None:
         """Raise InputError for a step in which MuJoCo's friction overshoots.
