@@ -32,12 +32,14 @@ def named_engines(names: str) -> list[str]:
     InputError
         If one is empty, unknown, or there twice. Whether it is installed does not matter.
     """
-    listed, known = [name.strip() for name in names.split(",")], known_engines()
-    if len(set(listed)) < len(listed) or not set(listed) <= set(known):
+    listed = [name.strip() for name in names.split(",")]
+    others = set(listed) - set(_SHIPPED)
+    # Only a name that is not shipped is worth a look at every distribution that is installed.
+    if len(set(listed)) < len(listed) or (others and not others <= set(known_engines())):
         raise InputError(
             "engine",
             repr(names),
-            f"names between commas, each once, of {', '.join(known)}",
+            f"names between commas, each once, of {', '.join(known_engines())}",
             "`vibrissa engines` lists them",
         )
     return listed

@@ -15,7 +15,7 @@ from compare.study.grid.base import Base
 from compare.study.grid.schema import StudyFile
 from compare.study.grid.study import COMPONENTS_OF
 
-_LONGEST_LIST = 10_000  # each value of a list is tried on the base case, at some milliseconds
+_LONGEST_LIST = 10_000  # each value of a list is tried on the base case, at a millisecond
 _RANGE_KEYS = frozenset(Range.model_json_schema()["properties"])
 
 
