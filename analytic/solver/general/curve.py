@@ -15,7 +15,7 @@ from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour
 from analytic.solver.general.states import Vibrissa, with_rates
 
-_NEAR = 1e-8  # of the misses of a point of the curve, between which stations are solved
+_NEAR = 1e-3  # of the misses: the next step of Newton's method leaves about the square of that
 _CLOSE = 1e-14  # where the curve has a kink or a fold: of an event
 _ROUNDING = 1e-12  # of the misses: one that does not fall any more is as small as it can be
 _NEWTON = 10
@@ -76,31 +76,31 @@ class Curve(NamedTuple):
         here = self._point(z)
         return here if here.direction[_F] > 0 else _reversed(here)
 
-    def advance(self, here: Point, length: float, bend: Floats) -> tuple[Point, ...]:
+    def advance(self, behind: Point | None, here: Point, length: float) -> tuple[Point, ...]:
         """The next points of the curve, at most a step ahead.
 
         Parameters
         ----------
+        behind : Point or None
+            The one before on the same smooth part, if there is one.
         here : Point
             Where to go on from.
         length : float
             Of the step.
-        bend : array, shape (3,)
-            A guess of the curve's second derivative.
 
         Returns
         -------
         tuple of Point
             One; two at a kink, one on each side; none if the step is too long for Newton's method.
         """
-        z = here.z + length * here.direction + length**2 / 2 * bend
+        z = self._ahead(behind, here, length)
         if z[_F] < 0:
             return self._stopped(here, (here.z[_F] / (here.z[_F] - z[_F]), _F, 0.0, math.nan), z)
         places = self._places(here.z, z)
         if places:
             return self._stopped(here, min(places), z)
         scale = self._scale(here.z)
-        new = self._corrected(z, here.direction / scale**2, close=_NEAR)
+        new = self._corrected(z, here.direction / scale**2, roughly=True)
         if new is None:
             return ()
         new = _along(new, here.direction / scale**2)
@@ -108,6 +108,18 @@ class Curve(NamedTuple):
             return ()
         places = self._places(here.z, new.z)
         return self._stopped(here, min(places), new.z) if places else (new,)
+
+    def _ahead(self, behind: Point | None, here: Point, length: float) -> Floats:
+        """Where the cubic through two points and their directions leads; else the tangent."""
+        z = here.z + length * here.direction
+        if behind is None:
+            return z
+        way = here.z - behind.z
+        step = (self._size(way, here.z) + self._size(way, behind.z)) / 2
+        share = length / step
+        bend = step * (2 * here.direction + behind.direction) - 3 * way
+        twist = step * (here.direction + behind.direction) - 2 * way
+        return z + share**2 * (bend + share * twist)
 
     def _stopped(
         self, here: Point, place: tuple[float, int, float, float], ahead: Floats
@@ -148,15 +160,17 @@ class Curve(NamedTuple):
         """
         chord = end.z - begin.z
         normal = chord / self._scale(begin.z) ** 2
+        length = float(chord @ normal)
         low, high = 0.0, 1.0
         rate_low, rate_high = rate(begin), rate(end)
-        found, last = None, 0.0
+        found, at, last = begin, 0.0, 0.0
         for _ in range(_SEARCHES):  # regula falsi, as the Illinois method has it
             share = low + (high - low) * rate_low / (rate_low - rate_high)
-            found = self._corrected(begin.z + share * chord, normal)
-            if found is None:
+            way = (share - at) * length / float(found.direction @ normal)
+            beside = self._corrected(found.z + way * found.direction, normal)
+            if beside is None:
                 return None
-            found = _along(found, normal)
+            found, at = _along(beside, normal), share
             here = rate(found)
             if abs(here) < _LEAST:
                 break
@@ -211,27 +225,22 @@ class Curve(NamedTuple):
         return self._with_direction(z)[0]
 
     def _with_direction(self, z: Floats) -> tuple[Point, Floats, Floats]:
-        """A point, what it misses, and the derivatives of that, shape (2, 3)."""
+        """A point, what it misses, and the derivatives of that and of the foot, shape (3, 3)."""
         here, rates = with_rates(
             self.centreline.at(z[:1]), z[1:2].copy(), z[2:3].copy(), self.vibrissa
         )
-        slopes = np.concatenate([rates.twist, rates.above])
+        slopes = np.concatenate(rates)
         direction = _cross(slopes[0], slopes[1])
         direction = direction / (self._size(direction, z) or math.nan)
         misses = np.array([here.twist[0], here.above[0]])
-        point = Point(
-            z,
-            direction,
-            float(here.foot_x[0]),
-            float(rates.foot_x[0] @ direction),
-            float(here.swing[0]),
-        )
+        rate = float(slopes[2] @ direction)
+        point = Point(z, direction, float(here.foot_x[0]), rate, float(here.swing[0]))
         return point, misses, slopes
 
     def _corrected(
-        self, z: Floats, normal: Floats, pinned: slice = slice(0), close: float = _CLOSE
+        self, z: Floats, normal: Floats, pinned: slice = slice(0), *, roughly: bool = False
     ) -> Point | None:
-        """The point of the curve in the plane through z."""
+        """The point of the curve in the plane through z; or one so near that one may go on."""
         value = z[pinned].copy()
         missed = np.inf
         for _ in range(_NEWTON):
@@ -239,16 +248,19 @@ class Curve(NamedTuple):
             before, missed = missed, float(np.abs(misses).max())
             if not math.isfinite(missed + float(point.direction.sum())):
                 return None
-            if missed < close or (missed < _ROUNDING and missed >= before / 2):
+            if missed < _CLOSE or (missed < _ROUNDING and missed >= before / 2):
                 return point
             u, v = _cross(slopes[1], normal), _cross(normal, slopes[0])  # Cramer's rule
             determinant = float(slopes[0] @ u)
             if determinant == 0:
                 return None
-            z = z - (misses[0] * u + misses[1] * v) / determinant
+            step = (misses[0] * u + misses[1] * v) / determinant
+            z = z - step
             z[pinned] = value
             if not z[_F] >= 0 or not self.t_range[0] - 1 < z[_T] < self.t_range[1] + 1:
                 return None
+            if roughly and missed < _NEAR:
+                return point._replace(z=z, foot_x=point.foot_x - float(slopes[2] @ step))
         return None
 
     def _fixed(self, z: Floats, index: int) -> Point | None:

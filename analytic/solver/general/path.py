@@ -14,7 +14,7 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.problem.rest import Touch
 from analytic.solver.general.curve import INSIDE, Curve, Point
-from analytic.solver.general.states import Vibrissa, states, with_rates
+from analytic.solver.general.states import Vibrissa, with_rates
 
 # By how much the curve may turn between neighbours [rad], and its first step; finer if it is lost.
 _STEPS = ((0.3, 0.02), (0.05, 0.004))
@@ -210,57 +210,63 @@ def follow(
         complete = _ended(points, reach)
         if complete:
             break
-    points = _with_turns(curve, points)
-    z = np.array([point.z for point in points])
-    direction = np.array([point.direction for point in points])
-    z, foot_x = _exact(curve, z, direction)
-    rate = np.array([point.rate for point in points])
+    points = _with_turns(curve, _exact(curve, points))
+    columns = zip(*(point[:4] for point in points), strict=True)
+    z, direction, foot_x, rate = (np.array(column) for column in columns)
     return Path(z, direction, foot_x, rate, complete, vibrissa.least_force)
 
 
-def _exact(curve: Curve, z: Floats, direction: Floats) -> tuple[Floats, Floats]:
-    """Points of the curve by Newton's method, across it, and their foot positions.
+def _exact(curve: Curve, points: list[Point]) -> list[Point]:
+    """Points of the curve by Newton's method, across it, all at a time.
 
-    A point of a sharp cone that misses its conditions by 1e-8 may seem to lie beyond the fold.
+    One by one they are only good enough to go on from. A point of a sharp cone that misses its
+    conditions by 1e-8 may seem to lie beyond the fold.
     """
-    z = z.copy()
+    z = np.array([point.z for point in points])
     inside = z[:, 2] < 0
-    normal = direction.copy()
-    normal[:, 1] /= np.maximum(curve.vibrissa.least_force, z[:, 1]) ** 2
-    for _ in range(_POLISHES):
+    size = np.ones_like(z)
+    size[:, 1] = np.maximum(curve.vibrissa.least_force, z[:, 1])
+    normal = np.array([point.direction for point in points]) / size**2
+    for polishes in range(_POLISHES + 1):
         here, rates = with_rates(curve.centreline.at(z[:, 0]), z[:, 1], z[:, 2], curve.vibrissa)
         misses = np.column_stack([here.twist, here.above, np.zeros(len(z))])
         # One that is exact stays: it may stand on a kink.
         poor = (np.abs(misses).max(axis=1) > _MISSED) & (z[:, 1] > 0)
-        if not poor.any():
+        if polishes == _POLISHES or not poor.any():
             break
         slopes = np.stack([rates.twist, rates.above, normal], axis=1)[poor]
         z[poor] -= np.linalg.solve(slopes, misses[poor, :, None])[..., 0]
         z[:, 2] = np.where(inside, np.minimum(z[:, 2], INSIDE), np.maximum(z[:, 2], 0.0))
-    return z, states(curve.centreline.at(z[:, 0]), z[:, 1], z[:, 2], curve.vibrissa).foot_x
+    way = np.cross(rates.twist, rates.above)
+    way *= np.sign(np.einsum("nk,nk->n", way, normal))[:, None]
+    direction = way / np.linalg.norm(way / size, axis=1)[:, None]
+    rate = np.einsum("nk,nk->n", rates.foot_x, direction)
+    exact = zip(points, z, direction, here.foot_x.tolist(), rate.tolist(), strict=True)
+    return [point._replace(z=z, direction=d, foot_x=x, rate=r) for point, z, d, x, r in exact]
 
 
 def _points(curve: Curve, touch: Touch, largest: float, length: float) -> list[Point]:
     """Points of the curve between which it turns by an angle at most, from a first step on."""
-    points, bend = [curve.start(touch.t, touch.excess)], np.zeros(3)
+    points, behind = [curve.start(touch.t, touch.excess)], None
     # Past small facets the foot turns back at every corner, and goes on.
     slack = min(_FACET, float(np.diff(curve.breaks).max(initial=0.0)))
     for _ in range(_MOST + _A_BREAK * len(curve.breaks)):
         if length <= _SMALLEST or _ended(points, curve.t_range, slack):
             break
         here = points[-1]
-        ahead = curve.advance(here, length, bend)
+        if here.swing > _BUCKLES:
+            length = min(length, _NEAR)
+        ahead = curve.advance(behind, here, length)
         turn = curve.turning(here, ahead[0]) if ahead else np.inf
         if turn > 2 * largest or (length > _SHORT and _hides(curve, here, ahead[0])):
             length /= 2
             continue
-        if length > _NEAR and max(here.swing, ahead[0].swing) > _BUCKLES:
+        if length > _NEAR and ahead[0].swing > _BUCKLES:
             length = max(length / 2, _NEAR)
             continue
         points.extend(ahead)
-        bend = np.zeros(3)
-        if len(ahead) == 1:
-            bend = (ahead[0].direction - here.direction) / length
+        behind = here if len(ahead) == 1 else None
+        if behind is not None:
             length = min(_LARGEST, length * min(2.0, max(0.5, largest / max(turn, 1e-3))))
     return points
 
