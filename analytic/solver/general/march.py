@@ -10,19 +10,22 @@ Legendre, which makes its end exact to order 24 (Hairer, Lubich and Wanner, *Geo
 Integration*, II.1.3). It is found by Picard's iteration, for all spans at a time.
 """
 
+import math
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
+from scipy.special import gammaln
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.solver.general.form import NODES, POINTS, WEIGHTS, Form, Part
 from analytic.solver.general.span import Start
 
-_ITERATIONS = 30
-_CLOSE = 1e-14  # rad; of the last change of the slope, of which the next is a tenth
-_LOST = 1e-9  # rad; the same, of a span whose iteration does not end
+_ITERATIONS = np.arange(30)
+_CLOSE = 1e-16  # rad; of what they leave of the slope
+_PULLS = np.exp((math.log(_CLOSE) + gammaln(2 * _ITERATIONS + 3)) / (_ITERATIONS + 1))
+_LOST = 1e-9  # rad; of the last change of the slope, of a span whose iteration does not end
 _WAVE = 0.8  # rad; of the pendulum's phase on a panel
 _MOST = 64  # parts of a panel
 
@@ -177,41 +180,37 @@ def _step(
     part = form.part(begin, end)
     s, flexible, natural = (values[1:-1] for values in part)
     pull = h * force
+    pulled = (h * pull) * flexible
     # By the natural curvature and the moment at the beginning; the force turns it further.
-    turned = here.theta + h * (_TO_NODES @ (natural + flexible * here.m))
-    pulled = h * pull * flexible
-    theta = turned + np.cos(here.theta) * (_TO_NODES @ (_SHARES * pulled))
-    close = _CLOSE * max(1.0, float(np.abs(theta).max()))
-    for _ in range(_ITERATIONS):
-        new = turned + _TO_NODES @ (pulled * (_TO_NODES @ np.cos(theta)))
-        changes = np.abs(new - theta)
-        theta = new
-        if not changes.max() > close:
-            break
-    change = changes.max(axis=0)
+    turned = here.theta + h * _TO_NODES.dot(natural + flexible * here.m)
+    before = theta = turned + np.cos(here.theta) * _TO_NODES.dot(_SHARES * pulled)
+    for _ in range(_iterations(float(pulled.max()))):
+        before = theta
+        theta = turned + _TO_NODES.dot(pulled * _TO_NODES.dot(np.cos(theta)))
+    change = np.abs(theta - before).max(axis=0)
     cos, sin = np.cos(theta), np.sin(theta)
-    along = WEIGHTS @ cos
-    m = here.m + pull * (_TO_NODES @ cos)
-    last = here.theta + h * (WEIGHTS @ (natural + flexible * m))
-    last = np.where(change > _LOST, np.nan, last)
+    along = WEIGHTS.dot(cos)
+    bent = _TO_NODES.dot(cos)
+    last = here.theta + h * WEIGHTS.dot(natural + flexible * (here.m + pull * bent))
+    last[change > _LOST] = np.nan
     moment, size = here.m + pull * along, np.abs(h)
     if trail is not None:
         shape = theta.shape
         trail.append(
             Trail(
                 np.broadcast_to(s, shape),
-                here.along + size * (_TO_NODES @ cos),
-                here.across + size * (_TO_NODES @ sin),
+                here.along + size * bent,
+                here.across + size * _TO_NODES.dot(sin),
             )
         )
-    first, final = (Part(*(values[i] for values in part)) for i in (0, -1))
-    turn = _phase(final, last, moment, force) - _phase(first, here.theta, here.m, force)
+    ends = Part(*(values[:: NODES + 1] for values in part))
+    phase = _phase(ends, np.array([here.theta, last]), np.array([here.m, moment]), force)
     return Place(
         last,
         moment,
         here.along + size * along,
-        here.across + size * (WEIGHTS @ sin),
-        here.swing + np.remainder(turn + np.pi, 2 * np.pi) - np.pi,
+        here.across + size * WEIGHTS.dot(sin),
+        here.swing + (phase[1] - phase[0] + np.pi) % (2 * np.pi) - np.pi,
     )
 
 
@@ -219,4 +218,12 @@ def _phase(at: Part, theta: Floats, m: Floats, force: Floats) -> Floats:
     """The pendulum's phase: by half a period it changes by pi [rad]."""
     curvature = at.natural + m * at.flexible
     p = np.sqrt(force) * np.sin(np.pi / 4 - theta / 2)
-    return np.asarray(np.arctan2(p, -curvature / np.sqrt(at.flexible) / 2))
+    return np.asarray(np.arctan2(p, curvature / (-2 * np.sqrt(at.flexible))))
+
+
+def _iterations(pull: float) -> int:
+    """How many iterations make the slope exact where the pendulum's square phase is at most that.
+
+    The k-th one leaves pull^(k + 1)/(2 k + 2)!, as each integrates twice what the one before left.
+    """
+    return int(np.searchsorted(_PULLS, pull))
