@@ -1,40 +1,110 @@
 """What the clamp of a vibrissa reads at any foot positions, by the closed form."""
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.case import Case
 from analytic.problem.columns import CLAMP_READINGS
+from analytic.solver.general.columns import to_columns
+from analytic.solver.general.states import Vibrissa
+from analytic.solver.general.stations import slopes_at, solve_beside
 from analytic.solver.general.sweep import solve
 
 _MIRRORED = np.array([[-1.0], [1.0], [-1.0]])  # force_x, force_y and moment_z, x to -x
 
 
-def expected_readings(case: Case, foot_x: Floats) -> Floats:
+@dataclass(frozen=True)
+class Expected:
+    """Readings of the case's vibrissa at the stations of a sweep.
+
+    Attributes
+    ----------
+    case : Case
+        The problem; its direction counts, but not its own stations.
+    readings : array, shape (3, n)
+        In the case's units; zero before the first contact, NaN where the vibrissa has let go or has
+        no state that slides on.
+    loaded : array of bool, shape (n,)
+        Where there is a state that slides on.
+    places : array, shape (m, 3)
+        Contour parameter, normal force and excess of these, of the sweep to the left.
+    """
+
+    case: Case
+    readings: Floats
+    loaded: Booleans
+    places: Floats
+
+    def beside(self, case: Case, foot_x: Floats) -> Floats:
+        """The readings of nearly the same case, from the states that are known.
+
+        Parameters
+        ----------
+        case : Case
+            One of the same direction.
+        foot_x : array, shape (n,)
+            Nearly the same foot positions, in the order of the sweep [length].
+
+        Returns
+        -------
+        array, shape (3, n)
+            But for the square of what the two cases differ by; those of this case where no state
+            slides on.
+        """
+        found = self.readings.copy()
+        leftward, stations = _to_the_left(case, foot_x)
+        beam = leftward.beam
+        vibrissa = Vibrissa.of(beam, leftward.clamp_stiffness, leftward.friction)
+        moved = stations[self.loaded] / beam.length
+        here = solve_beside(leftward.centreline, vibrissa, moved, self.places, self._slopes)
+        columns = to_columns(here, np.zeros(len(moved), dtype=bool), beam)
+        found[:, self.loaded] = [columns[name] for name in CLAMP_READINGS]
+        if case.sweep.direction == "right":
+            found[:, self.loaded] *= _MIRRORED
+        return found
+
+    @cached_property
+    def _slopes(self) -> Floats:
+        """What several cases beside this one start from."""
+        case, _ = _to_the_left(self.case, np.empty(0))
+        vibrissa = Vibrissa.of(case.beam, case.clamp_stiffness, case.friction)
+        return slopes_at(case.centreline, vibrissa, self.places)
+
+
+def expected_readings(case: Case, foot_x: Floats) -> Expected:
     """Force and moment at the clamp, as the case's vibrissa has them at the stations of a sweep.
 
     Parameters
     ----------
     case : Case
-        The problem; its direction counts, but not its own stations.
+        The problem.
     foot_x : array, shape (n,)
         In the order of the sweep [length].
 
     Returns
     -------
-    array, shape (3, n)
-        In the case's units; zero before the first contact, NaN where the vibrissa has let go or has
-        no state that slides on.
+    Expected
+        Readings and the states that they are of.
     """
-    rightward = case.sweep.direction == "right"
-    leftward, stations = (case.mirrored(), -foot_x) if rightward else (case, foot_x)
+    leftward, stations = _to_the_left(case, foot_x)
     solved = solve(leftward, stations)
+    ok = solved.columns["status"] == "ok"
+    loaded = solved.where.copy()
+    loaded[solved.where] = ok
     found = np.zeros((len(CLAMP_READINGS), len(foot_x)))
-    found[:, solved.where] = [
-        np.where(solved.columns["status"] == "ok", solved.columns[name], np.nan)
-        for name in CLAMP_READINGS
-    ]
+    found[:, solved.where] = np.nan
+    found[:, loaded] = [solved.columns[name][ok] for name in CLAMP_READINGS]
     first = solved.events["first_contact"]
     assert first is not None
     found[:, ~solved.where & (stations < first * case.beam.length)] = np.nan
-    return found * _MIRRORED if rightward else found
+    if case.sweep.direction == "right":
+        found *= _MIRRORED
+    return Expected(case, found, loaded, solved.places[ok])
+
+
+def _to_the_left(case: Case, foot_x: Floats) -> tuple[Case, Floats]:
+    """The same as a sweep to the left."""
+    return (case.mirrored(), -foot_x) if case.sweep.direction == "right" else (case, foot_x)

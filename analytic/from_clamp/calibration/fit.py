@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.optimize import least_squares
 
-from analytic.from_clamp.calibration.expected import expected_readings
+from analytic.from_clamp.calibration.expected import Expected, expected_readings
 from analytic.from_clamp.calibration.measured import Measured
 from analytic.from_clamp.calibration.unknowns import UNKNOWNS, Sought
 from analytic.problem.arrays import Floats
@@ -39,7 +39,7 @@ class Fit:
         self.highest = np.array([kind.highest for kind in self.kinds])
         self.start = np.array([kind.now(Sought(given), given) for kind in self.kinds])
         self._whitening = np.linalg.inv(self._root(measured.readings))
-        self._last: tuple[bytes, Floats] = b"", np.empty(0)
+        self._last: tuple[bytes, Expected | None] = b"", None
 
     def sought(self, numbers: Floats) -> Sought:
         """The vibrissa with these numbers.
@@ -72,11 +72,8 @@ class Fit:
         array, shape (3, n)
             NaN where there is no state that slides on.
         """
-        try:
-            sought = self.sought(numbers)
-            return expected_readings(sought.case, self.measured.foot_x - sought.offset)
-        except (InputError, ArithmeticError):
-            return np.full_like(self.measured.readings, np.nan)
+        found = self._solved(numbers)
+        return np.full_like(self.measured.readings, np.nan) if found is None else found.readings
 
     def misses(self, numbers: Floats) -> Floats:
         """What they differ from the measured ones by, over the noise.
@@ -92,11 +89,7 @@ class Fit:
             Beyond the snap-off the readings next to it are taken, so that all of it is continuous;
             without any state, none.
         """
-        key, misses = self._last  # the derivatives begin where the step before them ended
-        if key != numbers.tobytes():
-            misses = self._misses(numbers)
-            self._last = numbers.tobytes(), misses
-        return misses
+        return self._missed(self.expected(numbers))
 
     def jacobian(self, numbers: Floats) -> Floats:
         """Derivatives of the misses.
@@ -109,14 +102,21 @@ class Fit:
         Returns
         -------
         array, shape (3 n, unknowns)
-            By differences to one side, good to five digits.
+            By differences to one side, good to five digits, of the states that there are.
         """
-        here, columns = self.misses(numbers), []
+        found = self._solved(numbers)
+        columns = np.zeros((self.measured.readings.size, len(numbers)))
+        if found is None:
+            return columns
+        here = self._missed(found.readings)
         for i, number in enumerate(numbers.tolist()):
             step = _STEP if number + _STEP <= self.highest[i] else -_STEP
-            moved = np.where(np.arange(len(numbers)) == i, number + step, numbers)
-            columns.append((self._misses(moved) - here) / step)
-        return np.stack(columns, axis=1)
+            moved = numbers.copy()
+            moved[i] = number + step
+            sought = self.sought(moved)
+            beside = found.beside(sought.case, self.measured.foot_x - sought.offset)
+            columns[:, i] = (self._missed(beside) - here) / step
+        return columns
 
     def scaled_rigidity(self, numbers: Floats) -> Floats:
         """The same with the rigidity that fits best if nothing else depended on it.
@@ -173,8 +173,19 @@ class Fit:
         numbers = np.where(found.x - self.lowest < _AN_END, self.lowest, found.x)
         return numbers, 2 * float(found.cost)
 
-    def _misses(self, numbers: Floats) -> Floats:
-        found = self.expected(numbers)
+    def _solved(self, numbers: Floats) -> Expected | None:
+        """The sweep of the vibrissa with these numbers; None if there is no such sweep."""
+        key, found = self._last  # derivatives are asked for where the misses were
+        if key != numbers.tobytes():
+            try:
+                sought = self.sought(numbers)
+                found = expected_readings(sought.case, self.measured.foot_x - sought.offset)
+            except (InputError, ArithmeticError):
+                found = None
+            self._last = numbers.tobytes(), found
+        return found
+
+    def _missed(self, found: Floats) -> Floats:
         known = np.asarray(np.isfinite(found).all(axis=0))
         order = np.arange(len(known))
         if known.any():

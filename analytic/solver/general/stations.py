@@ -15,10 +15,37 @@ _ASIDE = (
 _BALANCED = 1e-11  # L, rad; beyond, no state was found
 
 
-def solve_stations(
-    centreline: Contour, vibrissa: Vibrissa, path: Path, foot_x: Floats
-) -> tuple[States, Booleans]:
-    """The state at each foot position on the path.
+def solve_beside(
+    centreline: Contour, vibrissa: Vibrissa, foot_x: Floats, z: Floats, slopes: Floats
+) -> States:
+    """States next to those of a problem that is solved, by one step of Newton's method.
+
+    Parameters
+    ----------
+    centreline : Contour
+        Contour that the centreline feels, in units of the vibrissa's length; nearly that which is
+        solved.
+    vibrissa : Vibrissa
+        Its numbers, nearly those of the vibrissa that is solved.
+    foot_x : array, shape (n,)
+        Foot positions, nearly those of its states [L].
+    z : array, shape (n, 3)
+        Contour parameter, normal force and excess of its states.
+    slopes : array, shape (n, 3, 3)
+        As `slopes_at` has them.
+
+    Returns
+    -------
+    States
+        Of n contacts, but for the square of what the two differ by.
+    """
+    missed = _misses(centreline, vibrissa, foot_x, z)
+    t, force, excess = (z - np.linalg.solve(slopes, missed[..., None])[..., 0]).T
+    return states(centreline.at(t), np.maximum(force, 0.0), excess, vibrissa)
+
+
+def slopes_at(centreline: Contour, vibrissa: Vibrissa, z: Floats) -> Floats:
+    """Derivatives of what states miss and of their foot positions.
 
     Parameters
     ----------
@@ -26,20 +53,22 @@ def solve_stations(
         Contour that the centreline feels, in units of the vibrissa's length.
     vibrissa : Vibrissa
         Its numbers.
-    path : Path
-        From first contact to where the vibrissa lets go.
-    foot_x : array, shape (n,)
-        Foot positions on it [L].
+    z : array, shape (n, 3)
+        Contour parameter, normal force and excess.
 
     Returns
     -------
-    states : States
-        Of n contacts.
-    found : array of bool, shape (n,)
-        As of `solve_places`.
+    array, shape (n, 3, 3)
+        Of twist, height and foot position by these.
     """
-    z, found = solve_places(centreline, vibrissa, path, foot_x)
-    return states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa), found
+    _, rates = with_rates(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
+    return np.stack(rates, axis=1)
+
+
+def _misses(centreline: Contour, vibrissa: Vibrissa, foot_x: Floats, z: Floats) -> Floats:
+    """What states miss at the clamp's slope, at the contact's height and at the foot."""
+    here = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
+    return np.stack([here.twist, here.above, here.foot_x - foot_x], axis=1)
 
 
 def solve_places(
@@ -74,12 +103,10 @@ def solve_places(
     scale[:, 1] = np.maximum(vibrissa.least_force, begin[:, 1])
 
     def misses(z: Floats, which: Integers) -> Floats:
-        here = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
-        return np.stack([here.twist, here.above, here.foot_x - foot_x[which]], axis=1)
+        return _misses(centreline, vibrissa, foot_x[which], z)
 
     def jacobian(z: Floats, which: Integers) -> Floats:
-        _, rates = with_rates(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
-        return np.stack(rates, axis=1)
+        return slopes_at(centreline, vibrissa, z)
 
     z, missed = solve(misses, jacobian, guess)
     along = np.einsum("nk,nk->n", (z - begin) / scale, way / scale) / length

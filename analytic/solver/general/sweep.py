@@ -14,7 +14,7 @@ from analytic.solver.general.clearance import is_clear, is_rest_clear
 from analytic.solver.general.columns import to_columns
 from analytic.solver.general.path import follow
 from analytic.solver.general.states import States, Vibrissa, states, with_rates
-from analytic.solver.general.stations import solve_stations
+from analytic.solver.general.stations import solve_places
 
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
 _STILL = 1e-8  # of the foot's way: slower, and the other way, the contact does not slide
@@ -26,6 +26,9 @@ class Solved(NamedTuple):
     where: Booleans
     columns: dict[str, Column]
     events: dict[str, float | None]
+    places: Floats
+    """Contour parameter, normal force and excess at these stations, NaN where there is no state;
+    shape (m, 3)."""
 
 
 def solve(case: Case, stations: Floats | None = None) -> Solved:
@@ -57,8 +60,11 @@ def solve(case: Case, stations: Floats | None = None) -> Solved:
     where = held | lost
 
     columns = _nothing(stations, "diverged" if not path.complete else "touches again")
+    places = np.full((len(stations), 3), np.nan)
     if held.any():
-        touching, found = solve_stations(centreline, vibrissa, path, foot_x[held])
+        z, found = solve_places(centreline, vibrissa, path, foot_x[held])
+        touching = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
+        places[held] = np.where(found[:, None], z, np.nan)
         solved = to_columns(touching, ~is_clear(centreline, touching), beam)
         solved["status"] = np.where(found, solved["status"], "diverged")
         solved["status"][(solved["status"] == "ok") & ~_slides(touching)] = "sticks"
@@ -66,14 +72,15 @@ def solve(case: Case, stations: Floats | None = None) -> Solved:
             values = solved[name]
             number = name not in ("phase", "status")
             columns[name][held] = np.where(found, values, np.nan) if number else values
-    places = {**path.events(), "out_of_plane": None}  # where it leaves the plane is not known
-    del places["contact_length_minimum"]
+    points = {**path.events(), "out_of_plane": None}  # where it leaves the plane is not known
+    del points["contact_length_minimum"]
     for name in ("phase_b_start", "phase_b_end"):
-        i = places[name]
+        i = points[name]
         if i is not None and not _is_clear_at(centreline, vibrissa, path.z[i : i + 1]):
-            places[name] = None
-    events = {n: None if i is None else float(path.foot_x[i]) for n, i in places.items()}
-    return Solved(where, {name: values[where] for name, values in columns.items()}, events)
+            points[name] = None
+    events = {n: None if i is None else float(path.foot_x[i]) for n, i in points.items()}
+    some = {name: values[where] for name, values in columns.items()}
+    return Solved(where, some, events, places[where])
 
 
 def _is_clear_at(centreline: Contour, vibrissa: Vibrissa, z: Floats) -> bool:

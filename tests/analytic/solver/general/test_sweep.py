@@ -32,7 +32,8 @@ from analytic.problem.rest import first_touch
 from analytic.problem.unloaded import Unloaded
 from analytic.solver.general.path import follow
 from analytic.solver.general.states import Vibrissa
-from analytic.solver.general.stations import solve_stations
+from analytic.solver.general.states import states as states_of
+from analytic.solver.general.stations import solve_places
 
 SQUARE = polygon([(-0.6, 0.45), (0.7, 0.4), (0.9, 1.5), (-0.5, 1.6)])
 ROUND = np.linspace(0, 2 * np.pi, 17)[:-1]
@@ -102,7 +103,8 @@ def test_limit_is_the_papers_vibrissa(name):
             found = None if i is None else path.foot_x[i]
             assert found == pytest.approx(events[event], abs=1e-13)
     held = (plain.table["phase"] != "free").to_numpy()
-    states, found = solve_stations(case.centreline, vibrissa, path, case.foot_x[held])
+    z, found = solve_places(case.centreline, vibrissa, path, case.foot_x[held])
+    states = states_of(case.centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
     assert found.all()
     # 2e-13: each is exact to a few roundings of forces of up to 20.
     np.testing.assert_allclose(states.moment, plain.values("moment_z")[held], atol=2e-13)

@@ -35,7 +35,8 @@ from analytic.solver.general.march import march
 from analytic.solver.general.path import follow
 from analytic.solver.general.residuals import residuals
 from analytic.solver.general.states import Vibrissa
-from analytic.solver.general.stations import solve_stations
+from analytic.solver.general.states import states as states_of
+from analytic.solver.general.stations import solve_places
 
 ROWS = pd.read_csv(Path(__file__).parents[3] / "data" / "general_vibrissa.csv")
 PROFILES = {"g1": catenary(0.5, -0.8), "g2": parabola(0.5, 0.5)}
@@ -215,7 +216,8 @@ def test_collocation_of_a_uniform_vibrissa_is_the_closed_form(name):
             found = None if i is None else path.foot_x[i]
             assert found == pytest.approx(plain.provenance["events"][event], abs=1e-13)
     held = (plain.table["phase"] != "free").to_numpy()
-    states, found = solve_stations(case.centreline, vibrissa, path, case.foot_x[held])
+    z, found = solve_places(case.centreline, vibrissa, path, case.foot_x[held])
+    states = states_of(case.centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
     assert found.all()
     # 2e-13: each is exact to a few roundings of forces of up to 20.
     np.testing.assert_allclose(states.moment, plain.values("moment_z")[held], atol=2e-13)
