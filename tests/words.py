@@ -25,6 +25,8 @@ BETTER = {
 # Not between letters; an underscore is no letter, so that names are looked through, too.
 _BANNED = {re.compile(rf"(?<![A-Za-z])(?:{x})(?![A-Za-z])", re.I): y for x, y in BETTER.items()}
 
+_ANY = re.compile(rf"(?<![a-z])(?:{'|'.join(BETTER)})(?![a-z])")  # in small letters
+
 
 def files() -> list[Path]:
     """All kept files of text but this one and the licence, whose words are not ours."""
@@ -39,7 +41,10 @@ def offences() -> list[str]:
     """File, line, word and what to write in its place."""
     found = []
     for path in files():
-        for number, line in enumerate(path.read_text(encoding="utf-8").split("\n"), 1):
+        text = path.read_text(encoding="utf-8")
+        if not _ANY.search(text.lower()):  # a tenth of the time that line by line takes
+            continue
+        for number, line in enumerate(text.split("\n"), 1):
             for banned, better in _BANNED.items():
                 found += [
                     f"{path.relative_to(ROOT)}:{number}: {hit}: {better}"

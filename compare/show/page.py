@@ -6,8 +6,9 @@ import json
 import re
 import warnings
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup, escape
 from matplotlib import rc_context
@@ -15,6 +16,9 @@ from matplotlib.figure import Figure
 
 from analytic.problem.files import write_whole
 from compare.show.style import BLUE, BODY, FAINT, GREEN, GREY, INK, ORANGE, PAPER, PINK, PNG_LEVEL
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 _THEMED = {
     INK: "currentColor",
@@ -118,9 +122,14 @@ def render(package: str, template: str, **values: Any) -> str:  # noqa: ANN401
     str
         The page.
     """
+    environment = _environment(package, template.endswith(".md.j2"))
+    return environment.get_template(template).render(**values)
+
+
+@cache  # it keeps the templates that it has compiled, which takes longer than to fill them in
+def _environment(package: str, is_markdown: bool) -> "Environment":
     from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined  # slow to load
 
-    is_markdown = template.endswith(".md.j2")
     environment = Environment(
         loader=ChoiceLoader([PackageLoader(package), PackageLoader("compare.show")]),
         autoescape=not is_markdown,
@@ -130,7 +139,7 @@ def render(package: str, template: str, **values: Any) -> str:  # noqa: ANN401
         lstrip_blocks=True,
     )
     environment.filters.update(short=short, place=place, words=words)
-    return environment.get_template(template).render(**values)
+    return environment
 
 
 def inline_svg(figure: Figure, name: str, description: str) -> Markup:
