@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.from_clamp.earlier.sensed import Answer, Sensed
-from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.roots import zeros
 
-_HALVINGS = 52  # of a segment: to rounding
 _ROUNDING = 1e-9  # of a segment; nearer to a joint the contact is at the joint
 
 
@@ -49,12 +49,15 @@ def by_segments(sensed: Sensed, segments: int = 40, half_cell: bool = False) -> 
     turn = np.arctan2(sensed.along, sensed.across)
     half = 0.5 / segments if half_cell else 0.0
     whole, found = _bracket(force, turn, segments, half)
-    low, high = np.zeros_like(force), np.full_like(force, 1 / segments)
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        short = _bend(force, middle, whole, segments, half).turned < turn
-        low, high = np.where(short, middle, low), np.where(short, high, middle)
-    across, height = _from_base(_bend(force, high, whole, segments, half))
+    at = np.flatnonzero(found & (turn > 0))
+
+    def beyond(which: Integers, rest: Floats) -> Floats:
+        some = at[which]
+        return _bend(force[some], rest, whole[some], segments, half).turned - turn[some]
+
+    rest = np.zeros_like(force)  # a contact that turns nothing away is at the base
+    rest[at] = zeros(beyond, rest[at], np.full(at.size, 1 / segments))
+    across, height = _from_base(_bend(force, rest, whole, segments, half))
     return Answer(sensed.foot_x + across, height).where(found)
 
 
