@@ -24,6 +24,7 @@ _ROUND_OFF = 1e-13  # of the largest magnitude
 _USELESS = 0.05  # L; a less certain offset blurs whole phases
 _DISTINCT = 0.8  # a second minimum is worse than the best if its residual times this still is
 _PLAIN, _ITERATIONS = 10, 30  # at most, of least squares and of Huber's estimator
+_ONE = 1e-6  # stations; offsets that least squares finds closer together are one
 
 
 @dataclass(frozen=True)
@@ -203,7 +204,12 @@ def offset_fits(
     seen = np.stack([candidate.values(name) for name in CLAMP_READINGS]) / scale[:, None]
     x = candidate.values("foot_x")
     starts = _scan(curve, x, seen, loaded, candidate.trusted, scale)
-    tried = (_fit(curve, x[loaded], seen[:, loaded], start, scale) for start in starts)
+    near: list[float] = []
+    for start in starts:
+        plain = _fit(curve, x[loaded], seen[:, loaded], start, scale, robust=False)
+        if plain is not None and not np.isclose(near, plain.value, 0, _ONE * curve.spacing).any():
+            near.append(plain.value)
+    tried = (_fit(curve, x[loaded], seen[:, loaded], value, scale, robust=True) for value in near)
     fits = [fit for fit in tried if fit is not None]
     if not fits:
         raise _ambiguous(f"fewer than {_FEWEST} stations in a phase of the reference")
@@ -260,13 +266,13 @@ class _Curve:
             found |= (x >= low) & (x <= high)
         return found
 
-    def smooth(self, x: Floats, order: int = 0) -> Floats:
-        """Readings, or their derivatives, shape (3, len(x)); every `x` within a piece."""
-        found = np.full((len(CLAMP_READINGS), len(x)), np.nan)
+    def smooth(self, x: Floats) -> tuple[Floats, Floats]:
+        """Readings, and their derivatives, shape (3, len(x)); every `x` within a piece."""
+        found = np.full((2, len(CLAMP_READINGS), len(x)), np.nan)
         for low, high, spline in self.pieces:
             here = (x >= low) & (x <= high)
-            found[:, here] = spline(x[here], order)
-        return found
+            found[:, :, here] = spline(x[here]), spline(x[here], 1)
+        return found[0], found[1]
 
 
 def _scan(
@@ -306,35 +312,37 @@ def _scan(
     return [float(trials[i]) for i in minima[np.argsort(misfit[minima])][:3]]
 
 
-def _fit(curve: _Curve, x: Floats, seen: Floats, start: float, scale: Floats) -> Fit | None:
+def _fit(
+    curve: _Curve, x: Floats, seen: Floats, start: float, scale: Floats, *, robust: bool
+) -> Fit | None:
     """Gauss and Newton's method from `start`; None where it leads out of the reference.
 
     Plain least squares first, each reading over its largest magnitude: the scatter that the
     readings are then weighed by is known only near the best offset.
     """
     value, inside = start, curve.inside(x - start)
-    for iteration in range(_PLAIN + _ITERATIONS):
-        plain = iteration < _PLAIN
+    iterations = _ITERATIONS if robust else _PLAIN
+    for iteration in range(iterations):
         # Towards the end the same stations, so that none comes and goes.
-        settled = iteration >= _PLAIN + _ITERATIONS // 2
+        settled = robust and iteration >= iterations // 2
         inside = curve.inside(x - value) & (inside if settled else True)
         if inside.sum() < _FEWEST:
             return None
-        miss = seen[:, inside] - curve.smooth(x[inside] - value) / scale[:, None]
-        slope = curve.smooth(x[inside] - value, 1) / scale[:, None]
+        due, slope = (rows / scale[:, None] for rows in curve.smooth(x[inside] - value))
+        miss = seen[:, inside] - due
         scatter = np.median(np.abs(miss), axis=1, keepdims=True) / MEDIAN_OF_NORMAL + _ROUND_OFF
-        scatter = np.ones_like(scatter) if plain else scatter
-        robust = np.clip(miss / scatter, -_HUBER, _HUBER)
+        scatter = scatter if robust else np.ones_like(scatter)
+        clipped = np.clip(miss / scatter, -_HUBER, _HUBER)
         linear = np.abs(miss / scatter) < _HUBER
         information = float(np.sum(linear * (slope / scatter) ** 2))
-        score = np.sum(-slope / scatter * robust, axis=0)
+        score = np.sum(-slope / scatter * clipped, axis=0)
         if information == 0:
             return None
         step = float(np.clip(score.sum() / information, -curve.spacing, curve.spacing))
         value += step
-        if not plain and abs(step) < 1e-12 * (abs(value) + curve.spacing):
+        if abs(step) < 1e-12 * (abs(value) + curve.spacing):
             break
-    misfit = float(np.sqrt(np.mean((robust * scatter) ** 2)))
+    misfit = float(np.sqrt(np.mean((clipped * scatter) ** 2)))
     return Fit(value, _half_width(score, information), misfit)
 
 
