@@ -61,6 +61,12 @@ def test_default_contacts_are_found_wanting_and_inspect_said_so():
 OURS = {"contact": "ours"}
 
 
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    """The sweep of a sound chain, to hold others against."""
+    return swept(tmp_path_factory.mktemp("plain"), Chain(), **OURS)
+
+
 @pytest.mark.slow
 def test_a_mocap_foot_has_no_speed_and_chatters(tmp_path):
     """Observed: 14 of 60 stations, against 5 on a slide; `inspect` says so in a note."""
@@ -79,17 +85,15 @@ def test_a_mocap_foot_has_no_speed_and_chatters(tmp_path):
     assert chattering[1] > 8
 
 
-def test_the_clamp_is_read_in_whatever_frame_the_sensor_has(tmp_path):
+def test_the_clamp_is_read_in_whatever_frame_the_sensor_has(tmp_path, plain):
     """A turned site, off the clamp: the readings are carried to the clamp and turned back."""
-    plain = swept(tmp_path, Chain(), **OURS)
     other = swept(tmp_path, Chain(site='euler="0.3 -0.4 0.5" pos="0.01 -0.1 0"'), **OURS)
     for name in ("force_x", "force_y", "moment_z"):
         assert other.values(name) == pytest.approx(plain.values(name), abs=1e-8)
 
 
-def test_a_heavy_foot_is_not_felt(tmp_path):
+def test_a_heavy_foot_is_not_felt(tmp_path, plain):
     """Its sensors feel 1 kg of it, too, were it accelerated: 9 % of a force with this armature."""
-    plain = swept(tmp_path, Chain(), **OURS)
     inertial = '<inertial pos="0 0 0" mass="1000" diaginertia="1 1 1"/>'
     slide = '<joint name="rail" type="slide" axis="1 0 0" armature="10000"/>'
     heavy = swept(tmp_path, Chain(foot="", inside_foot=slide + inertial), **OURS)
@@ -98,9 +102,8 @@ def test_a_heavy_foot_is_not_felt(tmp_path):
     assert np.sqrt(np.mean(off**2)) < 0.02
 
 
-def test_sensors_are_added_at_a_site(tmp_path):
+def test_sensors_are_added_at_a_site(tmp_path, plain):
     """In memory, and they read what the model's own ones there would."""
-    plain = swept(tmp_path, Chain(), **OURS)
     without = Chain(sensors="").write(tmp_path)
     before = without.read_bytes()
     found = inspect_model(without, site="clamp")
@@ -113,11 +116,10 @@ def test_sensors_are_added_at_a_site(tmp_path):
         inspect_model(without, site="klamp")
 
 
-def test_a_vibrissa_of_30_mm_is_as_good_as_one_of_a_metre(tmp_path):
+def test_a_vibrissa_of_30_mm_is_as_good_as_one_of_a_metre(tmp_path, plain):
     """In metres its object is so small that MuJoCo would refuse the volume of a part of it."""
     unit, small = Beam(), 0.03
     rigidity = small**3  # the same mass and period
-    plain = swept(tmp_path, Chain(), **OURS)
     beam = Beam(small, rigidity, unit.radius * small)
     case = replace(UNIT, beam=beam, profile=circle(0.8 * small, (0, 0.4 * small)))
     chain = Chain(length=small, rigidity=rigidity, radius=beam.radius)
@@ -129,8 +131,7 @@ def test_a_vibrissa_of_30_mm_is_as_good_as_one_of_a_metre(tmp_path):
 
 
 @pytest.mark.slow
-def test_wherever_the_vibrissa_stands_and_points(tmp_path):
-    plain = swept(tmp_path, Chain(), **OURS)
+def test_wherever_the_vibrissa_stands_and_points(tmp_path, plain):
     # Along x, its hinges along z: the sweep goes along y.
     turned = Chain(foot='mocap="true" pos="3 -2 1" euler="0 0 -1.5707963267948966"')
     other = swept(tmp_path, turned, **OURS)
@@ -147,8 +148,7 @@ def test_wherever_the_vibrissa_stands_and_points(tmp_path):
     ],
 )
 @pytest.mark.parametrize("sense", ["-1 0 0", pytest.param("1 0 0", marks=pytest.mark.slow)])
-def test_a_foot_on_a_slide_is_driven_as_the_model_has_it(tmp_path, joint, actuator, sense):
-    plain = swept(tmp_path, Chain(), **OURS)
+def test_a_foot_on_a_slide_is_driven_as_the_model_has_it(tmp_path, plain, joint, actuator, sense):
     rail = Chain(
         foot="",
         inside_foot=f'<joint name="rail" type="slide" axis="{sense}" armature="10" {joint}/>',
