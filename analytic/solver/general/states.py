@@ -346,10 +346,11 @@ def with_rates(
     )
     up, reach = found.up, found.reach
     if vibrissa.form is not None:  # where a cone is touched decides how thick it is
-        up = up - (found.felt.eta - point.eta)
-        reach = reach - (found.felt.xi - point.xi)
-    rates = []
-    for known, values in zip(by_t, (found.twist, up, -reach), strict=True):
-        by_f, by_w = _WEIGHTS @ values
-        rates.append(np.array([known, by_f / step_f, by_w / step_w]).T)
+        felt = found.felt
+        up = up - (felt.eta - point.eta)
+        reach = reach - (felt.xi - point.xi)
+    rates = np.empty((3, len(force), 3))
+    rates[..., 0] = by_t
+    changes = _WEIGHTS @ np.array([found.twist, up, -reach])
+    rates[..., 1], rates[..., 2] = changes[:, 0] / step_f, changes[:, 1] / step_w
     return here, Rates(*rates)
