@@ -3,7 +3,6 @@
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
@@ -11,24 +10,12 @@ from analytic.problem.along import Along
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.unloaded import Unloaded
+from analytic.solver.general.panel import NODES, POINTS, TO_SERIES, WEIGHTS, Panel
 
-NODES = 12  # of Gauss and Legendre on a panel
-POINTS, WEIGHTS = (v / 2 for v in np.polynomial.legendre.leggauss(NODES))
-POINTS = POINTS + 0.5  # from 0 to 1
-_SHARES = np.concatenate([[0.0], POINTS, [1.0]])
-_TO_SERIES = np.linalg.inv(np.polynomial.legendre.legvander(2 * POINTS - 1, NODES - 1))
 _TAIL = 2  # coefficients
 _EXACT = 1e-8  # of a panel's largest value; of the integral over it then the square
 _HALVINGS = 12
 _PLACES = 257
-
-
-class Part(NamedTuple):
-    """Arc length, EI(0)/EI and natural curvature at some places; arrays of one shape."""
-
-    s: Floats
-    flexible: Floats
-    natural: Floats
 
 
 @dataclass(frozen=True)
@@ -106,8 +93,8 @@ class Form:
         inverse = 1 / (1 - (1 - self.rigidity) * s) ** 2
         return np.asarray(inverse**2 if self.share == 1 else inverse ** (2 * self.share))
 
-    def part(self, begin: Floats, end: Floats) -> Part:
-        """The form between two places, at these and the points of Gauss and Legendre.
+    def panel(self, begin: Floats, end: Floats) -> Panel:
+        """The form between two places.
 
         Parameters
         ----------
@@ -116,23 +103,20 @@ class Form:
 
         Returns
         -------
-        Part
-            Arrays of shape (NODES + 2, n); the same, if n is 1, is computed once.
+        Panel
+            Of n vibrissae; the same, if n is 1, is computed once.
         """
         if begin.size > 1:
-            return self._between(begin, end)
+            return Panel.between(begin, end, self.flexibility, self.unloaded.curvature)
         key = float(begin[0]), float(end[0])
         if key not in self._known:
-            self._known[key] = self._between(begin, end)
+            known = Panel.between(begin, end, self.flexibility, self.unloaded.curvature)
+            self._known[key] = known
         return self._known[key]
 
-    def _between(self, begin: Floats, end: Floats) -> Part:
-        s = begin + _SHARES[:, None] * (end - begin)
-        return Part(s, self.flexibility(s), self.unloaded.curvature(s))
-
     @cached_property
-    def _known(self) -> dict[tuple[float, float], Part]:
-        """Parts of the vibrissa that many spans run through."""
+    def _known(self) -> dict[tuple[float, float], Panel]:
+        """Panels of the vibrissa that many spans run through."""
         return {}
 
     @cached_property
@@ -154,11 +138,11 @@ class Form:
         return np.array(ends)
 
     @cached_property
-    def most_flexible(self) -> Floats:
-        """The largest flexibility between two ends, nearly, shape (panels,)."""
-        share = np.linspace(0, 1, NODES)[:, None]
-        inside = self.ends[:-1] + share * np.diff(self.ends)
-        return np.asarray(self.flexibility(inside).max(axis=0))
+    def phases(self) -> Floats:
+        """The pendulum's phase between two ends under a force of 1, nearly; shape (panels,)."""
+        share, widths = np.linspace(0, 1, NODES)[:, None], np.diff(self.ends)
+        flexible = self.flexibility(self.ends[:-1] + share * widths)
+        return np.asarray(widths * np.sqrt(flexible.max(axis=0)))
 
     @cached_property
     def least_force(self) -> float:
@@ -178,7 +162,7 @@ class Form:
         s = begin + (end - begin) * POINTS
         natural = self.unloaded.curvature(s)
         for values, least in ((self.flexibility(s), 0.0), (natural, 1.0)):
-            series = np.abs(_TO_SERIES @ values)
+            series = np.abs(TO_SERIES @ values)
             if series[-_TAIL:].max() > _EXACT * max(least, np.abs(values).max()):
                 return False
         return True

@@ -15,11 +15,11 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import legendre
 from scipy.special import gammaln
 
 from analytic.problem.arrays import Floats, Integers
-from analytic.solver.general.form import NODES, POINTS, WEIGHTS, Form, Part
+from analytic.solver.general.form import Form
+from analytic.solver.general.panel import TO_NODES, WEIGHTS, Panel
 from analytic.solver.general.span import Start
 
 _ITERATIONS = np.arange(30)
@@ -28,17 +28,6 @@ _PULLS = np.exp((math.log(_CLOSE) + gammaln(2 * _ITERATIONS + 3)) / (_ITERATIONS
 _LOST = 1e-9  # rad; of the last change of the slope, of a span whose iteration does not end
 _WAVE = 0.8  # rad; of the pendulum's phase on a panel
 _MOST = 64  # parts of a panel
-
-
-def _integrals() -> Floats:
-    """Integrals of the nodes' polynomials from 0 to each node."""
-    to_series = np.linalg.inv(legendre.legvander(2 * POINTS - 1, NODES - 1))
-    columns = [legendre.legval(2 * POINTS - 1, legendre.legint(c, lbnd=-1)) for c in to_series.T]
-    return np.array(columns).T / 2
-
-
-_TO_NODES = _integrals()
-_SHARES = POINTS[:, None]
 
 
 class Place(NamedTuple):
@@ -101,20 +90,22 @@ def march(
     nowhere = ~((force >= 0) & (length >= 0))
     here = Place(np.where(nowhere, np.nan, theta), m, *np.zeros((3, len(theta))))
     force = np.where(nowhere, 0.0, force)
-    ends = _panels(form, force, length, finer)
+    ends = _panels(form, force, length, finer).tolist()
     panels = list(pairwise(ends))
     for low, high in panels if from_clamp else reversed(panels):
-        on = np.flatnonzero(length > low)
-        everywhere = on.size == len(length) or trail is not None
-        if on.size == 0 and trail is None:
+        on = length > low
+        if trail is None and not on.any():
             continue
+        everywhere = trail is not None or bool(on.all())
         some = here if everywhere else Place(*(values[on] for values in here))
-        end = np.clip(length if everywhere else length[on], low, high)
-        if (end == high).all():
-            end = np.full(1, high)
-        begin = np.full_like(end, low)
-        way = (begin, end) if from_clamp else (end, begin)
-        new = _step(form, some, force if everywhere else force[on], *way, trail)
+        end = length if everywhere else length[on]
+        if end.min() >= high:
+            begin, end = np.array([low]), np.array([high])
+        else:
+            end = np.minimum(np.maximum(end, low), high)
+            begin = np.full_like(end, low)
+        panel = form.panel(begin, end) if from_clamp else form.panel(end, begin)
+        new = _step(panel, some, force if everywhere else force[on], trail)
         if everywhere:
             here = new
         else:
@@ -159,66 +150,51 @@ def _panels(form: Form, force: Floats, length: Floats, finer: int) -> Floats:
     order = np.argsort(length)
     largest = np.append(np.maximum.accumulate(force[order][::-1])[::-1], 0.0)
     reached = largest[np.searchsorted(length[order], ends[:-1], side="right")]
-    phase = np.diff(ends) * np.sqrt(reached * form.most_flexible)
-    counts = finer * np.clip(np.ceil(phase / _WAVE), 1, _MOST).astype(int)
+    waves = np.ceil(form.phases * np.sqrt(reached) / _WAVE)
+    counts = finer * np.minimum(np.maximum(waves, 1), _MOST).astype(int)
+    if counts.max() == 1:
+        return ends
     begins: Integers = np.repeat(np.cumsum(counts) - counts, counts)
     share = (np.arange(counts.sum()) - begins) / np.repeat(counts, counts)
     inner = np.repeat(ends[:-1], counts) + share * np.repeat(np.diff(ends), counts)
     return np.append(inner, ends[-1])
 
 
-def _step(
-    form: Form,
-    here: Place,
-    force: Floats,
-    begin: Floats,
-    end: Floats,
-    trail: list[Trail] | None,
-) -> Place:
-    """March from `begin` to `end`; both of shape (n,), or (1,) if they are the same for all."""
-    h = end - begin
-    part = form.part(begin, end)
-    s, flexible, natural = (values[1:-1] for values in part)
-    pull = h * force
-    pulled = (h * pull) * flexible
+def _step(panel: Panel, here: Place, force: Floats, trail: list[Trail] | None) -> Place:
+    """March from one end of a panel to the other."""
     # By the natural curvature and the moment at the beginning; the force turns it further.
-    turned = here.theta + h * _TO_NODES.dot(natural + flexible * here.m)
-    before = theta = turned + np.cos(here.theta) * _TO_NODES.dot(_SHARES * pulled)
-    for _ in range(_iterations(float(pulled.max()))):
-        before = theta
-        theta = turned + _TO_NODES.dot(pulled * _TO_NODES.dot(np.cos(theta)))
-    change = np.abs(theta - before).max(axis=0)
-    cos, sin = np.cos(theta), np.sin(theta)
-    along = WEIGHTS.dot(cos)
-    bent = _TO_NODES.dot(cos)
-    last = here.theta + h * WEIGHTS.dot(natural + flexible * (here.m + pull * bent))
-    last[change > _LOST] = np.nan
-    moment, size = here.m + pull * along, np.abs(h)
+    reached = turned = here.theta + (panel.rest + panel.bend * here.m)
+    for _ in range(_iterations(float(panel.give.max() * force.max())) + 1):
+        theta = reached[:-1]
+        cos = np.cos(theta)
+        reached = turned + force * panel.turned(cos)
+    change = np.abs(reached[:-1] - theta).max(axis=0)
+    last = np.where(change > _LOST, np.nan, reached[-1])
+    moment = here.m + panel.length * force * WEIGHTS.dot(cos)
+    sin, size = np.sin(theta), np.abs(panel.length)
     if trail is not None:
-        shape = theta.shape
         trail.append(
             Trail(
-                np.broadcast_to(s, shape),
-                here.along + size * bent,
-                here.across + size * _TO_NODES.dot(sin),
+                np.broadcast_to(panel.s, cos.shape),
+                here.along + size * TO_NODES.dot(cos),
+                here.across + size * TO_NODES.dot(sin),
             )
         )
-    ends = Part(*(values[:: NODES + 1] for values in part))
-    phase = _phase(ends, np.array([here.theta, last]), np.array([here.m, moment]), force)
+    first, final = _phases(panel, np.array([here.theta, last]), np.array([here.m, moment]), force)
     return Place(
         last,
         moment,
-        here.along + size * along,
+        here.along + size * WEIGHTS.dot(cos),
         here.across + size * WEIGHTS.dot(sin),
-        here.swing + (phase[1] - phase[0] + np.pi) % (2 * np.pi) - np.pi,
+        here.swing + (final - first + np.pi) % (2 * np.pi) - np.pi,
     )
 
 
-def _phase(at: Part, theta: Floats, m: Floats, force: Floats) -> Floats:
-    """The pendulum's phase: by half a period it changes by pi [rad]."""
-    curvature = at.natural + m * at.flexible
+def _phases(panel: Panel, theta: Floats, m: Floats, force: Floats) -> Floats:
+    """The pendulum's phase at both ends: by half a period it changes by pi [rad]."""
+    curvature = panel.natural + m * panel.flexible
     p = np.sqrt(force) * np.sin(np.pi / 4 - theta / 2)
-    return np.asarray(np.arctan2(p, curvature / (-2 * np.sqrt(at.flexible))))
+    return np.asarray(np.arctan2(p, curvature / (-2 * np.sqrt(panel.flexible))))
 
 
 def _iterations(pull: float) -> int:

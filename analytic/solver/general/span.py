@@ -60,13 +60,13 @@ def back_to_clamp(theta: Floats, kappa: Floats, force: Floats, length: Floats) -
     p1, g1, v1 = np.sin(chi), np.cos(chi), -kappa / 2
     energy = force * p1**2 + v1**2
     swings = energy <= force  # the pendulum does; else it turns over
-    larger = np.maximum(np.maximum(force, energy), _TINY)
-    m = np.minimum(force, energy) / larger
+    larger = np.maximum(np.where(swings, force, energy), _TINY)
+    m = np.where(swings, energy, force) / larger
     root = np.sqrt(larger)
     sn, cn, dn, _ = ellipj(root * length, m)
     S = sn / root
-    c, d = np.where(swings, cn, dn), np.where(swings, dn, cn)
     S_S = S * S
+    c, d = np.where(swings, cn, dn), np.where(swings, dn, cn)
     down = energy * _second_kind(S, S_S, cn, dn, m, root)
 
     p1_S, g1_d, v1_S = p1 * S, g1 * d, v1 * S
@@ -74,23 +74,18 @@ def back_to_clamp(theta: Floats, kappa: Floats, force: Floats, length: Floats) -
     p = (p1 * c * d - v1_S * g1) / D
     g = (g1_d + p1 * v1_S * c) / D
     # (1 - c)/F, as it is best where the force is small or large.
-    if c.min() >= 0:
-        fall = S_S / (1 + c)
-    else:
-        large = (1 - c) / np.maximum(force, _TINY)
-        fall = np.where(c >= 0, S_S / (1 + np.maximum(c, 0)), large)
+    large = (1 - c) / np.maximum(force, _TINY)
+    fall = np.where(c >= 0, S_S / (1 + np.maximum(c, 0)), large)
     gained = (v1 * (p1_S**2 - fall) + p1_S * g1_d) / D  # (v - v1)/F
     along = 2 * gained
     across = length - 2 * (down + p1_S * p)
     return Start(p, g, kappa - force * along, along, across, np.arctan2(sn, cn) % (2 * np.pi))
 
 
-def _second_kind(
-    S: Floats, S_S: Floats, cn: Floats, dn: Floats, m: Floats, root: Floats
-) -> Floats:
+def _second_kind(S: Floats, S_S: Floats, cn: Floats, dn: Floats, m: Floats, root: Floats) -> Floats:
     """Integral of S^2 by arc length, from 0 (Carlson's R_D; DLMF 19.25.10)."""
     rising = np.abs(S) * S_S / 3 * elliprd(cn * cn, dn * dn, 1.0)
-    first = (cn >= 0) & (S >= 0)
+    first = ~((cn < 0) | (S < 0))
     if first.all():  # no longer than a quarter of a period
         return rising
     quarter = np.zeros_like(S)
