@@ -103,20 +103,27 @@ def _in_plane(block: tuple[Floats, ...]) -> Floats:
 
 def _in_space(force: Floats, moment: Floats, tangent: Floats) -> Floats:
     size = np.linalg.norm(moment, axis=1)
-    axis = moment / size[:, None]
+    force, moment = force.T, moment.T
+    axis = moment / size
 
     def rate(state: Floats) -> Floats:
-        r, t = state[:3].T, state[3:].T
-        m = moment - np.cross(r, force)
-        return np.concatenate([t.T, np.cross(t, m).T])
+        r, t = state[:3], state[3:]
+        return np.concatenate([t, _cross(t, moment - _cross(r, force))])
 
     def left(state: Floats) -> tuple[Floats, Floats]:
-        r, t = state[:3].T, state[3:].T
-        m = moment - np.cross(r, force)
-        return (m * axis).sum(axis=1), (np.cross(force, t) * axis).sum(axis=1)
+        r, t = state[:3], state[3:]
+        m = moment - _cross(r, force)
+        return (m * axis).sum(axis=0), (_cross(force, t) * axis).sum(axis=0)
 
-    start = np.concatenate([np.zeros((3, len(force))), tangent.T])
+    start = np.concatenate([np.zeros_like(force), tangent.T])
     return _up_to_zero(rate, start, left, size)[:3].T
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    """`np.cross` along the first axis, which takes longer to find out which axes are meant."""
+    return np.stack(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )
 
 
 def _up_to_zero(

@@ -160,25 +160,26 @@ def print_passes(passes: "Sequence[Pass]", repeats: "Mapping[tuple[str, str], Re
     repeats : mapping of Repeat
         By the names of the two passes.
     """
-    reasons = [name for name in passes[0].dropped if any(one.dropped[name] for one in passes)]
-    table = Table(
-        Column("pass", overflow="fold"), "to the", "rows", "kept",
-        *(name.replace("_", " ") for name in reasons), "sorted", "gaps",
-        *(f"drift of {name}" for name in CLAMP_READINGS),
-        title="Passes: rows, why some are not used, and drift of the zero over the largest reading",
+    numbers = ("rows", "kept", "sorted", "gaps")
+    rows = Table(
+        Column("pass", overflow="fold"), "to the", *(_number(name) for name in numbers), "not kept",
+        title="Passes: rows, and why some are not used",
+    )  # fmt: skip
+    drifts = Table(
+        Column("pass", overflow="fold"), *(_number(name) for name in CLAMP_READINGS),
+        title="Drift of the zero, over the largest reading",
     )  # fmt: skip
     for one in passes:
+        lost = (f"{n} {name.replace('_', ' ')}" for name, n in one.dropped.items() if n)
+        counts = (one.rows, one.kept, one.sorted, one.record.gaps)
+        rows.add_row(Text(one.name), one.direction, *(str(n) for n in counts), ", ".join(lost))
         largest = {n: np.nanmax(np.abs(one.readings.values(n)), initial=0.0) for n in one.drift}
-        drifts = [one.drift[n] / largest[n] if largest[n] > 0 else np.nan for n in one.drift]
-        table.add_row(
-            Text(one.name),
-            one.direction,
-            *(str(n) for n in (one.rows, one.kept)),
-            *(str(one.dropped[name]) for name in reasons),
-            *(str(n) for n in (one.sorted, one.record.gaps)),
-            *("not known" if np.isnan(x) else f"{x:+.1e}" for x in drifts),
+        drift = [one.drift[n] / largest[n] if largest[n] > 0 else np.nan for n in one.drift]
+        drifts.add_row(
+            Text(one.name), *("not known" if np.isnan(x) else f"{x:+.1e}" for x in drift)
         )
-    console().print(table)
+    console().print(rows)
+    console().print(drifts)
     length = passes[0].readings.beam.length
     for (first, second), found in repeats.items():
         apart = max(found.rms.values())
@@ -203,10 +204,10 @@ def print_methods(found: pd.DataFrame, title: str) -> None:
         Which sweep.
     """
     levels = sorted(found["noise"].unique())
+    heads = ("answers", *(f"noise\n{level:g}" if level else "no\nnoise" for level in levels))
     table = Table(
-        Column("method", no_wrap=True), "phase", Column("answered", justify="right"),
-        *(f"noise {level:g}" if level else "no noise" for level in levels),
-        Column("contacts/s", justify="right"),
+        Column("method", overflow="fold"), "phase",
+        *(_number(head) for head in (*heads, "contacts\nper s")),
         title=Text(f"Median error of the contact, over L: {title}"),
     )  # fmt: skip
     for method, rows in found.groupby("method", sort=False):
@@ -225,3 +226,8 @@ def print_methods(found: pd.DataFrame, title: str) -> None:
             )
             name = ""
     console().print(table)
+
+
+def _number(head: str) -> Column:
+    """A column of numbers: a narrow terminal folds words, and cuts no number."""
+    return Column(head, no_wrap=True, justify="right")
