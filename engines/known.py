@@ -33,13 +33,14 @@ def named_engines(names: str) -> list[str]:
         If one is empty, unknown, or there twice. Whether it is installed does not matter.
     """
     listed = [name.strip() for name in names.split(",")]
-    others = set(listed) - set(_SHIPPED)
-    # Only a name that is not shipped is worth a look at every distribution that is installed.
-    if len(set(listed)) < len(listed) or (others and not others <= set(known_engines())):
+    if len(set(listed)) == len(listed) and set(listed) <= set(_SHIPPED):
+        return listed  # nothing in them is worth a look at every distribution that is installed
+    known = known_engines()
+    if len(set(listed)) < len(listed) or not set(listed) <= set(known):
         raise InputError(
             "engine",
             repr(names),
-            f"names between commas, each once, of {', '.join(known_engines())}",
+            f"names between commas, each once, of {', '.join(known)}",
             "`vibrissa engines` lists them",
         )
     return listed
