@@ -97,6 +97,31 @@ def _graph(count: int) -> Integers:
     ring = [np.roll(this, shift) for shift in (1, -1, far, -far)]
     lower = np.column_stack([*ring, this + count, np.full(count, -1)])
     upper = np.column_stack([*(part + count for part in ring), this, np.full(count, -1)])
+    return np.concatenate(
+        [
+            [2 * count, 4 * count - 4],
+            6 * np.arange(2 * count),
+            np.arange(2 * count),
+            np.concatenate([lower, upper]).ravel(),
+            prism_faces(count).ravel(),
+        ]
+    )
+
+
+def prism_faces(count: int) -> Integers:
+    """The triangles of a prism over a convex polygon.
+
+    Parameters
+    ----------
+    count : int
+        Vertices of the polygon: counterclockwise those of the near end, and then of the far end.
+
+    Returns
+    -------
+    array of int, shape (4 count - 4, 3)
+        Numbers of vertices, counterclockwise from outside.
+    """
+    this = np.arange(count)
     after = np.roll(this, -1)
     fan = this[:1].repeat(count - 2), this[1:-1], this[2:]
     faces = [
@@ -105,12 +130,4 @@ def _graph(count: int) -> Integers:
         [fan[0], fan[2], fan[1]],
         [corner + count for corner in fan],
     ]
-    return np.concatenate(
-        [
-            [2 * count, 4 * count - 4],
-            6 * np.arange(2 * count),
-            np.arange(2 * count),
-            np.concatenate([lower, upper]).ravel(),
-            np.concatenate([np.transpose(part) for part in faces]).ravel(),
-        ]
-    )
+    return np.concatenate([np.transpose(part) for part in faces])

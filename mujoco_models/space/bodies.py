@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeAlias
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.errors import InputError
 from analytic.space.problem.bodies.body import Body
 from analytic.space.problem.bodies.ellipsoid import Ellipsoid
@@ -15,6 +15,7 @@ from analytic.space.problem.bodies.polyhedron import Polyhedron
 from analytic.space.problem.bodies.prism import Cylinder, Prism
 from analytic.space.problem.bodies.support import SmoothBody
 from mujoco_models.model.spec import CCD_TOLERANCE
+from mujoco_models.obstacles.window import prism_faces
 
 GEOM, OUTLINE = "body", "outline"
 _MARGIN = 1.5  # L beyond the way of the foot: how far endless bodies go on
@@ -137,9 +138,9 @@ def _prism(
     with np.errstate(divide="ignore", invalid="ignore"):
         radius = grid.stretch / grid.turning
     if not ((radius > _SHARPEST) & (radius < _FLATTEST)).all():
-        _add_mesh(spec, points, body.label)
+        _add_mesh(spec, points, body.label, faces=prism_faces(len(points) // 2))
         return Shape(f"prism of a polygon of {len(line)} corners", True, 1e-6)
-    _add_mesh(spec, points, body.label, OUTLINE)
+    _add_mesh(spec, points, body.label, OUTLINE, prism_faces(len(points) // 2))
     _add(spec, mujoco.mjtGeom.mjGEOM_CYLINDER, centre, body.frame[2], [1.0, _HALF_LENGTH, 0.0])
 
     def osculating(normal: Floats, near: Floats) -> Circle:
@@ -187,16 +188,10 @@ def _add(
     return geom
 
 
-def _add_mesh(spec: mujoco.MjSpec, vertices: Floats, label: str, name: str = GEOM) -> None:
+def _hull(vertices: Floats) -> Integers:
+    """The triangles of a convex hull, counterclockwise from outside."""
     from scipy.spatial import ConvexHull
 
-    if len(vertices) > _MOST_VERTICES:
-        raise InputError(
-            f"body ({label})",
-            f"of {len(vertices)} vertices",
-            f"of at most {_MOST_VERTICES:,} for MuJoCo",
-            "simplify it (tolerance)",
-        )
     hull = ConvexHull(vertices)
     faces = hull.simplices.copy()
     corners = vertices[faces]
@@ -205,6 +200,25 @@ def _add_mesh(spec: mujoco.MjSpec, vertices: Floats, label: str, name: str = GEO
         * hull.equations[:, :3]
     ).sum(axis=1) < 0
     faces[inward] = faces[inward][:, ::-1]
+    return np.asarray(faces)
+
+
+def _add_mesh(
+    spec: mujoco.MjSpec,
+    vertices: Floats,
+    label: str,
+    name: str = GEOM,
+    faces: Integers | None = None,
+) -> None:
+    """With its hull's faces if they are not known: of long polygons that takes seconds."""
+    if len(vertices) > _MOST_VERTICES:
+        raise InputError(
+            f"body ({label})",
+            f"of {len(vertices)} vertices",
+            f"of at most {_MOST_VERTICES:,} for MuJoCo",
+            "simplify it (tolerance)",
+        )
+    faces = _hull(vertices) if faces is None else faces
     mesh = spec.add_mesh(name=name)
     mesh.uservert, mesh.userface = vertices.ravel(), faces.astype(np.int32).ravel()
     mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
@@ -232,10 +246,10 @@ def _within_reach(
 
 
 def _extruded(body: Prism, line: Floats, centre: Floats, reach: float) -> Floats:
-    """Its sides drawn up from the ends of its contour."""
+    """Its sides drawn up from the ends of its contour: a counterclockwise polygon, twice."""
     _, y, along = body.frame @ (centre - body.origin)
     top = np.full(2, max(line[:, 1].max(), y) + reach)
-    line = np.concatenate([line, np.column_stack([line[[0, -1], 0], top])])
+    line = np.concatenate([line, np.column_stack([line[[-1, 0], 0], top])])
     both = [np.column_stack([line, np.full(len(line), along + side)]) for side in (-reach, reach)]
     return np.asarray(body.origin + np.concatenate(both) @ body.frame)
 
