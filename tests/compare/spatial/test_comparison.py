@@ -239,17 +239,27 @@ def test_the_parts_are_mostly_the_discretisation():
 
 
 @pytest.mark.slow
-def test_the_command_compares_and_ends_with_the_right_code(tmp_path):
+def test_the_command_compares_and_ends_with_the_right_code(tmp_path, request):
+    """The first report of a run, and the first of files, are drawn."""
     text = (
         '[body]\nkind = "sphere"\nradius = 1\ncentre = [0, 1.4, 0]\n'
         "[path]\npoints = [[1.1, 0.3], [0.2, 0.3]]\nstations = 20\n[mujoco]\nsegments = {}\n"
     )
-    for segments, code, says in ((40, 0, "agrees with"), (3, 1, "disagrees with")):
+
+    def runs(segments, code, says):
         (tmp_path / "case.toml").write_text(text.format(segments))
         out = f"of-{segments}"
         done = vibrissa("space", "case.toml", "--engine", "mujoco", "--out", out, cwd=tmp_path)
         assert done.returncode == code, done.stdout + done.stderr
         assert says in done.stdout
+
+    def compares(*arguments, code, says):
+        done = vibrissa("compare", *arguments, "--out", "again", cwd=tmp_path)
+        assert done.returncode == code, done.stdout + done.stderr
+        assert says in done.stdout + done.stderr
+        assert len(done.stderr.strip().splitlines()) == (code == 2)
+
+    runs(40, 0, "agrees with")
     for name in ("report.html", "comparison.json", "components.png", "contacts.png",
                  "mujoco-chain.parquet", "animation.gif", "still-4.png"):  # fmt: skip
         assert (tmp_path / "of-40" / name).stat().st_size > 100
@@ -263,8 +273,11 @@ def test_the_command_compares_and_ends_with_the_right_code(tmp_path):
     foreign = saved.table[[*SENSED_IN_SPACE]].rename(columns={"force_x": "Fx", "foot_x": "X"})
     foreign.to_csv(tmp_path / "other.txt", sep=";", index=False)
     named = ("--column", "force_x=Fx", "--column", "foot_x=X")
+    compares("case.toml", "other.txt", *named, code=0, says="agrees with")
+    assert (tmp_path / "again" / "contacts.png").stat().st_size > 100
+    request.getfixturevalue("undrawn")
+    runs(3, 1, "disagrees with")
     for arguments, code, says in (
-        (("case.toml", "other.txt", *named), 0, "agrees with"),
         (("of-40/analytic.parquet", "of-40/mujoco-chain.parquet"), 0, "agrees with"),
         (("of-40/analytic.parquet", "of-3/mujoco-chain.parquet"), 1, "disagrees with"),
         (("case.toml", "other.txt"), 2, "--column"),
@@ -274,10 +287,7 @@ def test_the_command_compares_and_ends_with_the_right_code(tmp_path):
         (("catenary", "of-40/analytic.parquet"), 2, "in space"),
         (("catenary", "other.txt", "--frame", "clamp"), 2, "--frame"),
     ):
-        done = vibrissa("compare", *arguments, "--out", "again", cwd=tmp_path)
-        assert done.returncode == code, done.stdout + done.stderr
-        assert says in done.stdout + done.stderr
-        assert len(done.stderr.strip().splitlines()) == (code == 2)
+        compares(*arguments, code=code, says=says)
     for wrong in (["--engine", "drake"], ["--budget"]):
         done = vibrissa("space", "case.toml", *wrong, cwd=tmp_path)
         assert done.returncode == 2
@@ -306,7 +316,7 @@ force_x.max = { limit = 0.3, reason = "for the controller" }
 
 
 @pytest.mark.slow
-def test_the_report_of_a_run_again(tmp_path):
+def test_the_report_of_a_run_again(tmp_path, request):
     """Limits with their reasons, frame, parts, body and animation are those of the run."""
     (tmp_path / "case.toml").write_text(RUN)
     words = ("--engine", "mujoco", "--budget", "--frame", "clamp", "--out", "out")
@@ -326,6 +336,7 @@ def test_the_report_of_a_run_again(tmp_path):
     apart = np.linalg.norm(body.vertices - [0, 0.07, 0], axis=1)
     assert apart.max() == pytest.approx(0.05, rel=1e-2)
     assert body.vertices[:, 1].min() == pytest.approx(0.02, rel=0.05)
+    request.getfixturevalue("undrawn")  # those before were drawn
     # Without what the run wrote beside the sweeps there is a report, too.
     for name in ("comparison.json", "budget.json", "body.ply", "animation.gif"):
         (tmp_path / "out" / name).unlink()

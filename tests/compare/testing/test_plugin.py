@@ -13,6 +13,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("undrawn")
 def test_the_example_passes_and_is_reported(pytester):
     for file in ("test_my_simulator.py", "rig.toml"):
         (pytester.path / file).write_text((EXAMPLES / file).read_text())
@@ -41,6 +42,7 @@ def test_stiff(vibrissa_case, vibrissa_agreement):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("undrawn")
 def test_a_failure_says_what_where_how_much_and_why(pytester):
     pytester.makepyfile(BAD)
     result = pytester.runpytest("--vibrissa-report", "out")

@@ -45,6 +45,7 @@ def own_folder(pytester):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("undrawn")
 def test_what_agrees_passes_and_what_does_not_says_why(own_folder):
     result = own_folder.runpytest(
         "--vibrissa-space", "ball.toml", "--vibrissa-report", "out", "--strict-markers"

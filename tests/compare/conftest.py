@@ -1,0 +1,18 @@
+"""Reports without their pictures, for tests of what else is done."""
+
+import pytest
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Pages have no pictures and no film: to draw one report's takes as long as ten comparisons.
+
+    That they are drawn is tested by `test_main`, in `tests/compare/show` and `spatial`, by workers'
+    reports in `testing`, and by the pages.
+    """
+    monkeypatch.setattr("compare.show.animation.write_animation", lambda *_: [])
+    monkeypatch.setattr("compare.show.report.FIGURES", {})
+    monkeypatch.setattr("compare.show.report._figures", lambda *_: {})
+    monkeypatch.setattr("compare.show.animation.space.write_space_animation", lambda *_: [])
+    monkeypatch.setattr("compare.show.spatial.png", lambda *_: b"")
+    monkeypatch.setattr("compare.show.spatial.inline_svg", lambda *_: "")
