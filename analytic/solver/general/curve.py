@@ -15,7 +15,7 @@ from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour
 from analytic.solver.general.states import Vibrissa, with_rates
 
-_NEAR = 1e-3  # of the misses: the next step of Newton's method leaves about the square of that
+_NEAR = 1e-3  # of a step: what Newton's method leaves after it is of the square of that
 _CLOSE = 1e-14  # where the curve has a kink or a fold: of an event
 _ROUNDING = 1e-12  # of the misses: one that does not fall any more is as small as it can be
 _NEWTON = 10
@@ -100,7 +100,7 @@ class Curve(NamedTuple):
         if places:
             return self._stopped(here, min(places), z)
         scale = self._scale(here.z)
-        new = self._corrected(z, here.direction / scale**2, roughly=True)
+        new = self._corrected(z, here.direction / scale**2, near=_NEAR * length)
         if new is None:
             return ()
         new = _along(new, here.direction / scale**2)
@@ -238,9 +238,9 @@ class Curve(NamedTuple):
         return point, misses, slopes
 
     def _corrected(
-        self, z: Floats, normal: Floats, pinned: slice = slice(0), *, roughly: bool = False
+        self, z: Floats, normal: Floats, pinned: slice = slice(0), *, near: float = 0.0
     ) -> Point | None:
-        """The point of the curve in the plane through z; or one so near that one may go on."""
+        """The point of the curve in the plane through z; or one, by a step of at most `near`."""
         value = z[pinned].copy()
         missed = np.inf
         for _ in range(_NEWTON):
@@ -259,7 +259,7 @@ class Curve(NamedTuple):
             z[pinned] = value
             if not z[_F] >= 0 or not self.t_range[0] - 1 < z[_T] < self.t_range[1] + 1:
                 return None
-            if roughly and missed < _NEAR:
+            if self._size(step, z) < near:
                 return point._replace(z=z, foot_x=point.foot_x - float(slopes[2] @ step))
         return None
 
