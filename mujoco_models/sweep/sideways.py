@@ -79,12 +79,16 @@ def sideways(model: BeamModel) -> Sideways:
     axes = np.flatnonzero(np.abs(data.cdof[:, 2]) < _ALONG_Z)
     rest = data.qpos.copy()
     joints = np.empty((len(axes), len(axes)))
+    # What carries nothing carries nothing in a turn so small either.
+    contacts, watched = model.contacts(), model.lookout.watched
+    model.lookout.watch(watched.intersection(contacts.touch[contacts.loaded].tolist()))
     for column, axis in enumerate(axes):
         turn = np.zeros(count)
         turn[axis] = _TURN
         model.turn(rest, turn)
         model.relieved(_TURN**2)  # by which a turn lifts a contact
         joints[:, column] = -model.moments()[axes] / _TURN
+    model.lookout.watch(watched)
     model.turn(rest, np.zeros(count))
     joints = (joints + joints.T) / 2
     push = model.contact_rise()[axes]
