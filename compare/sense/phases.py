@@ -10,6 +10,8 @@ from analytic.from_clamp.phases import judge_phases
 from analytic.problem.arrays import Floats, Words
 from analytic.problem.table import says
 
+_CATEGORIES = pd.CategoricalDtype(PHASES)
+
 
 @dataclass(frozen=True, repr=False)
 class Classification:
@@ -99,6 +101,6 @@ def confusion(judged: Classification, truth: Readings) -> pd.DataFrame:
     true = np.array([says(truth.table["phase"], phase) for phase in PHASES])
     seen = np.array([judged.phase == phase for phase in PHASES])
     rows, columns = (
-        pd.CategoricalIndex(PHASES, categories=PHASES, name=name) for name in ("truth", "judged")
+        pd.CategoricalIndex(PHASES, dtype=_CATEGORIES, name=name) for name in ("truth", "judged")
     )
     return pd.DataFrame((true & known).astype(int) @ seen.T, rows, columns)
