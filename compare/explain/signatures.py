@@ -21,6 +21,7 @@ from analytic import (
 )
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour
+from analytic.problem.table import says
 
 _STATIONS = 1000  # of the sweeps between which it is interpolated
 _BEYOND = 0.02  # L; what a slightly longer vibrissa would reach, beyond the contour that is known
@@ -228,12 +229,16 @@ def _through(points: bytes) -> Contour:
 
 @lru_cache(_KEPT)
 def _sweep(case: Case) -> tuple[Floats, Floats]:
-    """Foot positions, ascending, and the clamp readings there, NaN where it is free."""
+    """Foot positions, ascending, and the clamp readings there, NaN where it is free.
+
+    Single stations that cannot be solved, where the contour's curvature jumps, are left out.
+    """
     sweep = solve_sweep(case)
-    free = (sweep.table["phase"] == "free").to_numpy()
-    rows = np.stack([np.where(free, np.nan, sweep.values(name)) for name in CLAMP_READINGS])
-    order = np.argsort(sweep.values("foot_x"))
-    return sweep.values("foot_x")[order], rows[:, order]
+    foot_x, rows = sweep.values("foot_x"), np.stack([sweep.values(n) for n in CLAMP_READINGS])
+    solved = np.isfinite(rows).all(axis=0)
+    rows[:, says(sweep.table["phase"], "free")] = np.nan
+    order = np.argsort(foot_x[solved])
+    return foot_x[solved][order], rows[:, solved][:, order]
 
 
 def _extended(points: Floats, beyond: float) -> Floats:
