@@ -10,7 +10,7 @@ from analytic.from_clamp.phases import judge_phases
 from analytic.problem.arrays import Floats, Words
 from analytic.problem.table import says
 
-_CATEGORIES = pd.CategoricalDtype(PHASES)
+_CATEGORIES = pd.CategoricalDtype([*PHASES])
 
 
 @dataclass(frozen=True, repr=False)
