@@ -104,19 +104,31 @@ class Form:
         Returns
         -------
         Panel
-            Of n vibrissae; the same, if n is 1, is computed once.
+            Of n vibrissae.
         """
-        if begin.size > 1:
-            return Panel.between(begin, end, self.flexibility, self.unloaded.curvature)
-        key = float(begin[0]), float(end[0])
+        return Panel.between(begin, end, self.flexibility, self.unloaded.curvature)
+
+    def known_panel(self, begin: float, end: float) -> Panel:
+        """The form between two places that many spans run through, computed once.
+
+        Parameters
+        ----------
+        begin, end : float
+            Arc lengths from the clamp [L].
+
+        Returns
+        -------
+        Panel
+            The same for all vibrissae.
+        """
+        key = begin, end
         if key not in self._known:
-            known = Panel.between(begin, end, self.flexibility, self.unloaded.curvature)
-            self._known[key] = known
+            self._known[key] = self.panel(np.array([begin]), np.array([end]))
         return self._known[key]
 
     @cached_property
     def _known(self) -> dict[tuple[float, float], Panel]:
-        """Panels of the vibrissa that many spans run through."""
+        """Panels by their ends."""
         return {}
 
     @cached_property

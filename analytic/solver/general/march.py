@@ -100,11 +100,11 @@ def march(
         some = here if everywhere else Place(*(values[on] for values in here))
         end = length if everywhere else length[on]
         if end.min() >= high:
-            begin, end = np.array([low]), np.array([high])
+            panel = form.known_panel(*((low, high) if from_clamp else (high, low)))
         else:
             end = np.minimum(np.maximum(end, low), high)
             begin = np.full_like(end, low)
-        panel = form.panel(begin, end) if from_clamp else form.panel(end, begin)
+            panel = form.panel(*((begin, end) if from_clamp else (end, begin)))
         new = _step(panel, some, force if everywhere else force[on], trail)
         if everywhere:
             here = new
