@@ -180,8 +180,10 @@ def _best(fit: Fit) -> tuple[Floats, float]:
     for i, kind in enumerate(fit.kinds):
         this = np.arange(len(fit.start)) == i
         starts += [np.where(this, number, fit.start) for number in kind.starts]
-    starts = [fit.scaled_rigidity(_inside(fit, start)) for start in starts]
-    costs = [float(np.sum(fit.misses(start) ** 2)) for start in starts]
+    costs = []
+    for i, start in enumerate(starts):
+        starts[i] = fit.scaled_rigidity(_inside(fit, start))
+        costs.append(float(np.sum(fit.misses(starts[i]) ** 2)))
     enough = _SATISFIED**2 * fit.measured.readings.size
     best, least = starts[0], np.inf
     for at in np.argsort(costs)[:_STARTS].tolist():

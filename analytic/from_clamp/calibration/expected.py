@@ -1,6 +1,6 @@
 """What the clamp of a vibrissa reads at any foot positions, by the closed form."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -65,6 +65,23 @@ class Expected:
         if case.sweep.direction == "right":
             found[:, self.loaded] *= _MIRRORED
         return found
+
+    def scaled(self, case: Case, factor: float) -> "Expected":
+        """Those of a vibrissa that is stiffer throughout, in a rigid clamp.
+
+        Parameters
+        ----------
+        case : Case
+            The same but for the rigidity.
+        factor : float
+            By which it is larger.
+
+        Returns
+        -------
+        Expected
+            Its shapes are the same, and so are the states in units of its rigidity.
+        """
+        return replace(self, case=case, readings=factor * self.readings)
 
     @cached_property
     def _slopes(self) -> Floats:
