@@ -36,7 +36,7 @@ test: develop    ## the fast tests, under two minutes
 	$(BIN)/python -m pytest $(PARALLEL) $(ARGS)
 
 test-slow: develop   ## the slow tests alone
-	$(BIN)/python -m pytest $(PARALLEL) -m slow $(ARGS)
+	$(BIN)/python -m pytest $(PARALLEL) -m "slow and not trial" $(ARGS)
 
 test-all: develop    ## all tests, the slow ones too
 	$(BIN)/python -m pytest $(PARALLEL) -m "not trial" $(ARGS)

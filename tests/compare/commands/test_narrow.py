@@ -4,21 +4,35 @@ from pathlib import Path
 
 import pytest
 
-from tests.compare.command import vibrissa
+from analytic import named_case, solve_sweep
+from compare.commands import terminal
+from compare.measure.methods import method_errors
+from compare.read.passes import read_passes
+from compare.read.rig_file import read_rig
+from tests.compare.planted import planted
 
 RIG = Path(__file__).parents[3] / "docs" / "examples" / "rig"
-COMMANDS = [
-    ("methods", "parabola", "--method", "quist-hartmann-half-cell,elastica"),
-    ("rig", RIG / "data", "--rig", RIG / "rig.toml", "--out", "passes"),
-    ("run", "parabola", "--stations", "20", "--segments", "10", "--budget"),
-]
 
 
-@pytest.mark.usefixtures("undrawn", "in_turn")
-@pytest.mark.parametrize("words", COMMANDS, ids=lambda words: words[0])
-def test_no_number_is_cut(words, tmp_path, monkeypatch):
+def methods():
+    sweep = solve_sweep(named_case("parabola"))
+    found = method_errors(sweep, ("quist-hartmann-half-cell", "elastica"), (0.0, 1e-3, 1e-2))
+    terminal.print_methods(found, "parabola (exact)")
+
+
+def passes():
+    terminal.print_passes(read_passes(RIG / "data", read_rig(RIG / "rig.toml")), {})
+
+
+def budget():
+    terminal.print_budget(planted(), "catenary")
+
+
+@pytest.mark.parametrize("prints", [methods, passes, budget])
+def test_no_number_is_cut(prints, monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", "80")
-    done = vibrissa(*words, cwd=tmp_path)
-    assert done.returncode in (0, 1), done.stderr
-    assert "…" not in done.stdout
-    assert max(len(line) for line in done.stdout.splitlines() if line[:1] in "┃│") <= 80
+    prints()
+    tables = [line for line in capsys.readouterr().out.splitlines() if line[:1] in "┃│"]
+    assert len(tables) > 3
+    assert "…" not in "".join(tables)
+    assert max(map(len, tables)) <= 80
