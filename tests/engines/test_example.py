@@ -50,6 +50,7 @@ def test_it_is_as_good_as_the_page_says(installed):
     assert rows[1]["agrees"]
 
 
+@pytest.mark.slow
 def test_it_refuses_what_it_cannot(installed, tmp_path):
     done = vibrissa("run", "catenary", "--stations", 10, "--engine", "shooting", cwd=tmp_path)
     assert done.returncode == 2

@@ -7,6 +7,7 @@ from analytic import REAL_CASE_NAMES, Readings, named_case, solve_sweep
 from tests.compare.command import vibrissa
 
 
+@pytest.mark.slow
 def test_the_papers_figures(tmp_path):
     done = vibrissa(
         "analytic", "shallow-catenary", "--figures", "--certified", "--out", ".", cwd=tmp_path

@@ -74,6 +74,7 @@ assert pickle.loads(sent).table.equals(found.table)
 """
 
 
+@pytest.mark.slow
 def test_workers_sweep_without_what_tables_take():
     done = subprocess.run([sys.executable, "-c", SWEEP], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["loaded"], done.stderr

@@ -7,6 +7,7 @@ from analytic import named_case, solve_sweep
 from tests.compare.command import vibrissa
 
 
+@pytest.mark.slow
 def test_a_case_and_a_file_of_its_readings_are_alike(tmp_path):
     solve_sweep(named_case("parabola")).write(tmp_path / "mine.parquet")
     for given in ("parabola", "mine.parquet"):

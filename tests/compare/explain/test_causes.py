@@ -96,7 +96,7 @@ def taken(beam: Beam | None = None, **support: float) -> Callable[[Case], Readin
     [
         pytest.param(taken(clamp_stiffness=10.0), "clamp stiffness", 10.0, marks=pytest.mark.slow),
         pytest.param(taken(friction=0.05), "friction", 0.05, marks=pytest.mark.slow),
-        (taken(friction=0.2), "friction", 0.2),
+        pytest.param(taken(friction=0.2), "friction", 0.2, marks=pytest.mark.slow),
         (taken(Beam(natural_curvature=-0.3)), "natural curvature", -0.3),
         pytest.param(taken(Beam(tip_radius=0.002)), "tip radius", 0.002, marks=pytest.mark.slow),
     ],

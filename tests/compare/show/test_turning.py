@@ -123,6 +123,7 @@ def test_paper_has_a_still_in_its_place(look, report, tmp_path, width):
     assert pdf.stat().st_size > 100_000
 
 
+@pytest.mark.slow
 def test_the_page_holds_every_station_and_is_small(report):
     text = report.read_text(encoding="utf-8")
     data = json.loads(re.search(r'id="scene-data" type="application/json">(.*?)</script>', text)[1])

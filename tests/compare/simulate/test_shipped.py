@@ -116,6 +116,7 @@ def test_a_first_edge_that_is_rigid_is_as_stiff_as_was_measured(tmp_path, name):
     assert ratio == pytest.approx(off, abs=0.025)
 
 
+@pytest.mark.slow
 @rods
 def test_a_rod_whose_sensors_read_nothing_is_refused():
     subjects = {r.subject for r in inspected("rod").remarks if r.kind == "fault"}

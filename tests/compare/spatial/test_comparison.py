@@ -124,7 +124,7 @@ def passed():
     return solve_space(replace(CASE, path=FootPath([[1.3, 0.3], [-1.5, 0.3]], stations=60)))
 
 
-@pytest.mark.parametrize("share", [1e-3, 1e-2])
+@pytest.mark.parametrize("share", [pytest.param(1e-3, marks=pytest.mark.slow), 1e-2])
 def test_noise_neither_touches_nor_fails_what_agrees(passed, share):
     for seed in range(5):
         noisy = with_noise(passed, share, seed)

@@ -61,6 +61,7 @@ def tallied(name: str, count: int, seed: int, dominance: bool = True) -> Tally:
     return tally
 
 
+@pytest.mark.slow
 def test_a_right_model_is_mostly_within_its_uncertainty():
     found = tallied("circle", 3, seed=1, dominance=False)
     assert sum(found.whole) >= 2

@@ -179,6 +179,7 @@ print(len(os.listdir("/proc/self/task")) - before)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="threads are counted in /proc")
 def test_tables_are_read_without_threads(tmp_path, plan, stored, warned):
     # A thread of Arrow's that ends while Python does aborts the process: 1 in 100 studies.
