@@ -76,6 +76,7 @@ def test_a_foot_that_is_off_is_found_too():
     assert found.found["clamp_stiffness"].value == pytest.approx(8.0, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_derivatives_are_those_of_whole_sweeps():
     """Though they are taken from the states of one: 1e-4, as a cone's differences are so good."""
     cone = Beam(tip_radius=0.003, natural_curvature=-0.2)

@@ -135,6 +135,7 @@ def test_what_a_reader_makes_of_it_who_knows_of_no_natural_curvature():
     assert np.nanmax(missed(found, readings)) > 0.03
 
 
+@pytest.mark.slow
 def test_uncertainty_covers_the_error():
     exact = solve_sweep(REAL)
     noise = relative_noise(exact, 1e-2)

@@ -61,6 +61,7 @@ def test_in_other_units():
     assert missed(reconstruct(large), large.table).max() < 50 * 1e-13
 
 
+@pytest.mark.slow
 def test_uncertainty_covers_the_error_of_a_parabola():
     covers(exact_sweep("parabola"), 1e-2)
 
