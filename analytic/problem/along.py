@@ -19,6 +19,7 @@ _DEGREE = 24
 _TAIL = 3  # coefficients, of a series that is exact they are rounding
 _EXACT = 1e-13  # of a piece's largest value; the solution is good to 1e-10
 _JOINED = 1e-6  # of the largest value; pieces that differ by more from one for both stay apart
+_UNROUNDED = 1e-290  # numbers not far below are rounded to a fixed step, not to a share of them
 _LEAST = 1e-2  # of the largest value of all; less counts as that
 _HALVINGS = 44  # then a piece is 1e-13 L wide, and what is in it is a jump
 _FIRST = 8  # pieces of a function that are looked at; nothing narrower is seen for sure
@@ -284,6 +285,7 @@ def _sampled(name: str, function: Callable[[Floats], Floats], length: float) -> 
         return found, bool(np.abs(found[-_TAIL:]).max() <= _EXACT * size)
 
     largest = float(np.abs(_values(name, function, np.linspace(0, length, 65))).max())
+    largest = max(largest, _UNROUNDED)
     ends, pieces = [0.0], list[Floats]()
     marks = np.linspace(0, length, _FIRST + 1).tolist()
     ahead = list(pairwise(marks))[::-1]

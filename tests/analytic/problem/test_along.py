@@ -38,6 +38,12 @@ def test_function_is_kept_to_rounding(function):
     assert beam.varies and beam.base_rigidity == pytest.approx(function(0.0), rel=1e-14)
 
 
+def test_a_curvature_of_next_to_nothing_is_not_rough():
+    """Subnormal numbers have few digits; the vibrissa is straight."""
+    curved = Beam(natural_curvature=lambda s: 2e-309 * (s**2 - 0.3))
+    assert curved.natural_curvature(0.5) == pytest.approx(0.0, abs=1e-300)
+
+
 def test_a_kink_costs_one_piece():
     assert len(Beam(flexural_rigidity=knee).flexural_rigidity.series) == 2
     assert len(Beam(flexural_rigidity=segments).flexural_rigidity.series) == 4
