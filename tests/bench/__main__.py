@@ -6,6 +6,7 @@ from tests.bench import (
     analytic_speed,
     engines_speed,
     exudyn_speed,
+    limits,
     million,
     mujoco_speed,
     plain_stepping,
@@ -16,6 +17,7 @@ from tests.bench import (
 
 PARTS = {
     "ratios": ratios.main,
+    "limits": limits.main,
     "analytic": analytic_speed.main,
     "mujoco": mujoco_speed.main,
     "space": space_speed.main,

@@ -9,11 +9,10 @@ a third, at times).
 
 import json
 import platform
-import resource
 import statistics
 import subprocess
 import sys
-import time
+import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -40,6 +39,7 @@ from analytic import (
     solve_sweeps,
 )
 from mujoco_models import Settings, simulate_sweep
+from tests.bench.timing import cpu_seconds
 
 HISTORY = Path(__file__).parents[2] / "results" / "bench.json"
 REGRESSION = 1.3
@@ -53,8 +53,6 @@ _ENOUGH = 0.5  # s, of the other calculation: longer says no more of it
 _COUNT = 100_000  # contacts in an array
 _ON_CONE = 2_000  # of a cone, of which a tenth is beyond the end of the solved curve
 _BATCH = 82  # sweeps: as many as `solve_sweeps` takes at once
-
-_COMMAND = "import sys; from compare.commands.main import main"
 
 
 class Cost(NamedTuple):
@@ -104,8 +102,8 @@ def costs() -> dict[str, Cost]:
         "one of many such sweeps, by the same": Cost(many, _pendulum, _BATCH),
         "the object from its readings, by the same": Cost(lambda: reconstruct(readings), _pendulum),
         "`vibrissa cases`, by an import of SciPy's optimisers": Cost(
-            partial(_process, f"{_COMMAND}; sys.argv[1:] = ['cases']; main()"),
-            partial(_process, "import scipy.optimize"),
+            partial(process, command("cases")),
+            partial(process, "import scipy.optimize"),
         ),
     }
     for segments in (40, 160):
@@ -120,13 +118,13 @@ def costs() -> dict[str, Cost]:
 
 def measure(cost: Cost, pairs: int = _PAIRS) -> Measured:
     """A ratio of CPU times, in pairs one after the other."""
-    first = _seconds(cost.ours)  # which may import something
-    ours = first if first > _ENOUGH else _seconds(cost.ours)
-    repeats = max(1, round(min(ours / 2, _ENOUGH) / max(_seconds(cost.other), 1e-9)))
+    first = cpu_seconds(cost.ours)  # which may import something
+    ours = first if first > _ENOUGH else cpu_seconds(cost.ours)
+    repeats = max(1, round(min(ours / 2, _ENOUGH) / max(cpu_seconds(cost.other), 1e-9)))
     found = []
     for _ in range(pairs):
-        ours = _seconds(cost.ours)
-        other = min(_seconds(partial(_repeat, cost.other, repeats)) for _ in range(2))
+        ours = cpu_seconds(cost.ours)
+        other = min(cpu_seconds(partial(_repeat, cost.other, repeats)) for _ in range(2))
         found.append(ours / other * repeats / cost.share)
     quarter, half, three = statistics.quantiles(found, n=4)
     return Measured(half, (three - quarter) / 2)
@@ -134,7 +132,7 @@ def measure(cost: Cost, pairs: int = _PAIRS) -> Measured:
 
 def tried(cost: Cost) -> Measured:
     """The ratio of one pair, as it comes."""
-    ratio = _seconds(cost.ours) / max(_seconds(cost.other), 1e-9) / cost.share
+    ratio = cpu_seconds(cost.ours) / max(cpu_seconds(cost.other), 1e-9) / cost.share
     return Measured(ratio, np.nan)
 
 
@@ -196,25 +194,28 @@ def main(quick: bool) -> None:
         HISTORY.write_text(json.dumps(history, indent=1) + "\n")
 
 
-def _seconds(call: Callable[[], object]) -> float:
-    """CPU time of a call and of the processes that it has started and awaited."""
-    begin = _spent()
-    call()
-    return _spent() - begin
-
-
-def _spent() -> float:
-    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return time.process_time() + usage.ru_utime + usage.ru_stime
-
-
 def _repeat(call: Callable[[], object], times: int) -> None:
     for _ in range(times):
         call()
 
 
-def _process(program: str) -> None:
-    subprocess.run([sys.executable, "-c", program], check=True, capture_output=True)
+def command(*words: str) -> str:
+    """The program that a command of ours is; a disagreement is no failure."""
+    return f"""
+import sys
+from compare.commands.main import main
+sys.argv[1:] = {words!r}
+try:
+    main()
+except SystemExit as ended:
+    assert ended.code != 2
+"""
+
+
+def process(program: str) -> None:
+    """Run a program in a Python of its own, and in an empty folder."""
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([sys.executable, "-c", program], cwd=folder, check=True, capture_output=True)
 
 
 def _pendulum() -> object:

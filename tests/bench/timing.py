@@ -1,5 +1,6 @@
 """How long a call takes."""
 
+import resource
 import time
 from collections.abc import Callable
 
@@ -13,3 +14,15 @@ def seconds(call: Callable[[], object], repeats: int = 5) -> float:
         call()
         best = min(best, time.perf_counter() - start)
     return best
+
+
+def cpu_seconds(call: Callable[[], object]) -> float:
+    """CPU time of a call and of the processes that it has started and awaited [s]."""
+    begin = _spent()
+    call()
+    return _spent() - begin
+
+
+def _spent() -> float:
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + usage.ru_utime + usage.ru_stime

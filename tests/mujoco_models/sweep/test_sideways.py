@@ -185,7 +185,7 @@ def test_torsional_stiffness_does_not_matter_to_second_order():
         settings = replace(COARSE, beam="cable", segments=segments)
         obstacle = place(CIRCLE, settings)
         spacing = bead_spacing(segments, CIRCLE.radius, obstacle.largest_curvature)
-        cable = Cable(settings, spacing, twist)
+        cable = Cable(settings, spacing, twist=twist)
         model = BeamModel(cable, CIRCLE.radius, obstacle, settings.contact_stiffness)
         walk = Walk(model, float(CIRCLE.foot_x[0]), 1e-8)
         for foot_x in np.linspace(0.9, -0.459, 25):
