@@ -19,11 +19,12 @@ from analytic import (
     solve_sweep,
     through_points,
 )
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.contours.contour import Contour
 from analytic.problem.table import says
 
 _STATIONS = 1000  # of the sweeps between which it is interpolated
+_FEW = 10  # of them; a hundredth of the sweep, between which the readings are all but straight
 _BEYOND = 0.02  # L; what a slightly longer vibrissa would reach, beyond the contour that is known
 _SAME = 1e-3  # of the largest magnitude; the contour must reproduce the reference so well (rms)
 
@@ -229,16 +230,25 @@ def _through(points: bytes) -> Contour:
 
 @lru_cache(_KEPT)
 def _sweep(case: Case) -> tuple[Floats, Floats]:
-    """Foot positions, ascending, and the clamp readings there, NaN where it is free.
+    """Foot positions, ascending, and the clamp readings there, NaN where it is free or unknown.
 
-    Single stations that cannot be solved, where the contour's curvature jumps, are left out.
+    A few in a row that cannot be solved, where the contour's curvature jumps, are left out.
     """
     sweep = solve_sweep(case)
     foot_x, rows = sweep.values("foot_x"), np.stack([sweep.values(n) for n in CLAMP_READINGS])
-    solved = np.isfinite(rows).all(axis=0)
+    kept = ~_few_in_a_row(says(sweep.table["status"], "diverged"))
     rows[:, says(sweep.table["phase"], "free")] = np.nan
-    order = np.argsort(foot_x[solved])
-    return foot_x[solved][order], rows[:, solved][:, order]
+    order = np.argsort(foot_x[kept])
+    return foot_x[kept][order], rows[:, kept][:, order]
+
+
+def _few_in_a_row(wanted: Booleans) -> Booleans:
+    """Those of the stations wanted that stand among few others."""
+    ends = np.flatnonzero(np.diff(wanted, prepend=False, append=False)).reshape(-1, 2)
+    found = np.zeros_like(wanted)
+    for first, last in ends[np.diff(ends, axis=1)[:, 0] <= _FEW]:
+        found[first:last] = True
+    return found
 
 
 def _extended(points: Floats, beyond: float) -> Floats:
