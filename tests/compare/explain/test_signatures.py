@@ -25,5 +25,5 @@ def test_a_few_unsolved_stations_are_interpolated_over_and_a_stretch_is_not(
     assert np.isfinite(at).all() == bridged
     if bridged:
         known = [exact.values(name)[unsolved] for name in CLAMP_READINGS]
-        np.testing.assert_allclose(at, known, atol=2e-3)  # five stations of 200 wide
+        np.testing.assert_allclose(at, known, atol=6e-3)  # curved over six steps of 200
     signatures._sweep.cache_clear()
