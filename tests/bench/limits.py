@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
+from unittest.mock import patch
 
 import numpy as np
 from rich.console import Console
@@ -21,14 +22,16 @@ from analytic import (
 )
 from analytic.solver.integrals import elliptic_integrals
 from compare.explain.changes import controlled_changes
+from compare.simulate.controlled import measure_budget
 from mujoco_models import Settings, simulate_sweep
 from mujoco_models.sweep.sweep import set_out
 from tests.bench.ratios import command, process
 from tests.bench.timing import cpu_seconds
+from tests.in_turn import InTurn
 
 _RUNS = 3
 _EVALUATIONS = 200
-_EVALUATION = "MuJoCo looks once at each state: places, contacts, forces"
+_EVALUATION = "MuJoCo looks at each state once"
 _INTEGRALS = "F and E, once a contact"
 _LIBRARIES = "import mujoco, pandas, matplotlib.pyplot, PIL.Image, jinja2, rich.table, typer"
 
@@ -97,13 +100,13 @@ def figures(quick: bool) -> list[Figure]:
             "`vibrissa run catenary`",
             partial(process, command("run", "catenary", *short)),
             partial(process, _LIBRARIES),
-            "Python, and the imports of MuJoCo, pandas, Matplotlib, Jinja and Typer",
+            "Python, and the imports of MuJoCo, pandas, Matplotlib, ...",
         ),
         Figure(
-            "`vibrissa budget catenary`, all processes",
-            partial(process, command("budget", "catenary", *short)),
+            f"a budget, N = {sizes[0][0]}, its sweeps one after the other",
+            partial(_budget, case, Settings(segments=sizes[0][0], contour_points=sizes[0][1])),
             _all_evaluations(case, Settings(segments=sizes[0][0], contour_points=sizes[0][1])),
-            f"{_EVALUATION}, in all its sweeps",
+            f"{_EVALUATION}, of all its sweeps",
         ),
     ]
 
@@ -134,6 +137,11 @@ def _station(case: Case, settings: Settings) -> Figure:
         stations,
         _EVALUATIONS,
     )
+
+
+def _budget(case: Case, settings: Settings) -> None:
+    with patch("compare.simulate.controlled.Workers", InTurn):  # whose time is not lost sight of
+        measure_budget(case, settings)
 
 
 def _evaluations(case: Case, settings: Settings, count: int) -> Callable[[], None]:
