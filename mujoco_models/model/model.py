@@ -17,16 +17,12 @@ from mujoco_models.model.sides import FUSED, Sides
 from mujoco_models.model.sliding import SlidingBeads
 from mujoco_models.model.spec import assemble, compiled
 from mujoco_models.model.surface import Surface
+from mujoco_models.model.warned import has_diverged
 from mujoco_models.obstacles.protocol import Obstacle
 
 STEP = 1e-3  # of MuJoCo's own motion
 LONG_STEP = 5e-3  # of it, where nothing can be mistaken; 1e-2 would be too long for 3.17's cable
 AT_REST = 1e-10  # of a coordinate, in a step: the motion has come to its end
-_BAD_STATES = (
-    mujoco.mjtWarning.mjWARN_BADQPOS,
-    mujoco.mjtWarning.mjWARN_BADQVEL,
-    mujoco.mjtWarning.mjWARN_BADQACC,
-)
 _FULL = np.array([mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL], int)
 ROUNDING = 1e-13  # L, of a contact's depth: that of its place, which all joints before it add to
 _DISTINCT = 1e-2  # of the largest; beads side by side share a load in ways that hardly differ
@@ -264,7 +260,7 @@ class BeamModel:
         self._sides = None
         data.qvel[:] = 0
         mujoco.mj_step(model, data)
-        if any(data.warning[bad].number for bad in _BAD_STATES):
+        if has_diverged(data):
             raise DivergedError("MuJoCo's own motion does not stay finite")
         model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
         return float(np.abs(data.qpos - before).max())

@@ -17,6 +17,7 @@ from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.model.clamp import Clamp
 from mujoco_models.model.contacts import NOWHERE
 from mujoco_models.model.stiffness import stiffen, weights_in_last_step
+from mujoco_models.model.warned import has_diverged
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.faceted import add_hull
 from mujoco_models.obstacles.prism import Prism
@@ -32,14 +33,6 @@ _WILD = 100.0  # EI/L^2 and EI/L; thirty times what a sweep takes
 _AT_TIP = 1e-3  # L
 _IMPEDANCE = 0.9
 _ITERATIONS, _TOLERANCE = 500, 1e-12  # of Newton's method, which takes two or three
-_BAD_STATES = [
-    int(bad)
-    for bad in (
-        mujoco.mjtWarning.mjWARN_BADQPOS,
-        mujoco.mjtWarning.mjWARN_BADQVEL,
-        mujoco.mjtWarning.mjWARN_BADQACC,
-    )
-]
 
 
 class OwnModelInMotion:
@@ -214,7 +207,7 @@ class OwnModelInMotion:
         unit = self._beam.length
         self._drive.move(self.data, self._way * unit, speed * unit / self._period)
         mujoco.mj_step(self.model, self.data)
-        if self.data.warning.number.take(_BAD_STATES).any():
+        if has_diverged(self.data):
             raise DivergedError("the model's motion does not stay finite")
         if self._follows_inertia and self.data.nefc:
             self._follow_inertia()

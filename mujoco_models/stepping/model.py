@@ -15,6 +15,7 @@ from mujoco_models.model.lookout import Lookout, MujocoScene
 from mujoco_models.model.spec import assemble
 from mujoco_models.model.stiffness import stiffen, weights_in_last_step
 from mujoco_models.model.surface import Surface
+from mujoco_models.model.warned import has_diverged
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.protocol import Obstacle
 
@@ -29,14 +30,6 @@ _TOLERANCE = 1e-16
 _STUB = 1e-4  # L, of a foot on which the vibrissa turns; it must have some mass
 _AHEAD = 0.01  # L; beads that are nearer to the obstacle are looked at in each step
 _CLEAR = 1e-5  # L; those that are farther off touch nothing, whatever single precision rounds
-_BAD_STATES = [
-    int(bad)
-    for bad in (
-        mujoco.mjtWarning.mjWARN_BADQPOS,
-        mujoco.mjtWarning.mjWARN_BADQVEL,
-        mujoco.mjtWarning.mjWARN_BADQACC,
-    )
-]
 _INTEGRATORS = {
     "discrete": mujoco.mjtIntegrator.mjINT_DISCRETE,
     "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
@@ -183,7 +176,7 @@ class MovingModel:
         if self._leaves_out:
             self._leave_out()
         mujoco.mj_step(self.model, self.data)
-        if self.data.warning.number.take(_BAD_STATES).any():
+        if has_diverged(self.data):
             raise DivergedError("MuJoCo's motion does not stay finite")
         if self._follows_inertia and self.data.nefc:
             self._follow_inertia()

@@ -9,9 +9,7 @@ from analytic.solver.general.path import Path
 from analytic.solver.general.states import States, Vibrissa, states, with_rates
 
 _NEAR = 0.5  # of a cell's length: by how much its interpolation may err
-_ASIDE = (
-    1e-6  # by how much a state may lie beyond its cell: close to a fold x0 does not distinguish
-)
+_ASIDE = 1e-6  # a state may lie so far beyond its cell: close to a fold x0 does not distinguish
 _BALANCED = 1e-11  # L, rad; beyond, no state was found
 
 
