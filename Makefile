@@ -20,7 +20,7 @@ FOUND = --budget --beam $(BEAM) --out $(@D) $(ARGS) || test $$? -eq 1; test -f $
 
 .NOTPARALLEL:
 .PHONY: help install develop run test test-slow test-all trials coverage lint docs wheel fuzz bench results again studies \
-  install-mujoco3 test-mujoco3 install-engines test-engines versions clean
+  size install-mujoco3 test-mujoco3 install-engines test-engines versions clean
 
 help:            ## list the targets
 	@grep -E '^[a-z0-9-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -52,6 +52,9 @@ lint: develop    ## format, style, types, import rules
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+size: develop    ## lines of code and docstring, room by room
+	$(BIN)/python -m tests.size
 
 docs: develop    ## the pages and an API reference -> site/index.html
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet

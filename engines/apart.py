@@ -102,26 +102,7 @@ def _sweep(to: Connection, name: str, case: Case, settings: Settings) -> None:
 
 
 def checked(found: object, case: Case) -> Readings:
-    """What an engine returned, if those are readings of the case.
-
-    Parameters
-    ----------
-    found : object
-        What it returned.
-    case : Case
-        What it was asked for.
-
-    Returns
-    -------
-    Readings
-        The same, where stations that claim to be ok have numbers.
-
-    Raises
-    ------
-    InputError
-        If they are none, of other stations or of another vibrissa, or not a number where the
-        status is ``"ok"``.
-    """
+    """What an engine returned, if those are readings of the case."""
     if not isinstance(found, Readings):
         raise InputError("readings", f"a {type(found).__name__}", "Readings", "see Engine.sweep")
     foot_x = found.values("foot_x")

@@ -100,20 +100,7 @@ def _check(engine: Engine) -> None:
 
 
 def installed(requires: str) -> tuple[str | None, str | None]:
-    """Whether a distribution is there.
-
-    Parameters
-    ----------
-    requires : str
-        As pip writes it: ``"drake>=1.40,<2"``.
-
-    Returns
-    -------
-    version : str or None
-        None if it is not installed.
-    trouble : str or None
-        Why it cannot be used, and what to do; None if it can.
-    """
+    """Whether a distribution is there."""
     needed = Requirement(requires)
     try:
         there = version(needed.name)

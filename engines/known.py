@@ -15,23 +15,7 @@ _SHIPPED = {
 
 
 def named_engines(names: str) -> list[str]:
-    """The engines of a list.
-
-    Parameters
-    ----------
-    names : str
-        Names between commas, each once.
-
-    Returns
-    -------
-    list of str
-        The names.
-
-    Raises
-    ------
-    InputError
-        If one is empty, unknown, or there twice. Whether it is installed does not matter.
-    """
+    """The engines of a list."""
     listed = [name.strip() for name in names.split(",")]
     if len(set(listed)) == len(listed) and set(listed) <= set(_SHIPPED):
         return listed  # nothing in them is worth a look at every distribution that is installed
@@ -47,13 +31,7 @@ def named_engines(names: str) -> list[str]:
 
 
 def known_engines() -> dict[str, str]:
-    """Where each engine is.
-
-    Returns
-    -------
-    dict
-        ``"module:ATTRIBUTE"`` by name, the shipped ones first.
-    """
+    """Where each engine is."""
     offered = {point.name: point.value for point in sorted(_offered(), key=lambda p: p.value)}
     return {**_SHIPPED, **{n: where for n, where in offered.items() if n not in _SHIPPED}}
 

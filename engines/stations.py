@@ -68,18 +68,7 @@ class Row:
 
 
 def free_row(case: Case) -> Row:
-    """What a vibrissa reads that touches nothing.
-
-    Parameters
-    ----------
-    case : Case
-        Whose.
-
-    Returns
-    -------
-    Row
-        Without a load.
-    """
+    """What a vibrissa reads that touches nothing."""
     return Row(tip_angle=float(case.beam.unloaded.at(np.array(1.0))[2]))
 
 

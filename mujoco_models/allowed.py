@@ -16,22 +16,7 @@ CONTACT_STIFFNESSES = 1e3, 1e9  # EI/L^3; the least and the largest
 
 
 def check_word(name: str, value: object, allowed: tuple[str, ...]) -> None:
-    """Refuse what is none of some words.
-
-    Parameters
-    ----------
-    name : str
-        What an error calls it.
-    value : object
-        What was given.
-    allowed : tuple of str
-        The words.
-
-    Raises
-    ------
-    InputError
-        If it is none of them.
-    """
+    """Refuse what is none of some words."""
     if value not in allowed:
         raise InputError(name, repr(value), f"one of {', '.join(allowed)}", "choose one")
 
@@ -39,26 +24,7 @@ def check_word(name: str, value: object, allowed: tuple[str, ...]) -> None:
 def check_number(
     name: str, value: object, low: float, high: float, remedy: str, whole: bool = False
 ) -> None:
-    """Refuse what is no number, or out of its range.
-
-    Parameters
-    ----------
-    name : str
-        What an error calls it.
-    value : object
-        What was given; booleans are no numbers.
-    low, high : float
-        The least and the largest.
-    remedy : str
-        What to do.
-    whole : bool
-        Whether it must be a whole number.
-
-    Raises
-    ------
-    InputError
-        If it is not between them.
-    """
+    """Refuse what is no number, or out of its range."""
     is_number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)
     if not (is_number and low <= value <= high):  # type: ignore[operator]
         number = "a whole number" if whole else "a number"

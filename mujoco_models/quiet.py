@@ -8,13 +8,7 @@ import mujoco
 
 @contextmanager
 def unlogged() -> Iterator[None]:
-    """Keep MuJoCo from writing its warnings to the terminal and to a file in the folder.
-
-    Yields
-    ------
-    None
-        Meanwhile.
-    """
+    """Keep MuJoCo from writing its warnings to the terminal and to a file in the folder."""
     mujoco.set_mju_user_warning(lambda _: None)
     try:
         yield

@@ -27,16 +27,6 @@ def show(case: Case, settings: Settings) -> None:
     """Open the viewer; see `mujoco_models.view_sweep`.
 
     A sweep to the right is simulated as its mirror image, so it is looked at from behind.
-
-    Parameters
-    ----------
-    case, settings
-        As there.
-
-    Raises
-    ------
-    InputError
-        As there.
     """
     _ask_for_display()
     to_right = case.sweep.direction == "right"

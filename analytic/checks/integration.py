@@ -47,26 +47,6 @@ def integrate_span(
 
     The initial value problem of section 5 takes kappa from a square root that vanishes at the
     contact, where its solution is not unique; m' = f cos(phi - alpha) is smooth throughout.
-
-    Parameters
-    ----------
-    force_x, force_y, moment : array, shape (n,)
-        The clamp's action on the vibrissa, dimensionless.
-    length : array, shape (n,)
-        Arc length up to the contact [L].
-    tolerance : float
-        Relative and absolute, of the Dormand-Prince method of order 8.
-    compliance : float
-        Rotation of the clamp by moment [L/EI].
-    natural, flexibility : callable
-        Natural curvature [1/L] and EI(0)/EI at arc lengths [L], element by element.
-    breaks : sequence of float
-        Arc lengths at which these are not smooth, ascending, and the march stops [L].
-
-    Returns
-    -------
-    End
-        Positions relative to the foot [L].
     """
     from scipy.integrate import solve_ivp  # slow to load, and a plain sweep needs none of it
 
@@ -102,24 +82,7 @@ def integrate_span(
 
 
 def march(rate: Callable[[Floats], Floats], state: Floats, length: Floats, steps: int) -> Floats:
-    """The classical Runge-Kutta method of order 4, with equal steps.
-
-    Parameters
-    ----------
-    rate : callable
-        Derivative by arc length of a state, shape (m, n).
-    state : array, shape (m, n)
-        At the beginning, of n spans.
-    length : array, shape (n,)
-        Arc length to march; negative to march back.
-    steps : int
-        How many.
-
-    Returns
-    -------
-    array, shape (steps + 1, m, n)
-        The states at the beginning and after each step.
-    """
+    """The classical Runge-Kutta method of order 4, with equal steps."""
     h = length / steps
     states = [state]
     for _ in range(steps):

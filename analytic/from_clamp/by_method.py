@@ -21,35 +21,7 @@ def reconstruct_earlier(
     noise: Mapping[str, float] | None = None,
     first_contact: float | None = None,
 ) -> pd.DataFrame:
-    """Contact points by one of the methods that were there before the closed form.
-
-    Parameters
-    ----------
-    readings : Readings
-        Only the four sensed columns are used, and ``status`` as in `reconstruct`.
-    method : str
-        Name of one of `METHODS`.
-    noise : mapping, optional
-        Standard deviation of each sensed column's noise, in its unit: decides where there is a
-        load.
-    first_contact : float, optional
-        Foot position of the first contact [length]. If it is not given, it is where the moments of
-        the first two loaded stations extrapolate to zero.
-
-    Returns
-    -------
-    pandas.DataFrame
-        A row a station: ``contact_x``, ``contact_y`` [length], on the body's surface if the method
-        knows the force's direction, else on the vibrissa's axis; ``phase``, judged as `reconstruct`
-        does; ``status``: ``"ok"``, ``"free"``, ``"gap"``, ``"no answer"`` where the method's
-        assumptions do not hold, or ``"longer than the vibrissa"`` where the contact would be beyond
-        1.1 L. NaN where the status is not ``"ok"``.
-
-    Raises
-    ------
-    InputError
-        If there is no such method.
-    """
+    """Contact points by one of the methods that were there before the closed form."""
     if method not in METHODS:
         raise InputError("method", repr(method), f"one of {', '.join(NAMES)}", "choose one")
     chosen = METHODS[method]

@@ -28,52 +28,19 @@ class Contact(NamedTuple):
     eta: Floats
 
     def surface(self, radius: Floats | float) -> tuple[Floats, Floats]:
-        """The contact on the body's surface.
-
-        Parameters
-        ----------
-        radius : float or array of one shape with the contacts
-            Of the vibrissa there [L].
-
-        Returns
-        -------
-        x, y : array, shape (...)
-            Coordinates [L], of the shape of the contacts.
-        """
+        """The contact on the body's surface."""
         return self.xi - radius * np.sin(self.alpha), self.eta + radius * np.cos(self.alpha)
 
 
 def dimensionless(readings: Readings) -> Floats:
-    """The sensed columns over L, EI/L^2 and EI/L.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep.
-
-    Returns
-    -------
-    array, shape (4, stations)
-        ``foot_x, force_x, force_y, moment_z``.
-    """
+    """The sensed columns over L, EI/L^2 and EI/L."""
     beam = readings.beam
     units = (beam.length, beam.force_unit, beam.force_unit, beam.moment_unit)
     return np.array([readings.values(n) / u for n, u in zip(SENSED, units, strict=True)])
 
 
 def sides(sensed: Floats) -> Floats:
-    """To which side the vibrissa bends, by the sign of its moment.
-
-    Parameters
-    ----------
-    sensed : array, shape (4, ...)
-        Dimensionless.
-
-    Returns
-    -------
-    array, shape (4, ...)
-        Factors that turn `sensed` into readings of a vibrissa that bends to the right.
-    """
+    """To which side the vibrissa bends, by the sign of its moment."""
     side = np.where(sensed[3] < 0, -1.0, 1.0)
     return np.stack([side, side, np.ones_like(side), side])
 
@@ -90,18 +57,7 @@ class Held(NamedTuple):
 
     @classmethod
     def of(cls, readings: Readings) -> "Held":
-        """What a sweep is of, by its beam and its provenance.
-
-        Parameters
-        ----------
-        readings : Readings
-            One sweep.
-
-        Returns
-        -------
-        Held
-            Dimensionless.
-        """
+        """What a sweep is of, by its beam and its provenance."""
         foot_x = readings.values("foot_x")
         rightward = foot_x[-1] > foot_x[0]
         beam = readings.beam.mirrored() if rightward else readings.beam
@@ -109,51 +65,17 @@ class Held(NamedTuple):
         return cls(Vibrissa.of(beam, *readings.support), plain, -1.0 if rightward else 1.0)
 
     def clamped(self, sensed: Floats) -> Clamped | Marched:
-        """The clamp's end of the vibrissa.
-
-        Parameters
-        ----------
-        sensed : array, shape (4, ...)
-            Dimensionless.
-
-        Returns
-        -------
-        Clamped or Marched
-            In a sweep to the left, or the mirror image of one to the right; the second if the
-            vibrissa varies along its length.
-        """
+        """The clamp's end of the vibrissa."""
         vibrissa, way = self.vibrissa, self.way
         clamped = Clamped.of(way * sensed[1], sensed[2], way * sensed[3], vibrissa)
         return clamped if vibrissa.form is None else Marched(clamped, vibrissa.form)
 
     def surface(self, contact: Contact) -> tuple[Floats, Floats]:
-        """Contacts on the body's surface.
-
-        Parameters
-        ----------
-        contact : Contact
-            On the centreline.
-
-        Returns
-        -------
-        x, y : array, shape of the contacts
-            Coordinates [L].
-        """
+        """Contacts on the body's surface."""
         return contact.surface(self.vibrissa.radius_at(contact.arc_length))
 
     def contact(self, sensed: Floats) -> Contact:
-        """Contacts of stations; the paper's vibrissa is bent to its own side at each.
-
-        Parameters
-        ----------
-        sensed : array, shape (4, ...)
-            Dimensionless.
-
-        Returns
-        -------
-        Contact
-            NaN where no elastica has such readings, or none is given.
-        """
+        """Contacts of stations; the paper's vibrissa is bent to its own side at each."""
         if self.plain:
             turned = sides(sensed)
             found = contact_bent_right(turned * sensed)
@@ -165,21 +87,7 @@ class Held(NamedTuple):
         return Contact(self.way * place.alpha, place.arc_length, xi, place.y)
 
     def arc_length_and_criterion(self, sensed: Floats) -> tuple[Floats, Floats]:
-        """Where stations touch, and what vanishes in Phase B and is positive in Phase A.
-
-        Parameters
-        ----------
-        sensed : array, shape (4, ...)
-            Dimensionless, with a force.
-
-        Returns
-        -------
-        arc_length : array, shape (...)
-            Of the contacts; NaN where no elastica has such readings [L].
-        criterion : array, shape (...)
-            (2 F_y - M^2)/(2 f) = sin(phi1 - alpha) of eq. 26; with friction sin(phi1 - alpha -
-            arctan(mu)) + sin(arctan(mu)).
-        """
+        """Where stations touch, and what vanishes in Phase B and is positive in Phase A."""
         if self.plain:
             _, force_x, force_y, moment = sensed
             criterion = (2 * force_y - moment**2) / (2 * np.hypot(force_x, force_y))
@@ -191,18 +99,7 @@ class Held(NamedTuple):
 
 
 def located(readings: Readings) -> Contact:
-    """Contacts of a sweep, station by station, on the vibrissa.
-
-    Parameters
-    ----------
-    readings : Readings
-        Only the four sensed columns are used.
-
-    Returns
-    -------
-    Contact
-        Each of shape (stations,); NaN without a force, and where no such vibrissa has the readings.
-    """
+    """Contacts of a sweep, station by station, on the vibrissa."""
     sensed = dimensionless(readings)
     felt = np.hypot(sensed[1], sensed[2]) > UNLOADED
     found = Held.of(readings).contact(np.where(felt, sensed, np.nan))
@@ -216,16 +113,6 @@ def contact_bent_right(sensed: Floats) -> Contact:
     The force's direction is the contour's normal, so tan(alpha) = -F_x/F_y; force and moment fix
     the modulus, k^2 = (1 + (M^2 - 2 F_y)/(2 f))/2, and with it the whole elastica up to where its
     curvature vanishes, which is the contact.
-
-    Parameters
-    ----------
-    sensed : array, shape (4, ...)
-        Dimensionless.
-
-    Returns
-    -------
-    Contact
-        Of the shape of a row.
     """
     foot_x, force_x, force_y, moment = sensed
     root_f = np.sqrt(np.hypot(force_x, force_y))

@@ -51,20 +51,7 @@ class Clamped(NamedTuple):
 
     @classmethod
     def of(cls, force_x: Floats, force_y: Floats, moment: Floats, vibrissa: Vibrissa) -> "Clamped":
-        """What the readings say of the clamp's end.
-
-        Parameters
-        ----------
-        force_x, force_y, moment : array, any shape
-            The clamp's action on the vibrissa, dimensionless.
-        vibrissa : Vibrissa
-            Its numbers.
-
-        Returns
-        -------
-        Clamped
-            Of the same shape.
-        """
+        """What the readings say of the clamp's end."""
         compliance, mu, radius = vibrissa.compliance, vibrissa.friction, vibrissa.radius
         force, direction = np.hypot(force_x, force_y), np.arctan2(-force_x, force_y)
         couple = mu * radius * force / np.sqrt(1 + mu**2)
@@ -80,45 +67,18 @@ class Clamped(NamedTuple):
         """Sine of the vibrissa's slope angle at its contact, from the force's.
 
         Twice the energy, kappa^2 - 2 F sin(phi - phi_F), is the same all along.
-
-        Returns
-        -------
-        array, shape of the readings
-            -sin(arctan(mu)) in Phase B.
         """
         natural = self.vibrissa.natural_curvature
         lost = (self.moment - self.couple) / self.force
         return np.asarray(np.sin(self.theta) + lost * (natural - (self.moment + self.couple) / 2))
 
     def march(self, arc_length: Floats) -> Start:
-        """Go up the vibrissa.
-
-        Parameters
-        ----------
-        arc_length : array, any shape
-            From the clamp [L].
-
-        Returns
-        -------
-        Start
-            The place there: the span from it back to the clamp, run through the other way round.
-        """
+        """Go up the vibrissa."""
         natural = self.vibrissa.natural_curvature
         return back_to_clamp(self.theta, self.moment - natural, self.force, arc_length)
 
     def place(self, arc_length: Floats) -> Reached:
-        """A place of the vibrissa.
-
-        Parameters
-        ----------
-        arc_length : array, any shape
-            From the clamp [L].
-
-        Returns
-        -------
-        Reached
-            As seen from the foot.
-        """
+        """A place of the vibrissa."""
         end = self.march(arc_length)
         sin, cos = np.sin(self.direction), np.cos(self.direction)
         return Reached(
@@ -133,11 +93,6 @@ class Clamped(NamedTuple):
 
         The curvature is that of two places a period. In Phase B the contact is the one where the
         vibrissa is parallel to the contour, in Phase A the one at the tip.
-
-        Returns
-        -------
-        array, shape of the readings
-            [L]; NaN where no such vibrissa has the readings.
         """
         p0, g0 = np.sin(np.pi / 4 - self.theta / 2), np.cos(np.pi / 4 - self.theta / 2)
         v0 = (self.moment - self.vibrissa.natural_curvature) / 2

@@ -33,21 +33,7 @@ class _Mistake:
 
 
 def likely_mistakes(readings: Readings, counted: Booleans) -> list[str]:
-    """What may have been mistaken, if that makes contacts of what is none.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep.
-    counted : array of bool, shape (stations,)
-        The stations under load.
-
-    Returns
-    -------
-    list of str
-        Each would explain nearly all stations alone. Of a vibrissa that bends to the other side
-        either moment or force may have the wrong sign: then it is both.
-    """
+    """What may have been mistaken, if that makes contacts of what is none."""
     thin = np.arange(0, len(counted), len(counted) // _LOOKED_AT + 1)
     if len(thin) < 2 or not counted[thin].any():
         return []

@@ -22,16 +22,6 @@ def reading_noise(readings: Readings) -> dict[str, float]:
     The median of the absolute fourth differences between neighbouring trusted stations: robust
     against the few stations where a phase begins or ends, and blind to anything smooth, so a
     model's bias is not taken for noise.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep.
-
-    Returns
-    -------
-    dict
-        ``force_x``, ``force_y``, ``moment_z``; 0 for fewer than five loaded stations.
     """
     values = {name: readings.values(name) for name in CLAMP_READINGS}
     loaded = readings.trusted & (np.hypot(values["force_x"], values["force_y"]) > 0)
@@ -39,18 +29,7 @@ def reading_noise(readings: Readings) -> dict[str, float]:
 
 
 def scatter(values: Floats) -> float:
-    """Standard deviation of what jumps from one value to the next.
-
-    Parameters
-    ----------
-    values : array, shape (stations,)
-        In sweep order.
-
-    Returns
-    -------
-    float
-        In the unit of the values; at least their round-off, and 0 for fewer than five.
-    """
+    """Standard deviation of what jumps from one value to the next."""
     if len(values) < len(_DIFFERENCE):
         return 0.0
     differences = np.convolve(values, _DIFFERENCE, mode="valid")
@@ -87,23 +66,7 @@ def relative_noise(readings: Readings, level: float) -> dict[str, float]:
 
 
 def checked_noise(noise: object) -> dict[str, float]:
-    """The noise that a user states.
-
-    Parameters
-    ----------
-    noise : mapping
-        Standard deviation by sensed column, in the column's unit.
-
-    Returns
-    -------
-    dict
-        The same.
-
-    Raises
-    ------
-    InputError
-        If it is no mapping, a name is no sensed column, or a value no finite number from 0 up.
-    """
+    """The noise that a user states."""
     remedy = "`relative_noise(readings, 0.01)` makes it from a share of the largest magnitudes"
     if not isinstance(noise, Mapping):
         raise InputError("noise", repr(noise), "a standard deviation by column", remedy)
@@ -118,16 +81,5 @@ def checked_noise(noise: object) -> dict[str, float]:
 
 
 def largest(values: Floats) -> float:
-    """Largest magnitude of a reading.
-
-    Parameters
-    ----------
-    values : array, shape (stations,)
-        With gaps.
-
-    Returns
-    -------
-    float
-        In their unit; 0 where all are gaps.
-    """
+    """Largest magnitude of a reading."""
     return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))

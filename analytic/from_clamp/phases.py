@@ -24,28 +24,15 @@ _UNRESOLVED = 0.1  # standard deviations; what meets its phase's condition bette
 
 
 class Judgement(NamedTuple):
-    """Phases of one sweep, and what they were decided by; arrays of shape (stations,).
+    """Phases of one sweep, and what they were decided by; arrays of shape (stations,)."""
 
-    Attributes
-    ----------
-    phase : array of str
-        ``"free"``, ``"tip"``, ``"tangent"``.
-    criterion : array
-        (2 F_y - M^2)/(2 f) = sin(phi_1 - alpha) of eq. 26, and what it becomes with friction, an
-        elastic clamp and a natural curvature (`Held.criterion`): zero in Phase B.
-    criterion_tolerance : array
-        Its standard deviation.
-    shortfall : array
-        1 - s1/L: zero in Phase A.
-    shortfall_tolerance : array
-        Its standard deviation.
-    """
-
-    phase: Words
+    phase: Words  # ``"free"``, ``"tip"``, ``"tangent"``
+    # (2 F_y - M^2)/(2 f) = sin(phi_1 - alpha) of eq. 26, and what it becomes with friction, an
+    # elastic clamp and a natural curvature (`Held.criterion`): zero in Phase B.
     criterion: Floats
-    criterion_tolerance: Floats
-    shortfall: Floats
-    shortfall_tolerance: Floats
+    criterion_tolerance: Floats  # its standard deviation
+    shortfall: Floats  # 1 - s1/L: zero in Phase A
+    shortfall_tolerance: Floats  # its standard deviation
 
     @property
     def neither(self) -> Booleans:
@@ -78,29 +65,6 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
     more. Stations that lie too far apart seem to jump; but then their readings meet the conditions
     far better than such noise allows, and no contact is taken for none. Nor is it where stations
     without contact show no noise at all, as a simulator's, whose readings may jump amid contact.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep; only the four sensed columns are used, and ``status`` to leave stations out of
-        the estimate of the noise.
-    noise : mapping, optional
-        Standard deviation by sensed column, in its unit.
-
-    Returns
-    -------
-    Judgement
-        A station without force, or with a gap, is ``"free"``.
-
-    Raises
-    ------
-    InputError
-        If the noise is no such mapping.
-
-    References
-    ----------
-    C. Will, J. Steigenberger, C. Behn, *Quasi-static object scanning using technical vibrissae*,
-    eq. 26, for the criterion.
     """
     sensed = dimensionless(readings)
     _, force_x, force_y, moment = sensed

@@ -100,20 +100,7 @@ def reconstruct(
 
 
 def contact_table(readings: Readings, judged: Judgement) -> pd.DataFrame:
-    """Contact points of stations whose phases are judged already.
-
-    Parameters
-    ----------
-    readings : Readings
-        The sweep.
-    judged : Judgement
-        Its phases.
-
-    Returns
-    -------
-    pandas.DataFrame
-        As `reconstruct`, without ``uncertainty``.
-    """
+    """Contact points of stations whose phases are judged already."""
     loaded = judged.phase != "free"
     contact = Held.of(readings).contact(np.where(loaded, dimensionless(readings), np.nan))
     return _table(readings, contact, loaded, judged.phase, judged.neither)
@@ -156,21 +143,7 @@ def require_beam(found: pd.DataFrame, readings: Readings) -> None:
 
 
 def doubt(found: pd.DataFrame, readings: Readings) -> str | None:
-    """What to check where many readings, but not most of them, are of no such vibrissa.
-
-    Parameters
-    ----------
-    found : pandas.DataFrame
-        What `reconstruct` made of the readings.
-    readings : Readings
-        The same sweep.
-
-    Returns
-    -------
-    str or None
-        How many stations with a good part of the largest force have no contact, with the likely
-        reason; None if they are a fifth or less, more than noise makes them.
-    """
+    """What to check where many readings, but not most of them, are of no such vibrissa."""
     loaded = clearly_loaded(readings)
     status = found["status"][loaded]
     wrong = int((~status.isin(["ok", "gap"])).sum())
@@ -188,19 +161,7 @@ def _likely(readings: Readings, loaded: Booleans) -> str:
 
 
 def clearly_loaded(readings: Readings) -> Booleans:
-    """Stations that show a wrong vibrissa whatever the noise.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep.
-
-    Returns
-    -------
-    array of bool, shape (stations,)
-        Whether the station is trusted, and its force more than a tenth of the largest and not
-        drowned in noise. One station of 100 does not count as the largest: it may be a spike.
-    """
+    """Stations that show a wrong vibrissa whatever the noise."""
     force = np.hypot(readings.values("force_x"), readings.values("force_y"))
     force = np.where(readings.trusted, force, 0.0)
     large = float(np.quantile(force, _LARGE, method="lower"))

@@ -32,28 +32,11 @@ class Marched:
     form: Form
 
     def sine_at_contact(self) -> Floats:
-        """Sine of the vibrissa's slope angle at its contact, from the force's.
-
-        Returns
-        -------
-        array, shape of the readings
-            That of lean - arctan(mu) in Phase B, of a cone's lean.
-        """
+        """Sine of the vibrissa's slope angle at its contact, from the force's."""
         return np.asarray(np.sin(self._reached(self.contact_arc_length()).theta))
 
     def place(self, arc_length: Floats) -> Reached:
-        """A place of the vibrissa.
-
-        Parameters
-        ----------
-        arc_length : array, shape of the readings
-            From the clamp; beyond 1, of its straight continuation [L].
-
-        Returns
-        -------
-        Reached
-            As seen from the foot.
-        """
+        """A place of the vibrissa."""
         end = self._reached(arc_length)
         beyond = np.maximum(arc_length - 1, 0.0)
         along = end.along + beyond * np.cos(end.theta)
@@ -67,11 +50,6 @@ class Marched:
 
         Of several such places it is the one that is at the tip, or where the vibrissa is parallel
         to the contour, as nearly as can be.
-
-        Returns
-        -------
-        array, shape of the readings
-            [L]; NaN where no such vibrissa has the readings.
         """
         return self._contact
 

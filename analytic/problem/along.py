@@ -38,23 +38,10 @@ _SPANS = 1e-9  # of the length; by how much a table's ends may miss the vibrissa
 
 @dataclass(frozen=True, repr=False)
 class Along:
-    """A function of arc length as a Chebyshev series on each piece of the vibrissa.
+    """A function of arc length as a Chebyshev series on each piece of the vibrissa."""
 
-    Parameters
-    ----------
-    ends : tuple of float
-        Arc lengths at which n pieces begin and end, ascending [length].
-    series : tuple of tuple of float
-        Coefficients of each piece's series, in its own unit.
-
-    Raises
-    ------
-    InputError
-        If these are not n + 1 ascending numbers and n series of finite numbers.
-    """
-
-    ends: tuple[float, ...]
-    series: tuple[tuple[float, ...], ...]
+    ends: tuple[float, ...]  # arc lengths at which n pieces begin and end, ascending [length]
+    series: tuple[tuple[float, ...], ...]  # coefficients of each piece's series, in its own unit
 
     def __post_init__(self) -> None:
         try:
@@ -84,26 +71,6 @@ class Along:
 
         Between a table's points the monotone cubics of Fritsch and Butland interpolate
         (`scipy.interpolate.PchipInterpolator`): smooth, and never beyond its neighbours.
-
-        Parameters
-        ----------
-        name : str
-            What an error calls it.
-        given : object
-            A function that maps an array of arc lengths to one of the same shape, with a few kinks
-            and jumps at most; pairs (arc length, value) from clamp to tip; or an `Along`.
-        length : float
-            Of the vibrissa [length].
-
-        Returns
-        -------
-        Along or float
-            A number if the quantity is the same everywhere.
-
-        Raises
-        ------
-        InputError
-            If it is none of these, does not span the vibrissa, or a value is not finite.
         """
         if isinstance(given, Mapping):  # as a file has it
             given = cls(given.get("ends", ()), given.get("series", ()))
@@ -129,18 +96,7 @@ class Along:
         return repr(self)
 
     def __call__(self, s: Floats) -> Floats:
-        """Values at arc lengths.
-
-        Parameters
-        ----------
-        s : array, any shape
-            Arc lengths from the clamp [length]; beyond the ends, those are meant.
-
-        Returns
-        -------
-        array, shape of `s`
-            The values.
-        """
+        """Values at arc lengths."""
         s = np.clip(s, self.ends[0], self.ends[-1])
         i = np.searchsorted(self._inner, s, side="right")
         x = (s - self._middle[i]) / self._half[i]
@@ -150,33 +106,14 @@ class Along:
         return np.asarray(self._coefficients[0][i] + x * value - above)
 
     def times(self, factor: float, stretch: float = 1.0) -> "Along":
-        """The same in other units.
-
-        Parameters
-        ----------
-        factor : float
-            By which the values are multiplied.
-        stretch : float
-            By which the arc lengths are.
-
-        Returns
-        -------
-        Along
-            New values along a new length.
-        """
+        """The same in other units."""
         return Along(
             tuple(end * stretch for end in self.ends),
             tuple(tuple(c * factor for c in piece) for piece in self.series),
         )
 
     def integral(self) -> "Along":
-        """The integral from the clamp.
-
-        Returns
-        -------
-        Along
-            Exact but for rounding, and continuous.
-        """
+        """The integral from the clamp."""
         series, reached = [], 0.0
         for piece, half in zip(self.series, self._half, strict=True):
             found = half * chebyshev.chebint(piece, lbnd=-1)
@@ -186,13 +123,7 @@ class Along:
         return Along(self.ends, tuple(series))
 
     def first_not_positive(self) -> float | None:
-        """Where the quantity is first zero, but for rounding, or negative.
-
-        Returns
-        -------
-        float or None
-            Arc length [length]; None if it is positive throughout.
-        """
+        """Where the quantity is first zero, but for rounding, or negative."""
         nothing = _NOTHING * float(np.abs(self._coefficients).sum(axis=0).max())
         vanishes = None
         for piece, middle, half in zip(self.series, self._middle, self._half, strict=True):

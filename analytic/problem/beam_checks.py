@@ -16,23 +16,7 @@ _PLACES = 257  # at which a vibrissa at rest is looked at
 
 
 def checked_length(given: object) -> float:
-    """The length of a vibrissa.
-
-    Parameters
-    ----------
-    given : object
-        Anything.
-
-    Returns
-    -------
-    float
-        [length].
-
-    Raises
-    ------
-    InputError
-        If it is not positive and finite.
-    """
+    """The length of a vibrissa."""
     if not (is_finite_number(given) and given > 0):
         raise InputError(
             "beam.length", given, "positive and finite", "give it in the units of the case"
@@ -41,25 +25,7 @@ def checked_length(given: object) -> float:
 
 
 def checked_rigidity(given: object, length: float) -> float | Along:
-    """The flexural rigidity of a vibrissa.
-
-    Parameters
-    ----------
-    given : object
-        A number, or a function or table of arc length.
-    length : float
-        Of the vibrissa [length].
-
-    Returns
-    -------
-    float or Along
-        [force length^2].
-
-    Raises
-    ------
-    InputError
-        If it is not finite and positive all along.
-    """
+    """The flexural rigidity of a vibrissa."""
     name = "beam.flexural_rigidity"
     found = Along.of(name, given, length) if _may_vary(given) else given
     if isinstance(found, Along):
@@ -75,27 +41,7 @@ def checked_rigidity(given: object, length: float) -> float | Along:
 
 
 def checked_radii(radius: object, tip_radius: object, length: float) -> tuple[float, float | None]:
-    """The radii of a vibrissa at its clamp and at its tip.
-
-    Parameters
-    ----------
-    radius, tip_radius : object
-        Numbers; the second may be None: it is the first.
-    length : float
-        Of the vibrissa [length].
-
-    Returns
-    -------
-    radius : float
-        [length].
-    tip_radius : float or None
-        [length].
-
-    Raises
-    ------
-    InputError
-        If the vibrissa is not slender, or gets thicker or vanishes towards its tip.
-    """
+    """The radii of a vibrissa at its clamp and at its tip."""
     if not (is_finite_number(radius) and 0 <= radius < 0.1 * length):
         raise InputError(
             "beam.radius",
@@ -117,25 +63,7 @@ def checked_radii(radius: object, tip_radius: object, length: float) -> tuple[fl
 
 
 def checked_curvature(given: object, length: float) -> float | Along:
-    """The natural curvature of a vibrissa.
-
-    Parameters
-    ----------
-    given : object
-        A number, or a function or table of arc length.
-    length : float
-        Of the vibrissa [length].
-
-    Returns
-    -------
-    float or Along
-        [1/length].
-
-    Raises
-    ------
-    InputError
-        If it is not finite all along, or the vibrissa at rest is curved back to the foot line.
-    """
+    """The natural curvature of a vibrissa."""
     name, remedy = "beam.natural_curvature", "it is an inverse length, positive to the left"
     found = Along.of(name, given, length) if _may_vary(given) else given
     if isinstance(found, Along):

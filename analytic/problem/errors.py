@@ -53,24 +53,7 @@ def _written(value: object) -> str:
 
 
 def require(name: str, value: object, kind: type, remedy: str) -> None:
-    """Refuse what is of another kind, before something inside stumbles over it.
-
-    Parameters
-    ----------
-    name : str
-        What was given, as the user knows it.
-    value : object
-        What was given.
-    kind : type
-        What it must be.
-    remedy : str
-        How to make one.
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    """
+    """Refuse what is of another kind, before something inside stumbles over it."""
     if not isinstance(value, kind):
         found = repr(value) if isinstance(value, str) else f"a {type(value).__name__}"
         raise InputError(name, found[:80], f"a {kind.__name__}", remedy)

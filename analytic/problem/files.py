@@ -10,52 +10,14 @@ from analytic.problem.errors import InputError
 
 
 def as_path(path: object, name: str) -> Path:
-    """A path from what was given as one.
-
-    Parameters
-    ----------
-    path : str or path-like
-        The file.
-    name : str
-        What an error calls it.
-
-    Returns
-    -------
-    Path
-        The same.
-
-    Raises
-    ------
-    InputError
-        If it is no text and no path.
-    """
+    """A path from what was given as one."""
     if not isinstance(path, str | os.PathLike):
         raise InputError(name, f"a {type(path).__name__}", "a path", "as 'folder/name'")
     return Path(path)
 
 
 def regular_file(path: str | Path, name: str, largest: int) -> Path:
-    """A path that can be read without surprises: no pipe, no device, not too large.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-    name : str
-        What an error calls it.
-    largest : int
-        Size allowed [bytes].
-
-    Returns
-    -------
-    Path
-        `path`.
-
-    Raises
-    ------
-    InputError
-        If it is missing, is no regular file, or is larger.
-    """
+    """A path that can be read without surprises: no pipe, no device, not too large."""
     path = as_path(path, name)
     try:
         size = path.stat().st_size
@@ -82,21 +44,6 @@ def whole_file(path: Path) -> Iterator[Path]:
 
     Whatever happens nothing unfinished stays behind, unless the process is killed. The name is
     unique, so that two processes may write the same file at the same time: the last one wins.
-
-    Parameters
-    ----------
-    path : Path
-        The file that is to appear; one that is there is replaced.
-
-    Yields
-    ------
-    Path
-        Where to write.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written; `path` is then as it was.
     """
     unfinished = path.with_name(f".{path.name}.{os.getpid()}-{uuid.uuid4().hex[:8]}.partial")
     try:
@@ -109,25 +56,7 @@ def whole_file(path: Path) -> Iterator[Path]:
 
 
 def write_whole(path: Path, content: str | bytes) -> Path:
-    """Write a text (as UTF-8) or bytes to `path`, whole or not at all.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    content : str or bytes
-        All of it.
-
-    Returns
-    -------
-    Path
-        `path`.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written; `path` is then as it was.
-    """
+    """Write a text (as UTF-8) or bytes to `path`, whole or not at all."""
     with whole_file(path) as unfinished:
         unfinished.write_bytes(content.encode() if isinstance(content, str) else content)
     return path

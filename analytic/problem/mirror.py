@@ -13,23 +13,6 @@ def solve_either_way(case: Case, solve: Callable[[Case], Readings]) -> Readings:
 
     Without friction and gravity a sweep to the right is the mirror image of a sweep to the left
     past the mirrored object, and nothing else has to be solved.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    solve : callable
-        Makes readings of a case whose foot moves to the left.
-
-    Returns
-    -------
-    Readings
-        Of `case`.
-
-    Raises
-    ------
-    InputError
-        If `case` is none.
     """
     require("case", case, Case, "named_case('catenary') makes one")
     if case.sweep.direction == "left":
@@ -38,20 +21,7 @@ def solve_either_way(case: Case, solve: Callable[[Case], Readings]) -> Readings:
 
 
 def facing(case: Case, found: Readings) -> Readings:
-    """The readings of the sweep to the left that was solved for `case`, as readings of `case`.
-
-    Parameters
-    ----------
-    case : Case
-        The problem, whichever way its foot moves.
-    found : Readings
-        Of the case or, if its foot moves to the right, of its mirror image.
-
-    Returns
-    -------
-    Readings
-        In the frame of `case`.
-    """
+    """The readings of the sweep to the left that was solved for `case`, as readings of `case`."""
     if case.sweep.direction == "left":
         return found
     mirrored = found.mirrored()

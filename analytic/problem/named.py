@@ -57,18 +57,7 @@ REAL_CASE_NAMES = tuple(name for name in NAMED_TABLES if name not in CASE_NAMES)
 
 
 def named_contour(name: str) -> Contour:
-    """The contour of one of the named cases.
-
-    Parameters
-    ----------
-    name : str
-        One of `NAMED_TABLES`.
-
-    Returns
-    -------
-    Contour
-        In units of the vibrissa's length.
-    """
+    """The contour of one of the named cases."""
     numbers = dict(NAMED_TABLES[name]["profile"])
     return CONTOURS[numbers.pop("kind")](**numbers)
 

@@ -13,18 +13,7 @@ LARGEST = 1e150  # its square is a number still, and so is its inverse
 
 
 def is_finite_number(value: object) -> TypeGuard[float]:
-    """Whether a value is a real, finite number and no boolean.
-
-    Parameters
-    ----------
-    value : object
-        Anything.
-
-    Returns
-    -------
-    bool
-        True for Python's and NumPy's real scalars that fit a float.
-    """
+    """Whether a value is a real, finite number and no boolean."""
     if not isinstance(value, Real) or isinstance(value, bool):
         return False
     try:
@@ -34,66 +23,19 @@ def is_finite_number(value: object) -> TypeGuard[float]:
 
 
 def is_whole_number(value: object) -> TypeGuard[int]:
-    """Whether a value is an integer and no boolean.
-
-    Parameters
-    ----------
-    value : object
-        Anything.
-
-    Returns
-    -------
-    bool
-        True for Python's and NumPy's integers.
-    """
+    """Whether a value is an integer and no boolean."""
     return isinstance(value, Integral) and not isinstance(value, bool)
 
 
 def finite(name: str, value: object) -> float:
-    """A number that is finite and whose square is, too.
-
-    Parameters
-    ----------
-    name : str
-        What an error calls it.
-    value : object
-        What was given.
-
-    Returns
-    -------
-    float
-        The number.
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    """
+    """A number that is finite and whose square is, too."""
     if not (is_finite_number(value) and abs(value) <= LARGEST):
         raise InputError(name, value, "a finite number", "correct it")
     return float(value)
 
 
 def positive(name: str, value: object) -> float:
-    """A number that is positive and finite, and whose square and inverse are numbers.
-
-    Parameters
-    ----------
-    name : str
-        What an error calls it.
-    value : object
-        What was given.
-
-    Returns
-    -------
-    float
-        The number.
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    """
+    """A number that is positive and finite, and whose square and inverse are numbers."""
     if not (is_finite_number(value) and 1 / LARGEST <= value <= LARGEST):
         allowed = f"positive and finite ({1 / LARGEST:g} to {LARGEST:g})"
         raise InputError(name, value, allowed, "correct the number or its sign")
@@ -101,25 +43,7 @@ def positive(name: str, value: object) -> float:
 
 
 def pair(name: str, value: object) -> tuple[float, float]:
-    """Two finite numbers.
-
-    Parameters
-    ----------
-    name : str
-        What an error calls them.
-    value : object
-        What was given.
-
-    Returns
-    -------
-    tuple of float
-        The numbers.
-
-    Raises
-    ------
-    InputError
-        If they are none.
-    """
+    """Two finite numbers."""
     first: object
     second: object
     try:
@@ -132,25 +56,7 @@ def pair(name: str, value: object) -> tuple[float, float]:
 
 
 def points_of(name: str, value: object) -> Floats:
-    """Points of the plane, at least three.
-
-    Parameters
-    ----------
-    name : str
-        What an error calls them.
-    value : object
-        What was given.
-
-    Returns
-    -------
-    array, shape (n, 2)
-        Their coordinates.
-
-    Raises
-    ------
-    InputError
-        If they are none, or one is not finite.
-    """
+    """Points of the plane, at least three."""
     try:
         points = np.array(value, dtype=float)
     except (TypeError, ValueError, OverflowError) as error:

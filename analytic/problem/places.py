@@ -7,16 +7,5 @@ Place = Callable[[int], str]
 
 
 def row_number(row: int) -> str:
-    """Where a row of a table in memory stands.
-
-    Parameters
-    ----------
-    row : int
-        Its number, counted from 0.
-
-    Returns
-    -------
-    str
-        What an error calls it.
-    """
+    """Where a row of a table in memory stands."""
     return f"row {row}"

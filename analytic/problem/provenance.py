@@ -9,18 +9,7 @@ from analytic.problem.errors import InputError
 
 
 def check_provenance(provenance: Mapping[str, Any]) -> None:
-    """Refuse what readings could not use.
-
-    Parameters
-    ----------
-    provenance : mapping
-        As a file may have it: ``events``, ``support`` and ``contour`` are looked at.
-
-    Raises
-    ------
-    InputError
-        If one of them has another form.
-    """
+    """Refuse what readings could not use."""
     events = provenance.get("events", {})
     if not isinstance(events, Mapping) or not all(_is_place(x) for x in events.values()):
         raise InputError(

@@ -20,26 +20,7 @@ _WIDEST = 1e3  # L; a wider object turns by less than 1e-3 rad while the vibriss
 
 
 def contact_range(centreline: Contour) -> tuple[float, float]:
-    """The contour parameters between which the contour lies within reach, eta <= 1.
-
-    Parameters
-    ----------
-    centreline : Contour
-        What the vibrissa's centreline feels [L].
-
-    Returns
-    -------
-    last, first : float
-        Parameter on the far (left) side, and of the first contact. That is where the tip of the
-        straight vibrissa meets the contour, the larger root of eta = 1; or, if the object ends
-        below the tip, its right end, which the side of the straight vibrissa meets.
-
-    Raises
-    ------
-    InputError
-        If the contour starts below the foot line, lies out of reach, or is so wide or so far away
-        that it is lost in rounding.
-    """
+    """The contour parameters between which the contour lies within reach, eta <= 1."""
     low, high = centreline.t_range
     bottom = float(centreline.parameter(np.array([0.0]))[0])
     t = bottom + np.array([[low - bottom], [high - bottom]]) * _SHARES
@@ -62,20 +43,7 @@ def contact_range(centreline: Contour) -> tuple[float, float]:
 
 
 def out_of_reach(centreline: Contour, last: float, first: float) -> float:
-    """The foot position, left of the contour, from which all of it is farther away than 1.
-
-    Parameters
-    ----------
-    centreline : Contour
-        What the vibrissa's centreline feels [L].
-    last, first : float
-        Contour parameters, those of `contact_range`.
-
-    Returns
-    -------
-    float
-        Foot position [L].
-    """
+    """The foot position, left of the contour, from which all of it is farther away than 1."""
     low, high = last, first
     close = max(_AS_CLOSE, 8 * float(np.spacing(max(abs(low), abs(high)))))
     while True:

@@ -33,24 +33,7 @@ class FileContent(NamedTuple):
 
 
 def write_file(path: Path, table: pd.DataFrame, metadata: Mapping[str, Any]) -> None:
-    """Write to Parquet or CSV, by the suffix; the file appears whole or not at all.
-
-    Parameters
-    ----------
-    path : Path
-        Named ``*.parquet`` or ``*.csv``.
-    table : pandas.DataFrame
-        A row a station.
-    metadata : mapping
-        Anything JSON can hold.
-
-    Raises
-    ------
-    InputError
-        If the name has another suffix, or JSON cannot hold the metadata.
-    OSError
-        If the file cannot be written.
-    """
+    """Write to Parquet or CSV, by the suffix; the file appears whole or not at all."""
     try:
         text = json.dumps(metadata)
     except (TypeError, ValueError, RecursionError) as error:
@@ -71,23 +54,7 @@ def write_file(path: Path, table: pd.DataFrame, metadata: Mapping[str, Any]) -> 
 
 
 def read_file(path: Path) -> FileContent:
-    """Metadata and bare table of a file, whatever its columns.
-
-    Parameters
-    ----------
-    path : Path
-        Named ``*.parquet`` or ``*.csv``.
-
-    Returns
-    -------
-    FileContent
-        Columns whose cells are not all numbers are texts.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, damaged, too large, no regular file or has another suffix.
-    """
+    """Metadata and bare table of a file, whatever its columns."""
     is_csv = _is_csv(path)
     regular_file(path, "readings file", _LARGEST)
     try:
@@ -124,18 +91,7 @@ def read_file(path: Path) -> FileContent:
 
 
 def is_ours(path: Path) -> bool:
-    """Whether `write_file` wrote a file, by the metadata in it.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    bool
-        Also True of a file that cannot be read, whose reader says what is wrong.
-    """
+    """Whether `write_file` wrote a file, by the metadata in it."""
     try:
         regular_file(path, "readings file", _LARGEST)
         if path.suffix == ".parquet":

@@ -20,22 +20,7 @@ _SI = {"foot_x": "m", "force_x": "N", "force_y": "N", "moment_z": "N m"}
 def as_text(
     table: pd.DataFrame, beam: Beam, source: str, gaps: int, beyond: Mapping[str, Varying]
 ) -> str:
-    """A sweep in a few lines: how long, how large, which phases.
-
-    Parameters
-    ----------
-    table, beam, source
-        As in `Readings`.
-    gaps : int
-        Stations at which a force or the moment is missing.
-    beyond : mapping
-        What is not the paper's vibrissa, as `beyond_the_paper` has it.
-
-    Returns
-    -------
-    str
-        At most 6 lines.
-    """
+    """A sweep in a few lines: how long, how large, which phases."""
     foot_x = table["foot_x"]
     largest = ", ".join(f"{name} {table[name].abs().max():.4g}" for name in CLAMP_READINGS)
     lines = [
@@ -56,20 +41,7 @@ def as_text(
 
 
 def as_html(table: pd.DataFrame, text: str) -> str:
-    """The same for a notebook, with the first and last rows.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        That of the readings.
-    text : str
-        From `as_text`.
-
-    Returns
-    -------
-    str
-        HTML.
-    """
+    """The same for a notebook, with the first and last rows."""
     rows = table.to_html(max_rows=_ROWS, float_format="{:.6g}".format, border=0)
     return f"<pre>{escape(text)}</pre>{rows}"
 
@@ -81,24 +53,7 @@ def plot(
     source: str,
     axes: "Sequence[Axes] | None" = None,
 ) -> "list[Axes]":
-    """Force and moment at the clamp over the foot position.
-
-    Parameters
-    ----------
-    table, beam
-        As in `Readings`.
-    trusted : array of bool, shape (stations,)
-        The others are marked.
-    source : str
-        What the lines are called.
-    axes : sequence of matplotlib.axes.Axes, optional
-        Those of other readings, to draw these into; new ones if not given.
-
-    Returns
-    -------
-    list of matplotlib.axes.Axes
-        One a reading.
-    """
+    """Force and moment at the clamp over the foot position."""
     if axes is None:
         import matplotlib.pyplot as plt  # a third of a second, and most users draw nothing
 

@@ -24,27 +24,7 @@ class Touch(NamedTuple):
 
 
 def first_touch(centreline: Contour, reach: tuple[float, float], rest: Unloaded) -> Touch:
-    """What the unloaded vibrissa touches first when its foot comes from the right.
-
-    Parameters
-    ----------
-    centreline : Contour
-        Contour that the centreline feels at the tip, in units of the vibrissa's length.
-    reach : tuple of float
-        Contour parameters of the leftmost and the rightmost point not above the length.
-    rest : Unloaded
-        The vibrissa at rest; it turns by less than pi/2.
-
-    Returns
-    -------
-    Touch
-        At the tip, or tangential.
-
-    Raises
-    ------
-    InputError
-        If the vibrissa at rest passes below the object.
-    """
+    """What the unloaded vibrissa touches first when its foot comes from the right."""
     _, tip_y, tip_angle = (float(v) for v in rest.at(np.array(1.0)))
     first = reach[1]
     lowest = float(centreline.parameter(np.zeros(1))[0])

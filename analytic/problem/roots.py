@@ -30,19 +30,6 @@ def zeros(
     values allow it, bisection elsewhere. A call of NumPy takes as long for one number as for sixty,
     so that few zeros are sought at several places at once: crowded about what interpolation says,
     or evenly spaced. Where the function jumps, it is the place of the jump.
-
-    Parameters
-    ----------
-    function : callable
-        Maps the numbers of zeros, ascending, and an array of places, both of shape (m,), to its
-        values, element by element; not continuous or smooth of need, but never NaN.
-    low, high : array, shape (n,)
-        Bounds, at which the function has different signs.
-
-    Returns
-    -------
-    array, shape (n,)
-        Of the two numbers that enclose each zero to rounding, the one with the smaller value.
     """
     low, high = np.array(low, dtype=float), np.array(high, dtype=float)
     if not low.size:
@@ -79,20 +66,6 @@ def smooth_zeros(
     Lagrange's inverse interpolation, through values about the likely place, takes one call of the
     function. Where the sign does not change there, or polynomials through one value less differ, it
     is `zeros`.
-
-    Parameters
-    ----------
-    function : callable
-        As `zeros` has it.
-    low, high : array, shape (n,)
-        Bounds, at which the function has different signs.
-    likely : array, shape (n,)
-        Where the zeros are, nearly; anything where that is not known.
-
-    Returns
-    -------
-    array, shape (n,)
-        The zeros.
     """
     if not low.size:
         return low
@@ -114,20 +87,7 @@ class Surroundings(NamedTuple):
 
     @classmethod
     def of(cls, low: Floats, high: Floats, likely: Floats) -> "Surroundings":
-        """Between bounds.
-
-        Parameters
-        ----------
-        low, high : array, shape (n,)
-            The bounds.
-        likely : array, shape (n,)
-            Where the zeros are, nearly; anything where that is not known.
-
-        Returns
-        -------
-        Surroundings
-            A fifth of the way from one bound to the other.
-        """
+        """Between bounds."""
         width = high - low
         centre = np.clip(likely, low + _NEAR * width, high - _NEAR * width)
         return cls(np.where(np.isfinite(centre), centre, low + width / 2), _NEAR * width)
@@ -138,20 +98,7 @@ class Surroundings(NamedTuple):
         return np.asarray(self.centre[:, None] + self.radius[:, None] * _NODES)
 
     def zeros(self, values: Floats) -> tuple[Floats, Booleans]:
-        """Where functions vanish, by Lagrange's inverse interpolation.
-
-        Parameters
-        ----------
-        values : array, shape (n, 13)
-            Theirs at the places.
-
-        Returns
-        -------
-        found : array, shape (n,)
-            The zeros.
-        known : array of bool, shape (n,)
-            Whether the sign changes among the places and polynomials through one value less agree.
-        """
+        """Where functions vanish, by Lagrange's inverse interpolation."""
         f = values
         with np.errstate(all="ignore"):  # values that coincide: no polynomial
             shares = f[:, None, :] / (f[:, None, :] - f[:, :, None])
@@ -168,20 +115,7 @@ class Surroundings(NamedTuple):
         return self.centre + ahead, np.asarray(crosses & known)
 
     def between(self, values: Floats, x: Floats) -> Floats:
-        """What functions are elsewhere among the places, by the polynomials through the values.
-
-        Parameters
-        ----------
-        values : array, shape (m, n, 13)
-            Those of m functions at the places.
-        x : array, shape (n, k)
-            Where.
-
-        Returns
-        -------
-        array, shape (m, n, k)
-            As exact as the values, if the functions are smooth; NaN beyond the radius.
-        """
+        """What functions are elsewhere among the places, by the polynomials through the values."""
         share = (x - self.centre[:, None]) / self.radius[:, None]
         with np.errstate(invalid="ignore"):
             weights = np.cos(np.arccos(share)[..., None] * _EACH) @ _TO_CHEBYSHEV
@@ -190,20 +124,7 @@ class Surroundings(NamedTuple):
 
 
 def zero(function: Callable[[Floats], Floats], low: float, high: float) -> float:
-    """`zeros` of a function with one zero.
-
-    Parameters
-    ----------
-    function : callable
-        Maps an array of places, shape (m,), to its values.
-    low, high : float
-        Bounds, at which the function has different signs.
-
-    Returns
-    -------
-    float
-        The zero.
-    """
+    """`zeros` of a function with one zero."""
     return float(zeros(lambda _, x: function(x), np.array([low]), np.array([high]))[0])
 
 

@@ -15,24 +15,7 @@ _MOST_TURNED = math.pi / 2  # rad; beyond, the vibrissa at rest leans over itsel
 
 
 def check_support(clamp_stiffness: object, friction: object, beam: Beam, signed: bool) -> None:
-    """Refuse a clamp or a friction that cannot be.
-
-    Parameters
-    ----------
-    clamp_stiffness : object
-        Moment of the clamp by its rotation [force length/rad]; infinite if rigid.
-    friction : object
-        Coefficient.
-    beam : Beam
-        The vibrissa.
-    signed : bool
-        Whether the coefficient may be negative: the other sense of sliding.
-
-    Raises
-    ------
-    InputError
-        If one is no number or out of range.
-    """
+    """Refuse a clamp or a friction that cannot be."""
     softest = _SOFTEST * beam.moment_unit
     rigid = isinstance(clamp_stiffness, float) and clamp_stiffness == math.inf
     if not (rigid or (is_finite_number(clamp_stiffness) and clamp_stiffness >= softest)):
@@ -67,39 +50,13 @@ def check_support(clamp_stiffness: object, friction: object, beam: Beam, signed:
 
 
 def is_plain(beam: Beam, clamp_stiffness: float, friction: float) -> bool:
-    """Whether a vibrissa is the paper's: straight, uniform, rigidly clamped, without friction.
-
-    Parameters
-    ----------
-    beam : Beam
-        The vibrissa.
-    clamp_stiffness, friction : float
-        Of its clamp and contact.
-
-    Returns
-    -------
-    bool
-        Whether it is.
-    """
+    """Whether a vibrissa is the paper's: straight, uniform, rigidly clamped, without friction."""
     straight = beam.natural_curvature == 0 and not beam.varies
     return straight and clamp_stiffness == math.inf and friction == 0
 
 
 def require_uniform(who: str, beam: Beam) -> None:
-    """Refuse a vibrissa that varies along its length.
-
-    Parameters
-    ----------
-    who : str
-        Who cannot take it into account.
-    beam : Beam
-        The vibrissa.
-
-    Raises
-    ------
-    InputError
-        If its rigidity, its radius or its natural curvature varies.
-    """
+    """Refuse a vibrissa that varies along its length."""
     for name in ("flexural_rigidity", "natural_curvature"):
         value = getattr(beam, name)
         if isinstance(value, Along):
@@ -113,22 +70,7 @@ def require_uniform(who: str, beam: Beam) -> None:
 def require_plain(
     who: str, beam: Beam, clamp_stiffness: float = math.inf, friction: float = 0.0
 ) -> None:
-    """Refuse what someone cannot take into account.
-
-    Parameters
-    ----------
-    who : str
-        Who cannot.
-    beam : Beam
-        The vibrissa.
-    clamp_stiffness, friction : float
-        Of its clamp and contact.
-
-    Raises
-    ------
-    InputError
-        If the vibrissa is curved at rest or not uniform, its clamp turns, or it rubs.
-    """
+    """Refuse what someone cannot take into account."""
     require_uniform(who, beam)
     for name, value, plain in (
         ("beam.natural_curvature", beam.natural_curvature, 0.0),
@@ -143,20 +85,7 @@ def require_plain(
 def beyond_the_paper(
     beam: Beam, clamp_stiffness: float = math.inf, friction: float = 0.0
 ) -> dict[str, Varying]:
-    """What of a vibrissa, its clamp and its contact is not the paper's.
-
-    Parameters
-    ----------
-    beam : Beam
-        The vibrissa.
-    clamp_stiffness, friction : float
-        Of its clamp and contact.
-
-    Returns
-    -------
-    dict
-        Numbers, or how they vary, by what they are; empty for the paper's vibrissa.
-    """
+    """What of a vibrissa, its clamp and its contact is not the paper's."""
     tip_radius = beam.radius if beam.tip_radius is None else beam.tip_radius
     numbers: tuple[tuple[str, Varying, float], ...] = (
         ("tip radius", tip_radius, beam.radius),
@@ -168,19 +97,7 @@ def beyond_the_paper(
 
 
 def support_record(clamp_stiffness: float, friction: float) -> dict[str, Any]:
-    """What provenance says of the clamp and the contact.
-
-    Parameters
-    ----------
-    clamp_stiffness, friction : float
-        [force length/rad] and coefficient.
-
-    Returns
-    -------
-    dict
-        ``support`` with ``clamp_stiffness``, None if rigid, and ``friction``; empty if the clamp is
-        rigid and nothing rubs.
-    """
+    """What provenance says of the clamp and the contact."""
     if clamp_stiffness == math.inf and friction == 0:
         return {}
     stiffness = clamp_stiffness if clamp_stiffness < math.inf else None
@@ -188,17 +105,6 @@ def support_record(clamp_stiffness: float, friction: float) -> dict[str, Any]:
 
 
 def support_of(provenance: Mapping[str, Any]) -> tuple[float, float]:
-    """Clamp stiffness and friction that readings were made with.
-
-    Parameters
-    ----------
-    provenance : mapping
-        Of the readings.
-
-    Returns
-    -------
-    clamp_stiffness, friction : float
-        [force length/rad] and coefficient; rigid and none if the provenance does not say.
-    """
+    """Clamp stiffness and friction that readings were made with."""
     held = provenance.get("support", {})
     return float(held.get("clamp_stiffness") or math.inf), float(held.get("friction", 0.0))

@@ -23,28 +23,7 @@ _TEXT_FIX = "fix the cell, or leave it empty where nothing was measured"
 
 
 def as_numbers(column: "pd.Series[Any]", name: str, place: Place = row_number) -> Floats:
-    """A column of readings as numbers, NaN where a cell is empty.
-
-    Parameters
-    ----------
-    column : pandas.Series
-        Integers, floats or texts that are numbers.
-    name : str
-        What an error calls the column.
-    place : callable
-        What an error calls a row, given its number from 0.
-
-    Returns
-    -------
-    array, shape (n,)
-        The numbers, in the column's unit.
-
-    Raises
-    ------
-    InputError
-        If the column holds booleans, categories or times, a cell that is not empty is no number, or
-        a number is infinite.
-    """
+    """A column of readings as numbers, NaN where a cell is empty."""
     types = pd.api.types
     kind = column.dtype
     if types.is_bool_dtype(kind) or isinstance(kind, pd.CategoricalDtype):
@@ -63,28 +42,7 @@ def as_numbers(column: "pd.Series[Any]", name: str, place: Place = row_number) -
 
 
 def checked_table(table: pd.DataFrame, source: str, place: Place = row_number) -> pd.DataFrame:
-    """A table whose columns are those of readings: numbers as floats, rows counted from 0.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        A row a station; it is not changed.
-    source : str
-        What an error calls the readings.
-    place : callable
-        What an error calls a row.
-
-    Returns
-    -------
-    pandas.DataFrame
-        The same cells; columns that are not those of readings as they are.
-
-    Raises
-    ------
-    InputError
-        If a sensed column is missing, a column stands twice, a cell is no number, or a phase or
-        status is unknown.
-    """
+    """A table whose columns are those of readings: numbers as floats, rows counted from 0."""
     missing = [name for name in SENSED if name not in table]
     if missing:
         raise InputError(
@@ -116,19 +74,7 @@ def checked_table(table: pd.DataFrame, source: str, place: Place = row_number) -
 
 
 def as_table(columns: Mapping[str, Floats | Integers]) -> pd.DataFrame:
-    """Columns of readings as a table.
-
-    Parameters
-    ----------
-    columns : mapping of array, shape (n,)
-        Numbers; phase and status by their number in `PHASES` and `STATUSES`. A text is made once
-        for all rows that have it: made row by row they would take longer than the closed form.
-
-    Returns
-    -------
-    pandas.DataFrame
-        n rows.
-    """
+    """Columns of readings as a table."""
     return pd.DataFrame(
         {
             name: _words(name).take(values.astype(np.intp)) if name in WORDS else values
@@ -138,38 +84,12 @@ def as_table(columns: Mapping[str, Floats | Integers]) -> pd.DataFrame:
 
 
 def in_words(name: str, numbers: NDArray[np.intp]) -> "pd.Series[str]":
-    """A column of words from their numbers.
-
-    Parameters
-    ----------
-    name : str
-        One of `WORDS`.
-    numbers : array of int, shape (n,)
-        Of the words in `PHASES` or `STATUSES`.
-
-    Returns
-    -------
-    pandas.Series
-        n texts.
-    """
+    """A column of words from their numbers."""
     return pd.Series(_words(name).take(numbers))
 
 
 def says(column: "pd.Series[Any]", word: str) -> Booleans:
-    """Whether the cells of a column of words are a word.
-
-    Parameters
-    ----------
-    column : pandas.Series
-        ``phase`` or ``status``, however pandas holds it.
-    word : str
-        One of `WORDS`.
-
-    Returns
-    -------
-    array of bool, shape (n,)
-        What ``column == word`` is; a short column takes a tenth of the time.
-    """
+    """Whether the cells of a column of words are a word."""
     if not isinstance(column.array, pd.arrays.ArrowStringArray):
         return (column == word).to_numpy(dtype=bool)
     cells = pa.array(column.array)
@@ -184,34 +104,12 @@ def _words(name: str) -> "pd.api.extensions.ExtensionArray":
 
 
 def mirrored_table(table: pd.DataFrame) -> pd.DataFrame:
-    """A table of readings in a mirror, x to -x.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        With any of the columns of readings.
-
-    Returns
-    -------
-    pandas.DataFrame
-        The same columns; angles are measured from the x-axis as before.
-    """
+    """A table of readings in a mirror, x to -x."""
     return table.assign(**_turned_over(table))
 
 
 def mirrored_columns(columns: Mapping[str, Floats | Integers]) -> dict[str, Floats | Integers]:
-    """What `as_table` takes, in a mirror, x to -x.
-
-    Parameters
-    ----------
-    columns : mapping of array, shape (n,)
-        As `as_table` has them.
-
-    Returns
-    -------
-    dict of array, shape (n,)
-        The same columns.
-    """
+    """What `as_table` takes, in a mirror, x to -x."""
     return {**columns, **_turned_over(columns)}
 
 

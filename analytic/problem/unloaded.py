@@ -13,19 +13,12 @@ _PLACES = 257  # at which the slope of one of varying curvature is looked at
 
 @dataclass(frozen=True)
 class Unloaded:
-    """Shape and radius of a vibrissa at rest; arc lengths in units of its length.
+    """Shape and radius of a vibrissa at rest; arc lengths in units of its length."""
 
-    Parameters
-    ----------
-    natural : float or Along
-        Natural curvature, positive to the left of the way from clamp to tip [1/L].
-    base_radius, tip_radius : float
-        Of the cross-section at the clamp and at the tip, linear between [L].
-    """
-
+    # Natural curvature, positive to the left of the way from clamp to tip [1/L].
     natural: float | Along = 0.0
-    base_radius: float = 0.0
-    tip_radius: float = 0.0
+    base_radius: float = 0.0  # of the cross-section at the clamp and at the tip, linear between [L]
+    tip_radius: float = 0.0  # of the cross-section at the clamp and at the tip, linear between [L]
 
     @property
     def lean(self) -> float:
@@ -44,49 +37,16 @@ class Unloaded:
         return not isinstance(self.natural, Along) and self.base_radius == self.tip_radius
 
     def curvature(self, s: Floats) -> Floats:
-        """Natural curvature.
-
-        Parameters
-        ----------
-        s : array, any shape
-            Arc length from the clamp [L].
-
-        Returns
-        -------
-        array, shape of `s`
-            [1/L].
-        """
+        """Natural curvature."""
         natural = self.natural
         return natural(s) if isinstance(natural, Along) else np.full_like(s, natural)
 
     def taper(self, s: Floats) -> Floats:
-        """By how much the radius exceeds that of the tip.
-
-        Parameters
-        ----------
-        s : array, any shape
-            Arc length from the clamp [L].
-
-        Returns
-        -------
-        array, shape of `s`
-            [L].
-        """
+        """By how much the radius exceeds that of the tip."""
         return (self.base_radius - self.tip_radius) * (1 - s)
 
     def at(self, s: Floats) -> tuple[Floats, Floats, Floats]:
-        """Places on the axis.
-
-        Parameters
-        ----------
-        s : array, any shape
-            Arc length from the clamp [L].
-
-        Returns
-        -------
-        x, y, phi : array, shape of `s`
-            Position as seen from the foot [L], slope angle [rad].
-        """
+        """Places on the axis."""
         natural = self.natural
         if isinstance(natural, Along):
             x, y, turn = self._integrals
@@ -97,20 +57,7 @@ class Unloaded:
         return -chord * np.sin(turned / 2), chord * np.cos(turned / 2), np.pi / 2 + turned
 
     def turn_between(self, begin: Floats, end: float) -> Floats:
-        """By how much the slope grows along a part.
-
-        Parameters
-        ----------
-        begin : array, any shape
-            Arc length at which it begins [L].
-        end : float
-            And ends [L].
-
-        Returns
-        -------
-        array, shape of `begin`
-            [rad].
-        """
+        """By how much the slope grows along a part."""
         if isinstance(self.natural, Along):
             turn = self._integrals[2]
             return turn(np.array(end)) - turn(begin)
@@ -121,16 +68,6 @@ class Unloaded:
 
         Of a cone it goes along at the half-angle to the axis; where the vibrissa is curved to the
         left, towards the object, it is shorter than the axis.
-
-        Parameters
-        ----------
-        begin : array, any shape
-            Arc length of the axis at which it begins [L].
-
-        Returns
-        -------
-        array, shape of `begin`
-            [L].
         """
         left, narrowing = 1 - begin, self.base_radius - self.tip_radius
         turn = self.turn_between(begin, 1.0)

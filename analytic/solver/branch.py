@@ -27,24 +27,14 @@ _ROUNDING = 8 * float(np.finfo(float).eps)
 
 @dataclass(frozen=True)
 class Branch:
-    """Equilibria on a grid of contour parameters.
+    """Equilibria on a grid of contour parameters."""
 
-    Attributes
-    ----------
-    t : array, shape (n,)
-        Contour parameters, decreasing along the sweep; the last is the snap-off.
-    samples : Samples
-        The states there.
-    tangent : array of bool, shape (n - 1,)
-        Whether the cell between two parameters is in Phase B.
-    lowest : float
-        Contour parameter of the contour's lowest point, which is one of `t` if it comes before the
-        snap-off.
-    """
-
+    # Shape (n,); Contour parameters, decreasing along the sweep; the last is the snap-off.
     t: Floats
-    samples: Samples
-    tangent: Booleans
+    samples: Samples  # the states there
+    tangent: Booleans  # shape (n - 1,); Whether the cell between two parameters is in Phase B
+    # Contour parameter of the contour's lowest point, which is one of `t` if it comes before the
+    # snap-off.
     lowest: float
 
     @property
@@ -80,15 +70,7 @@ class Branch:
         return np.asarray(self.t[1:-1][self.tangent[1:] != self.tangent[:-1]])
 
     def events(self) -> dict[str, float | None]:
-        """Where what happens along the branch happens.
-
-        Returns
-        -------
-        dict
-            Foot positions [L] of the first contact, of the first start and the last end of Phase B,
-            of the last equilibrium that is stable in space, and of the snap-off; None where there
-            is none.
-        """
+        """Where what happens along the branch happens."""
         change = np.append(self.tangent[1:] != self.tangent[:-1], False)
         at, into_b = self.foot_x[1:][change], self.tangent[1:][change[:-1]]
         starts, ends = at[into_b], at[~into_b]
@@ -101,40 +83,14 @@ class Branch:
         return {n: None if x is None else float(x) for n, x in zip(names, places, strict=True)}
 
     def cells(self, foot_x: Floats) -> Integers:
-        """Cell that holds the state at each foot position on the branch.
-
-        Parameters
-        ----------
-        foot_x : array, shape (n,)
-            Foot positions between first contact and snap-off [L].
-
-        Returns
-        -------
-        array of int, shape (n,)
-            Of the first cell whose end lies at or left of the foot position.
-        """
+        """Cell that holds the state at each foot position on the branch."""
         least = np.minimum.accumulate(self.foot_x)
         end = np.searchsorted(-least, -foot_x, side="left")
         return np.clip(end, 1, len(self.t) - 1) - 1
 
 
 def trace(many: Contours, reaches: Sequence[tuple[float, float]]) -> list[Branch]:
-    """Follow the equilibria along dimensionless contours, from first contact to snap-off.
-
-    Parameters
-    ----------
-    many : Contours
-        What the centrelines feel, in units of the vibrissae's lengths.
-    reaches : sequence of tuple of float
-        Contour parameters of the last point within reach and of the first contact, as
-        `contact_range` has them.
-
-    Returns
-    -------
-    list of Branch
-        Of at least two points each; all in one place if nothing but the first contact can be
-        reached.
-    """
+    """Follow the equilibria along dimensionless contours, from first contact to snap-off."""
     last, first = np.array(reaches).T
     grid, samples, folds = folded(many, along(many, first, last))
     ends = np.searchsorted(grid.owner, np.arange(len(many) + 1))

@@ -29,16 +29,6 @@ def surplus_and_rate(point: ContourPoint) -> tuple[Floats, Floats]:
     """`surplus` and its derivative along the contour.
 
     With the tangential contact's q' = -1/C and (C sin + S cos)' = across - 1/C by the slope angle.
-
-    Parameters
-    ----------
-    point : ContourPoint
-        Points of contours that the centreline feels, in units of the vibrissa's length.
-
-    Returns
-    -------
-    value, rate : array, shape (n,)
-        The rate is NaN where the vibrissa is straight, against an upright side.
     """
     states = tangent_contact(point)
     alpha, _, eta, turning, stretch = states.point

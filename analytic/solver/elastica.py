@@ -48,20 +48,7 @@ class Frame(NamedTuple):
 
 
 def span(excess: Floats, alpha: Floats) -> Span:
-    """Integrals of the span whose end has turned by `excess` over the least possible rotation.
-
-    Parameters
-    ----------
-    excess : array, any shape
-        w >= 0 [rad]; pi/2 - |alpha| is tangential contact (Phase B).
-    alpha : array, same shape
-        Slope angle of the contour at the contact [rad].
-
-    Returns
-    -------
-    Span
-        Dimensionless, of the same shape.
-    """
+    """Integrals of the span whose end has turned by `excess` over the least possible rotation."""
     w, sharp = excess, np.abs(alpha)
     k, k_ = np.sin((w + sharp) / 2), np.cos((w + sharp) / 2)
     return _span(2 * np.sqrt(np.sin(w / 2) * np.sin(w / 2 + sharp)), k, k_, alpha)
@@ -77,16 +64,6 @@ def tangent_span(alpha: Floats) -> Span:
 
     g and h being analytic; for alpha < 0, where theta passes pi/2, twice the integrals up to there
     less these.
-
-    Parameters
-    ----------
-    alpha : array, any shape
-        Slope angle of the contour at the contact [rad].
-
-    Returns
-    -------
-    Span
-        What `span` has for an excess of pi/2 - |alpha|.
     """
     v = np.pi / 2 - np.abs(alpha)
     root = np.sqrt(v)
@@ -101,21 +78,7 @@ def tangent_span(alpha: Floats) -> Span:
 
 
 def span_of_moment(C: Floats, alpha: Floats) -> Span:
-    """Integrals of the span whose clamp moment is C sqrt(f): what reconstruction starts from.
-
-    Parameters
-    ----------
-    C : array, any shape
-        Clamp moment over the root of the force, dimensionless.
-    alpha : array, same shape
-        Slope angle of the contour at the contact [rad].
-
-    Returns
-    -------
-    Span
-        Of the same shape; NaN where the moment is too large for the force: k^2 =
-        sin^2(alpha/2) + C^2/4 exceeds 1.
-    """
+    """Integrals of the span whose clamp moment is C sqrt(f): what reconstruction starts from."""
     k = np.hypot(np.sin(alpha / 2), C / 2)
     with np.errstate(invalid="ignore"):
         return _span(C, k, np.sqrt(1 - k * k), alpha)
@@ -159,36 +122,12 @@ _UPRIGHT = np.array([np.sqrt(np.pi / 2), (np.pi / 2) ** 1.5]) * _COEFFICIENTS.su
 
 
 def least_rotation(alpha: Floats) -> Floats:
-    """Rotation from which the excess w is counted: u = w + max(0, -2 alpha).
-
-    Parameters
-    ----------
-    alpha : array, any shape
-        Slope angle of the contour at the contact [rad].
-
-    Returns
-    -------
-    array, same shape
-        The least rotation of the span's end [rad].
-    """
+    """Rotation from which the excess w is counted: u = w + max(0, -2 alpha)."""
     return np.maximum(0.0, -2 * alpha)
 
 
 def frame(span: Span, alpha: Floats) -> Frame:
-    """The span's end in the world frame.
-
-    Parameters
-    ----------
-    span : Span
-        Its integrals, or their derivatives at fixed `alpha`.
-    alpha : array, same shape
-        Slope angle of the contour at the contact [rad].
-
-    Returns
-    -------
-    Frame
-        up = sqrt(f) y and across = sqrt(f) (x - x0), dimensionless.
-    """
+    """The span's end in the world frame."""
     sin, cos = np.sin(alpha), np.cos(alpha)
     return Frame(span.C * sin + span.S * cos, span.C * cos - span.S * sin)
 
@@ -197,20 +136,6 @@ def span_by_excess(span: Span, excess: Floats, alpha: Floats) -> Span:
     """Derivatives of `span` with respect to the excess rotation, at fixed alpha.
 
     From dF/dk, dE/dk and d(psi_0)/dk (Byrd and Friedman, 710.07 and 710.09).
-
-    Parameters
-    ----------
-    span : Span
-        The integrals.
-    excess : array, same shape
-        Excess rotation of the span's end [rad].
-    alpha : array, same shape
-        Slope angle of the contour at the contact [rad].
-
-    Returns
-    -------
-    Span
-        Derivatives [1/rad].
     """
     q, C, S = span
     angle = excess + np.abs(alpha)  # pi/2 - theta_1
@@ -224,22 +149,7 @@ def span_by_excess(span: Span, excess: Floats, alpha: Floats) -> Span:
 
 
 def span_by_excess_twice(span: Span, by_excess: Span, excess: Floats, alpha: Floats) -> Span:
-    """Second derivatives of `span` with respect to the excess rotation, at fixed alpha.
-
-    Parameters
-    ----------
-    span, by_excess : Span
-        The integrals and their first derivatives.
-    excess : array, same shape
-        Excess rotation of the span's end [rad].
-    alpha : array, same shape
-        Slope angle of the contour at the contact [rad].
-
-    Returns
-    -------
-    Span
-        Derivatives [1/rad^2].
-    """
+    """Second derivatives of `span` with respect to the excess rotation, at fixed alpha."""
     q, C, S = span
     q_w, C_w, S_w = by_excess
     angle = excess + np.abs(alpha)
@@ -258,18 +168,6 @@ def span_by_alpha(span: Span, by_excess: Span, alpha: Floats) -> Span:
 
     Both limits of the integrals move. The upper one, pi/2 - alpha, contributes the integrand at
     the clamp; the lower one, theta_1 = pi/2 - w - |alpha|, what the excess does.
-
-    Parameters
-    ----------
-    span, by_excess : Span
-        The integrals, and their derivatives with respect to the excess rotation.
-    alpha : array, same shape
-        Slope angle of the contour at the contact [rad].
-
-    Returns
-    -------
-    Span
-        Derivatives [1/rad].
     """
     side = np.where(alpha < 0, -1.0, 1.0)
     return Span(

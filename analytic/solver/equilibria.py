@@ -41,18 +41,7 @@ class Equilibria(NamedTuple):
     """The contact as seen from the clamp, times sqrt(f)."""
 
     def part(self, chosen: Booleans | Integers) -> "Equilibria":
-        """Some of them.
-
-        Parameters
-        ----------
-        chosen : array of bool or of int
-            Which.
-
-        Returns
-        -------
-        Equilibria
-            Copies.
-        """
+        """Some of them."""
         point, excess, loaded, root_f, tangent, end = self
         return Equilibria(
             ContourPoint(*(values[chosen] for values in point)),
@@ -64,15 +53,7 @@ class Equilibria(NamedTuple):
         )
 
     def replace(self, where: Integers, new: "Equilibria") -> None:
-        """Put others in the place of some.
-
-        Parameters
-        ----------
-        where : array of int, shape (m,)
-            The numbers of those that go.
-        new : Equilibria
-            Of m contacts.
-        """
+        """Put others in the place of some."""
         for old, values in zip(self._arrays(), new._arrays(), strict=True):
             old[where] = values
 
@@ -106,13 +87,7 @@ class Equilibria(NamedTuple):
         return np.where(self.tangent, self.tangent_rate(), self.tip_rate().foot_x)
 
     def tangent_rate(self) -> Floats:
-        """d(x0)/dt in Phase B; at its limits too, whichever phase is there.
-
-        Returns
-        -------
-        array, shape (n,)
-            [L by the contour's parameter].
-        """
+        """d(x0)/dt in Phase B; at its limits too, whichever phase is there."""
         alpha, _, eta, turning, stretch = self.point
         up, across = self.frame
         lean = across / up
@@ -120,13 +95,7 @@ class Equilibria(NamedTuple):
         return stretch * (np.cos(alpha) - np.sin(alpha) * lean) + turning * eta * rise
 
     def tip_rate(self) -> "TipRate":
-        """The derivatives in Phase A; at its limits too, whichever phase is there.
-
-        Returns
-        -------
-        TipRate
-            By the contour's parameter.
-        """
+        """The derivatives in Phase A; at its limits too, whichever phase is there."""
         alpha, _, _, turning, stretch = self.point
         height, reach = tip_rates(self.excess, self.span, alpha, self.frame)
         excess_rate = (stretch * np.sin(alpha) - turning * height.by_alpha) / height.by_excess
@@ -157,22 +126,6 @@ def tip_rates(
 
     With alpha the lower limit of the integrals moves as with the excess rotation, the other way for
     alpha < 0; of what the upper one adds, the integrands at the clamp, 1/C up is left.
-
-    Parameters
-    ----------
-    excess : array, shape (n,)
-        Excess rotation of the tip [rad].
-    loaded : Span
-        Integrals of the vibrissa, loaded all along.
-    alpha : array, shape (n,)
-        Slope angle of the contour at the tip [rad].
-    end : Frame, optional
-        `frame` of both, where it is known.
-
-    Returns
-    -------
-    height, reach : Rates
-        [L/rad]
     """
     by_excess = span_by_excess(loaded, excess, alpha)
     up, across = frame(loaded, alpha) if end is None else end
@@ -187,18 +140,7 @@ def tip_rates(
 
 
 def tangent_contact(point: ContourPoint) -> Equilibria:
-    """Phase B (Will et al., eqs. 18-22), whether or not its arc length fits on the vibrissa.
-
-    Parameters
-    ----------
-    point : ContourPoint
-        Where the centreline's contour is touched; arrays of shape (n,).
-
-    Returns
-    -------
-    Equilibria
-        Of n contacts.
-    """
+    """Phase B (Will et al., eqs. 18-22), whether or not its arc length fits on the vibrissa."""
     excess = np.pi / 2 - np.abs(point.alpha)
     loaded = tangent_span(point.alpha)
     end = frame(loaded, point.alpha)
@@ -207,43 +149,13 @@ def tangent_contact(point: ContourPoint) -> Equilibria:
 
 
 def contact(point: ContourPoint, excess: Floats, tangent: Booleans) -> Equilibria:
-    """Contacts of known phase, and of known rotation if at the tip.
-
-    Parameters
-    ----------
-    point : ContourPoint
-        Where the centreline's contour is touched; arrays of shape (n,).
-    excess : array, shape (n,)
-        Excess rotation of the tip in Phase A [rad]; what Phase B has is known.
-    tangent : array of bool, shape (n,)
-        Phase B.
-
-    Returns
-    -------
-    Equilibria
-        Whether or not they reach the point at the tip, or fit on the vibrissa.
-    """
+    """Contacts of known phase, and of known rotation if at the tip."""
     excess = np.where(tangent, np.pi / 2 - np.abs(point.alpha), excess)
     return _contact(point, excess, span(excess, point.alpha), tangent)
 
 
 def contact_beside(states: Equilibria, point: ContourPoint, excess: Floats) -> Equilibria:
-    """Contacts so near to known ones that their integrals follow without being computed.
-
-    Parameters
-    ----------
-    states : Equilibria
-        The known ones.
-    point : ContourPoint
-        Where the centreline's contour is touched; arrays of shape (n,).
-    excess : array, shape (n,)
-        As `contact` has it.
-
-    Returns
-    -------
-    Equilibria
-        Of the same phases, exact to the first order in how far slope and rotation differ.
-    """
+    """Contacts so near to known ones that their integrals follow without being computed."""
     alpha, tangent = states.point.alpha, states.tangent
     excess = np.where(tangent, np.pi / 2 - np.abs(point.alpha), excess)
     # By the root of the excess they are smooth where the clamp's moment vanishes.
@@ -264,36 +176,12 @@ def _contact(point: ContourPoint, excess: Floats, loaded: Span, tangent: Boolean
 
 
 def equilibria(centreline: Contour, t: Floats) -> Equilibria:
-    """The vibrissa against each contour point, as `equilibria_at` has it.
-
-    Parameters
-    ----------
-    centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length.
-    t : array, shape (n,)
-        Contour parameters.
-
-    Returns
-    -------
-    Equilibria
-        Of n contacts.
-    """
+    """The vibrissa against each contour point, as `equilibria_at` has it."""
     return equilibria_at(centreline.at(t))
 
 
 def equilibria_at(point: ContourPoint) -> Equilibria:
-    """The vibrissa against each contour point: tangential if that fits on it, else at the tip.
-
-    Parameters
-    ----------
-    point : ContourPoint
-        Where the centreline's contour is touched; arrays of shape (n,).
-
-    Returns
-    -------
-    Equilibria
-        Of n contacts.
-    """
+    """The vibrissa against each contour point: tangential if that fits on it, else at the tip."""
     found = tangent_contact(point)
     excess, loaded, root_f, _, end = found[1:]
     tangent = _fits(found)
@@ -333,37 +221,12 @@ class Units(NamedTuple):
 
     @classmethod
     def of(cls, beam: Beam) -> "Units":
-        """Those of a beam.
-
-        Parameters
-        ----------
-        beam : Beam
-            The vibrissa.
-
-        Returns
-        -------
-        Units
-            Numbers.
-        """
+        """Those of a beam."""
         return cls(beam.length, beam.force_unit, beam.moment_unit, beam.radius / beam.length)
 
 
 def to_columns(states: Equilibria, units: Units) -> dict[str, Numbers]:
-    """The readings of `states`, column by column.
-
-    Parameters
-    ----------
-    states : Equilibria
-        Of n contacts.
-    units : Units
-        Of the vibrissa, or of each contact's.
-
-    Returns
-    -------
-    dict of array, shape (n,)
-        The columns of `Readings.table` by name; phase and status by their number in `PHASES` and
-        `STATUSES`.
-    """
+    """The readings of `states`, column by column."""
     alpha, xi, eta = states.point[:3]
     sine, cosine = np.sin(alpha), np.cos(alpha)
     force = states.root_f**2

@@ -45,18 +45,7 @@ class Grid(NamedTuple):
     t: Floats
 
     def with_points(self, owner: Integers, t: Floats) -> "Grid":
-        """The grid with more points, each once.
-
-        Parameters
-        ----------
-        owner, t : array, shape (m,)
-            In any order.
-
-        Returns
-        -------
-        Grid
-            Of at most n + m points.
-        """
+        """The grid with more points, each once."""
         whose, where = np.concatenate([self.owner, owner]), np.concatenate([self.t, t])
         order = _order(whose, where)
         return Grid(whose[order], where[order])
@@ -73,33 +62,11 @@ class Grid(NamedTuple):
         return self.owner.searchsorted(np.arange(self.owner[-1] + 1))
 
     def part(self, chosen: Booleans) -> "Grid":
-        """Some of the points.
-
-        Parameters
-        ----------
-        chosen : array of bool, shape (n,)
-            Which.
-
-        Returns
-        -------
-        Grid
-            In their order.
-        """
+        """Some of the points."""
         return Grid(self.owner[chosen], self.t[chosen])
 
     def middles(self, chosen: Booleans) -> "Grid":
-        """The middles of the chosen cells, but for those that have none.
-
-        Parameters
-        ----------
-        chosen : array of bool, shape (n - 1,)
-            Which cells.
-
-        Returns
-        -------
-        Grid
-            Those that lie between two numbers.
-        """
+        """The middles of the chosen cells, but for those that have none."""
         t = self.t
         middle = t[1:] + (t[:-1] - t[1:]) / 2
         among = chosen & self.cells & (middle > t[1:]) & (middle < t[:-1])
@@ -107,20 +74,7 @@ class Grid(NamedTuple):
 
 
 def along(centrelines: Contours, first: Floats, last: Floats) -> Grid:
-    """Contour parameters, descending from `first` to `last`, that show all changes of phase.
-
-    Parameters
-    ----------
-    centrelines : Contours
-        What the centrelines feel, in units of the vibrissae's lengths; n of them.
-    first, last : array, shape (n,)
-        Contour parameters between which each lies within reach.
-
-    Returns
-    -------
-    Grid
-        With the zeros of the surplus, the lowest point and those next to each break of a contour.
-    """
+    """Contour parameters, descending from `first` to `last`, that show all changes of phase."""
     coarse = first[:, None] + (last - first)[:, None] * _COARSE
     coarse = np.clip(coarse, last[:, None], first[:, None])
     # Left of the lowest point the excess is counted from another rotation.
@@ -147,18 +101,7 @@ def along(centrelines: Contours, first: Floats, last: Floats) -> Grid:
 
 
 def doubtful(t: Floats, value: Floats, rate: Floats) -> Booleans:
-    """Cells in which a function may do what its values and derivatives at the ends do not show.
-
-    Parameters
-    ----------
-    t, value, rate : array, shape (n,)
-        Contour parameters, descending on each contour; values, and derivatives, NaN where unknown.
-
-    Returns
-    -------
-    array of bool, shape (n - 1,)
-        Where the mean slope does not lie between those at the ends.
-    """
+    """Cells in which a function may do what its values and derivatives at the ends do not show."""
     change, width = _steps(value), _steps(t)
     with np.errstate(all="ignore"):  # between points that differ by a rounding only, or contours
         mean = change / width
@@ -235,24 +178,7 @@ class Samples(NamedTuple):
 
 
 def folded(centrelines: Contours, grid: Grid) -> tuple[Grid, Samples, Grid]:
-    """Foot positions along the grids, with more points of them where it folds.
-
-    Parameters
-    ----------
-    centrelines : Contours
-        What the centrelines feel, in units of the vibrissae's lengths.
-    grid : Grid
-        From `along`.
-
-    Returns
-    -------
-    grid : Grid
-        Of each contour up to where the vibrissa cannot reach any more.
-    samples : Samples
-        The states there.
-    folds : Grid
-        Those of its points that are folds; each has two more close by.
-    """
+    """Foot positions along the grids, with more points of them where it folds."""
     grid, point = _to_end_of_reach(centrelines, grid)
     samples = _sampled(point)
     most = np.bincount(grid.owner, minlength=len(centrelines)) + _MOST

@@ -20,20 +20,6 @@ def elliptic_integrals(
     19.8.12 and 19.8.13) make the modulus so small that three terms of the series in its square are
     exact. They take the amplitude as a point of the unit circle, where tan(psi_1 - psi) =
     k' tan psi is a product of two complex numbers.
-
-    Parameters
-    ----------
-    opposite, adjacent : array, shape (n,)
-        Any positive multiple of sin psi and of cos psi.
-    k, k_ : array, shape (n,)
-        Modulus and complementary modulus, k^2 + k_^2 = 1.
-
-    Returns
-    -------
-    F, E : array, shape (n,)
-        [rad].
-    sine : array, shape (n,)
-        Of the amplitude.
     """
     psi = np.arctan2(opposite, adjacent + 0.0)  # an adjacent -0 would make 0 and 0 half a turn
     if psi.size <= _FEW:

@@ -27,16 +27,6 @@ def solve_plain(given: Sequence[Case]) -> list[Readings]:
     In a sweep to the left the vibrissa is free right of the first contact and left of the
     snap-off. Between them the foot position falls along the equilibria, so that each station has
     one state.
-
-    Parameters
-    ----------
-    given : sequence of Case
-        Of the paper's vibrissa; at least one.
-
-    Returns
-    -------
-    list of Readings
-        As `solve_sweep` has them; what one case is does not matter to the others.
     """
     cases = [case if case.sweep.direction == "left" else case.mirrored() for case in given]
     counts = [case.sweep.stations for case in cases]
@@ -82,20 +72,7 @@ def solve_plain(given: Sequence[Case]) -> list[Readings]:
 
 
 def provenance(case: Case, events: dict[str, float | None]) -> dict[str, object]:
-    """What the closed form records of a sweep.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    events : dict
-        Where what happens happens [L].
-
-    Returns
-    -------
-    dict
-        With the foot positions of the events in the case's unit.
-    """
+    """What the closed form records of a sweep."""
     length = case.beam.length
     return {
         **case.provenance(),

@@ -17,25 +17,6 @@ def residuals(
     The elastica that has the clamp's force and moment, up to where its curvature vanishes, is
     compared with the contact that the table states. That is another route than the solver's, which
     goes from the contact to the clamp; elliptic integrals are common to both (`certify` uses none).
-
-    Parameters
-    ----------
-    columns : mapping of array, shape (n,)
-        Columns of `Readings.table`, of a vibrissa that bends to the right.
-    free : array of bool, shape (n,)
-        Where nothing touches.
-    units : Units
-        Of the vibrissa, or of each station's.
-
-    Returns
-    -------
-    dict of array, shape (n,)
-        Dimensionless, in units of the distance from the origin where that exceeds L.
-        ``residual_boundary``: the largest of the misses of the contact's position, of its arc
-        length, of its slope (the contour's in Phase B, the tip's in Phase A) and of the force's
-        direction; of what the arc length exceeds L by; and of what the tip's angle is less than the
-        contour's by, when the vibrissa would pass through the body. ``residual_moment``:
-        M - F_y (xi - x0) + F_x eta. Zero where the vibrissa is free, NaN out of reach.
     """
 
     def column(name: str, unit: float | Floats) -> Floats:

@@ -29,25 +29,7 @@ class Branch:
 
     @classmethod
     def of(cls, case: Case, sense: float) -> "Branch":
-        """Follow the states that slide on (1), or back (-1).
-
-        Parameters
-        ----------
-        case : Case
-            A sweep to the left.
-        sense : float
-            Of sliding.
-
-        Returns
-        -------
-        Branch
-            From first contact to its own fold.
-
-        Raises
-        ------
-        ArithmeticError
-            If the states are lost before.
-        """
+        """Follow the states that slide on (1), or back (-1)."""
         vibrissa = Vibrissa.of(case.beam, case.clamp_stiffness, sense * case.friction)
         touch = first_touch(case.centreline, case.reach, vibrissa.unloaded)
         path = follow(case.centreline, vibrissa, touch, case.reach)
@@ -57,25 +39,7 @@ class Branch:
         return cls(vibrissa, path)
 
     def at(self, case: Case, foot_x: Floats) -> Floats:
-        """States at foot positions.
-
-        Parameters
-        ----------
-        case : Case
-            As of `of`.
-        foot_x : array, shape (n,)
-            On the branch [L].
-
-        Returns
-        -------
-        array, shape (n, 3)
-            Contour parameter, normal force and excess.
-
-        Raises
-        ------
-        ArithmeticError
-            If one is not found.
-        """
+        """States at foot positions."""
         z, known = solve_places(case.centreline, self.vibrissa, self.path, foot_x)
         if not known.all():
             place = foot_x[int(np.argmin(known))] * case.beam.length
@@ -83,18 +47,7 @@ class Branch:
         return z
 
     def holds(self, foot_x: Floats) -> Booleans:
-        """Whether there is a state of the branch at foot positions.
-
-        Parameters
-        ----------
-        foot_x : array, shape (n,)
-            [L]
-
-        Returns
-        -------
-        array of bool, shape (n,)
-            Between first contact and fold.
-        """
+        """Whether there is a state of the branch at foot positions."""
         last = self.path.foot_x[self.path.snap_off]
         return np.asarray((foot_x < self.path.foot_x[0]) & (foot_x >= last))
 

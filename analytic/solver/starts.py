@@ -29,18 +29,7 @@ class Stations(NamedTuple):
     high: Floats
 
     def part(self, chosen: Booleans | Integers) -> "Stations":
-        """Some of them.
-
-        Parameters
-        ----------
-        chosen : array of bool or of int
-            Which.
-
-        Returns
-        -------
-        Stations
-            In their order.
-        """
+        """Some of them."""
         owner, foot_x, low, high = self
         return Stations(owner[chosen], foot_x[chosen], low[chosen], high[chosen])
 
@@ -61,22 +50,7 @@ class Starts(NamedTuple):
 def located(
     centrelines: Contours, branches: Sequence[Branch], foot_x: Sequence[Floats]
 ) -> tuple[Stations, Starts]:
-    """The cells that hold foot positions on branches, and the states there, nearly.
-
-    Parameters
-    ----------
-    centrelines : Contours
-        What the centrelines feel, in units of the vibrissae's lengths.
-    branches : sequence of Branch
-        Of each, from first contact to snap-off.
-    foot_x : sequence of array
-        Foot positions on each of them [L].
-
-    Returns
-    -------
-    Stations, Starts
-        Of all, one branch after the other.
-    """
+    """The cells that hold foot positions on branches, and the states there, nearly."""
     sizes = np.array([len(branch.t) for branch in branches])
     begins = np.cumsum(sizes) - sizes
     owner = np.repeat(np.arange(len(branches)), [len(places) for places in foot_x])

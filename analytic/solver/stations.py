@@ -53,21 +53,6 @@ def solve_stations(
     Newton's method starts from cubics on the branch's grid and may not leave the station's cell.
     What it leaves with a miss, or in the wrong phase, is enclosed instead: the foot position of the
     equilibrium at a contour point changes steadily along the cell, whatever its phase.
-
-    Parameters
-    ----------
-    centrelines : Contours
-        What the centrelines feel, in units of the vibrissae's lengths.
-    branches : sequence of Branch
-        Of each, from first contact to snap-off.
-    foot_x : sequence of array
-        Foot positions on each of them [L].
-
-    Returns
-    -------
-    Equilibria
-        Of all, one branch after the other, as exact as rounding allows; whether that is exact
-        enough, `residuals` says.
     """
     stations, (tangent, t, excess, behind) = located(centrelines, branches, foot_x)
     found = _newton(centrelines, stations, tangent, (t, excess))

@@ -24,18 +24,7 @@ _ROUNDING = float(np.finfo(float).eps)  # of the height [L]
 
 
 def tip_height(excess: Floats, alpha: Floats) -> Floats:
-    """Height of a loaded tip above the foot line.
-
-    Parameters
-    ----------
-    excess, alpha : array, shape (n,)
-        Excess rotation of the tip and slope angle of the contour there [rad].
-
-    Returns
-    -------
-    array, shape (n,)
-        [L]
-    """
+    """Height of a loaded tip above the foot line."""
     loaded = span(excess, alpha)
     return frame(loaded, alpha).up / loaded.q
 
@@ -45,34 +34,13 @@ def greatest_height(alpha: Floats) -> Floats:
 
     For alpha >= 0 the vibrissa is straight then; for alpha < 0 its clamp carries no moment, and the
     integrals are complete ones.
-
-    Parameters
-    ----------
-    alpha : array, shape (n,)
-        Slope angle of the contour [rad].
-
-    Returns
-    -------
-    array, shape (n,)
-        [L]
     """
     m = _m(alpha)
     return np.where(alpha < 0, np.cos(alpha) * (2 * ellipe(m) / ellipk(m) - 1), 1.0)
 
 
 def tangent_height(alpha: Floats) -> Floats:
-    """Height of the tip in tangential contact: contour points below are touched by the side.
-
-    Parameters
-    ----------
-    alpha : array, shape (n,)
-        Slope angle of the contour [rad].
-
-    Returns
-    -------
-    array, shape (n,)
-        [L]
-    """
+    """Height of the tip in tangential contact: contour points below are touched by the side."""
     tangential = tangent_span(alpha)
     return frame(tangential, alpha).up / tangential.q
 
@@ -81,16 +49,6 @@ def within_reach(alpha: Floats, eta: Floats) -> Booleans:
     """Whether a vibrissa can rest against contour points.
 
     What it touches with its side is lower than what its tip can rest on there.
-
-    Parameters
-    ----------
-    alpha, eta : array, shape (n,)
-        Slope angle [rad] and height of the contour points.
-
-    Returns
-    -------
-    array of bool, shape (n,)
-        False where no vibrissa that bends one way ends.
     """
     return np.asarray((eta < greatest_height(alpha)) & (np.abs(alpha) < np.pi / 2))
 
@@ -102,21 +60,6 @@ def tip_state(alpha: Floats, eta: Floats, lowest: Floats | None = None) -> tuple
     sqrt(1 - height) is nearly proportional to the rotation w (0.516 u at alpha > 0, 0.5 u at
     alpha = 0): Halley's method on it needs two steps, and a bracket keeps it safe. Its unknown is
     p = sqrt(sin(w/2)), in which the height is smooth even where the clamp moment vanishes.
-
-    Parameters
-    ----------
-    alpha, eta : array, shape (n,)
-        Slope angle [rad] and height of the contour points, not below tangential contact.
-    lowest : array, shape (n,), optional
-        `tangent_height`, where it is known.
-
-    Returns
-    -------
-    excess : array, shape (n,)
-        Excess rotation of the tip [rad].
-    loaded : Span
-        The integrals.
-        Both are NaN where the point is out of reach: no vibrissa that bends one way ends there.
     """
     top = greatest_height(alpha)
     # Against an upright side the vibrissa is straight and carries no load.

@@ -19,19 +19,7 @@ _OVERTURNED = 1e-9  # of 1 + cos: a clamp that points straight down
 
 
 def clamp_axes(tangent: Floats) -> Floats:
-    """The clamp's axes: the world's, by the shortest turn that takes y to the clamp's tangent.
-
-    Parameters
-    ----------
-    tangent : array, shape (3,)
-        Of the vibrissa at its clamp, of length 1.
-
-    Returns
-    -------
-    array, shape (3, 3)
-        A row an axis, in world coordinates; the second is `tangent`. A clamp that points straight
-        down is turned about x.
-    """
+    """The clamp's axes: the world's, by the shortest turn that takes y to the clamp's tangent."""
     x, y, z = tangent
     if 1 + y < _OVERTURNED:
         return np.diag([1.0, -1.0, -1.0])
@@ -40,25 +28,7 @@ def clamp_axes(tangent: Floats) -> Floats:
 
 
 def components(readings: SpatialReadings, frame: Frame = "world") -> dict[str, Floats]:
-    """The six components of a sweep in a frame.
-
-    Parameters
-    ----------
-    readings : SpatialReadings
-        A sweep.
-    frame : {"world", "clamp"}
-        In the clamp's, ``force_y`` is along the vibrissa and ``moment_y`` twists it.
-
-    Returns
-    -------
-    dict of array, shape (stations,)
-        By name, in the readings' units.
-
-    Raises
-    ------
-    InputError
-        If there is no such frame.
-    """
+    """The six components of a sweep in a frame."""
     axes = _axes(readings, frame)
     return {
         name: column
@@ -68,25 +38,7 @@ def components(readings: SpatialReadings, frame: Frame = "world") -> dict[str, F
 
 
 def from_frame(readings: SpatialReadings, frame: Frame) -> SpatialReadings:
-    """Readings whose components are in a frame, in that of the world.
-
-    Parameters
-    ----------
-    readings : SpatialReadings
-        As a sensor that is fixed to the clamp gives them.
-    frame : {"world", "clamp"}
-        Which their components are in.
-
-    Returns
-    -------
-    SpatialReadings
-        The same sweep.
-
-    Raises
-    ------
-    InputError
-        If there is no such frame.
-    """
+    """Readings whose components are in a frame, in that of the world."""
     axes = _axes(readings, frame)
     if frame == "world":
         return readings

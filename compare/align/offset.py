@@ -71,20 +71,7 @@ def separate_lag(left: Offset, right: Offset) -> tuple[Offset, Offset]:
 
 
 def without_offset(readings: Readings, offset: float) -> Readings:
-    """The readings with `offset` subtracted from every position along x, events and contour too.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep.
-    offset : float
-        [length]
-
-    Returns
-    -------
-    Readings
-        The same sweep, moved to the left by the offset.
-    """
+    """The readings with `offset` subtracted from every position along x, events and contour too."""
     table = readings.table
     moved = {name: table[name] - offset for name in ("foot_x", "contact_x") if name in table}
     provenance: dict[str, Any] = dict(readings.provenance)
@@ -98,23 +85,7 @@ def without_offset(readings: Readings, offset: float) -> Readings:
 
 
 def checked_offset(offset: float) -> float:
-    """An offset that somebody gave.
-
-    Parameters
-    ----------
-    offset : float
-        [length]
-
-    Returns
-    -------
-    float
-        The same.
-
-    Raises
-    ------
-    InputError
-        If it is no finite number.
-    """
+    """An offset that somebody gave."""
     if isinstance(offset, bool | str) or not np.isfinite(offset):
         raise InputError("offset", repr(offset), "'auto' or a finite number", "give a length")
     return float(offset)
@@ -133,24 +104,6 @@ def estimate_offset(
     scatter, is minimised (Huber's estimator) over the trusted stations that lie within one phase of
     the reference, the last two before its snap-off left out. The variance is Newey and West's with
     Andrews' lag window, the interval Kiefer and Vogelsang's, who account for the window's width.
-
-    Parameters
-    ----------
-    reference, candidate : Readings
-        Two sweeps of the same beam.
-    reference_phase, candidate_phase : Classification
-        Their phases.
-
-    Returns
-    -------
-    Offset
-        With half of its 95 % interval.
-
-    Raises
-    ------
-    InputError
-        If there are too few stations in contact, or the offset is ambiguous: another one fits as
-        well, or the readings hardly depend on it.
     """
     length = reference.beam.length
     best, *others = offset_fits(reference, candidate, reference_phase, candidate_phase)
@@ -178,23 +131,7 @@ def offset_fits(
     reference_phase: Classification,
     candidate_phase: Classification,
 ) -> list[Fit]:
-    """Offsets at which the candidate's clamp readings fit the reference's, the best first.
-
-    Parameters
-    ----------
-    reference, candidate, reference_phase, candidate_phase
-        As of `estimate_offset`.
-
-    Returns
-    -------
-    list of Fit
-        At least one.
-
-    Raises
-    ------
-    InputError
-        If there are too few stations in contact.
-    """
+    """Offsets at which the candidate's clamp readings fit the reference's, the best first."""
     curve = _Curve.of(reference, reference_phase)
     loaded = np.isin(candidate_phase.phase, ("tip", "tangent"))
     for name, number in (("reference", curve.stations), ("candidate", int(loaded.sum()))):

@@ -16,25 +16,16 @@ _CLEARLY = 0.25  # of what the other explanation leaves
 
 @dataclass(frozen=True)
 class Order:
-    """How the candidate's rows follow the motion, seen from the reference.
+    """How the candidate's rows follow the motion, seen from the reference."""
 
-    Attributes
-    ----------
-    reversed : bool
-        The rows run against the reference's, while force and moment have its signs: the last
-        station comes first.
-    backwards_from : float or None
-        Its foot positions count the other way, from this origin: the reference's are this number
-        minus the candidate's [length]; None if they count alike.
-    sorted : bool
-        The rows are in no order of a motion.
-    opposite : bool
-        The foot moves the other way: rows and ``moment_z`` both have the other sign.
-    """
-
+    # The rows run against the reference's, while force and moment have its signs: the last station
+    # comes first.
     reversed: bool = False
+    # Its foot positions count the other way, from this origin: the reference's are this number
+    # minus the candidate's [length]; None if they count alike.
     backwards_from: float | None = None
-    sorted: bool = False
+    sorted: bool = False  # the rows are in no order of a motion
+    # The foot moves the other way: rows and ``moment_z`` both have the other sign.
     opposite: bool = False
 
     @property
@@ -67,20 +58,6 @@ def in_order(reference: Readings, candidate: Readings) -> tuple[Readings, Record
     reversed, and both from a sensor that is wired the wrong way, where the rows run as in the
     reference. Where only `foot_x` runs the other way, either the rows are reversed or a stage
     counts its way backwards: which of them lays the readings over the reference's decides.
-
-    Parameters
-    ----------
-    reference, candidate : Readings
-        Two sweeps.
-
-    Returns
-    -------
-    candidate : Readings
-        The same object, if its rows are in order.
-    record : Record
-        Its defects, row by row in that order.
-    order : Order
-        What was found.
     """
     record = inspect_record(candidate)
     turned = _sign(candidate, "moment_z") * _sign(reference, "moment_z") < 0

@@ -18,23 +18,17 @@ _APART = 1e-12  # of the stretch; between nearer stations a cubic spline swings 
 
 @dataclass(frozen=True, repr=False)
 class Alignment:
-    """Where both sweeps are in contact, and why the candidate's other stations are left out.
+    """Where both sweeps are in contact, and why the candidate's other stations are left out."""
 
-    Attributes
-    ----------
-    table : pandas.DataFrame
-        A row a compared station of the candidate: ``station`` (its row), ``foot_x``, ``phase``
-        (the reference's), ``contact_arc_length`` (the reference's at its nearest station, from the
-        clamp) and for each clamp reading ``<name>_reference`` and ``<name>_candidate``.
-    counts : dict
-        Every station of the candidate in one of: ``compared``; ``free`` (in both); ``one_free``
-        (contact in one sweep only, as between two snap-offs); ``untrusted`` (the candidate says so
-        itself); ``dropped`` (zeros where the reference is in contact, between loads of its own);
-        ``reference_untrusted``; ``between_phases`` (no reference stations of one phase on
-        both sides, so there is nothing to interpolate); ``outside`` (beyond the reference).
-    """
-
+    # A row a compared station of the candidate: ``station`` (its row), ``foot_x``, ``phase`` (the
+    # reference's), ``contact_arc_length`` (the reference's at its nearest station, from the clamp)
+    # and for each clamp reading ``<name>_reference`` and ``<name>_candidate``.
     table: pd.DataFrame
+    # Every station of the candidate in one of: ``compared``; ``free`` (in both); ``one_free``
+    # (contact in one sweep only, as between two snap-offs); ``untrusted`` (the candidate says so
+    # itself); ``dropped`` (zeros where the reference is in contact, between loads of its own);
+    # ``reference_untrusted``; ``between_phases`` (no reference stations of one phase on both sides,
+    # so there is nothing to interpolate); ``outside`` (beyond the reference).
     counts: dict[str, int]
 
     def __repr__(self) -> str:
@@ -54,25 +48,6 @@ def align(
 
     A reference station at the same foot position is taken as it is. Otherwise the reference is
     interpolated by a cubic spline through one uninterrupted stretch of one phase.
-
-    Parameters
-    ----------
-    reference, candidate : Readings
-        Two sweeps of the same beam.
-    reference_phase, candidate_phase : Classification
-        Their phases.
-    dropped : array of bool, shape (stations,)
-        Where the candidate reads zero between two loads.
-
-    Returns
-    -------
-    Alignment
-        The compared stations; none, if the candidate never touches where the reference does.
-
-    Raises
-    ------
-    InputError
-        If the two sweeps are of different beams or have no common stretch.
     """
     length = reference.beam.length
     if not _same_beam(reference, candidate):
@@ -219,18 +194,6 @@ def interpolant(x: Floats, values: Floats) -> Callable[..., Any]:
 
     Values at one and the same `x` count by their mean. Fewer than four places are joined by
     straight lines.
-
-    Parameters
-    ----------
-    x : array, shape (stations,)
-        In any order.
-    values : array, shape (..., stations)
-        The last axis belongs to `x`.
-
-    Returns
-    -------
-    callable
-        Of places, and of the order of the derivative (0 by default).
     """
     from scipy.interpolate import CubicSpline, make_interp_spline  # slow to load
 

@@ -19,20 +19,7 @@ _FITS, _BETTER = 0.1, 0.5  # rms over the largest magnitude, and times that of t
 
 
 def in_units_of(reference: Readings, candidate: Readings) -> Readings:
-    """The candidate, a clamp reading in a far smaller or larger unit put right.
-
-    Parameters
-    ----------
-    reference, candidate : Readings
-        Two sweeps of the same beam.
-
-    Returns
-    -------
-    Readings
-        The candidate itself, if all its readings are of the reference's size. Else those that are
-        not are divided by the next power of ten: enough to fit an offset, which their unit does not
-        change.
-    """
+    """The candidate, a clamp reading in a far smaller or larger unit put right."""
     with np.errstate(divide="ignore", invalid="ignore"):  # a dead channel has no unit
         decades = np.log10(_magnitudes(candidate) / _magnitudes(reference))
     far = (np.abs(decades) > np.log10(_SUSPICIOUS)) & (np.abs(decades) < _FARTHEST)
@@ -53,18 +40,6 @@ def check_unit_of_length(
 
     Where the foot travels much more or much less than the reference's, its positions are tried in
     the units of length that make it travel as far.
-
-    Parameters
-    ----------
-    reference, candidate : Readings
-        Two sweeps of the same beam, clamp readings in the same units.
-    reference_phase : Classification
-        The reference's phases.
-
-    Raises
-    ------
-    InputError
-        If another unit fits, and much better than the one that was given.
     """
     spans = [_travel(sweep) for sweep in (reference, candidate)]
     if not min(spans) > 0 or max(spans) <= _SUSPICIOUS * min(spans):

@@ -15,25 +15,7 @@ from mujoco_models.settings import Settings
 
 
 def simulated(job: Job, folder: Path) -> Readings:
-    """The sweep in MuJoCo; if it ends early, the stations that there are go into `folder`.
-
-    Parameters
-    ----------
-    job : Job
-        Case, settings, and the motion, if there is one.
-    folder : Path
-        Where the file of `sweep_file` is written, or the same with ``.partial`` in its name.
-
-    Returns
-    -------
-    Readings
-        All of it.
-
-    Raises
-    ------
-    InputError, DivergedError
-        As `mujoco_models.simulate_sweep` does.
-    """
+    """The sweep in MuJoCo; if it ends early, the stations that there are go into `folder`."""
     name = sweep_file(job)
 
     def keep(partial: Readings) -> None:
@@ -54,78 +36,27 @@ def simulated(job: Job, folder: Path) -> Readings:
 
 
 def sweep_file(job: Job) -> str:
-    """What the file of a sweep in MuJoCo is called.
-
-    Parameters
-    ----------
-    job : Job
-        Case, settings, and the motion, if there is one.
-
-    Returns
-    -------
-    str
-        ``mujoco-BEAM.parquet``, ``mujoco-BEAM-in-motion.parquet`` or ``mujoco-own-model.parquet``.
-    """
+    """What the file of a sweep in MuJoCo is called."""
     if job.model is not None:
         return "mujoco-own-model.parquet"
     return f"mujoco-{job.settings.beam}{'-in-motion' if job.motion else ''}.parquet"
 
 
 def at_rest(job: Job) -> Readings:
-    """The sweep at rest that a sweep in motion tends to, if it is slow enough.
-
-    Parameters
-    ----------
-    job : Job
-        With a motion; its contacts have the same stiffness at rest, unless they are MuJoCo's own.
-
-    Returns
-    -------
-    Readings
-        All of it.
-
-    Raises
-    ------
-    InputError, DivergedError
-        As `mujoco_models.simulate_sweep` does.
-    """
+    """The sweep at rest that a sweep in motion tends to, if it is slow enough."""
     settings = settings_at_rest(job)
     with progress("at rest", job.case.sweep.stations) as advance:
         return simulate_sweep(job.case, settings, advance)
 
 
 def settings_at_rest(job: Job) -> Settings:
-    """Those of the sweep at rest that a sweep in motion tends to.
-
-    Parameters
-    ----------
-    job : Job
-        With a motion.
-
-    Returns
-    -------
-    Settings
-        With contacts of the motion's stiffness, unless they are MuJoCo's own.
-    """
+    """Those of the sweep at rest that a sweep in motion tends to."""
     if job.motion is None or job.motion.solref is not None:
         return job.settings
     return softened(job.settings, job.motion)
 
 
 def softened(settings: Settings, motion: Motion) -> Settings:
-    """Settings at rest with contacts as stiff as ours are in a motion.
-
-    Parameters
-    ----------
-    settings : Settings
-        Those at rest.
-    motion : Motion
-        Of which the stiffness counts.
-
-    Returns
-    -------
-    Settings
-        Within what settings allow.
-    """
+    """Settings at rest with contacts as stiff as ours are in a motion."""
     least, largest = CONTACT_STIFFNESSES
     return replace(settings, contact_stiffness=min(max(motion.stiffness, least), largest))

@@ -14,27 +14,7 @@ from engines import Outcome, list_engines
 
 
 def run_many(job: Job, folder: Path, with_budget: bool) -> int:
-    """Sweep a case with the engines of its job, and write one report of all.
-
-    Parameters
-    ----------
-    job : Job
-        With the names of the engines.
-    folder : Path
-        For sweeps, page, numbers and picture.
-    with_budget : bool
-        Whether to split MuJoCo's disagreement by controlled changes, too.
-
-    Returns
-    -------
-    int
-        The exit code.
-
-    Raises
-    ------
-    InputError
-        If the case is in motion, or no engine gives readings.
-    """
+    """Sweep a case with the engines of its job, and write one report of all."""
     outcomes = swept(job, folder)
     exact = solve_sweep(job.case)
     exact.write(folder / "analytic.parquet")
@@ -50,25 +30,7 @@ def run_many(job: Job, folder: Path, with_budget: bool) -> int:
 
 
 def swept(job: Job, folder: Path) -> Sequence[Outcome]:
-    """The sweeps of a job's engines, each written to ``ENGINE.parquet``.
-
-    Parameters
-    ----------
-    job : Job
-        Case, settings and engines.
-    folder : Path
-        Where to.
-
-    Returns
-    -------
-    sequence of Outcome
-        One for each engine.
-
-    Raises
-    ------
-    InputError
-        If the case is in motion or has a model of its own, or no engine gives readings.
-    """
+    """The sweeps of a job's engines, each written to ``ENGINE.parquet``."""
     if job.motion is not None or job.model is not None:
         raise InputError(
             "engine", ", ".join(job.engines), "mujoco for a case in motion or with a [model]",

@@ -22,18 +22,7 @@ from mujoco_models.motion import Motion
 
 
 def measured_motion_budget(job: Job) -> tuple[MotionBudget, Mapping[str, Readings]]:
-    """The budget of a job in motion, and its sweeps.
-
-    Parameters
-    ----------
-    job : Job
-        With a motion.
-
-    Returns
-    -------
-    MotionBudget, mapping of Readings
-        As `compare.simulate.moving.measure_motion_budget` returns them.
-    """
+    """The budget of a job in motion, and its sweeps."""
     motion = job.motion or Motion()
     if job.model is not None:
         sweeps = len(slower_and_finer_of_model(job.model, motion)) + 1
@@ -46,22 +35,7 @@ def measured_motion_budget(job: Job) -> tuple[MotionBudget, Mapping[str, Reading
 
 
 def fastest_motion(job: Job, runs: Mapping[str, Readings], target: float) -> Fastest:
-    """The fastest motion of a job with a wanted error.
-
-    Parameters
-    ----------
-    job : Job
-        With a motion.
-    runs : mapping of Readings
-        Of its budget.
-    target : float
-        The wanted error.
-
-    Returns
-    -------
-    Fastest
-        As `compare.simulate.fastest.find_fastest` returns it.
-    """
+    """The fastest motion of a job with a wanted error."""
     motion = job.motion or Motion()
     if job.model is None and motion.solref is None:
         motion = replace(motion, contact_stiffness=motion.stiffness)
@@ -77,18 +51,7 @@ def fastest_motion(job: Job, runs: Mapping[str, Readings], target: float) -> Fas
 
 
 def measured_budget(job: Job) -> tuple[Budget, dict[str, Readings]]:
-    """The budget of a job, and its sweeps.
-
-    Parameters
-    ----------
-    job : Job
-        Case and settings.
-
-    Returns
-    -------
-    Budget, dict of Readings
-        As `compare.simulate.controlled.measure_budget` returns them.
-    """
+    """The budget of a job, and its sweeps."""
     changes = len(set(controlled_changes(job.settings).values()))
     with progress("controlled changes", changes) as advance:
         return measure_budget(job.case, job.settings, advance)

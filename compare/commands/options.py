@@ -31,18 +31,7 @@ Out = Annotated[
 
 
 def out_folder(default: str) -> Any:  # noqa: ANN401  # typer's
-    """The option ``--out`` of a command on files.
-
-    Parameters
-    ----------
-    default : str
-        What its help says of the folder if none is given.
-
-    Returns
-    -------
-    typer's option
-        To annotate a ``Path | None`` with.
-    """
+    """The option ``--out`` of a command on files."""
     return typer.Option(
         "--out", metavar="DIR", help="Folder for what is written.", show_default=default
     )
@@ -124,23 +113,7 @@ class Changes:
     engines: str | None = None
 
     def job(self, name: str) -> "Job":
-        """The job of that name or TOML file, with these changes.
-
-        Parameters
-        ----------
-        name : str
-            A named case, or the path of a TOML file.
-
-        Returns
-        -------
-        Job
-            Case, settings and tolerances.
-
-        Raises
-        ------
-        InputError
-            If there is no such case, or a number is out of its range.
-        """
+        """The job of that name or TOML file, with these changes."""
         from compare.read.case import load_job
 
         job = load_job(name)
@@ -165,25 +138,7 @@ class Changes:
         )
 
     def job_at_rest(self, name: str, command: str) -> "Job":
-        """The job, as `job` makes it, for what knows sweeps at rest only.
-
-        Parameters
-        ----------
-        name : str
-            A named case, or the path of a TOML file.
-        command : str
-            Who asks.
-
-        Returns
-        -------
-        Job
-            Without a motion.
-
-        Raises
-        ------
-        InputError
-            As `job` does, or if the case is in motion.
-        """
+        """The job, as `job` makes it, for what knows sweeps at rest only."""
         job = self.job(name)
         if job.motion is not None:
             raise InputError(
@@ -216,20 +171,7 @@ class Changes:
         return replace(motion or Motion(), **given)
 
     def folder(self, out: Path | None, case: str) -> Path:
-        """Where the results go by default: runs that differ do not overwrite each other.
-
-        Parameters
-        ----------
-        out : Path, optional
-            The folder that was asked for, if any.
-        case : str
-            Name of the case.
-
-        Returns
-        -------
-        Path
-            ``results/catenary``, or ``results/catenary-rod-80-segments`` and the like.
-        """
+        """Where the results go by default: runs that differ do not overwrite each other."""
         words = [
             case,
             *(word for word in (self.beam, self.obstacle) if word),
@@ -245,25 +187,7 @@ class Changes:
 
 
 def number_or_auto(option: str, text: str) -> float | Literal["auto"]:
-    """The value of an option that takes a number or the word auto.
-
-    Parameters
-    ----------
-    option : str
-        Its name, for the error.
-    text : str
-        What was given.
-
-    Returns
-    -------
-    float or "auto"
-        A finite number, or the word.
-
-    Raises
-    ------
-    InputError
-        If it is neither.
-    """
+    """The value of an option that takes a number or the word auto."""
     if text == "auto":
         return "auto"
     try:

@@ -24,21 +24,6 @@ def output_folder(folder: Path) -> Iterator[Path]:
     """Make a folder, and see that it can be written to before any work is done.
 
     What was made and stays empty is removed again.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder; its parents are made, too.
-
-    Yields
-    ------
-    Path
-        `folder`.
-
-    Raises
-    ------
-    InputError
-        If it cannot be made or written to.
     """
     made: list[Path] = []
     try:
@@ -59,19 +44,7 @@ def output_folder(folder: Path) -> Iterator[Path]:
 
 
 def distinct_name(path: Path) -> str:
-    """What results of a file are called: its name, and the folders on the way to it.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    str
-        As ``"one-analytic"`` of ``one/analytic.parquet``; of a file in the current folder its name
-        alone, of one in ``results`` without that word.
-    """
+    """What results of a file are called: its name, and the folders on the way to it."""
     absolute, here = path.absolute(), Path.cwd()
     inside = absolute.is_relative_to(here)
     steps = absolute.relative_to(here if inside else absolute.anchor).with_suffix("").parts
@@ -84,11 +57,6 @@ def ended_by_signals() -> Iterator[None]:
 
     Processes that were started for the work end at once. A signal that is ignored, as SIGHUP under
     ``nohup``, stays so; and outside the main thread, where Python allows no handlers, all do.
-
-    Raises
-    ------
-    Ended
-        When one of the signals arrives.
     """
 
     def end(number: int, _: FrameType | None) -> None:

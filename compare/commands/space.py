@@ -184,22 +184,7 @@ def compare_in_space(
     tolerances: Path | None,
     noise: float | Literal["auto"],
 ) -> int:
-    """Compare a file of readings in space with another or with a case's closed form.
-
-    Parameters
-    ----------
-    reference : str
-        A case file with ``[body]``, or a file of readings in space.
-    candidate, out, column, tolerances, noise
-        As `vibrissa compare` takes them.
-    frame : {"world", "clamp"}
-        Of the candidate's components, and of those that are compared.
-
-    Returns
-    -------
-    int
-        The exit code.
-    """
+    """Compare a file of readings in space with another or with a case's closed form."""
     from compare.commands import terminal
     from compare.judge.spatial import SpatialTolerances
     from compare.read.limits import read_tolerances
@@ -243,13 +228,7 @@ def write_report(
     parts: "Parts | None" = None,
     film: "Film | None" = None,
 ) -> None:
-    """Write the report and print the verdict.
-
-    Parameters
-    ----------
-    comparison, body, folder, parts, film
-        As `compare.show.spatial.write_spatial_report` takes them.
-    """
+    """Write the report and print the verdict."""
     from compare.commands import terminal
     from compare.show.spatial import write_spatial_report
 

@@ -14,20 +14,7 @@ if TYPE_CHECKING:
 
 
 def report_in_space(folder: Path, reference: Path, candidate: Path) -> int:
-    """Write the report of both sweeps again, and print the verdict.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the run.
-    reference, candidate : Path
-        Its sweeps.
-
-    Returns
-    -------
-    int
-        The exit code.
-    """
+    """Write the report of both sweeps again, and print the verdict."""
     with waiting("comparing"):
         from analytic.space import SpatialReadings
         from compare.commands.space import write_report

@@ -6,17 +6,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def waiting(what: str) -> Iterator[None]:
-    """Show on a terminal what is being done, nothing elsewhere, and nothing when it is done.
-
-    Parameters
-    ----------
-    what : str
-        As ``"comparing"``.
-
-    Yields
-    ------
-    None
-    """
+    """Show on a terminal what is being done, nothing elsewhere, and nothing when it is done."""
     from rich.console import Console  # slow to load, and not every command waits
     from rich.text import Text
 

@@ -19,21 +19,11 @@ _FACET_ORDERS = (0.5, 2.0)  # facets' normals fall with their number, their chor
 
 @dataclass(frozen=True)
 class Advice:
-    """Settings and what to expect of them.
+    """Settings and what to expect of them."""
 
-    Attributes
-    ----------
-    settings : Settings
-        The cheapest that should reach the target.
-    error : float
-        The largest rms of the three readings, relative to each one's largest magnitude.
-    seconds_a_station : float
-        On this machine.
-    """
-
-    settings: Settings
-    error: float
-    seconds_a_station: float
+    settings: Settings  # the cheapest that should reach the target
+    error: float  # the largest rms of the three readings, relative to each one's largest magnitude
+    seconds_a_station: float  # on this machine
 
 
 def advise(found: Budget, runs: Mapping[str, Readings], coarser: Readings, target: float) -> Advice:
@@ -42,27 +32,6 @@ def advise(found: Budget, runs: Mapping[str, Readings], coarser: Readings, targe
     Each part follows a power law, with the observed order of the segments and the observed fall
     of the facets' part; the parts add as squares. Time is a power of the segments, and for a mesh
     also linear in its points.
-
-    Parameters
-    ----------
-    found : Budget
-        Of a case.
-    runs : mapping
-        Its sweeps, with their settings and seconds in their provenance.
-    coarser : Readings
-        The base on a mesh with fewer points; see `compare.explain.changes.coarser_mesh`.
-    target : float
-        Largest rms of any reading that is wanted, relative to its largest magnitude.
-
-    Returns
-    -------
-    Advice
-        The cheapest settings, and what to expect of them.
-
-    Raises
-    ------
-    InputError
-        If no settings reach the target.
     """
     base = Settings(**runs["base"].provenance["settings"])
     smooth = runs["smooth"]
@@ -106,18 +75,7 @@ def advise(found: Budget, runs: Mapping[str, Readings], coarser: Readings, targe
 
 
 def check_target(target: float) -> None:
-    """Check that `target` can be an error relative to a reading's magnitude.
-
-    Parameters
-    ----------
-    target : float
-        Largest rms of any reading that is wanted.
-
-    Raises
-    ------
-    InputError
-        If it is not between 0 and 1.
-    """
+    """Check that `target` can be an error relative to a reading's magnitude."""
     if not 0 < target < 1:
         raise InputError("--target", target, "between 0 and 1", "1e-3 is usual")
 
@@ -133,18 +91,7 @@ def _facets(mesh: Readings, smooth: Readings) -> np.ndarray:
 
 
 def seconds_a_station(readings: Readings) -> float:
-    """What the simulation of a sweep took a station.
-
-    Parameters
-    ----------
-    readings : Readings
-        With its ``seconds`` in its provenance.
-
-    Returns
-    -------
-    float
-        [s]
-    """
+    """What the simulation of a sweep took a station."""
     return float(readings.provenance["seconds"]) / len(readings.table)
 
 

@@ -49,58 +49,33 @@ class Part:
 
 @dataclass(frozen=True)
 class Budget:
-    """What the disagreement of two sweeps is made of.
+    """What the disagreement of two sweeps is made of."""
 
-    Attributes
-    ----------
-    parts : dict
-        `Part` by name and reading; ``corner`` only if MuJoCo's object has sharp ones.
-    disagreement : dict
-        Root mean square by reading, over the stations in contact and trusted in all sweeps: fewer
-        than a comparison's, where some of them failed to settle.
-    by_phase : dict
-        Root mean square by part, reading and phase.
-    order : float
-        Observed order of convergence in the number of segments.
-    closes : bool
-        Whether what is unexplained lies within the uncertainty of the parts, and both are small
-        against the disagreement or against `UNRESOLVED`.
-    undecided : bool
-        Whether it lies within an uncertainty that is not small: then the budget neither closes
-        nor shows that something is missing.
-    blame : str
-        The part that dominates.
-    suspects : tuple of Suspect
-        Faults of the physics that would explain what the numerics do not, likeliest first.
-    stations : int
-        Compared stations.
-    convergence : dict
-        Root mean square of the disagreement, without facets, by number of segments and reading.
-    checks : dict
-        What the closed form says of two parts, with no simulator in it, as root mean square by
-        reading: ``facets``, of a contact that is hard, and ``softness``.
-    """
-
+    # `Part` by name and reading; ``corner`` only if MuJoCo's object has sharp ones.
     parts: dict[str, dict[str, Part]]
+    # Root mean square by reading, over the stations in contact and trusted in all sweeps: fewer
+    # than a comparison's, where some of them failed to settle.
     disagreement: dict[str, float]
-    by_phase: dict[str, dict[str, dict[str, float]]]
-    order: float
+    by_phase: dict[str, dict[str, dict[str, float]]]  # root mean square by part, reading and phase
+    order: float  # observed order of convergence in the number of segments
+    # Whether what is unexplained lies within the uncertainty of the parts, and both are small
+    # against the disagreement or against `UNRESOLVED`.
     closes: bool
-    blame: str
+    blame: str  # the part that dominates
+    # Faults of the physics that would explain what the numerics do not, likeliest first.
     suspects: tuple[Suspect, ...]
-    stations: int
+    stations: int  # compared stations
+    # Root mean square of the disagreement, without facets, by number of segments and reading.
     convergence: dict[int, dict[str, float]]
+    # What the closed form says of two parts, with no simulator in it, as root mean square by
+    # reading: ``facets``, of a contact that is hard, and ``softness``.
     checks: dict[str, dict[str, float]]
+    # Whether it lies within an uncertainty that is not small: then the budget neither closes nor
+    # shows that something is missing.
     undecided: bool = False
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``budget.json`` holds.
-
-        Returns
-        -------
-        dict
-            JSON can hold it.
-        """
+        """What ``budget.json`` holds."""
         return asdict(self)
 
 
@@ -111,31 +86,7 @@ def budget(
     faceted: Readings | None = None,
     tolerances: Tolerances | None = None,
 ) -> Budget:
-    """Split the disagreement of ``runs["base"]`` with `exact` into its parts.
-
-    Parameters
-    ----------
-    exact : Readings
-        The reference.
-    runs : mapping
-        Sweeps of the candidate by the names of `controlled_changes`, over the same stations.
-    variations : mapping
-        The reference with one thing of the physics changed; see `compare.explain.variations`.
-    faceted : Readings, optional
-        The reference on the very polygon that the candidate's mesh is, for a check.
-    tolerances : Tolerances, optional
-        Only its window before the snap-off is used, where readings grow without bound.
-
-    Returns
-    -------
-    Budget
-        The parts, and what they come to.
-
-    Raises
-    ------
-    InputError
-        If no station is in contact and trusted in all sweeps.
-    """
+    """Split the disagreement of ``runs["base"]`` with `exact` into its parts."""
     tolerances = Tolerances() if tolerances is None else tolerances
     kept = common_stations(exact, [*runs.values()], tolerances.snap_off_window)
     for (
@@ -241,20 +192,7 @@ def budget(
 def largest_rms(
     exact: Readings, candidate: Readings, tolerances: Tolerances | None = None
 ) -> float:
-    """The largest of the three readings' disagreements, as a budget counts it.
-
-    Parameters
-    ----------
-    exact, candidate : Readings
-        Over the same stations.
-    tolerances : Tolerances, optional
-        Only its window before the snap-off is used.
-
-    Returns
-    -------
-    float
-        Root mean square, relative to the reading's largest magnitude.
-    """
+    """The largest of the three readings' disagreements, as a budget counts it."""
     window = (Tolerances() if tolerances is None else tolerances).snap_off_window
     kept = common_stations(exact, [candidate], window)
     (errors,) = convergence(exact, [candidate], kept).values()
@@ -262,22 +200,7 @@ def largest_rms(
 
 
 def common_stations(exact: Readings, runs: list[Readings], window: float) -> Booleans:
-    """Stations in contact and trusted in every sweep, outside the window before the snap-off.
-
-    Parameters
-    ----------
-    exact : Readings
-        The reference.
-    runs : list of Readings
-        Over the same stations.
-    window : float
-        Of the sweep's length.
-
-    Returns
-    -------
-    array of bool, shape (stations,)
-        Those that count.
-    """
+    """Stations in contact and trusted in every sweep, outside the window before the snap-off."""
     foot_x = exact.values("foot_x")
     kept = np.ones(len(foot_x), dtype=bool)
     for readings in (exact, *runs):

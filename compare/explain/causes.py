@@ -26,47 +26,21 @@ _FEWEST = 4  # stations of a stretch whose slope is worth something
 
 @dataclass(frozen=True)
 class Cause:
-    """A fault and what it does to the readings.
+    """A fault and what it does to the readings."""
 
-    Attributes
-    ----------
-    text : callable
-        The fault in words, by its size.
-    signature : array, shape (3, stations)
-        What a small fault adds to the readings for its size, over their largest magnitudes.
-    lowest, highest : float
-        Sizes that such a fault can have.
-    change : callable, optional
-        What a fault of a size adds, of the signature's shape, where that is more than linear and
-        can be solved; None if that size cannot.
-    """
-
-    text: Callable[[float], str]
+    text: Callable[[float], str]  # the fault in words, by its size
+    # Shape (3, stations); What a small fault adds to the readings for its size, over their largest
+    # magnitudes.
     signature: Floats
-    lowest: float
-    highest: float
+    lowest: float  # sizes that such a fault can have
+    highest: float  # sizes that such a fault can have
+    # What a fault of a size adds, of the signature's shape, where that is more than linear and can
+    # be solved; None if that size cannot.
     change: Callable[[float], Floats | None] | None = None
 
 
 def causes(found: Measurement, table: pd.DataFrame, true: Floats, scale: Floats) -> Iterator[Cause]:
-    """The known faults, those that need the contour last.
-
-    Parameters
-    ----------
-    found : Measurement
-        Whose disagreement is to be explained.
-    table : pandas.DataFrame
-        The stations of its alignment that count.
-    true : array, shape (3, stations)
-        The reference there, relative to each reading's largest magnitude.
-    scale : array, shape (3,)
-        Those magnitudes.
-
-    Yields
-    ------
-    Cause
-        With its signature at the stations.
-    """
+    """The known faults, those that need the contour last."""
     length = found.reference.beam.length
     # A radius that is a third off makes the rigidity 0.2 to 3.2 times what it should be.
     yield Cause("flexural rigidity {:+.2%} off: all readings scale alike".format, true, -0.8, 2.2)
@@ -185,20 +159,7 @@ def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cau
 
 
 def slopes(table: pd.DataFrame, true: Floats) -> Floats:
-    """Derivative of the readings by the foot position, phase by phase.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        The stations.
-    true : array, shape (3, stations)
-        The readings there.
-
-    Returns
-    -------
-    array, shape (3, stations)
-        [1/length]; NaN in a stretch of fewer than four stations.
-    """
+    """Derivative of the readings by the foot position, phase by phase."""
     slope = np.full_like(true, np.nan)
     phase, x = table["phase"].to_numpy(), table["foot_x"].to_numpy()
     ends = np.flatnonzero(phase[1:] != phase[:-1]) + 1

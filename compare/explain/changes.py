@@ -22,25 +22,6 @@ def controlled_changes(
     and ``two`` and ``four`` have more segments too. Facets come first, for without them the beam's
     order is plain to see, and segments last, since they bring more beads, which share the load and
     so harden a loose contact.
-
-    Parameters
-    ----------
-    settings : Settings
-        Of the base.
-    smooth : bool
-        Whether the contour is; if it has corners, its facets are no error.
-    corners : bool
-        Whether MuJoCo's object has edges at sharp corners; only then there is a ``sharp``.
-
-    Returns
-    -------
-    dict of Settings
-        By name.
-
-    Raises
-    ------
-    InputError
-        If there is no room to refine.
     """
     n, k = settings.segments, settings.contact_stiffness
     for name, value, most in (("segments", n, 250), ("contact_stiffness", k, 1e8)):
@@ -71,16 +52,5 @@ def controlled_changes(
 
 
 def coarser_mesh(settings: Settings) -> Settings:
-    """The base on a coarser mesh: shows how its facets' part falls with their number.
-
-    Parameters
-    ----------
-    settings : Settings
-        Of the base.
-
-    Returns
-    -------
-    Settings
-        The same but for the points of the contour.
-    """
+    """The base on a coarser mesh: shows how its facets' part falls with their number."""
     return replace(settings, contour_points=max(8, settings.contour_points // COARSER))

@@ -12,24 +12,7 @@ from compare.sense.noise import scales
 def convergence(
     exact: Readings, runs: Iterable[Readings], kept: Booleans
 ) -> dict[int, dict[str, float]]:
-    """Disagreement with `exact` at each number of segments, which the sources record.
-
-    Parameters
-    ----------
-    exact : Readings
-        The reference.
-    runs : iterable of Readings
-        Sweeps over the same stations that differ in their segments alone; one whose provenance
-        does not record its segments is left out.
-    kept : array of bool, shape (stations,)
-        Stations that count.
-
-    Returns
-    -------
-    dict
-        By number of segments and reading the root mean square, relative to the reading's largest
-        magnitude.
-    """
+    """Disagreement with `exact` at each number of segments, which the sources record."""
     found = {}
     scale = scales(exact)
     for readings in runs:
@@ -49,16 +32,6 @@ def fitted_orders(found: Mapping[int, Mapping[str, float]]) -> dict[str, float]:
 
     It falls short of the beam's own order where something else than its segments, as the facets of
     the obstacle, is what is left at the finest ones.
-
-    Parameters
-    ----------
-    found : mapping
-        As `convergence` returns it.
-
-    Returns
-    -------
-    dict
-        By reading.
     """
     n = np.log(list(found))
     return {

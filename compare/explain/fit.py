@@ -29,20 +29,7 @@ class Explanation(NamedTuple):
 
 
 def fitted(error: Floats, signature: Floats) -> Fitted:
-    """Fit the size of `signature` to `error` by least squares.
-
-    Parameters
-    ----------
-    error : array, shape (3, stations)
-        Relative to each reading's largest magnitude.
-    signature : array, shape (3, stations)
-        What a fault of size 1 adds; stations where it is NaN do not count.
-
-    Returns
-    -------
-    Fitted
-        The size, and how well it explains the error.
-    """
+    """Fit the size of `signature` to `error` by least squares."""
     known = np.isfinite(signature).all(axis=0)
     s, e = signature[:, known].ravel(), error[:, known].ravel()
     weight, all_ = float(s @ s), float(e @ e)

@@ -35,20 +35,6 @@ def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) 
     disagreement at those stations, if the next one explains clearly less. Unrest is recognised by
     the candidate's own ``residual``, facets and noise by differences that jump from station to
     station, everything else by fitting the size of each fault's signature.
-
-    Parameters
-    ----------
-    found : Measurement
-        What the sweeps differ by.
-    limits : Tolerances
-        How far they may differ.
-    noise : NoiseAllowance
-        What noise adds to that.
-
-    Returns
-    -------
-    str or None
-        The cause, in a few words.
     """
     if found.order.opposite:
         return "opposite direction of travel: foot_x and moment_z run opposite to the reference's"

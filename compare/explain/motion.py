@@ -38,67 +38,32 @@ _LEFT = 0.1  # of the disagreement; what may stay unexplained
 
 @dataclass(frozen=True)
 class MotionBudget:
-    """What the disagreement of a sweep in motion with the closed form is made of.
+    """What the disagreement of a sweep in motion with the closed form is made of."""
 
-    Attributes
-    ----------
-    parts : dict
-        `Part` by name and reading, those of `PARTS` that there are sweeps for: ``damping``, in
-        proportion to the damping ratio; ``rate``, what else a slower sweep does not have; ``time
-        step``, what a shorter one does not have; ``contact model``, of the user's contacts instead
-        of ours; ``softness``, of ours in a user's model instead of hard ones; ``solver``, of
-        another one than Newton's, or of its iterations; ``beam``, of what was measured instead of
-        what is stated; ``at rest``, of the same model and our contacts; ``unexplained``.
-    disagreement : dict
-        Root mean square by reading, over the stations in contact and trusted in all sweeps.
-    order : float
-        Observed order in the speed, halved or doubled twice.
-    closes : bool
-        Whether what is unexplained lies within the uncertainty of the parts, or is less than a
-        tenth of the disagreement.
-    blame : str
-        The part that dominates, less what it is uncertain by.
-    stations : int
-        Compared stations.
-    left_out : tuple of str
-        Sweeps that diverged, and whose part there is none of.
-    """
-
+    # `Part` by name and reading, those of `PARTS` that there are sweeps for: ``damping``, in
+    # proportion to the damping ratio; ``rate``, what else a slower sweep does not have; ``time
+    # step``, what a shorter one does not have; ``contact model``, of the user's contacts instead of
+    # ours; ``softness``, of ours in a user's model instead of hard ones; ``solver``, of another one
+    # than Newton's, or of its iterations; ``beam``, of what was measured instead of what is stated;
+    # ``at rest``, of the same model and our contacts; ``unexplained``.
     parts: dict[str, dict[str, Part]]
+    # Root mean square by reading, over the stations in contact and trusted in all sweeps.
     disagreement: dict[str, float]
-    order: float
+    order: float  # observed order in the speed, halved or doubled twice
+    # Whether what is unexplained lies within the uncertainty of the parts, or is less than a tenth
+    # of the disagreement.
     closes: bool
-    blame: str
-    stations: int
-    left_out: tuple[str, ...] = ()
+    blame: str  # the part that dominates, less what it is uncertain by
+    stations: int  # compared stations
+    left_out: tuple[str, ...] = ()  # sweeps that diverged, and whose part there is none of
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``motion-budget.json`` holds.
-
-        Returns
-        -------
-        dict
-            JSON can hold it.
-        """
+        """What ``motion-budget.json`` holds."""
         return asdict(self)
 
 
 def slower_and_finer(motion: Motion) -> dict[str, Motion]:
-    """The motions of all sweeps by name; ``base`` is the one that the budget is of.
-
-    Parameters
-    ----------
-    motion : Motion
-        Of the base.
-
-    Returns
-    -------
-    dict of Motion
-        ``half`` and ``quarter`` of its speed, or ``double`` and ``fourfold`` of one below 0.02
-        L/T1; at the last of these speeds ``fine``, with half of the time step and contacts of the
-        same stiffness, and ``ours`` and ``newton``, with our contacts or Newton's method, if it has
-        others; ``undamped``, half of its damping.
-    """
+    """The motions of all sweeps by name; ``base`` is the one that the budget is of."""
     same = motion
     if motion.solref is None:
         same = replace(motion, contact_stiffness=motion.stiffness)
@@ -125,21 +90,7 @@ def _speeds(motion: Motion) -> dict[str, float]:
 def slower_and_finer_of_model(
     model: OwnModel, motion: Motion
 ) -> dict[str, tuple[OwnModel, Motion]]:
-    """The same of a user's own model, in memory.
-
-    Parameters
-    ----------
-    model : OwnModel
-        Its file and names.
-    motion : Motion
-        Of the base.
-
-    Returns
-    -------
-    dict of tuple
-        By the names of `slower_and_finer`; ``ours`` where the contacts are the model's own, and
-        ``stiff``, as ``fine`` with our contacts four times as stiff.
-    """
+    """The same of a user's own model, in memory."""
     found = {name: (model, replace(motion, speed=v)) for name, v in _speeds(motion).items()}
     *_, (_, last) = found.values()
     found["fine"] = replace(model, timestep=0.5), last
@@ -159,31 +110,7 @@ def motion_budget(
     tolerances: Tolerances | None = None,
     of_our_chain: bool = False,
 ) -> MotionBudget:
-    """Split the disagreement of ``runs["base"]`` with `exact` into its parts.
-
-    Parameters
-    ----------
-    exact : Readings
-        The reference.
-    runs : mapping
-        Sweeps by the names of `slower_and_finer`, and ``rest``, over the same stations; ``beam``,
-        the closed form of the vibrissa that was measured.
-    tolerances : Tolerances, optional
-        Only its window before the snap-off is used.
-    of_our_chain : bool
-        Whether ``rest`` is of our chain instead of a user's model: it is as uncertain as it is
-        large. Its contacts are hard.
-
-    Returns
-    -------
-    MotionBudget
-        The parts, and what they come to.
-
-    Raises
-    ------
-    InputError
-        If no station is in contact and trusted in all sweeps.
-    """
+    """Split the disagreement of ``runs["base"]`` with `exact` into its parts."""
     window = (tolerances or Tolerances()).snap_off_window
     kept = common_stations(exact, [*runs.values()], window)
     if not kept.any():

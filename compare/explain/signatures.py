@@ -37,42 +37,17 @@ Fault: TypeAlias = Literal[
 
 @dataclass(frozen=True)
 class Resolved:
-    """The reference's sweep in closed form, to be solved again with one thing changed.
+    """The reference's sweep in closed form, to be solved again with one thing changed."""
 
-    Attributes
-    ----------
-    case : Case
-        The reference's, with a smooth contour through the points that it records.
-    points : array, shape (points, 2)
-        Those, and what lies a little beyond [length].
-    foot_x : array, shape (stations,)
-        Where the readings are wanted [length].
-    seen : array, shape (3, stations)
-        The clamp readings there; NaN where the vibrissa is free and next to it.
-    """
-
-    case: Case
-    points: Floats
-    foot_x: Floats
+    case: Case  # the reference's, with a smooth contour through the points that it records
+    points: Floats  # shape (points, 2); Those, and what lies a little beyond [length]
+    foot_x: Floats  # shape (stations,); Where the readings are wanted [length]
+    # Shape (3, stations); The clamp readings there; NaN where the vibrissa is free and next to it.
     seen: Floats
 
     @classmethod
     def of(cls, reference: Readings, foot_x: Floats) -> Resolved | None:
-        """The sweep of a reference whose contour is in its provenance.
-
-        Parameters
-        ----------
-        reference : Readings
-            The reference.
-        foot_x : array, shape (stations,)
-            [length]
-
-        Returns
-        -------
-        Resolved or None
-            None if the reference does not record its contour, or a smooth contour through the
-            points that it records cannot be solved or does not reproduce its readings.
-        """
+        """The sweep of a reference whose contour is in its provenance."""
         contour = reference.provenance.get("contour")
         if contour is None:
             return None
@@ -93,24 +68,7 @@ class Resolved:
         return cls(case, points, foot_x, _at(solved, foot_x)) if same else None
 
     def change(self, fault: Fault, size: float) -> Floats | None:
-        """What a fault adds to the clamp readings.
-
-        Parameters
-        ----------
-        fault : str
-            ``length`` and ``radius``: that of the vibrissa is larger by so much [L]. ``clamp``: so
-            much of the vibrissa is rigid at the clamp [L]. ``compliance``: the clamp turns by so
-            much more with its moment [L/EI]. ``friction``: the coefficient is larger by so much.
-            ``natural_curvature``: so is that of the vibrissa at rest [1/L]. ``taper``: the radius
-            of the tip is smaller by so much of that at the clamp.
-        size : float
-            How large the fault is.
-
-        Returns
-        -------
-        array, shape (3, stations), or None
-            NaN where one of the two sweeps is free; None if no such vibrissa can be solved.
-        """
+        """What a fault adds to the clamp readings."""
         try:
             there = _at(_sweep(self._changed(fault, size)), self.foot_x)
         except (InputError, ArithmeticError):
@@ -144,70 +102,24 @@ class Resolved:
 
 
 def compliance(case: Case) -> float:
-    """Rotation of the clamp by its moment.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-
-    Returns
-    -------
-    float
-        [L/EI]; zero if the clamp is rigid.
-    """
+    """Rotation of the clamp by its moment."""
     return case.beam.moment_unit / case.clamp_stiffness
 
 
 def stiffness(case: Case, softer: float) -> float:
-    """The stiffness of a clamp that turns by more.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    softer : float
-        By how much more it turns with its moment [L/EI].
-
-    Returns
-    -------
-    float
-        [force length/rad]; infinite if it is rigid.
-    """
+    """The stiffness of a clamp that turns by more."""
     turns = compliance(case) + softer
     return case.beam.moment_unit / turns if turns > 0 else math.inf
 
 
 def natural_curvature(beam: Beam) -> float:
-    """The curvature of a vibrissa at rest that is an arc.
-
-    Parameters
-    ----------
-    beam : Beam
-        The vibrissa.
-
-    Returns
-    -------
-    float
-        [1/length]; NaN if it varies.
-    """
+    """The curvature of a vibrissa at rest that is an arc."""
     given = beam.natural_curvature
     return given if isinstance(given, float) else math.nan
 
 
 def tip_radius(beam: Beam) -> float:
-    """The radius at the tip.
-
-    Parameters
-    ----------
-    beam : Beam
-        The vibrissa.
-
-    Returns
-    -------
-    float
-        [length]; NaN if the rigidity does not follow it.
-    """
+    """The radius at the tip."""
     if not isinstance(beam.flexural_rigidity, float):
         return math.nan
     return beam.radius if beam.tip_radius is None else beam.tip_radius

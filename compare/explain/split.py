@@ -20,27 +20,19 @@ ROUNDING = 1e-7
 
 @dataclass(frozen=True)
 class Split:
-    """What of a subject's disagreement is its implementation.
+    """What of a subject's disagreement is its implementation."""
 
-    Attributes
-    ----------
-    subject, twin : str
-        Names of the engines.
-    disagreement, implementation, model : dict
-        Relative rms of each clamp reading: subject from exact, subject from twin, twin from exact.
-    others : dict
-        The same of each other model from the exact solution, by engine and reading.
-    snap_off : float or None
-        Of the subject less that of the twin [L].
-    """
-
-    subject: str
-    twin: str
+    subject: str  # names of the engines
+    twin: str  # names of the engines
+    # Relative rms of each clamp reading: subject from exact, subject from twin, twin from exact.
     disagreement: dict[str, float]
+    # Relative rms of each clamp reading: subject from exact, subject from twin, twin from exact.
     implementation: dict[str, float]
+    # Relative rms of each clamp reading: subject from exact, subject from twin, twin from exact.
     model: dict[str, float]
+    # The same of each other model from the exact solution, by engine and reading.
     others: dict[str, dict[str, float]]
-    snap_off: float | None
+    snap_off: float | None  # of the subject less that of the twin [L]
 
     @property
     def blame(self) -> str:
@@ -81,13 +73,7 @@ class Split:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``engines.json`` holds of it.
-
-        Returns
-        -------
-        dict
-            JSON can hold it.
-        """
+        """What ``engines.json`` holds of it."""
         return {
             "subject": self.subject,
             "twin": self.twin,
@@ -104,27 +90,7 @@ class Split:
 def split(
     exact: Readings, sweeps: Mapping[str, Readings], roles: Mapping[str, str]
 ) -> Split | None:
-    """Split the subject's disagreement.
-
-    Parameters
-    ----------
-    exact : Readings
-        The closed form.
-    sweeps : mapping of Readings
-        By engine.
-    roles : mapping of str
-        Of each engine, see `engines.engine.Role`.
-
-    Returns
-    -------
-    Split or None
-        None without a subject or without a twin.
-
-    Raises
-    ------
-    InputError
-        If sweeps have no common stretch.
-    """
+    """Split the subject's disagreement."""
     by_role = {roles[name]: name for name in reversed(list(sweeps))}
     if "subject" not in by_role or "twin" not in by_role:
         return None

@@ -38,22 +38,7 @@ class Suspect:
 def suspects(
     unexplained: Floats, signatures: Mapping[str, Floats], unresolved: float
 ) -> tuple[Suspect, ...]:
-    """Which signatures account for the unexplained disagreement, the best first.
-
-    Parameters
-    ----------
-    unexplained : array, shape (3, stations)
-        Relative to each reading's largest magnitude.
-    signatures : mapping
-        What each quantity does to the readings, of the same shape, for a change of `STEP`.
-    unresolved : float
-        Norm of what may stay unexplained; below, nothing is suspected.
-
-    Returns
-    -------
-    tuple of Suspect
-        Empty if none explains enough.
-    """
+    """Which signatures account for the unexplained disagreement, the best first."""
     if np.linalg.norm(np.sqrt(np.mean(unexplained**2, axis=-1))) <= unresolved:
         return ()
     found = []

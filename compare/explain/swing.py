@@ -28,26 +28,7 @@ def without_swing(
     tangent: Booleans,
     power: Floats,
 ) -> list[Floats]:
-    """Sweeps of three numbers of segments, each less what it swings by in Phase B.
-
-    Parameters
-    ----------
-    runs : sequence of array, shape (3, stations)
-        The readings.
-    joints : sequence of array, shape (n,)
-        Arc lengths of each sweep's joints, ascending [L].
-    contact : array, shape (stations,)
-        Arc length of the contact [L].
-    tangent : array of bool, shape (stations,)
-        Whether the station is in Phase B; at the tip the contact does not move along the beam.
-    power : array, shape (3,)
-        What else of a sweep's error is left from sweep to sweep.
-
-    Returns
-    -------
-    list of array, shape (3, stations)
-        As they are, where too few stations are in Phase B.
-    """
+    """Sweeps of three numbers of segments, each less what it swings by in Phase B."""
     count = int(tangent.sum())
     if count < _FEWEST:
         return list(runs)

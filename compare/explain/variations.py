@@ -29,16 +29,6 @@ def variations(case: Case) -> dict[str, Readings]:
     is a coefficient larger by a thousandth. A tip is never thicker than the vibrissa, and one that
     is more curved towards the object may touch it twice: of those two the sweep is the exact one
     less what the opposite change does.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-
-    Returns
-    -------
-    dict of Readings
-        By name.
     """
     beam, length = case.beam, case.beam.length
     start, stop = (float(x) for x in case.foot_x[[0, -1]])
@@ -87,20 +77,7 @@ def _opposite(exact: Readings, changed: Readings) -> Readings:
 
 
 def on_polygon(case: Case, points: int) -> Readings:
-    """The exact sweep past the polygon that a mesh of so many points of the contour is.
-
-    Parameters
-    ----------
-    case : Case
-        The problem, with a smooth contour.
-    points : int
-        Of the contour.
-
-    Returns
-    -------
-    Readings
-        Over the case's stations.
-    """
+    """The exact sweep past the polygon that a mesh of so many points of the contour is."""
     left, right = case.reach
     length = case.beam.length
     vertices = length * case.profile.scaled(1 / length).outline(left, right, points)
@@ -110,38 +87,10 @@ def on_polygon(case: Case, points: int) -> Readings:
 
 
 def shifted_inward(signatures: Mapping[str, Floats], penetration: Floats, radius: float) -> Floats:
-    """What a contact that gives way does, as if the contour lay deeper by the penetration.
-
-    Parameters
-    ----------
-    signatures : mapping
-        What each of `variations` does to the readings, shape (3, stations).
-    penetration : array, shape (stations,)
-        [L]
-    radius : float
-        Of the vibrissa [L].
-
-    Returns
-    -------
-    array, shape (3, stations)
-        What it adds to the readings, relative to their largest magnitudes.
-    """
+    """What a contact that gives way does, as if the contour lay deeper by the penetration."""
     return -signatures["radius"] * penetration / (STEP * radius)
 
 
 def stretched(signatures: Mapping[str, Floats], extension: Floats) -> Floats:
-    """What a vibrissa does that is stretched.
-
-    Parameters
-    ----------
-    signatures : mapping
-        What each of `variations` does to the readings, shape (3, stations).
-    extension : array, shape (stations,)
-        [L]
-
-    Returns
-    -------
-    array, shape (3, stations)
-        What it adds to the readings, relative to their largest magnitudes.
-    """
+    """What a vibrissa does that is stretched."""
     return np.asarray(signatures["length"] * extension / STEP)

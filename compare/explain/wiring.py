@@ -40,22 +40,7 @@ _TURN = np.radians(60)  # beyond, it is a swap of axes
 
 
 def misread(true: Floats, seen: Floats, scale: Floats, length: float) -> Iterator[Explanation]:
-    """Every mistake that needs no contour, with what it leaves unexplained.
-
-    Parameters
-    ----------
-    true, seen : array, shape (3, stations)
-        Reference and candidate, relative to each reading's largest magnitude.
-    scale : array, shape (3,)
-        Those magnitudes.
-    length : float
-        Of the vibrissa.
-
-    Yields
-    ------
-    Explanation
-        Swapped and negated axes, a turned or displaced sensor, other units, a dead channel.
-    """
+    """Every mistake that needs no contour, with what it leaves unexplained."""
     yield from _axes(true, seen, scale)
     yield from _turned(true, seen, scale)
     yield from _displaced(true, seen, scale, length)

@@ -19,78 +19,28 @@ _SIGMAS = 3
 
 @dataclass(frozen=True)
 class NoiseAllowance:
-    """What noise of the readings adds to the limits of agreement.
+    """What noise of the readings adds to the limits of agreement."""
 
-    Attributes
-    ----------
-    level : mapping
-        Standard deviation of each clamp reading's noise, relative to its largest magnitude.
-    transitions : mapping
-        How far noise may move each transition that is located from the clamp [length].
-    phase_agreement : float
-        Share of stations whose phase can still be determined; 1 without noise.
-    """
-
+    # Standard deviation of each clamp reading's noise, relative to its largest magnitude.
     level: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(CLAMP_READINGS, 0.0))
+    # How far noise may move each transition that is located from the clamp [length].
     transitions: Mapping[str, float] = field(default_factory=dict)
+    # Share of stations whose phase can still be determined; 1 without noise.
     phase_agreement: float = 1.0
 
     def rms(self, limit: float, reading: str, stations: int) -> float:
-        """The rms that a sweep at the limit still shows with noise, but for one case in 1000.
-
-        Parameters
-        ----------
-        limit : float
-            Without noise, relative to the reading's largest magnitude.
-        reading : str
-            Name of the clamp reading.
-        stations : int
-            How many the rms is over.
-
-        Returns
-        -------
-        float
-            The widened limit.
-        """
+        """The rms that a sweep at the limit still shows with noise, but for one case in 1000."""
         square = self.level[reading] ** 2
         spread = np.sqrt((2 * square**2 + 4 * square * limit**2) / max(stations, 1))
         return float(np.sqrt(limit**2 + square - ndtri(_RISK) * spread))
 
     def max(self, limit: float, reading: str, stations: int) -> float:
-        """The largest difference that a sweep at the limit still shows with noise.
-
-        Parameters
-        ----------
-        limit : float
-            Without noise, relative to the reading's largest magnitude.
-        reading : str
-            Name of the clamp reading.
-        stations : int
-            How many there are.
-
-        Returns
-        -------
-        float
-            The widened limit.
-        """
+        """The largest difference that a sweep at the limit still shows with noise."""
         return float(limit - ndtri(_RISK / 2 / max(stations, 1)) * self.level[reading])
 
 
 def noise_allowance(reference: Readings, level: Mapping[str, float]) -> NoiseAllowance:
-    """What noise of that `level` does to the reference, from replicas of it.
-
-    Parameters
-    ----------
-    reference : Readings
-        The sweep without it.
-    level : mapping
-        As in `NoiseAllowance`.
-
-    Returns
-    -------
-    NoiseAllowance
-        What it adds to the limits.
-    """
+    """What noise of that `level` does to the reference, from replicas of it."""
     if not any(level.values()):
         return NoiseAllowance()
     stride = -(-len(reference.table) // _STATIONS)

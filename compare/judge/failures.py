@@ -14,27 +14,14 @@ from compare.sense.record import direction
 
 @dataclass(frozen=True)
 class Failure:
-    """One limit that is exceeded.
+    """One limit that is exceeded."""
 
-    Attributes
-    ----------
-    name : str
-        The reading, event or part of the record that it is about.
-    found : str
-        What was found, with its number.
-    clause : str
-        The same as part of a sentence: what is wrong, with its number and what is allowed.
-    allowed : str
-        What is allowed, with the reason.
-    excess : float
-        How many times what is allowed; infinite for what must not be at all.
-    """
-
-    name: str
-    found: str
+    name: str  # the reading, event or part of the record that it is about
+    found: str  # what was found, with its number
+    # The same as part of a sentence: what is wrong, with its number and what is allowed.
     clause: str
-    allowed: str
-    excess: float = math.inf
+    allowed: str  # what is allowed, with the reason
+    excess: float = math.inf  # how many times what is allowed; infinite for what must not be at all
 
     def __str__(self) -> str:
         """The whole sentence."""
@@ -42,22 +29,7 @@ class Failure:
 
 
 def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> Iterator[Failure]:
-    """Every limit that is exceeded: what, where, how much, how much is allowed, and why so.
-
-    Parameters
-    ----------
-    found : Measurement
-        What the sweeps differ by.
-    limits : Tolerances
-        How far they may differ.
-    noise : NoiseAllowance
-        What noise adds to that.
-
-    Yields
-    ------
-    Failure
-        Record and contact first, then the readings, the phases, the events and the stations.
-    """
+    """Every limit that is exceeded: what, where, how much, how much is allowed, and why so."""
     yield from _record(found)
     yield from _contact(found)
     for name, d in found.disagreement.items():

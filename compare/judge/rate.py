@@ -16,33 +16,14 @@ _MASS = 1.8751040687119611**4 / (2 * math.pi) ** 2
 
 @dataclass(frozen=True)
 class Rate:
-    """What the speed of the foot does to a sweep; L = T1 = 1, T1 the vibrissa's first period.
+    """What the speed of the foot does to a sweep; L = T1 = 1, T1 the vibrissa's first period."""
 
-    Parameters
-    ----------
-    speed : float
-        Of the foot [L/T1].
-    damping_ratio : float
-        Of the first vibration, by dampers in proportion to the stiffness.
-    """
-
-    speed: float
-    damping_ratio: float
+    speed: float  # of the foot [L/T1]
+    damping_ratio: float  # of the first vibration, by dampers in proportion to the stiffness
 
     @classmethod
     def of(cls, readings: "Readings") -> "Rate | None":
-        """The rate of a sweep, by its provenance.
-
-        Parameters
-        ----------
-        readings : Readings
-            A sweep.
-
-        Returns
-        -------
-        Rate or None
-            None if the sweep does not say that it moved.
-        """
+        """The rate of a sweep, by its provenance."""
         motion = readings.provenance.get("motion")
         if not isinstance(motion, Mapping):
             return None
@@ -79,18 +60,7 @@ class Rate:
 
 
 def free_share(readings: "Readings") -> float:
-    """Share of the trusted stations at which nothing touches, as the source recorded.
-
-    Parameters
-    ----------
-    readings : Readings
-        A sweep.
-
-    Returns
-    -------
-    float
-        0 if it recorded no phases.
-    """
+    """Share of the trusted stations at which nothing touches, as the source recorded."""
     if "phase" not in readings.table or not readings.trusted.any():
         return 0.0
     return float(np.mean(readings.table["phase"][readings.trusted] == "free"))
@@ -102,16 +72,6 @@ def soft_tip_share(readings: "Readings") -> float:
     A contact that has sunk in by p spreads over sqrt(2 p R) to either side, R the radius of
     curvature of what it is pressed on, here L. If the tip is that near, the source may call
     tangential what the clamp feels as a contact of the tip.
-
-    Parameters
-    ----------
-    readings : Readings
-        A sweep.
-
-    Returns
-    -------
-    float
-        0 if it recorded no phases or no penetration.
     """
     table, length = readings.table, readings.beam.length
     if (

@@ -289,18 +289,7 @@ _CONVENTIONS = {
 
 
 def is_smooth_model(readings: "Readings") -> bool:
-    """Whether a sweep is of a beam in segments past a smooth contour, as far as it says.
-
-    Parameters
-    ----------
-    readings : Readings
-        Its provenance counts.
-
-    Returns
-    -------
-    bool
-        False for all that does not record its segments, as a rig.
-    """
+    """Whether a sweep is of a beam in segments past a smooth contour, as far as it says."""
     settings = readings.provenance.get("settings")
     if not (isinstance(settings, Mapping) and "segments" in settings):
         return False
@@ -323,25 +312,7 @@ def _is_special(name: str) -> bool:
 
 
 def as_limit(name: str, value: float) -> Limit:
-    """A limit of that name, checked.
-
-    Parameters
-    ----------
-    name : str
-        For the error.
-    value : float
-        A plain number becomes a `Limit` that the caller asked for.
-
-    Returns
-    -------
-    Limit
-        With its reason.
-
-    Raises
-    ------
-    InputError
-        If it is no finite number of zero or more.
-    """
+    """A limit of that name, checked."""
     if isinstance(value, Limit):
         return value
     if isinstance(value, bool) or not isinstance(value, int | float):

@@ -13,16 +13,6 @@ def tip_of(loads: Floats) -> Floats:
 
     K. E. Bisshopp, D. C. Drucker, Large deflection of cantilever beams, Quarterly of Applied
     Mathematics 3 (1945), equations (8) to (13).
-
-    Parameters
-    ----------
-    loads : array, shape (n,)
-        P L^2/EI, positive.
-
-    Returns
-    -------
-    array, shape (n, 2)
-        Displacement along the load, and along the axis towards the clamp [L].
     """
     return np.array([_tip(math.sqrt(load)) for load in np.asarray(loads, dtype=float).tolist()])
 

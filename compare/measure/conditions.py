@@ -8,18 +8,10 @@ from analytic import Case, InputError, Readings
 
 @dataclass(frozen=True)
 class Condition:
-    """A case as it is in truth, while a method takes it for the paper's vibrissa.
+    """A case as it is in truth, while a method takes it for the paper's vibrissa."""
 
-    Attributes
-    ----------
-    what : str
-        In a few words, with its size.
-    true : callable
-        The true case, from the one that the method believes in.
-    """
-
-    what: str
-    true: Callable[[Case], Case]
+    what: str  # in a few words, with its size
+    true: Callable[[Case], Case]  # the true case, from the one that the method believes in
 
 
 def _curved(case: Case) -> Case:
@@ -52,23 +44,7 @@ SIMULATED = "mujoco"
 
 
 def chosen_conditions(names: Iterable[str]) -> list[str]:
-    """Conditions by name, without repetition.
-
-    Parameters
-    ----------
-    names : iterable of str
-        From `CONDITIONS`, `SIMULATED`, or ``"all"``.
-
-    Returns
-    -------
-    list of str
-        In the order that was asked for.
-
-    Raises
-    ------
-    InputError
-        If there is no such condition.
-    """
+    """Conditions by name, without repetition."""
     every = (*CONDITIONS, SIMULATED)
     found: dict[str, None] = {}
     for name in names:
@@ -81,19 +57,6 @@ def chosen_conditions(names: Iterable[str]) -> list[str]:
 
 
 def as_believed(readings: Readings, case: Case) -> Readings:
-    """The readings as a method gets them: of the paper's vibrissa, as far as anybody knows.
-
-    Parameters
-    ----------
-    readings : Readings
-        Of the true case, or a simulator.
-    case : Case
-        What the method believes in.
-
-    Returns
-    -------
-    Readings
-        With that case's beam, and nothing said of its clamp and of friction.
-    """
+    """The readings as a method gets them: of the paper's vibrissa, as far as anybody knows."""
     provenance = {name: x for name, x in readings.provenance.items() if name != "support"}
     return replace(readings, beam=case.beam, provenance=provenance)

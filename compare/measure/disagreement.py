@@ -25,40 +25,19 @@ class Peak:
 
 @dataclass(frozen=True)
 class Disagreement:
-    """How far one clamp reading of the candidate is off, relative to its largest magnitude.
+    """How far one clamp reading of the candidate is off, relative to its largest magnitude."""
 
-    Attributes
-    ----------
-    rms : float
-        Over the compared stations outside the window before snap-off, as are all the following
-        but one; NaN if there are none.
-    max : float
-        The largest difference.
-    at : float
-        Its foot position [length].
-    phase : str
-        Its phase.
-    max_before_snap_off : float
-        The largest difference inside the window; NaN if no station is.
-    rms_by_phase : dict
-        By the reference's phases.
-    scale : float
-        What the differences are relative to, in the reading's unit.
-    stations_by_phase : dict
-        How many stations there are of each phase.
-    peaks : dict of Peak
-        The largest difference of each phase.
-    """
-
+    # Over the compared stations outside the window before snap-off, as are all the following but
+    # one; NaN if there are none.
     rms: float
-    max: float
-    at: float
-    phase: str
-    max_before_snap_off: float
-    rms_by_phase: dict[str, float]
-    scale: float
-    stations_by_phase: dict[str, int]
-    peaks: dict[str, Peak]
+    max: float  # the largest difference
+    at: float  # its foot position [length]
+    phase: str  # its phase
+    max_before_snap_off: float  # the largest difference inside the window; NaN if no station is
+    rms_by_phase: dict[str, float]  # by the reference's phases
+    scale: float  # what the differences are relative to, in the reading's unit
+    stations_by_phase: dict[str, int]  # how many stations there are of each phase
+    peaks: dict[str, Peak]  # the largest difference of each phase
 
     @property
     def stations(self) -> int:
@@ -82,54 +61,20 @@ class Occurrence:
         return self.candidate - self.reference
 
     def agrees(self, tolerance: float) -> bool:
-        """Whether it happens in neither sweep, or at nearly the same foot position in both.
-
-        Parameters
-        ----------
-        tolerance : float
-            By how much they may differ beside what the stations can resolve [length].
-
-        Returns
-        -------
-        bool
-            Whether they agree.
-        """
+        """Whether it happens in neither sweep, or at nearly the same foot position in both."""
         if self.difference is None:
             return self.reference is None and self.candidate is None
         return abs(self.difference) <= tolerance + self.uncertainty
 
     def to_dict(self) -> dict[str, float | None]:
-        """What ``comparison.json`` holds.
-
-        Returns
-        -------
-        dict
-            The foot positions and their difference [length].
-        """
+        """What ``comparison.json`` holds."""
         return {**asdict(self), "difference": self.difference}
 
 
 def disagreements(
     reference: Readings, table: pd.DataFrame, snap: Occurrence, window: float
 ) -> dict[str, Disagreement]:
-    """How far the readings are apart at the stations that `align` paired.
-
-    Parameters
-    ----------
-    reference : Readings
-        Its largest magnitudes are what the differences are relative to.
-    table : pandas.DataFrame
-        Of an `Alignment`.
-    snap : Occurrence
-        Where contact ends.
-    window : float
-        Stretch before the snap-off that does not count, of the sweep's length.
-
-    Returns
-    -------
-    dict of Disagreement
-        By clamp reading.
-    """
+    """How far the readings are apart at the stations that `align` paired."""
     foot_x = table["foot_x"].to_numpy()
     near = before_snap_off(reference, foot_x, snap, window)
     phase = table["phase"].to_numpy()[~near]
@@ -168,22 +113,6 @@ def before_snap_off(
     """Whether each foot position lies within the window at the earlier one of two snap-offs.
 
     There the readings grow without bound. What both sweeps still read far beyond it does count.
-
-    Parameters
-    ----------
-    reference : Readings
-        Its direction and length are the sweep's.
-    foot_x : array, shape (n,)
-        Foot positions [length].
-    snap : Occurrence
-        The snap-offs.
-    window : float
-        Of the sweep's length.
-
-    Returns
-    -------
-    array of bool, shape (n,)
-        False throughout without a snap-off.
     """
     ends = [x for x in (snap.reference, snap.candidate) if x is not None]
     if not ends:

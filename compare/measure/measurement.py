@@ -125,31 +125,7 @@ def measure(
     window: float,
     offset: float | Literal["auto"] = 0.0,
 ) -> Measurement:
-    """Measure how far `candidate` is from `reference`, from their readings alone.
-
-    Parameters
-    ----------
-    reference, candidate : Readings
-        Two sweeps of the same beam.
-    window : float
-        Stretch before the snap-off, of the sweep's length, that the differences leave out:
-        there the readings grow without bound.
-    offset : float or "auto"
-        By how much the candidate's ``foot_x`` exceeds the reference's for one foot position
-        [length]; ``"auto"`` estimates it from the readings.
-
-    Returns
-    -------
-    Measurement
-        What they differ by.
-
-    Raises
-    ------
-    InputError
-        If the sweeps are of different beams or have no common stretch, the reference never touches,
-        a number is too large to be a reading, their foot positions are in different units, or the
-        offset is ambiguous.
-    """
+    """Measure how far `candidate` is from `reference`, from their readings alone."""
     for which, sweep in (("reference", reference), ("candidate", candidate)):
         check_size(which, sweep)
     scales(reference)

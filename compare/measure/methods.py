@@ -28,33 +28,7 @@ def method_errors(
     noise: Iterable[float] = NOISE,
     seed: int = 0,
 ) -> pd.DataFrame:
-    """Contact error of each method, by phase and by noise of the clamp's readings.
-
-    Parameters
-    ----------
-    truth : Readings
-        A sweep with its contacts: exact, or another model's. Its clamp readings are given to the
-        methods, its contacts are what they should find, its phases those that are counted.
-    methods : iterable of str
-        Names from `NAMES`.
-    noise : iterable of float
-        Standard deviations, over each clamp reading's largest magnitude.
-    seed : int
-        Of the noise.
-
-    Returns
-    -------
-    pandas.DataFrame
-        A row a method, level of noise and phase: ``method``, ``needs`` (what it has to know beside
-        the foot's position), ``noise``, ``phase``, ``contacts``,
-        ``answered`` (share of them), ``median``, ``rms`` and ``worst`` error over L of those that
-        were answered, NaN if none was, and ``seconds`` a contact.
-
-    Raises
-    ------
-    InputError
-        If there is no such method, or the readings have no contacts.
-    """
+    """Contact error of each method, by phase and by noise of the clamp's readings."""
     chosen = list(methods)
     for name in chosen:
         if name not in NAMES:
@@ -77,18 +51,7 @@ def method_errors(
 
 
 def needs_of(method: str) -> str:
-    """What a method has to know beside the foot's position.
-
-    Parameters
-    ----------
-    method : str
-        From `NAMES`.
-
-    Returns
-    -------
-    str
-        As ``"moment, rigidity, first contact"``.
-    """
+    """What a method has to know beside the foot's position."""
     if method in METHODS:
         return ", ".join(METHODS[method].needs)
     return "moment, force, rigidity, length"
@@ -122,23 +85,7 @@ def _errors(
 
 
 def contacts_by(sensed: Readings, method: str, level: float) -> pd.DataFrame:
-    """Contact points by a method, from readings with a known level of noise.
-
-    Parameters
-    ----------
-    sensed : Readings
-        What the sensor gives.
-    method : str
-        From `NAMES`.
-    level : float
-        Standard deviation of the noise over each reading's largest magnitude. The paper's way to
-        decide the phase needs it; all others do without.
-
-    Returns
-    -------
-    pandas.DataFrame
-        As `analytic.reconstruct`.
-    """
+    """Contact points by a method, from readings with a known level of noise."""
     if method != "decision":
         return reconstruct(sensed, method=method)
     # Where noise makes an impossible force, the square root of the closed form is none.

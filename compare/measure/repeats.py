@@ -13,51 +13,21 @@ _ACROSS = 2  # averages next to the snap-off that do not count
 
 @dataclass(frozen=True)
 class Repeat:
-    """What two passes of one vibrissa past one object differ by.
+    """What two passes of one vibrissa past one object differ by."""
 
-    Attributes
-    ----------
-    rms : dict
-        By clamp reading, relative to its largest magnitude: drift that is left, hysteresis, and
-        half of the noise, as four stations are averaged.
-    shift : float or None
-        By how much the second pass's foot positions exceed the first one's for equal readings, as
-        by play or creep [length]; None if the readings do not show it.
-    shift_uncertainty : float
-        Half the width of a 95 % interval about it [length].
-    rms_without_shift : dict
-        As `rms`, with the shift taken off.
-    stations : int
-        How many averages there are.
-    """
-
+    # By clamp reading, relative to its largest magnitude: drift that is left, hysteresis, and half
+    # of the noise, as four stations are averaged.
     rms: dict[str, float]
+    # By how much the second pass's foot positions exceed the first one's for equal readings, as by
+    # play or creep [length]; None if the readings do not show it.
     shift: float | None
-    shift_uncertainty: float
-    rms_without_shift: dict[str, float]
-    stations: int
+    shift_uncertainty: float  # half the width of a 95 % interval about it [length]
+    rms_without_shift: dict[str, float]  # as `rms`, with the shift taken off
+    stations: int  # how many averages there are
 
 
 def repeat(first: Readings, second: Readings, window: float = 5e-3) -> Repeat:
-    """Hold a pass against an earlier one in the same direction.
-
-    Parameters
-    ----------
-    first, second : Readings
-        Without gaps.
-    window : float
-        Stretch before the snap-off that does not count, of the sweep's length.
-
-    Returns
-    -------
-    Repeat
-        Over the stations where both are in contact.
-
-    Raises
-    ------
-    InputError
-        If they have no common stretch, or the first one never touches.
-    """
+    """Hold a pass against an earlier one in the same direction."""
     width = _STEPS * max(float(np.median(np.abs(np.diff(x)))) for x in map(_foot, (first, second)))
     first, second = _averaged(first, width), _averaged(second, width)
     # An average that lies across the snap-off is of two states.

@@ -22,24 +22,7 @@ _OFF = 1.0  # L
 
 
 def assumed_of(readings: Readings) -> Readings:
-    """A sweep of the default vibrissa, whose provenance says that it is assumed.
-
-    Parameters
-    ----------
-    readings : Readings
-        As if of a vibrissa with L = EI = 1.
-
-    Returns
-    -------
-    Readings
-        The same sweep.
-
-    Raises
-    ------
-    InputError
-        If it cannot be of such a vibrissa: a good part of its stations have no elastica or
-        contacts beyond the tip, or the contacts lie on no contour.
-    """
+    """A sweep of the default vibrissa, whose provenance says that it is assumed."""
     thin = readings.table.iloc[:: len(readings.table) // _LOOKED_AT + 1]
     some = replace(readings, table=thin.reset_index(drop=True)) if len(thin) > 1 else readings
     found = reconstruct(some)[clearly_loaded(some)]

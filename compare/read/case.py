@@ -17,57 +17,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Job:
-    """A case, how MuJoCo is to simulate it, how far models may disagree, what is uncertain.
+    """A case, how MuJoCo is to simulate it, how far models may disagree, what is uncertain."""
 
-    Attributes
-    ----------
-    case : Case
-        The problem.
-    settings : Settings
-        The numerics.
-    tolerances : Tolerances
-        The limits.
-    motion : Motion or None
-        How the foot moves; None if MuJoCo's beam is at rest at every station.
-    uncertainties : Uncertainties or None
-        What is uncertain about the case; None if nothing is stated.
-    model : OwnModel or None
-        The user's own model, if that is to be swept; it is always in motion.
-    engines : tuple of str
-        Which engines sweep the case at rest.
-    timeout : float
-        The longest that each of them may take [s].
-    """
-
-    case: Case
-    settings: Settings
-    tolerances: Tolerances = field(default_factory=Tolerances)
+    case: Case  # the problem
+    settings: Settings  # the numerics
+    tolerances: Tolerances = field(default_factory=Tolerances)  # the limits
+    # How the foot moves; None if MuJoCo's beam is at rest at every station.
     motion: "Motion | None" = None
+    # What is uncertain about the case; None if nothing is stated.
     uncertainties: "Uncertainties | None" = None
+    # The user's own model, if that is to be swept; it is always in motion.
     model: "OwnModel | None" = None
-    engines: tuple[str, ...] = ("mujoco",)
-    timeout: float = 600.0
+    engines: tuple[str, ...] = ("mujoco",)  # which engines sweep the case at rest
+    timeout: float = 600.0  # the longest that each of them may take [s]
 
 
 def load_job(name_or_path: str) -> Job:
-    """The case of that name, or from that TOML file.
-
-    Parameters
-    ----------
-    name_or_path : str
-        A named case, or the path of a ``.toml`` file.
-
-    Returns
-    -------
-    Job
-        With defaults for what the file leaves out.
-
-    Raises
-    ------
-    InputError
-        If there is neither, or the file has unknown keys, wrong types, unknown units, numbers with
-        and without units mixed, or states no solvable problem.
-    """
+    """The case of that name, or from that TOML file."""
     if name_or_path in NAMED_TABLES:
         return Job(named_case(name_or_path), Settings())
     if not name_or_path.endswith(".toml"):

@@ -23,24 +23,7 @@ _Schema = TypeVar("_Schema", bound=Table)
 
 
 def read_job(path: Path) -> Job:
-    """The job that a case file states.
-
-    Parameters
-    ----------
-    path : Path
-        A TOML file.
-
-    Returns
-    -------
-    Job
-        With defaults for what the file leaves out.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, has unknown keys, wrong types, unknown units, numbers with and
-        without units mixed, or states no solvable problem.
-    """
+    """The job that a case file states."""
     file = TomlFile.read(path, "case file")
     if "body" in file.tables:
         raise InputError(
@@ -65,25 +48,7 @@ def read_job(path: Path) -> Job:
 
 
 def engines_of(case: CaseFile, place: Place) -> tuple[str, ...]:
-    """The engines that a case file names.
-
-    Parameters
-    ----------
-    case : CaseFile
-        The file.
-    place : callable
-        What an error calls a key.
-
-    Returns
-    -------
-    tuple of str
-        Their names; whether they are installed does not matter.
-
-    Raises
-    ------
-    InputError
-        If there is none of such a name.
-    """
+    """The engines that a case file names."""
     try:
         return tuple(named_engines(case.engine.name))
     except InputError as error:
@@ -93,26 +58,7 @@ def engines_of(case: CaseFile, place: Place) -> tuple[str, ...]:
 
 
 def validate(tables: Mapping[str, Any], place: Place) -> CaseFile:
-    """What a case file's tables say.
-
-    Parameters
-    ----------
-    tables : mapping
-        As parsed.
-    place : callable
-        What an error calls a key.
-
-    Returns
-    -------
-    CaseFile
-        The same, checked, in SI if there are units.
-
-    Raises
-    ------
-    InputError
-        If there are unknown keys, wrong types, unknown units, numbers with and without units
-        mixed, or one left out beside units whose default is a number without.
-    """
+    """What a case file's tables say."""
     return _validated(CaseFile, tables, place)
 
 
@@ -120,23 +66,6 @@ def read_beam(path: Path) -> tuple[Beam, dict[str, Any]]:
     """The vibrissa of a file's ``[beam]``, ``[support]`` and ``[contact]`` tables.
 
     Other tables do not matter.
-
-    Parameters
-    ----------
-    path : Path
-        A TOML file.
-
-    Returns
-    -------
-    beam : Beam
-        In the units of the file, or SI.
-    provenance : dict
-        ``support``, if the file has a table of it or of the contact.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, there is no such table, or it cannot be used, as in `validate`.
     """
     file = TomlFile.read(path, "beam file")
     if "beam" not in file.tables:
@@ -156,22 +85,7 @@ def _validated(schema: type[_Schema], tables: Mapping[str, Any], place: Place) -
 
 
 def check_units(file: Table, tables: Mapping[str, Any], place: Place) -> None:
-    """Refuse dimensions with and without units side by side, also those left to a default.
-
-    Parameters
-    ----------
-    file : Table
-        The tables, checked.
-    tables : mapping
-        As parsed.
-    place : callable
-        What an error calls a key.
-
-    Raises
-    ------
-    InputError
-        If they are mixed.
-    """
+    """Refuse dimensions with and without units side by side, also those left to a default."""
     bare: list[list[str]] = []
     united: list[list[str]] = []
     left_out: list[list[str]] = []

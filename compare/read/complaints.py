@@ -30,18 +30,7 @@ _brief.maxstring = _brief.maxother = 80
 
 
 def shown(value: object) -> str:
-    """A value for an error: in one line, and not longer than helps.
-
-    Parameters
-    ----------
-    value : object
-        As parsed.
-
-    Returns
-    -------
-    str
-        Its representation, shortened.
-    """
+    """A value for an error: in one line, and not longer than helps."""
     return _brief.repr(value)
 
 
@@ -51,25 +40,7 @@ def complaint(
     place: Place,
     outer: Sequence[str] = (),
 ) -> InputError:
-    """What a validation error says, in one line.
-
-    Parameters
-    ----------
-    error : ValidationError
-        Of which the first part counts, but a misspelt key before all else: it also leaves one
-        missing.
-    schema : type
-        What was validated: a model or a dataclass.
-    place : callable
-        What an error calls a key.
-    outer : sequence of str
-        The keys of the table that was validated, if it was part of a file.
-
-    Returns
-    -------
-    InputError
-        With the key, its value, what is allowed, and what to do.
-    """
+    """What a validation error says, in one line."""
     parts = error.errors(include_url=False)
     first = min(parts, key=lambda part: part["type"] not in _UNKNOWN_KEY)
     inside, allowed = _walk(schema, first["loc"])
@@ -161,23 +132,7 @@ def _kind(table: object) -> tuple[str, ...]:
 
 
 def plain_name(text: str) -> str:
-    """A name that files and folders can have, and that stays in its folder.
-
-    Parameters
-    ----------
-    text : str
-        As given.
-
-    Returns
-    -------
-    str
-        `text`.
-
-    Raises
-    ------
-    ValueError
-        If it is empty, too long, starts with a dot, or has a separator or a control character.
-    """
+    """A name that files and folders can have, and that stays in its folder."""
     if (
         not text.strip()
         or len(text.encode(errors="replace")) > _LONGEST_NAME
@@ -192,23 +147,7 @@ def plain_name(text: str) -> str:
 
 
 def name_of(path: Path) -> str:
-    """What a file is called that does not say it itself: its name without the suffix.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    str
-        A name as `plain_name` allows it.
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    """
+    """What a file is called that does not say it itself: its name without the suffix."""
     try:
         return plain_name(path.stem)
     except ValueError as error:

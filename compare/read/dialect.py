@@ -28,67 +28,25 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?|[+-]?(inf|infinit
 
 @dataclass(frozen=True)
 class Dialect:
-    """How a table is written.
+    """How a table is written."""
 
-    Parameters
-    ----------
-    separator : str
-        Between cells: ``","``, ``";"``, a tab, or a pattern for blanks.
-    decimal : str
-        ``"."`` or ``","``.
-    """
-
-    separator: str
-    decimal: str
+    separator: str  # between cells: ``","``, ``";"``, a tab, or a pattern for blanks
+    decimal: str  # ``"."`` or ``","``
 
     def cells(self, line: str) -> list[str]:
-        """The cells of a line.
-
-        Parameters
-        ----------
-        line : str
-            Without its end.
-
-        Returns
-        -------
-        list of str
-            Without blanks and quotes around them.
-        """
+        """The cells of a line."""
         parts = line.split() if self.separator == _BLANKS else line.split(self.separator)
         return [part.strip().strip('"').strip() for part in parts]
 
     def weight(self, cell: str) -> int:
-        """What a cell says for its line being a row of numbers.
-
-        Parameters
-        ----------
-        cell : str
-            As `cells` returns it.
-
-        Returns
-        -------
-        int
-            1 for a number, as ``"-1,5e3"`` with a decimal comma, 0 where nothing was measured, as
-            ``"NaN"``, and -1 for anything else.
-        """
+        """What a cell says for its line being a row of numbers."""
         if cell.lower() in _MISSING:
             return 0
         written = "?" if self.decimal == "," and "." in cell else self.with_point(cell)
         return 1 if _NUMBER.fullmatch(written) else -1
 
     def with_point(self, cell: Any) -> Any:  # noqa: ANN401  # an empty cell is no text
-        """A cell with a decimal point, if it is a number.
-
-        Parameters
-        ----------
-        cell : str or float
-            Any cell.
-
-        Returns
-        -------
-        str or float
-            ``"0.5"`` for ``"0,5"`` under a decimal comma; else the cell.
-        """
+        """A cell with a decimal point, if it is a number."""
         if self.decimal == "," and isinstance(cell, str):
             pointed = cell.replace(",", ".")
             return pointed if _NUMBER.fullmatch(pointed) else cell
@@ -105,66 +63,25 @@ _DIALECTS = tuple(
 
 @dataclass(frozen=True)
 class TextTable:
-    """A table in a text file.
+    """A table in a text file."""
 
-    Parameters
-    ----------
-    frame : pandas.DataFrame
-        Its columns, called ``"1"``, ``"2"``, ... if the file does not name them; those whose cells
-        are not all numbers are texts.
-    path : Path
-        The file.
-    text : str
-        What is in it.
-    first : int
-        Line of its first row.
-    units : dict of str
-        Units of the columns, if a line between the names and the data has them.
-    """
-
+    # Its columns, called ``"1"``, ``"2"``, ... if the file does not name them; those whose cells
+    # are not all numbers are texts.
     frame: pd.DataFrame
-    path: Path
-    text: str
-    first: int
-    units: dict[str, str]
+    path: Path  # the file
+    text: str  # what is in it
+    first: int  # line of its first row
+    units: dict[str, str]  # units of the columns, if a line between the names and the data has them
 
     def place(self, row: int) -> str:
-        """Where a row stands.
-
-        Parameters
-        ----------
-        row : int
-            Counted from 0.
-
-        Returns
-        -------
-        str
-            With the line of the file.
-        """
+        """Where a row stands."""
         filled = (number for number, line in _filled(self.text) if number >= self.first)
         number = next((n for i, n in enumerate(filled) if i == row), self.first + row)
         return f"line {number} of {self.path}"
 
 
 def read_text_table(path: Path) -> TextTable:
-    """A table in a text file, whoever wrote it.
-
-    Parameters
-    ----------
-    path : Path
-        The file; UTF-8, UTF-16 with its mark, or Western European.
-
-    Returns
-    -------
-    TextTable
-        With a row a line of data.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, has no lines of two or more numbers, or a line has more or fewer cells
-        than the first.
-    """
+    """A table in a text file, whoever wrote it."""
     regular_file(path, "readings file", _LARGEST)
     try:
         text = _decoded(path.read_bytes())

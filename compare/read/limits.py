@@ -15,25 +15,7 @@ _Limits = TypeVar("_Limits", Tolerances, SpatialTolerances)
 
 
 def read_tolerances(path: Path, kind: type[_Limits]) -> _Limits:
-    """The ``[tolerances]`` table of a TOML file; other tables do not matter.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    kind : type
-        `Tolerances`, or `SpatialTolerances`.
-
-    Returns
-    -------
-    Tolerances or SpatialTolerances
-        What the table leaves out has its default.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, has no such table, or the table cannot be used.
-    """
+    """The ``[tolerances]`` table of a TOML file; other tables do not matter."""
     file = TomlFile.read(path, "tolerance file")
     if "tolerances" not in file.tables:
         raise InputError(f"{path}: [tolerances]", "missing", "given", "add the table")
@@ -41,28 +23,7 @@ def read_tolerances(path: Path, kind: type[_Limits]) -> _Limits:
 
 
 def tolerances_of(table: Mapping[str, Any], place: Place, kind: type[_Limits]) -> _Limits:
-    """What a ``[tolerances]`` table says; what it leaves out keeps its default.
-
-    Parameters
-    ----------
-    table : mapping
-        ``NAME = { limit = 1e-3, reason = "..." }``, NAME as in `kind`; limits of one reading
-        or phase in tables of its name, ``[tolerances.force_x.tip]``.
-    place : callable
-        What an error calls a key.
-    kind : type
-        `Tolerances`, or `SpatialTolerances`.
-
-    Returns
-    -------
-    Tolerances or SpatialTolerances
-        With the given limits and their reasons.
-
-    Raises
-    ------
-    InputError
-        If a name is unknown, or a limit has no reason or is no number.
-    """
+    """What a ``[tolerances]`` table says; what it leaves out keeps its default."""
     names = [one.name for one in fields(kind) if one.name != "special"]
     general: dict[str, Limit] = {}
     special: dict[str, Limit] = {}

@@ -53,23 +53,7 @@ class MotionTable(BaseModel):
     cutoff: Rate | None = Motion.cutoff
 
     def build(self, beam: Beam) -> Motion:
-        """The motion.
-
-        Parameters
-        ----------
-        beam : Beam
-            Of the case.
-
-        Returns
-        -------
-        Motion
-            In natural units.
-
-        Raises
-        ------
-        InputError
-            If a number is out of its range, or there are units and nothing says what T1 is.
-        """
+        """The motion."""
         period = self._period(beam)
         times = self.timestep, self.ramp, *(self.solref or ())[:1]
         given = [x for x in (self.speed, *times, self.cutoff) if isinstance(x, InSI)]
@@ -98,25 +82,7 @@ class MotionTable(BaseModel):
         return Motion(**natural)
 
     def of_a_model(self, beam: Beam, place: Place) -> Motion:
-        """The motion of a user's own model, which brings most of it with it.
-
-        Parameters
-        ----------
-        beam : Beam
-            Of the case.
-        place : callable
-            What an error calls a key.
-
-        Returns
-        -------
-        Motion
-            In natural units; T1 is the model's own first period.
-
-        Raises
-        ------
-        InputError
-            As `build` does, or if something is stated that the model says itself.
-        """
+        """The motion of a user's own model, which brings most of it with it."""
         for name in type(self).model_fields:
             if name in self.model_fields_set and name not in _OF_A_MODEL:
                 raise InputError(
@@ -152,18 +118,6 @@ def first_period(beam: Beam, density: float) -> float:
     """First period of the free vibrissa, T1 = 2 pi (L/1.8751)^2 sqrt(rho A/EI).
 
     That is Euler's and Bernoulli's cantilever: S. S. Rao, Mechanical Vibrations, chapter 8.
-
-    Parameters
-    ----------
-    beam : Beam
-        In SI; round and solid.
-    density : float
-        Of its material [kg/m^3].
-
-    Returns
-    -------
-    float
-        T1 [s].
     """
     mass = density * math.pi * beam.radius**2
     slowness = math.sqrt(mass / beam.base_rigidity)

@@ -22,38 +22,22 @@ _FEWEST = 5  # rows of a stretch whose mean is a zero, and of a pass
 
 @dataclass(frozen=True, repr=False)
 class Pass:
-    """One pass of the foot along its path.
+    """One pass of the foot along its path."""
 
-    Attributes
-    ----------
-    name : str
-        The file's, with the number of the pass if it has several.
-    direction : {"left", "right"}
-        Which way the foot moves.
-    readings : Readings
-        In the order of the motion; gaps (NaN) where a row has a defect.
-    rows : int
-        How many rows of the file belong to it.
-    dropped : dict
-        How many of them are not used, by reason: ``without_foot_x`` and ``averaged`` (with the row
-        before, at the same place) have no row in `readings`, the others are gaps there.
-    sorted : int
-        How many rows were out of order.
-    record : Record
-        What was wrong with the record as such.
-    zero, drift : dict
-        Of each clamp reading where the vibrissa is free: before the contact, and by how much it
-        changes until after it [force, force length]. NaN if no such stretch is known.
-    """
-
-    name: str
-    direction: Direction
-    readings: Readings
-    rows: int
+    name: str  # the file's, with the number of the pass if it has several
+    direction: Direction  # which way the foot moves
+    readings: Readings  # in the order of the motion; gaps (NaN) where a row has a defect
+    rows: int  # how many rows of the file belong to it
+    # How many of them are not used, by reason: ``without_foot_x`` and ``averaged`` (with the row
+    # before, at the same place) have no row in `readings`, the others are gaps there.
     dropped: dict[str, int]
-    sorted: int
-    record: Record
+    sorted: int  # how many rows were out of order
+    record: Record  # what was wrong with the record as such
+    # Of each clamp reading where the vibrissa is free: before the contact, and by how much it
+    # changes until after it [force, force length]. NaN if no such stretch is known.
     zero: dict[str, float]
+    # Of each clamp reading where the vibrissa is free: before the contact, and by how much it
+    # changes until after it [force, force length]. NaN if no such stretch is known.
     drift: dict[str, float]
 
     @property
@@ -67,26 +51,7 @@ class Pass:
 
 
 def read_passes(source: Path, rig: Rig) -> list[Pass]:
-    """All passes in a file, or in the files of a folder.
-
-    Parameters
-    ----------
-    source : Path
-        A text file with a table, or a folder with such files, which are read by name.
-    rig : Rig
-        What the files hold.
-
-    Returns
-    -------
-    list of Pass
-        In the order of files and rows.
-
-    Raises
-    ------
-    InputError
-        If there is no such file, a column is missing, a cell is no number, or a stretch that should
-        be free has too few rows.
-    """
+    """All passes in a file, or in the files of a folder."""
     files = [source]
     if source.is_dir():
         files = sorted(path for path in source.iterdir() if path.suffix.lower() in TEXTS)
@@ -223,17 +188,6 @@ def _zero(
 
 
 def without_gaps(one: Pass) -> Readings:
-    """A pass with the stations alone that have all four numbers.
-
-    Parameters
-    ----------
-    one : Pass
-        With gaps, perhaps.
-
-    Returns
-    -------
-    Readings
-        Of the rest.
-    """
+    """A pass with the stations alone that have all four numbers."""
     kept = one.readings.table[one.readings.trusted].reset_index(drop=True)
     return replace(one.readings, table=kept)

@@ -26,18 +26,7 @@ class ProfileTable(Table):
     scale: Length = Field(default=1.0, gt=0)
 
     def build(self, folder: Path) -> Contour:  # files are in it, if there are any
-        """The contour.
-
-        Parameters
-        ----------
-        folder : Path
-            What the path of a mesh file is relative to.
-
-        Returns
-        -------
-        Contour
-            In the units of the file, or SI.
-        """
+        """The contour."""
         numbers = self.model_dump(exclude={"kind", "scale"})
         return type(self).factory(**numbers).scaled(self.scale)
 

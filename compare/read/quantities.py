@@ -106,13 +106,7 @@ class Table(BaseModel):
 
     @classmethod
     def quantities(cls) -> list[str]:
-        """Keys that may have a unit.
-
-        Returns
-        -------
-        list of str
-            Names of the fields with a dimension.
-        """
+        """Keys that may have a unit."""
         return [
             name
             for name, field in cls.model_fields.items()

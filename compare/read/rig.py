@@ -155,27 +155,7 @@ def _called(source: Source) -> str:
 
 
 def raw_table(source: Source) -> tuple[pd.DataFrame, Place, dict[str, str]]:
-    """The table, where its rows stand, and units that it gives itself, by column.
-
-    Parameters
-    ----------
-    source : path, pandas.DataFrame or mapping
-        As of `read_measured`.
-
-    Returns
-    -------
-    table : pandas.DataFrame
-        With its own columns.
-    place : callable
-        What an error calls a row.
-    units : dict
-        By column.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read.
-    """
+    """The table, where its rows stand, and units that it gives itself, by column."""
     if isinstance(source, pd.DataFrame):
         return source, row_number, {}
     if isinstance(source, Mapping):
@@ -204,35 +184,7 @@ def renamed(
     units: Mapping[str, str],
     dimensions: Mapping[str, str] = DIMENSIONS,
 ) -> tuple[pd.DataFrame, dict[str, str], dict[str, str]]:
-    """The table with the sensed quantities under their own names and, with units, in SI.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        With its own columns.
-    columns : sequence of str
-        As of `read_measured`.
-    place : callable
-        What an error calls a row.
-    called : str
-        What it calls the table.
-    units : mapping
-        That the table gives itself, by column.
-    dimensions : mapping
-        The sensed quantities, with an SI unit each.
-
-    Returns
-    -------
-    table : pandas.DataFrame
-        With the sensed quantities.
-    used, own : dict
-        The units that they had, and those of them that only the table names.
-
-    Raises
-    ------
-    InputError
-        If a column or unit cannot be used, a cell is no number, or a quantity is missing.
-    """
+    """The table with the sensed quantities under their own names and, with units, in SI."""
     sensed = tuple(dimensions)
     named: dict[str, Floats] = {}
     used: dict[str, str] = {}

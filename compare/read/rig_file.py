@@ -22,18 +22,7 @@ class Column(Table):
     zero: float = 0.0
 
     def scale(self, name: str) -> float:
-        """What a cell's unit is in those of the readings.
-
-        Parameters
-        ----------
-        name : str
-            Of the sensed quantity.
-
-        Returns
-        -------
-        float
-            The gain, in SI if there is a unit.
-        """
+        """What a cell's unit is in those of the readings."""
         return self.gain * (unit_in_si(self.unit, DIMENSIONS[name]) if self.unit else 1.0)
 
 
@@ -47,40 +36,25 @@ class Columns(Table):
 
 
 class Passes(Table):
-    """How the rows of a file are passes of the foot, and where these are certainly free.
+    """How the rows of a file are passes of the foot, and where these are certainly free."""
 
-    Parameters
-    ----------
-    column : str, optional
-        A column whose value changes from pass to pass; without it the stage's turns divide them.
-    free_before, free_after : length
-        The first and the last stretch of a pass, in which the vibrissa touches nothing: what the
-        sensor reads there is its zero, taken off along a straight line from one to the other.
-    """
-
+    # A column whose value changes from pass to pass; without it the stage's turns divide them.
     column: str | None = None
+    # The first and the last stretch of a pass, in which the vibrissa touches nothing: what the
+    # sensor reads there is its zero, taken off along a straight line from one to the other.
     free_before: Length = 0.0
+    # The first and the last stretch of a pass, in which the vibrissa touches nothing: what the
+    # sensor reads there is its zero, taken off along a straight line from one to the other.
     free_after: Length = 0.0
 
 
 class Rig(Table):
-    """What a rig's description holds.
+    """What a rig's description holds."""
 
-    Parameters
-    ----------
-    beam : table
-        The vibrissa, in units if the columns are.
-    columns : table
-        By sensed quantity.
-    passes : table
-        How rows are passes.
-    missing : list of str
-        What the rig writes into a cell for which it has no number, as ``"OVL"``.
-    """
-
-    beam: BeamTable
-    columns: Columns
-    passes: Passes = Passes()
+    beam: BeamTable  # the vibrissa, in units if the columns are
+    columns: Columns  # by sensed quantity
+    passes: Passes = Passes()  # how rows are passes
+    # What the rig writes into a cell for which it has no number, as ``"OVL"``.
     missing: Annotated[list[str], Field(max_length=100, default_factory=list)]
 
     @property
@@ -90,24 +64,7 @@ class Rig(Table):
 
 
 def read_rig(path: Path) -> Rig:
-    """The description of a rig.
-
-    Parameters
-    ----------
-    path : Path
-        A TOML file with the tables of `Rig`.
-
-    Returns
-    -------
-    Rig
-        Checked; lengths in SI if there are units.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, a key is unknown or missing, a unit is of another dimension, or
-        some of the columns and the vibrissa have units and others have none.
-    """
+    """The description of a rig."""
     file = TomlFile.read(path, "description of the rig")
     try:
         rig = Rig.model_validate(file.tables)

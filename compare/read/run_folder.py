@@ -24,46 +24,17 @@ _REMEDY = "run it again, with --out DIR"
 
 @dataclass(frozen=True)
 class StoredRun:
-    """A run as its folder has it.
+    """A run as its folder has it."""
 
-    Attributes
-    ----------
-    reference, candidate : Readings
-        The closed form's sweep and MuJoCo's.
-    tolerances : Tolerances
-        Those that the run was judged by; the defaults if it was not.
-    budget : Budget or None
-        Of the same sweeps, if it was measured.
-    validation : Validation or None
-        Of the same sweeps, if uncertainties were stated.
-    """
-
-    reference: Readings
-    candidate: Readings
-    tolerances: Tolerances
-    budget: Budget | None
-    validation: Validation | None
+    reference: Readings  # the closed form's sweep and MuJoCo's
+    candidate: Readings  # the closed form's sweep and MuJoCo's
+    tolerances: Tolerances  # those that the run was judged by; the defaults if it was not
+    budget: Budget | None  # of the same sweeps, if it was measured
+    validation: Validation | None  # of the same sweeps, if uncertainties were stated
 
 
 def read_run(folder: Path) -> StoredRun:
-    """Read the folder of a run, or of an `analytic` and a `simulate` of one case.
-
-    Parameters
-    ----------
-    folder : Path
-        With ``analytic.parquet``, one ``mujoco-BEAM.parquet`` and, as far as there are,
-        ``comparison.json`` and ``budget.json``.
-
-    Returns
-    -------
-    StoredRun
-        All of it.
-
-    Raises
-    ------
-    InputError
-        If a sweep is missing, there are several of MuJoCo, or a file is damaged.
-    """
+    """Read the folder of a run, or of an `analytic` and a `simulate` of one case."""
     reference, candidate = sweep_files(folder)
     return StoredRun(
         Readings.read(reference),
@@ -75,25 +46,7 @@ def read_run(folder: Path) -> StoredRun:
 
 
 def read_limits(file: Path, kind: type[AnyTolerances]) -> AnyTolerances:
-    """The limits that a run was judged by.
-
-    Parameters
-    ----------
-    file : Path
-        Its ``comparison.json``.
-    kind : type
-        `Tolerances`, or `SpatialTolerances` of a run in space.
-
-    Returns
-    -------
-    Tolerances or SpatialTolerances
-        The defaults if there is no such file.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read.
-    """
+    """The limits that a run was judged by."""
     if not file.exists():
         return kind()
     found = read_json(file)
@@ -114,23 +67,7 @@ def read_limits(file: Path, kind: type[AnyTolerances]) -> AnyTolerances:
 
 
 def read_budget(file: Path) -> Budget:
-    """A budget, as `vibrissa run --budget` or `vibrissa budget` wrote it.
-
-    Parameters
-    ----------
-    file : Path
-        Its ``budget.json``.
-
-    Returns
-    -------
-    Budget
-        The same.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read.
-    """
+    """A budget, as `vibrissa run --budget` or `vibrissa budget` wrote it."""
     try:
         return TypeAdapter(Budget).validate_python(read_json(file))
     except ValueError as error:
@@ -154,23 +91,7 @@ def _validation(folder: Path) -> Validation | None:
 
 
 def read_json(file: Path) -> Any:  # noqa: ANN401  # whatever the file holds
-    """The content of a JSON file.
-
-    Parameters
-    ----------
-    file : Path
-        Of a run.
-
-    Returns
-    -------
-    object
-        Whatever it holds.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read.
-    """
+    """The content of a JSON file."""
     regular_file(file, "file", _LARGEST)
     try:
         return json.loads(file.read_text(encoding="utf-8"))
@@ -179,19 +100,6 @@ def read_json(file: Path) -> Any:  # noqa: ANN401  # whatever the file holds
 
 
 def damaged(file: Path, error: Exception) -> InputError:
-    """What to say of a file that cannot be read.
-
-    Parameters
-    ----------
-    file : Path
-        Of a run.
-    error : Exception
-        What was wrong with it.
-
-    Returns
-    -------
-    InputError
-        To be raised.
-    """
+    """What to say of a file that cannot be read."""
     reason = " ".join(f"{type(error).__name__}: {error}".split())[:160]
     return InputError(f"file {file}", f"damaged ({reason})", "as the run wrote it", _REMEDY)

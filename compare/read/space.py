@@ -42,18 +42,7 @@ class BodyTable(Table):
     factory: ClassVar[Callable[..., Body]]
 
     def build(self, folder: Path) -> Body:  # files are in it, if there are any
-        """The body.
-
-        Parameters
-        ----------
-        folder : Path
-            What the path of a mesh file is relative to.
-
-        Returns
-        -------
-        Body
-            In the units of the file, or SI.
-        """
+        """The body."""
         return type(self).factory(**self.model_dump(exclude={"kind"}))
 
 
@@ -127,13 +116,7 @@ class PathTable(Table):
     turn: float = Field(default=0.0, allow_inf_nan=False)
 
     def build(self) -> FootPath:
-        """The way, turned about y by so many degrees: 90 take x to -z.
-
-        Returns
-        -------
-        FootPath
-            In the units of the file, or SI.
-        """
+        """The way, turned about y by so many degrees: 90 take x to -z."""
         points = self.points
         if self.turn:
             cos, sin = np.cos(np.radians(self.turn)), np.sin(np.radians(self.turn))
@@ -142,53 +125,23 @@ class PathTable(Table):
 
 
 class SpaceFile(Table):
-    """What a case file of a sweep in space holds.
+    """What a case file of a sweep in space holds."""
 
-    Parameters
-    ----------
-    name : str, optional
-        What files and reports call the case.
-    beam, body, path : table
-        The physics.
-    profile : table, optional
-        The contour of a prism, as in the plane.
-    mujoco : table, optional
-        The numerics of MuJoCo's sweep.
-    tolerances : table, optional
-        Limits of agreement, each with its reason.
-    """
-
-    name: FileName | None = None
-    beam: BeamTable = BeamTable()
+    name: FileName | None = None  # what files and reports call the case
+    beam: BeamTable = BeamTable()  # the physics
     body: Annotated[
         SphereTable | EllipsoidTable | CylinderTable | HullTable | PrismTable | SolidTable,
         Field(discriminator="kind"),
-    ]
+    ]  # the physics
+    # The contour of a prism, as in the plane.
     profile: Annotated[Drawn, Field(discriminator="kind")] | None = None
-    path: PathTable
-    mujoco: SpatialSettings = SpatialSettings()
+    path: PathTable  # the physics
+    mujoco: SpatialSettings = SpatialSettings()  # the numerics of MuJoCo's sweep
+    # Limits of agreement, each with its reason.
     tolerances: Annotated[dict[str, Any], Field(default_factory=dict)]
 
     def case(self, folder: Path, name: str) -> SpatialCase:
-        """The whole problem.
-
-        Parameters
-        ----------
-        folder : Path
-            What the paths of files are relative to.
-        name : str
-            What the case is called if the file does not say.
-
-        Returns
-        -------
-        SpatialCase
-            The problem.
-
-        Raises
-        ------
-        InputError
-            If it is none that can be solved.
-        """
+        """The whole problem."""
         is_prism = isinstance(self.body, PrismTable)
         if is_prism != (self.profile is not None):
             raise InputError(
@@ -236,24 +189,7 @@ def load_space(path: str | Path) -> SpatialCase:
 
 
 def load_space_job(path: str | Path) -> SpaceJob:
-    """The case in space from a TOML file, MuJoCo's settings, and the limits of agreement.
-
-    Parameters
-    ----------
-    path : str or Path
-        Named ``*.toml``.
-
-    Returns
-    -------
-    SpaceJob
-        With defaults for what the file leaves out.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, has unknown keys, wrong types, unknown units, numbers with and without
-        units mixed, or states no solvable problem.
-    """
+    """The case in space from a TOML file, MuJoCo's settings, and the limits of agreement."""
     if not str(path).endswith(".toml"):
         raise InputError(
             "case",
@@ -277,26 +213,7 @@ def load_space_job(path: str | Path) -> SpaceJob:
 
 
 def validate_space(tables: Mapping[str, Any], place: Keyed) -> SpaceFile:
-    """What the tables of a case in space say.
-
-    Parameters
-    ----------
-    tables : mapping
-        As parsed.
-    place : callable
-        What an error calls a key.
-
-    Returns
-    -------
-    SpaceFile
-        The same, checked, in SI if there are units.
-
-    Raises
-    ------
-    InputError
-        If there are unknown keys, wrong types, unknown units, or numbers with and without units
-        mixed.
-    """
+    """What the tables of a case in space say."""
     try:
         found = SpaceFile.model_validate(tables)
     except ValidationError as error:

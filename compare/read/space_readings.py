@@ -22,18 +22,7 @@ _ALSO = (*CONTACT_POINT, "phase", "status")  # what a simulator may know beside 
 
 
 def is_spatial(path: Path) -> bool:
-    """Whether a file holds a sweep in space that this project wrote.
-
-    Parameters
-    ----------
-    path : Path
-        Any file.
-
-    Returns
-    -------
-    bool
-        False for all others, also those that cannot be read.
-    """
+    """Whether a file holds a sweep in space that this project wrote."""
     if path.suffix.lower() not in TABLES or not path.is_file():
         return False
     try:

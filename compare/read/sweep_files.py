@@ -6,23 +6,7 @@ from analytic.problem.errors import InputError
 
 
 def sweep_files(folder: Path) -> tuple[Path, Path]:
-    """The files of the two sweeps that a run has left.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the run.
-
-    Returns
-    -------
-    reference, candidate : Path
-        ``analytic.parquet`` and the one ``mujoco-BEAM.parquet``.
-
-    Raises
-    ------
-    InputError
-        If one is missing, or there are several of MuJoCo.
-    """
+    """The files of the two sweeps that a run has left."""
     found = [*folder.glob("mujoco-*.parquet")]
     sweeps = [path for path in found if not path.name.endswith(".partial.parquet")]
     if not (folder / "analytic.parquet").is_file() or len(sweeps) != 1:

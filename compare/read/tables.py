@@ -53,13 +53,7 @@ class BeamTable(Table):
         return table
 
     def build(self) -> Beam:
-        """The vibrissa; its radius is by default the same share of its length as in `Beam()`.
-
-        Returns
-        -------
-        Beam
-            In the units of the file, or SI.
-        """
+        """The vibrissa; its radius is by default the same share of its length as in `Beam()`."""
         radius = Beam().radius * self.length if self.radius is None else self.radius
         return Beam(
             self.length,
@@ -94,13 +88,7 @@ class SweepTable(Table):
     direction: Direction = Sweep().direction
 
     def build(self) -> Sweep:
-        """The sweep.
-
-        Returns
-        -------
-        Sweep
-            In the units of the file, or SI.
-        """
+        """The sweep."""
         return Sweep(self.stations, self.start, self.stop, self.direction)
 
 
@@ -126,18 +114,7 @@ class ModelTable(Table):
     contact: ContactKind = "own"
 
     def build(self, folder: Path) -> OwnModel:
-        """The model.
-
-        Parameters
-        ----------
-        folder : Path
-            What its path is relative to.
-
-        Returns
-        -------
-        OwnModel
-            Not yet looked at. Where there is no such file, a shipped model has that name.
-        """
+        """The model."""
         names = self.model_dump(exclude={"file"})
         path = folder / self.file
         return OwnModel(path if path.exists() else shipped_models().get(self.file, path), **names)
@@ -151,59 +128,28 @@ class EngineTable(Table):
 
 
 class CaseFile(Table):
-    """What a case file holds; dimensions in one system of units, SI if units are given.
+    """What a case file holds; dimensions in one system of units, SI if units are given."""
 
-    Parameters
-    ----------
-    name : str, optional
-        What files and reports call the case.
-    beam, support, contact, profile, sweep : table
-        The physics.
-    mujoco : Settings
-        The numerics of the simulation.
-    model : table, optional
-        A model of the user's own, if it is to be swept instead of ours.
-    motion : table, optional
-        How the foot moves, if it is not at rest at every station (`compare.read.motion`).
-    engine : table
-        Which engines sweep it at rest: names between commas, of `engines.list_engines`.
-    tolerances : table
-        How far two sweeps of the case may disagree (`compare.read.limits`).
-    uncertainty : table
-        How well the inputs are known (`compare.read.uncertainty`).
-    """
-
-    name: FileName | None = None
-    beam: BeamTable = BeamTable()
-    support: SupportTable = SupportTable()
-    contact: ContactTable = ContactTable()
-    profile: Annotated[Drawn | MeshTable, Field(discriminator="kind")]
-    sweep: SweepTable = SweepTable()
-    mujoco: Annotated[Settings, Field(default_factory=Settings)]
+    name: FileName | None = None  # what files and reports call the case
+    beam: BeamTable = BeamTable()  # the physics
+    support: SupportTable = SupportTable()  # the physics
+    contact: ContactTable = ContactTable()  # the physics
+    profile: Annotated[Drawn | MeshTable, Field(discriminator="kind")]  # the physics
+    sweep: SweepTable = SweepTable()  # the physics
+    mujoco: Annotated[Settings, Field(default_factory=Settings)]  # the numerics of the simulation
+    # A model of the user's own, if it is to be swept instead of ours.
     model: ModelTable | None = None
+    # How the foot moves, if it is not at rest at every station (`compare.read.motion`).
     motion: MotionTable | None = None
+    # Which engines sweep it at rest: names between commas, of `engines.list_engines`.
     engine: EngineTable = EngineTable()
+    # How far two sweeps of the case may disagree (`compare.read.limits`).
     tolerances: Annotated[dict[str, Any], Field(default_factory=dict)]
+    # How well the inputs are known (`compare.read.uncertainty`).
     uncertainty: Annotated[dict[str, Any], Field(default_factory=dict)]
 
     def physics(self, folder: Path) -> Physics:
-        """The vibrissa, how it is held and rubs, and the object, without a sweep.
-
-        Parameters
-        ----------
-        folder : Path
-            What the paths of files are relative to.
-
-        Returns
-        -------
-        Physics
-            In the units of the file, or SI.
-
-        Raises
-        ------
-        InputError
-            If a number is out of range.
-        """
+        """The vibrissa, how it is held and rubs, and the object, without a sweep."""
         stiffness = self.support.rotational_stiffness
         found = Physics(
             self.beam.build(),
@@ -215,25 +161,7 @@ class CaseFile(Table):
         return found
 
     def case(self, folder: Path, name: str) -> Case:
-        """The whole problem.
-
-        Parameters
-        ----------
-        folder : Path
-            What the paths of files are relative to.
-        name : str
-            What the case is called if the file does not say.
-
-        Returns
-        -------
-        Case
-            The problem.
-
-        Raises
-        ------
-        InputError
-            If it is none that can be solved.
-        """
+        """The whole problem."""
         beam, contour, clamp_stiffness, friction = self.physics(folder)
         try:
             return Case(
@@ -264,18 +192,7 @@ class BeamFile(Table):
     contact: ContactTable | None = None
 
     def provenance(self) -> dict[str, Any]:
-        """What the provenance of measured readings says of clamp and contact.
-
-        Returns
-        -------
-        dict
-            ``support``; empty if the file says nothing of either.
-
-        Raises
-        ------
-        InputError
-            If a number is out of range.
-        """
+        """What the provenance of measured readings says of clamp and contact."""
         if self.support is None and self.contact is None:
             return {}
         stiffness = None if self.support is None else self.support.rotational_stiffness

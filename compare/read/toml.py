@@ -38,44 +38,15 @@ _TOKEN = re.compile(
 
 @dataclass(frozen=True)
 class TomlFile:
-    """A TOML file, read and parsed.
+    """A TOML file, read and parsed."""
 
-    Parameters
-    ----------
-    path : Path
-        Where it is.
-    text : str
-        What is in it.
-    tables : dict
-        The same, parsed.
-    """
-
-    path: Path
-    text: str
-    tables: dict[str, Any]
+    path: Path  # where it is
+    text: str  # what is in it
+    tables: dict[str, Any]  # the same, parsed
 
     @classmethod
     def read(cls, path: Path, what: str) -> "TomlFile":
-        """Read a file.
-
-        Parameters
-        ----------
-        path : Path
-            The file.
-        what : str
-            What errors call it, as ``"case file"``.
-
-        Returns
-        -------
-        TomlFile
-            With all its tables.
-
-        Raises
-        ------
-        InputError
-            If it cannot be read, is not TOML (the parser's words name line and column), or is
-            larger or deeper than anything that describes a case.
-        """
+        """Read a file."""
         regular_file(path, what, _LARGEST)
         try:
             text = path.read_bytes().decode("utf-8")
@@ -104,18 +75,7 @@ class TomlFile:
         return file
 
     def place(self, keys: Sequence[str]) -> str:
-        """Where a key is, as ``"grid.toml, line 7: axes.mujoco.segments"``.
-
-        Parameters
-        ----------
-        keys : sequence of str
-            The key, and before it the tables that it is in.
-
-        Returns
-        -------
-        str
-            With the line of the key itself, or of the innermost table around it that there is.
-        """
+        """Where a key is, as ``"grid.toml, line 7: axes.mujoco.segments"``."""
         line = next(
             (
                 line

@@ -24,30 +24,7 @@ _EXAMPLES = {
 
 
 def uncertainties_of(table: Mapping[str, Any], case: Case, place: Place) -> Uncertainties | None:
-    """What an ``[uncertainty]`` table says.
-
-    Parameters
-    ----------
-    table : mapping
-        ``NAME = { standard = "0.1 mm" }`` for a standard uncertainty, ``{ within = "0.1 mm" }`` for
-        half the width of an interval, in the case's unit or in per cent of the input's value; in a
-        table ``noise`` the standard deviations of the readings; in ``correlations`` lists of two
-        names and a coefficient.
-    case : Case
-        With the inputs' values.
-    place : callable
-        What an error calls a key.
-
-    Returns
-    -------
-    Uncertainties or None
-        In the unit of the case; None if there is no such table.
-
-    Raises
-    ------
-    InputError
-        If a name is unknown, or a number or its unit cannot be.
-    """
+    """What an ``[uncertainty]`` table says."""
     if not table:
         return None
     inputs, noise = {}, {}

@@ -36,25 +36,7 @@ def _registry() -> "pint.UnitRegistry[float]":
 
 
 def in_si(text: str, dimension: str) -> float:
-    """The number of SI units in a quantity, as ``in_si("50 mm", "m")``.
-
-    Parameters
-    ----------
-    text : str
-        A number and a unit.
-    dimension : str
-        An SI unit of the dimension that it must have.
-
-    Returns
-    -------
-    float
-        Finite.
-
-    Raises
-    ------
-    InputError
-        If it is anything else, or the unit is unknown or of another dimension.
-    """
+    """The number of SI units in a quantity, as ``in_si("50 mm", "m")``."""
     parts = _NUMBER.fullmatch(text[:200])
     number = float(parts[1]) * unit_in_si(parts[2], dimension) if parts else math.nan
     if not math.isfinite(number):
@@ -63,25 +45,7 @@ def in_si(text: str, dimension: str) -> float:
 
 
 def unit_in_si(unit: str, dimension: str) -> float:
-    """How many SI units a unit is, as ``unit_in_si("mN mm", "N m")``.
-
-    Parameters
-    ----------
-    unit : str
-        Names with products, quotients, parentheses and powers.
-    dimension : str
-        An SI unit of the dimension that it must have.
-
-    Returns
-    -------
-    float
-        Positive.
-
-    Raises
-    ------
-    InputError
-        If it is unknown or of another dimension.
-    """
+    """How many SI units a unit is, as ``unit_in_si("mN mm", "N m")``."""
     found = _parsed(unit)
     if found is None or not found.is_compatible_with(dimension):
         raise _refused(unit.strip(), f"a unit of {dimension}")
@@ -89,18 +53,7 @@ def unit_in_si(unit: str, dimension: str) -> float:
 
 
 def is_unit(text: str) -> bool:
-    """Whether a text is a unit, of any dimension.
-
-    Parameters
-    ----------
-    text : str
-        As ``"mm"`` or ``"counts"``.
-
-    Returns
-    -------
-    bool
-        True if it is a known one.
-    """
+    """Whether a text is a unit, of any dimension."""
     return _parsed(text) is not None
 
 

@@ -20,25 +20,7 @@ def phase_table(
     levels: Sequence[float] = LEVELS,
     seeds: Sequence[int] = range(10),
 ) -> pd.DataFrame:
-    """Judged phases against the contact truth, summed over the seeds of the noise.
-
-    Parameters
-    ----------
-    sweeps : mapping
-        By case, sweeps that know their contact.
-    levels : sequence of float
-        Noise; without noise one seed is enough, and taken.
-    seeds : sequence of int
-        Of the noise.
-
-    Returns
-    -------
-    pandas.DataFrame
-        A row a case, source and level: ``case``, ``source``, ``noise``; ``right``, the share of
-        stations judged rightly; counts ``TRUTH_as_JUDGED``; ``first_contact``, ``phase_b_start``,
-        ``phase_b_end``: how far from the truth the transition is located at worst [stations], NaN
-        where there is none; ``missed``, how often a true transition was not found.
-    """
+    """Judged phases against the contact truth, summed over the seeds of the noise."""
     return pd.DataFrame(
         [
             _row(case, sweep, level, seeds if level else seeds[:1])
@@ -80,19 +62,7 @@ def _row(case: str, sweep: Readings, level: float, seeds: Sequence[int]) -> dict
 
 
 def true_transitions(sweep: Readings) -> dict[str, float | None]:
-    """Where the phases that the source recorded change.
-
-    Parameters
-    ----------
-    sweep : Readings
-        With its ``phase``.
-
-    Returns
-    -------
-    dict
-        By the names in `TRANSITIONS`, half-way between two stations [length]; None where there is
-        no such change.
-    """
+    """Where the phases that the source recorded change."""
     phase, foot_x = sweep.table["phase"].to_numpy(), sweep.values("foot_x")
     touching = np.flatnonzero(phase != "free")
     tangent = np.flatnonzero(phase == "tangent")

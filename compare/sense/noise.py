@@ -10,24 +10,7 @@ from analytic.from_clamp.noise import largest, reading_noise
 
 
 def scales(reference: Readings) -> dict[str, float]:
-    """Largest magnitude of each clamp reading, which all disagreements are relative to.
-
-    Parameters
-    ----------
-    reference : Readings
-        Only its trusted stations count.
-
-    Returns
-    -------
-    dict
-        ``force_x``, ``force_y`` [force], ``moment_z`` [force length]. For a reading that is zero
-        throughout it is what the largest force makes of it, at the length as lever.
-
-    Raises
-    ------
-    InputError
-        If no reading differs from zero.
-    """
+    """Largest magnitude of each clamp reading, which all disagreements are relative to."""
     trusted = reference.trusted
     largest = {
         name: float(np.abs(reference.values(name)[trusted]).max(initial=0.0))
@@ -51,41 +34,13 @@ def noise_level(reference: Readings, candidate: Readings) -> dict[str, float]:
     """Noise of the two sweeps together, estimated.
 
     Anything that jumps from station to station counts, as the facets of a coarse mesh do.
-
-    Parameters
-    ----------
-    reference, candidate : Readings
-        The sweeps.
-
-    Returns
-    -------
-    dict
-        By clamp reading, relative to its largest magnitude in the reference.
     """
     one, other, scale = reading_noise(reference), reading_noise(candidate), scales(reference)
     return {name: float(np.hypot(one[name], other[name])) / scale[name] for name in CLAMP_READINGS}
 
 
 def checked_level(level: float, names: Sequence[str] = CLAMP_READINGS) -> dict[str, float]:
-    """The same relative noise for all readings.
-
-    Parameters
-    ----------
-    level : float
-        Standard deviation over each reading's largest magnitude.
-    names : sequence of str
-        The readings.
-
-    Returns
-    -------
-    dict
-        By reading.
-
-    Raises
-    ------
-    InputError
-        If it is no share of the largest magnitude.
-    """
+    """The same relative noise for all readings."""
     if isinstance(level, bool | str) or not 0 <= level < 1:
         raise InputError(
             "noise",
@@ -97,22 +52,7 @@ def checked_level(level: float, names: Sequence[str] = CLAMP_READINGS) -> dict[s
 
 
 def with_noise(readings: Readings, level: Mapping[str, float], seed: int) -> Readings:
-    """The readings with white noise added.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep.
-    level : mapping
-        Standard deviation by clamp reading, relative to its largest magnitude.
-    seed : int
-        Of the noise.
-
-    Returns
-    -------
-    Readings
-        The same but for the noise.
-    """
+    """The readings with white noise added."""
     rng = np.random.default_rng(seed)
     noisy = {
         name: readings.values(name)

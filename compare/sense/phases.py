@@ -82,21 +82,7 @@ def classify(readings: Readings) -> Classification:
 
 
 def confusion(judged: Classification, truth: Readings) -> pd.DataFrame:
-    """Stations counted by judged phase and by true phase.
-
-    Parameters
-    ----------
-    judged : Classification
-        As the clamp readings show it.
-    truth : Readings
-        The same sweep, whose source recorded the ``phase``.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Shape (3, 3), rows the truth and columns what was judged, both ``free``, ``tip``,
-        ``tangent``.
-    """
+    """Stations counted by judged phase and by true phase."""
     known = (judged.phase != "") & truth.trusted
     true = np.array([says(truth.table["phase"], phase) for phase in PHASES])
     seen = np.array([judged.phase == phase for phase in PHASES])

@@ -20,36 +20,21 @@ _BACK = (0.01, 0.1)  # ... and at least and at most this share of its travel
 
 @dataclass(frozen=True, repr=False)
 class Record:
-    """Defects of one sweep's record, by station.
+    """Defects of one sweep's record, by station."""
 
-    Attributes
-    ----------
-    missing : array of bool, shape (stations,)
-        A sensed value is no finite number, and no status explains why.
-    repeated : array of bool, shape (stations,)
-        All four sensed values are those of the station before.
-    dropped : array of bool, shape (stations,)
-        A clamp reading is exactly zero, though it is not on either side.
-    clipped : array of bool, shape (stations,)
-        A clamp reading is at its extreme, as many others are: it was cut off there.
-    where_clipped : tuple of str
-        The readings that are cut off.
-    gaps : int
-        Steps of the foot that are more than five times as long as the median one.
-    widest : float
-        The longest step [length].
-    retreats : int
-        Steps of the foot against its direction of travel, if they lead so far back that the rows
-        are not in the order of the motion; else 0.
-    """
-
+    # Shape (stations,); A sensed value is no finite number, and no status explains why.
     missing: Booleans
-    repeated: Booleans
+    repeated: Booleans  # shape (stations,); All four sensed values are those of the station before
+    # Shape (stations,); A clamp reading is exactly zero, though it is not on either side.
     dropped: Booleans
+    # Shape (stations,); A clamp reading is at its extreme, as many others are: it was cut off
+    # there.
     clipped: Booleans
-    where_clipped: tuple[str, ...]
-    gaps: int
-    widest: float
+    where_clipped: tuple[str, ...]  # the readings that are cut off
+    gaps: int  # steps of the foot that are more than five times as long as the median one
+    widest: float  # the longest step [length]
+    # Steps of the foot against its direction of travel, if they lead so far back that the rows are
+    # not in the order of the motion; else 0.
     retreats: int
 
     @property
@@ -58,13 +43,7 @@ class Record:
         return ~(self.missing | self.repeated | self.dropped | self.clipped)
 
     def defects(self) -> Iterator[str]:
-        """What is wrong, most serious first.
-
-        Yields
-        ------
-        str
-            A few words each, with how many rows.
-        """
+        """What is wrong, most serious first."""
         rows = len(self.missing)
         if self.retreats:
             yield f"rows out of order: {self.retreats} of {rows - 1} steps of foot_x lead back"
@@ -79,13 +58,7 @@ class Record:
                 yield f"{count} of {rows} rows {what}"
 
     def to_dict(self) -> dict[str, int | float]:
-        """What ``comparison.json`` holds.
-
-        Returns
-        -------
-        dict
-            Counts of stations, and the widest step [length].
-        """
+        """What ``comparison.json`` holds."""
         return {
             **{
                 name: int(getattr(self, name).sum())
@@ -102,18 +75,7 @@ class Record:
 
 
 def inspect_record(readings: Readings) -> Record:
-    """Look for defects that no contact can cause.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep.
-
-    Returns
-    -------
-    Record
-        The defects.
-    """
+    """Look for defects that no contact can cause."""
     values = np.stack([readings.values(name) for name in SENSED], axis=1)
     finite = np.isfinite(values).all(axis=1)
     failed = np.zeros(len(values), dtype=bool)
@@ -150,18 +112,7 @@ def inspect_record(readings: Readings) -> Record:
 
 
 def without_dropouts(readings: Readings) -> Readings:
-    """A sweep without the readings of rows that are filled with zeros amid contact.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep.
-
-    Returns
-    -------
-    Readings
-        With gaps at these rows, and how many they are in ``provenance["rows"]["dropped"]``.
-    """
+    """A sweep without the readings of rows that are filled with zeros amid contact."""
     dropped = inspect_record(readings).dropped
     if not dropped.any():
         return readings
@@ -175,18 +126,7 @@ def without_dropouts(readings: Readings) -> Readings:
 
 
 def direction(readings: Readings) -> float:
-    """Sign of the foot's motion along x, from the order of the rows.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep.
-
-    Returns
-    -------
-    float
-        1 to the right, -1 to the left.
-    """
+    """Sign of the foot's motion along x, from the order of the rows."""
     foot_x = readings.values("foot_x")
     rows = np.arange(len(foot_x)) - (len(foot_x) - 1) / 2
     return 1.0 if rows @ (foot_x - foot_x.mean()) > 0 else -1.0

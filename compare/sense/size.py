@@ -8,20 +8,7 @@ _LARGEST = 1e40  # of the beam's units; a sixth power still is a number
 
 
 def check_size(which: str, sweep: Readings) -> None:
-    """Refuse numbers whose powers would overflow.
-
-    Parameters
-    ----------
-    which : str
-        What an error calls the sweep.
-    sweep : Readings
-        In any order.
-
-    Raises
-    ------
-    InputError
-        If one is 1e40 of the beam's units or more.
-    """
+    """Refuse numbers whose powers would overflow."""
     beam, trusted = sweep.beam, sweep.trusted
     units = (beam.length, beam.force_unit, beam.force_unit, beam.moment_unit)
     for name, unit in zip(SENSED, units, strict=True):

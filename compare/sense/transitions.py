@@ -24,22 +24,6 @@ def locate_transitions(readings: Readings, judged: Classification) -> Mapping[st
     moment, extrapolated from the first loaded stations, vanishes. In motion, where the vibrissa's
     mass loads the clamp without contact, it is where the source recorded it, and stations before it
     and behind the snap-off show no phase.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep.
-    judged : Classification
-        Its phases.
-
-    Returns
-    -------
-    mapping
-        By the names in `TRANSITIONS`.
-
-    See Also
-    --------
-    snap_off : the end of the last contact.
     """
     foot_x = readings.values("foot_x")
     moving = "motion" in readings.provenance
@@ -68,20 +52,6 @@ def snap_off(readings: Readings, judged: Classification) -> tuple[float | None, 
 
     The source's own value where it located one; else half-way between the last station in contact
     and the free one after it, give or take half a step. None if the sweep ends in contact.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep.
-    judged : Classification
-        Its phases.
-
-    Returns
-    -------
-    foot_x : float or None
-        [length]
-    uncertainty : float
-        [length]
     """
     if readings.snap_off is not None:
         return readings.snap_off, 0.0

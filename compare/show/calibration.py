@@ -15,18 +15,7 @@ _UNITS = {
 
 
 def calibration_lines(calibration: Calibration) -> list[str]:
-    """What a terminal shows.
-
-    Parameters
-    ----------
-    calibration : Calibration
-        What was found.
-
-    Returns
-    -------
-    list of str
-        A line for each unknown, one for which trade off most, and one for what the fit leaves.
-    """
+    """What a terminal shows."""
     names = list(calibration.found)
     lines = []
     for name, found in calibration.found.items():
@@ -51,18 +40,7 @@ def calibration_lines(calibration: Calibration) -> list[str]:
 
 
 def calibration_document(calibration: Calibration) -> dict[str, Any]:
-    """What ``calibration.json`` holds.
-
-    Parameters
-    ----------
-    calibration : Calibration
-        What was found.
-
-    Returns
-    -------
-    dict
-        In the units of the case; None for what is infinite.
-    """
+    """What ``calibration.json`` holds."""
     found = {
         name: {
             "value": _finite(one.value),

@@ -13,14 +13,7 @@ _PATIENCE = 5  # s; a repository on a slow disk is no reason to wait
 
 
 def colophon() -> dict[str, str]:
-    """What is known of the process that makes a page.
-
-    Returns
-    -------
-    dict
-        ``command`` (unless Python is used interactively), ``date``, ``versions``, and ``commit``
-        if this package is worked on in a repository of its own.
-    """
+    """What is known of the process that makes a page."""
     found = {
         "command": _command(),
         "date": datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z"),

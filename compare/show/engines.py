@@ -31,52 +31,26 @@ _DECADE = 10.0  # of time, drawn at least
 
 @dataclass(frozen=True)
 class EngineRow:
-    """What is known of one engine, whether or not it gave readings.
+    """What is known of one engine, whether or not it gave readings."""
 
-    Attributes
-    ----------
-    name, role, version, tuned : str
-        As the engine says itself.
-    trouble : str or None
-        Why there are no readings.
-    """
-
-    name: str
-    role: str
-    version: str
-    tuned: str
-    trouble: str | None
+    name: str  # as the engine says itself
+    role: str  # as the engine says itself
+    version: str  # as the engine says itself
+    tuned: str  # as the engine says itself
+    trouble: str | None  # why there are no readings
 
 
 @dataclass(frozen=True)
 class ManyEngines:
-    """The sweeps of one case in several engines.
+    """The sweeps of one case in several engines."""
 
-    Attributes
-    ----------
-    case : Case
-        The problem.
-    exact : Readings
-        The closed form.
-    rows : sequence of EngineRow
-        In the order in which they were asked for.
-    sweeps : mapping of Readings
-        Of those that gave any, by engine.
-    found : SideBySide
-        Each against the closed form, and against each other.
-    split : Split or None
-        Implementation and model, if MuJoCo and a twin of it are there.
-    budget : Budget or None
-        What MuJoCo's disagreement is made of, if it was measured.
-    """
-
-    case: Case
-    exact: Readings
-    rows: Sequence[EngineRow]
-    sweeps: Mapping[str, Readings]
-    found: SideBySide
-    split: Split | None
-    budget: Budget | None
+    case: Case  # the problem
+    exact: Readings  # the closed form
+    rows: Sequence[EngineRow]  # in the order in which they were asked for
+    sweeps: Mapping[str, Readings]  # of those that gave any, by engine
+    found: SideBySide  # each against the closed form, and against each other
+    split: Split | None  # implementation and model, if MuJoCo and a twin of it are there
+    budget: Budget | None  # what MuJoCo's disagreement is made of, if it was measured
 
     @classmethod
     def of(
@@ -87,30 +61,7 @@ class ManyEngines:
         sweeps: Mapping[str, Readings],
         budget: Budget | None = None,
     ) -> "ManyEngines":
-        """Compare them.
-
-        Parameters
-        ----------
-        case : Case
-            The problem.
-        exact : Readings
-            The closed form.
-        rows : sequence of EngineRow
-            All engines.
-        sweeps : mapping of Readings
-            By engine; at least one.
-        budget : Budget, optional
-            Of MuJoCo's sweep.
-
-        Returns
-        -------
-        ManyEngines
-
-        Raises
-        ------
-        InputError
-            If sweeps have no common stretch.
-        """
+        """Compare them."""
         roles = {row.name: row.role for row in rows}
         found = side_by_side(exact, dict(sweeps))
         return cls(case, exact, rows, sweeps, found, split(exact, sweeps, roles), budget)
@@ -122,13 +73,7 @@ class ManyEngines:
         return complete and all(one.agrees for one in self.found.against.values())
 
     def parts(self) -> dict[str, dict[str, float]]:
-        """What the disagreement is split into: by the twin, by other models, by the budget.
-
-        Returns
-        -------
-        dict
-            Relative rms by part and reading; without a twin or a budget, as many as there are.
-        """
+        """What the disagreement is split into: by the twin, by other models, by the budget."""
         parts: dict[str, dict[str, float]] = {}
         if self.split is not None:
             subject, twin = self.split.subject, self.split.twin
@@ -146,13 +91,7 @@ class ManyEngines:
         return parts
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``engines.json`` holds.
-
-        Returns
-        -------
-        dict
-            JSON can hold it.
-        """
+        """What ``engines.json`` holds."""
         return {
             "case": self.case.name,
             "engines": [
@@ -171,18 +110,7 @@ class ManyEngines:
         }
 
     def rms(self, name: str) -> dict[str, float] | None:
-        """Of an engine's readings from the closed form's.
-
-        Parameters
-        ----------
-        name : str
-            Of the engine.
-
-        Returns
-        -------
-        dict or None
-            Relative, by reading; None without readings.
-        """
+        """Of an engine's readings from the closed form's."""
         if name not in self.sweeps:
             return None
         found = self.found.against[name].disagreement
@@ -196,37 +124,13 @@ class ManyEngines:
         return None if apart is None else apart / self.exact.beam.length
 
     def seconds(self, name: str) -> float | None:
-        """Processor time a station.
-
-        Parameters
-        ----------
-        name : str
-            Of the engine.
-
-        Returns
-        -------
-        float or None
-            None if it is not known [s].
-        """
+        """Processor time a station."""
         seconds = seconds_per_station(self.sweeps[name]) if name in self.sweeps else np.nan
         return None if np.isnan(seconds) else float(seconds)
 
 
 def write_engines(many: ManyEngines, folder: Path) -> list[Path]:
-    """Write the page, its numbers, and the picture of error against time.
-
-    Parameters
-    ----------
-    many : ManyEngines
-        All of it.
-    folder : Path
-        Where to.
-
-    Returns
-    -------
-    list of Path
-        ``engines.html``, ``engines.json``, ``engines.png``.
-    """
+    """Write the page, its numbers, and the picture of error against time."""
     content = many.to_dict()
     timed = error_against_time(many)
     page = render(
@@ -249,18 +153,7 @@ def write_engines(many: ManyEngines, folder: Path) -> list[Path]:
 
 
 def error_against_time(many: ManyEngines) -> Figure:
-    """Draw the rms of each reading against the time a station, for all engines.
-
-    Parameters
-    ----------
-    many : ManyEngines
-        What is drawn; an engine that gave no time or no readings is left out.
-
-    Returns
-    -------
-    Figure
-        Both axes logarithmic.
-    """
+    """Draw the rms of each reading against the time a station, for all engines."""
     figure = Figure(figsize=(7, 4.4), layout="constrained")
     ax = figure.subplots()
     ax.set_xscale("log")

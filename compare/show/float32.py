@@ -10,20 +10,7 @@ _WORTH = 0.5  # stations; as many are expected to be lost where a loss is predic
 
 
 def sentence(found: pd.DataFrame, version: str) -> str:
-    """From which contact stiffness on contacts are lost, predicted and found.
-
-    Parameters
-    ----------
-    found : pandas.DataFrame
-        As `engines.warp.gate.by_stiffness` returns it.
-    version : str
-        Of MuJoCo Warp.
-
-    Returns
-    -------
-    str
-        Plain text.
-    """
+    """From which contact stiffness on contacts are lost, predicted and found."""
     lost, expected = found["lost"] > 0, found["predicted_lost"] >= _WORTH
     return (
         f"MuJoCo Warp {version} {_from(found, lost, 'loses contacts', 'loses no contact')}; from "
@@ -39,20 +26,7 @@ def _from(found: pd.DataFrame, where: pd.Series, some: str, none: str) -> str:
 
 
 def picture(found: pd.DataFrame, name: str) -> Figure:
-    """Draw losses, errors of force and imbalance over the contact stiffness.
-
-    Parameters
-    ----------
-    found : pandas.DataFrame
-        As `engines.warp.gate.by_stiffness` returns it.
-    name : str
-        Of the case.
-
-    Returns
-    -------
-    Figure
-        Four panels: predictions as lines, what was found as marks.
-    """
+    """Draw losses, errors of force and imbalance over the contact stiffness."""
     figure = Figure(figsize=(9.0, 6.4), layout="constrained")
     figure.suptitle(f"{label(name)}: MuJoCo's states at rest in single precision", fontsize=LARGE)
     (depths, lost), (force, balance) = figure.subplots(2, 2, sharex=True)

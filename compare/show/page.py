@@ -38,90 +38,31 @@ _MARKDOWN = re.compile(r"[\\`*~$\[\]]|#(?!\d+;)|(?<!\w)_|_(?!\w)")
 
 
 def short(x: float | None) -> str:
-    """Two digits and a power of ten.
-
-    Parameters
-    ----------
-    x : float or None
-        A number.
-
-    Returns
-    -------
-    str
-        As ``1.2e-3``; ``none`` for what does not exist.
-    """
+    """Two digits and a power of ten."""
     if x is None or x != x:
         return "none"
     return f"{x:.1e}".replace("e-0", "e-").replace("e+0", "e+") if x else "0"
 
 
 def place(x: float | None) -> str:
-    """A position, to what a picture could show.
-
-    Parameters
-    ----------
-    x : float or None
-        A position.
-
-    Returns
-    -------
-    str
-        Of five digits; ``none`` for what does not exist.
-    """
+    """A position, to what a picture could show."""
     return "none" if x is None or x != x else f"{x:.5g}"
 
 
 def words(name: str) -> str:
-    """An identifier as words.
-
-    Parameters
-    ----------
-    name : str
-        As ``phase_b_start``.
-
-    Returns
-    -------
-    str
-        As ``Phase B start``.
-    """
+    """An identifier as words."""
     return name.replace("_", " ").replace("phase b", "Phase B")
 
 
 def markdown(text: object) -> str:
-    """Text without what Markdown or HTML would make of it.
-
-    Parameters
-    ----------
-    text : object
-        Any text. An underscore within a word is no mark.
-
-    Returns
-    -------
-    str
-        On one line, escaped.
-    """
+    """Text without what Markdown or HTML would make of it."""
     line = " ".join(str(text).split())
     line = re.sub(r"[&<>|]", lambda mark: f"&#{ord(mark[0])};", line)
     return _MARKDOWN.sub(r"\\\g<0>", line)
 
 
 def render(package: str, template: str, **values: Any) -> str:  # noqa: ANN401
-    """Fill in a template.
-
-    Parameters
-    ----------
-    package : str
-        Where its folder ``templates`` is; it may include the templates of ``compare.show``.
-    template : str
-        Its name. All values are escaped, in ``*.md.j2`` for Markdown and else for HTML.
-    **values
-        What the template speaks of.
-
-    Returns
-    -------
-    str
-        The page.
-    """
+    """Fill in a template."""
     environment = _environment(package, template.endswith(".md.j2"))
     return environment.get_template(template).render(**values)
 
@@ -143,22 +84,7 @@ def _environment(package: str, is_markdown: bool) -> "Environment":
 
 
 def inline_svg(figure: Figure, name: str, description: str) -> Markup:
-    """A figure as an ``<svg>`` element, in the page's own colours, light or dark.
-
-    Parameters
-    ----------
-    figure : Figure
-        Drawn with the colours of `compare.show.style`; others stay as they are.
-    name : str
-        Distinguishes it, and all identifiers in it, from the page's other figures.
-    description : str
-        What it shows, for those who cannot see it.
-
-    Returns
-    -------
-    Markup
-        The element.
-    """
+    """A figure as an ``<svg>`` element, in the page's own colours, light or dark."""
     with rc_context({"svg.hashsalt": name}):
         unnamed = dict.fromkeys(("Date", "Creator", "Format", "Type"))
         text = _drawn(figure, "svg", transparent=True, dpi=_IMAGE_DPI, metadata=unnamed).decode()
@@ -171,71 +97,23 @@ def inline_svg(figure: Figure, name: str, description: str) -> Markup:
 
 
 def png(figure: Figure, dots_per_inch: int = 150) -> bytes:
-    """A figure as the contents of a PNG file.
-
-    Parameters
-    ----------
-    figure : Figure
-        What is drawn.
-    dots_per_inch : int
-        Resolution.
-
-    Returns
-    -------
-    bytes
-        The file.
-    """
+    """A figure as the contents of a PNG file."""
     return _drawn(figure, "png", dpi=dots_per_inch, pil_kwargs={"compress_level": PNG_LEVEL})
 
 
 def save_figure(figure: Figure, path: Path) -> Path:
-    """Write a PNG, whole or not at all.
-
-    Parameters
-    ----------
-    figure : Figure
-        What is drawn.
-    path : Path
-        The file.
-
-    Returns
-    -------
-    Path
-        `path`.
-    """
+    """Write a PNG, whole or not at all."""
     return write_whole(path, png(figure))
 
 
 def embedded(file: Path) -> str:
-    """A picture file as an address that holds all of it.
-
-    Parameters
-    ----------
-    file : Path
-        A GIF or PNG.
-
-    Returns
-    -------
-    str
-        ``data:image/...``.
-    """
+    """A picture file as an address that holds all of it."""
     content = base64.b64encode(file.read_bytes()).decode()
     return f"data:image/{file.suffix.removeprefix('.')};base64,{content}"
 
 
 def document(content: Mapping[str, Any]) -> str:
-    """What a JSON file of results holds, as text.
-
-    Parameters
-    ----------
-    content : mapping
-        Of plain values.
-
-    Returns
-    -------
-    str
-        JSON.
-    """
+    """What a JSON file of results holds, as text."""
     return json.dumps(content, indent=2)
 
 

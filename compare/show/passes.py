@@ -12,20 +12,7 @@ from compare.read.passes import Pass
 def passes_document(
     passes: Sequence[Pass], repeats: Mapping[tuple[str, str], Repeat]
 ) -> dict[str, Any]:
-    """What ``passes.json`` holds.
-
-    Parameters
-    ----------
-    passes : sequence of Pass
-        All of them.
-    repeats : mapping of Repeat
-        By the names of the two passes.
-
-    Returns
-    -------
-    dict
-        JSON can hold it; None stands for what is not known.
-    """
+    """What ``passes.json`` holds."""
     return {
         "passes": [
             {

@@ -12,22 +12,7 @@ _SMALLEST = 0.1  # that is written without a smaller unit
 
 
 def quantity(value: float, kind: Kind, beam: Beam) -> str:
-    """A number of a sweep as reports write it.
-
-    Parameters
-    ----------
-    value : float
-        In the unit of the readings.
-    kind : {"length", "force", "moment"}
-        What it is.
-    beam : Beam
-        The vibrissa, which knows whether that unit is SI.
-
-    Returns
-    -------
-    str
-        As ``"50 mm"``, or ``"0.05"`` where the unit is not known.
-    """
+    """A number of a sweep as reports write it."""
     if not beam.si:
         return f"{value:.4g}"
     sizes = [(prefix, size) for prefix, size in _PREFIXES.items() if abs(value) >= _SMALLEST * size]

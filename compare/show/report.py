@@ -56,18 +56,7 @@ class Film:
 
     @classmethod
     def of(cls, folder: Path) -> "Film | None":
-        """The film of a folder.
-
-        Parameters
-        ----------
-        folder : Path
-            Where `compare.show.animation.write_animation` may have written it.
-
-        Returns
-        -------
-        Film or None
-            None if it is not there.
-        """
+        """The film of a folder."""
         film = cls(folder / "animation.gif", folder / "still-3.png")
         return film if film.gif.is_file() and film.still.is_file() else None
 
@@ -82,22 +71,6 @@ def write_report(
 
     Everything is drawn before the first file is written, each file appears whole, and
     ``report.html`` last.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        What is reported.
-    folder : Path
-        Made if it is not there.
-    budget : Budget, optional
-        Of the same comparison; then also ``budget.json`` and ``budget.png`` are written.
-    film : Film, optional
-        Becomes part of the page.
-
-    Returns
-    -------
-    Path
-        Of ``report.html``.
     """
     drawn = {name: draw(comparison) for name, draw in FIGURES.items()}
     contents: dict[str, str | bytes] = {
@@ -119,20 +92,7 @@ def write_report(
 
 
 def budget_files(found: Budget, advice: Mapping[str, Any] | None = None) -> dict[str, str | bytes]:
-    """What is written of a budget.
-
-    Parameters
-    ----------
-    found : Budget
-        The parts.
-    advice : mapping, optional
-        The settings that a target asks for, as they go into the file.
-
-    Returns
-    -------
-    dict
-        Contents by name: ``budget.json`` and ``budget.png``.
-    """
+    """What is written of a budget."""
     content = found.to_dict() if advice is None else {**found.to_dict(), "advice": advice}
     return {"budget.json": document(content), "budget.png": png(picture(found), 100)}
 
@@ -143,24 +103,7 @@ def report_page(
     budget: Budget | None = None,
     film: Film | None = None,
 ) -> str:
-    """The report as a page.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        What is reported.
-    figures : mapping
-        The page's pictures by the section they are in; a section without any has words only.
-    budget : Budget, optional
-        Of the same comparison.
-    film : Film, optional
-        Becomes part of the page.
-
-    Returns
-    -------
-    str
-        HTML that needs no other file.
-    """
+    """The report as a page."""
     found = comparison.to_dict()
     return render(
         "compare.show",

@@ -20,50 +20,24 @@ _SLIVER = 1e-6  # L; a body that shows less is not drawn
 
 @dataclass(frozen=True, eq=False)
 class SweepScene:
-    """What pictures of a sweep show; lengths in L, y up.
+    """What pictures of a sweep show; lengths in L, y up."""
 
-    Attributes
-    ----------
-    readings : SpatialReadings
-        The sweep.
-    lines : array, shape (stations, points, 3)
-        Centrelines from clamp to tip; NaN where there are no readings.
-    foot, contact : array, shape (stations, 3)
-        Contacts as found from the clamp; NaN where there is none.
-    phase : array of str, shape (stations,)
-        As recorded, else as found from the clamp.
-    faces : array, shape (triangles, 3, 3)
-        Of the part of the body that is near, seen from outside their corners run against the
-        clock; none without a body.
-    low, high : array, shape (3,)
-        Corners of the box around all of it.
-    """
-
-    readings: SpatialReadings
+    readings: SpatialReadings  # the sweep
+    # Shape (stations, points, 3); Centrelines from clamp to tip; NaN where there are no readings.
     lines: Floats
-    foot: Floats
+    foot: Floats  # shape (stations, 3); Contacts as found from the clamp; NaN where there is none
+    # Shape (stations, 3); Contacts as found from the clamp; NaN where there is none.
     contact: Floats
-    phase: Words
+    phase: Words  # shape (stations,); As recorded, else as found from the clamp
+    # Shape (triangles, 3, 3); Of the part of the body that is near, seen from outside their corners
+    # run against the clock; none without a body.
     faces: Floats
-    low: Floats
-    high: Floats
+    low: Floats  # shape (3,); Corners of the box around all of it
+    high: Floats  # shape (3,); Corners of the box around all of it
 
     @classmethod
     def of(cls, readings: SpatialReadings, body: Body | Floats | None) -> "SweepScene":
-        """The scene of a sweep.
-
-        Parameters
-        ----------
-        readings : SpatialReadings
-            The sweep; contacts are found from its clamp.
-        body : Body or array, shape (triangles, 3, 3), optional
-            In the unit of length of the readings; or what an earlier scene showed of it.
-
-        Returns
-        -------
-        SweepScene
-            What is drawn.
-        """
+        """The scene of a sweep."""
         length, table = readings.beam.length, readings.table
         found = reconstruct_space(readings)
         phase = table["phase"] if "phase" in table else found["phase"]
@@ -101,21 +75,7 @@ def _box(points: Floats) -> tuple[Floats, Floats]:
 
 
 def faces_within(points: Floats, low: Floats, high: Floats) -> Floats:
-    """The surface of what a convex body and a box have in common.
-
-    Parameters
-    ----------
-    points : array, shape (n, 3)
-        Corners of the body, of which it is the hull; of very many those that show.
-    low, high : array, shape (3,)
-        Corners of the box.
-
-    Returns
-    -------
-    array, shape (triangles, 3, 3)
-        Closed; seen from outside their corners run against the clock. None if there is nothing in
-        common.
-    """
+    """The surface of what a convex body and a box have in common."""
     try:
         hull = ConvexHull(_outermost(points))
         # A point within both, as far as can be from all planes: n.x + d + |n| r <= 0.

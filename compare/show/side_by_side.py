@@ -17,17 +17,10 @@ from compare.show.style import AT_TOP, LARGE, LINE_STYLES, SERIES, SMALL, SYMBOL
 
 @dataclass(frozen=True)
 class SideBySide:
-    """Sweeps compared with a reference and with each other.
+    """Sweeps compared with a reference and with each other."""
 
-    Attributes
-    ----------
-    against : dict of Comparison
-        Each sweep against the reference, by its name.
-    between : dict of Comparison
-        Each sweep against each one before it, by both names.
-    """
-
-    against: dict[str, Comparison]
+    against: dict[str, Comparison]  # each sweep against the reference, by its name
+    # Each sweep against each one before it, by both names.
     between: dict[tuple[str, str], Comparison]
 
     @property
@@ -36,15 +29,7 @@ class SideBySide:
         return next(iter(self.against.values())).reference.source
 
     def table(self) -> pd.DataFrame:
-        """The comparisons in numbers.
-
-        Returns
-        -------
-        pandas.DataFrame
-            A row a comparison: ``reference``, ``candidate``, the relative rms of each clamp
-            reading, the ``snap_off`` of the candidate less that of the reference [length], and the
-            candidate's ``seconds_per_station``, NaN where it was not recorded.
-        """
+        """The comparisons in numbers."""
         rows = []
         for names, found in self._all().items():
             snap_off = found.snap_off.difference
@@ -60,13 +45,7 @@ class SideBySide:
         return pd.DataFrame(rows)
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``side-by-side.json`` holds.
-
-        Returns
-        -------
-        dict
-            ``comparisons``, each as in ``comparison.json``, with the two ``names``.
-        """
+        """What ``side-by-side.json`` holds."""
         return {
             "comparisons": [
                 {"names": list(names), **found.to_dict()} for names, found in self._all().items()
@@ -78,25 +57,7 @@ class SideBySide:
 
 
 def side_by_side(reference: Readings, candidates: dict[str, Readings]) -> SideBySide:
-    """Compare every candidate with the reference, and the candidates in pairs.
-
-    Parameters
-    ----------
-    reference : Readings
-        As the closed form.
-    candidates : dict of Readings
-        By the names that distinguish them; at least one.
-
-    Returns
-    -------
-    SideBySide
-        All comparisons.
-
-    Raises
-    ------
-    InputError
-        If sweeps are of different beams or have no common stretch.
-    """
+    """Compare every candidate with the reference, and the candidates in pairs."""
     return SideBySide(
         {name: compare(reference, readings) for name, readings in candidates.items()},
         {
@@ -107,35 +68,13 @@ def side_by_side(reference: Readings, candidates: dict[str, Readings]) -> SideBy
 
 
 def seconds_per_station(readings: Readings) -> float:
-    """Time of a sweep, as recorded by its source.
-
-    Parameters
-    ----------
-    readings : Readings
-        The sweep.
-
-    Returns
-    -------
-    float
-        NaN if it was not recorded.
-    """
+    """Time of a sweep, as recorded by its source."""
     seconds = readings.provenance.get("seconds")
     return np.nan if seconds is None else float(seconds) / len(readings.table)
 
 
 def picture(found: SideBySide) -> Figure:
-    """Draw how far the clamp readings are from the reference's, over the foot position.
-
-    Parameters
-    ----------
-    found : SideBySide
-        What is drawn.
-
-    Returns
-    -------
-    Figure
-        A panel for each reading.
-    """
+    """Draw how far the clamp readings are from the reference's, over the foot position."""
     figure = Figure(figsize=(12, 4.2), layout="constrained")
     axes = figure.subplots(1, 3, sharex=True)
     first = next(iter(found.against.values()))

@@ -6,18 +6,7 @@ from analytic.problem.arrays import Floats
 
 
 def solid_ply(faces: Floats) -> str:
-    """Triangles as PLY, with all their digits.
-
-    Parameters
-    ----------
-    faces : array, shape (triangles, 3, 3)
-        Corners; seen from outside they run against the clock.
-
-    Returns
-    -------
-    str
-        The file.
-    """
+    """Triangles as PLY, with all their digits."""
     corners, where = np.unique(faces.reshape(-1, 3), axis=0, return_inverse=True)
     header = [
         "ply",

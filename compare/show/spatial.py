@@ -40,27 +40,7 @@ def write_spatial_report(
     parts: Parts | None = None,
     film: Film | None = None,
 ) -> Path:
-    """Write ``comparison.json``, the figures, what they show of the body, and ``report.html``.
-
-    Parameters
-    ----------
-    comparison : SpatialComparison
-        What is reported.
-    body : Body or array, shape (triangles, 3, 3), optional
-        In the unit of length of the readings: the body, or what ``body.ply`` has of it. Without it
-        the vibrissa and its contacts are shown.
-    folder : Path
-        Made if it is not there.
-    parts : Parts, optional
-        Of the disagreement; then ``budget.json`` is written, too.
-    film : Film, optional
-        The sweep in motion.
-
-    Returns
-    -------
-    Path
-        Of ``report.html``.
-    """
+    """Write ``comparison.json``, the figures, what they show of the body, and ``report.html``."""
     candidate = comparison.candidate
     scene = SweepScene.of(candidate, body)
     drawn = {

@@ -49,36 +49,13 @@ _LONGEST = 60  # characters of a name; more would leave no room for the picture
 
 
 def axis_label(name: str) -> str:
-    """A reading's symbol and unit.
-
-    Parameters
-    ----------
-    name : str
-        A key of `SYMBOLS`.
-
-    Returns
-    -------
-    str
-        As ``$F_{Ax}$ / ($EI/L^2$)``.
-    """
+    """A reading's symbol and unit."""
     unit = UNITS[name]
     return f"{SYMBOLS[name]} / {f'({unit})' if '/' in unit else unit}"
 
 
 def label(text: object) -> str:
-    """A user's name as matplotlib may draw it.
-
-    Parameters
-    ----------
-    text : object
-        Any text: of a file, a case, a source.
-
-    Returns
-    -------
-    str
-        On one line and of bounded length, with no mathematics in it, and with no underscore at its
-        beginning, which would keep it out of legends.
-    """
+    """A user's name as matplotlib may draw it."""
     line = " ".join("".join(c if c.isprintable() else " " for c in str(text)).split())
     if len(line) > _LONGEST:
         line = line[: _LONGEST - 1] + "…"

@@ -23,16 +23,6 @@ def turning(scene: SweepScene) -> Markup:
 
     Zdog 1.1.3 (MIT licence, 30 kB) is part of it: nothing is fetched, and a canvas needs no WebGL,
     which browsers without a graphics card lack. On paper and without scripts it does not show.
-
-    Parameters
-    ----------
-    scene : SweepScene
-        What is shown. Of very many stations every so many are.
-
-    Returns
-    -------
-    Markup
-        To be put into a page with the colours of ``report.css``; once a page.
     """
     shown = np.unique(np.linspace(0, len(scene.foot) - 1, _STATIONS).round().astype(int))
     touching = [n for n, i in enumerate(shown) if np.isfinite(scene.contact[i]).all()]

@@ -14,39 +14,13 @@ _PLAIN = {NOISE: "noise of the data", NUMERICS: "the simulation's numerics"}
 
 
 def validation_lines(comparison: Comparison) -> list[str]:
-    """What a validation comes to.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        With its `validation` or without one.
-
-    Returns
-    -------
-    list of str
-        Sentences: the verdict first, then what decides it; none without a validation.
-    """
+    """What a validation comes to."""
     found = comparison.validation
     return [] if found is None else [*_lines(found, comparison.reference.beam)]
 
 
 def standard_of(name: str, value: float, beam: Beam) -> str:
-    """A standard uncertainty with its unit, where that is known.
-
-    Parameters
-    ----------
-    name : str
-        Of an input or a gain.
-    value : float
-        In the unit of the case.
-    beam : Beam
-        The vibrissa, which knows whether that is SI.
-
-    Returns
-    -------
-    str
-        As ``"50 µm"``; of a gain ``"1 %"``.
-    """
+    """A standard uncertainty with its unit, where that is known."""
     if name in GAINS:
         return f"{100 * value:.3g} %"
     dimension = INPUTS[name].dimension

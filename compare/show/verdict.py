@@ -14,37 +14,13 @@ _NEARLY_ALL = 0.95  # of the compared stations: with fewer, the budget is about 
 
 
 def worst_reading(comparison: Comparison) -> str:
-    """The clamp reading whose rms disagreement goes farthest beyond its limit, or nearest to it.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        Of two sweeps.
-
-    Returns
-    -------
-    str
-        Its name.
-    """
+    """The clamp reading whose rms disagreement goes farthest beyond its limit, or nearest to it."""
     limit = comparison.tolerances.of_sweep
     return max(CLAMP_READINGS, key=lambda name: comparison.disagreement[name].rms - limit(name))
 
 
 def verdict(comparison: Comparison, budget: Budget | None = None) -> str:
-    """How far the candidate can be used, and what would make it better.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        Of two sweeps.
-    budget : Budget, optional
-        Of the candidate's disagreement.
-
-    Returns
-    -------
-    str
-        One sentence: the limit that is exceeded most, with its number, or the worst reading.
-    """
+    """How far the candidate can be used, and what would make it better."""
     candidate, reference = comparison.candidate.source, comparison.reference.source
     if comparison.worst is None:
         name = worst_reading(comparison)
@@ -68,20 +44,7 @@ def verdict(comparison: Comparison, budget: Budget | None = None) -> str:
 
 
 def why(comparison: Comparison, budget: Budget | None = None) -> str:
-    """What a disagreement is likely made of, or how to find that out.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        Of two sweeps that disagree.
-    budget : Budget, optional
-        Of the candidate's disagreement; then it counts.
-
-    Returns
-    -------
-    str
-        In one line.
-    """
+    """What a disagreement is likely made of, or how to find that out."""
     if budget is not None:
         doubt = ", but the budget is undecided" if budget.undecided else ""
         return f"by its budget the largest part is {budget.blame}{doubt}"
@@ -100,18 +63,7 @@ def why(comparison: Comparison, budget: Budget | None = None) -> str:
 
 
 def absent_transitions(comparison: Comparison) -> Iterator[str]:
-    """Why a sweep has no beginning or end of Phase B, where it has none.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        Of two sweeps.
-
-    Yields
-    ------
-    str
-        A line for each that is missing, of one sweep or of both.
-    """
+    """Why a sweep has no beginning or end of Phase B, where it has none."""
     sources = {"reference": comparison.reference.source, "candidate": comparison.candidate.source}
     lines: dict[str, list[str]] = {}
     for which, source in sources.items():

@@ -17,29 +17,7 @@ from mujoco_models.settings import Settings
 def measure_budget(
     case: Case, settings: Settings, advance: Callable[[], None] = lambda: None
 ) -> tuple[Budget, dict[str, Readings]]:
-    """Measure what the disagreement of MuJoCo's sweep of `case` with the exact one is made of.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    settings : Settings
-        Of the sweep in question.
-    advance : callable, optional
-        Called after every sweep, for progress bars.
-
-    Returns
-    -------
-    Budget
-        The parts.
-    dict of Readings
-        The sweeps, by the names of `controlled_changes`.
-
-    Raises
-    ------
-    InputError
-        If the settings leave no room to refine, or no station is in contact in all sweeps.
-    """
+    """Measure what the disagreement of MuJoCo's sweep of `case` with the exact one is made of."""
     smooth = has_primitive(case)
     changes = controlled_changes(settings, smooth, has_corners(case, settings))
     with _sweeping(case, changes, advance) as await_all:
@@ -56,27 +34,7 @@ def measure_budget(
 def simulate_all(
     case: Case, changes: Mapping[str, Settings], advance: Callable[[], None] = lambda: None
 ) -> dict[str, Readings]:
-    """Sweep one case with many settings, a process each; equal settings are swept once.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    changes : mapping
-        Settings by name.
-    advance : callable, optional
-        Called after every sweep, for progress bars.
-
-    Returns
-    -------
-    dict of Readings
-        The sweeps by the same names.
-
-    Raises
-    ------
-    MemoryError
-        If the system ends a worker, as it does when memory is short.
-    """
+    """Sweep one case with many settings, a process each; equal settings are swept once."""
     with _sweeping(case, changes, advance) as await_all:
         return await_all()
 
@@ -110,18 +68,7 @@ def _sweeping(
 
 
 def has_primitive(case: Case) -> bool:
-    """Whether MuJoCo's smooth primitive can stand for the case's contour.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-
-    Returns
-    -------
-    bool
-        False for a contour with corners.
-    """
+    """Whether MuJoCo's smooth primitive can stand for the case's contour."""
     from mujoco_models.obstacles.primitive import Primitive
 
     try:
@@ -132,20 +79,7 @@ def has_primitive(case: Case) -> bool:
 
 
 def has_corners(case: Case, settings: Settings) -> bool:
-    """Whether MuJoCo's object has edges at sharp corners.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    settings : Settings
-        Which object stands for the case's contour.
-
-    Returns
-    -------
-    bool
-        False for a smooth contour, and for a polygon that is as good as smooth.
-    """
+    """Whether MuJoCo's object has edges at sharp corners."""
     from mujoco_models.obstacles.kinds import place
 
     return len(place(_leftward(case), settings).corners) > 0

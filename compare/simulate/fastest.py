@@ -22,37 +22,17 @@ _SPEEDS = 1e-3, 2.0  # L/T1; below it takes hours, above the vibrissa is thrown
 
 @dataclass(frozen=True)
 class Fastest:
-    """The fastest motion with a wanted error, and what was measured of it.
+    """The fastest motion with a wanted error, and what was measured of it."""
 
-    Attributes
-    ----------
-    target : float
-        The wanted error: of the worst reading, rms relative to its largest magnitude.
-    speed : float
-        Of the fastest sweep with at most that [L/T1].
-    error, seconds : float
-        Of that sweep; CPU time.
-    at_rest : float
-        What is left at rest.
-    tried : dict
-        Error by speed, of all sweeps.
-    """
-
-    target: float
-    speed: float
-    error: float
-    seconds: float
-    at_rest: float
-    tried: dict[float, float]
+    target: float  # the wanted error: of the worst reading, rms relative to its largest magnitude
+    speed: float  # of the fastest sweep with at most that [L/T1]
+    error: float  # of that sweep; CPU time
+    seconds: float  # of that sweep; CPU time
+    at_rest: float  # what is left at rest
+    tried: dict[float, float]  # error by speed, of all sweeps
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``motion-budget.json`` holds.
-
-        Returns
-        -------
-        dict
-            JSON can hold it.
-        """
+        """What ``motion-budget.json`` holds."""
         return asdict(self)
 
 
@@ -62,29 +42,7 @@ def find_fastest(
     move: Callable[[float], Readings],
     target: float,
 ) -> Fastest:
-    """Sweep at other speeds until the fastest one with a wanted error is known to a tenth.
-
-    Parameters
-    ----------
-    exact : Readings
-        The reference.
-    runs : mapping
-        The sweeps of a budget in motion.
-    move : callable
-        The same sweep at another speed [L/T1].
-    target : float
-        The wanted error.
-
-    Returns
-    -------
-    Fastest
-        Confirmed by a sweep of its own.
-
-    Raises
-    ------
-    InputError
-        If no speed reaches the target.
-    """
+    """Sweep at other speeds until the fastest one with a wanted error is known to a tenth."""
     swept = {_speed(runs[name]): runs[name] for name in THREE_SPEEDS if name in runs}
     error = {speed: _error(exact, readings) for speed, readings in swept.items()}
     at_rest = _rms(exact, runs["rest"])

@@ -19,18 +19,10 @@ _WIDTH = 22
 
 @dataclass(frozen=True)
 class Inspection:
-    """What a user's model is.
+    """What a user's model is."""
 
-    Attributes
-    ----------
-    found : MeasuredBeam
-        As `mujoco_models.inspect_model` measured it.
-    stated : Beam or None
-        What it should be, in the model's units.
-    """
-
-    found: MeasuredBeam
-    stated: Beam | None = None
+    found: MeasuredBeam  # as `mujoco_models.inspect_model` measured it
+    stated: Beam | None = None  # what it should be, in the model's units
 
     @cached_property
     def remarks(self) -> tuple[Remark, ...]:
@@ -43,13 +35,7 @@ class Inspection:
         return all(remark.kind != "fault" for remark in self.remarks)
 
     def lines(self) -> Iterator[str]:
-        """Figures and remarks, for reading.
-
-        Yields
-        ------
-        str
-            A line each.
-        """
+        """Figures and remarks, for reading."""
         found = self.found
         faults = sum(remark.kind == "fault" for remark in self.remarks)
         verdict = "sound" if self.sound else f"{faults} fault{'s' if faults > 1 else ''}"
@@ -89,13 +75,7 @@ class Inspection:
         yield "foot", found.drive or "nothing moves it"
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``inspection.json`` holds.
-
-        Returns
-        -------
-        dict
-            JSON can hold it.
-        """
+        """What ``inspection.json`` holds."""
         error, stiffness = elastica_error(self.found), clamp_stiffness(self.found)
         order = order_in_links(self.found)
         return {
@@ -110,20 +90,7 @@ class Inspection:
 
 
 def faults_of(model: OwnModel, stated: Beam) -> list[str]:
-    """What is wrong with a user's model.
-
-    Parameters
-    ----------
-    model : OwnModel
-        The file, and names.
-    stated : Beam
-        What it should be.
-
-    Returns
-    -------
-    list of str
-        A line each.
-    """
+    """What is wrong with a user's model."""
     found = inspect_model(
         model.file,
         foot=model.foot,

@@ -19,28 +19,15 @@ _AT_REST = 1e-12  # rad
 
 @dataclass(frozen=True)
 class Order:
-    """What more links of the same layout would give.
+    """What more links of the same layout would give."""
 
-    Attributes
-    ----------
-    links : float
-        Number of them: the length over that of a link.
-    first : float
-        Where it first bends, in links from the clamp: 0.5 is of second order.
-    order : float
-        In the number of links: of the tip's distance from the exact cantilever's.
-    error : float
-        Of the measured one: the largest distance of the tip from that of the exact cantilever with
-        the EI that its joints stand for, of all loads [L].
-    error_of_twice : float
-        Of a chain of the same layout with twice as many links [L].
-    """
-
-    links: float
-    first: float
-    order: float
+    links: float  # number of them: the length over that of a link
+    first: float  # where it first bends, in links from the clamp: 0.5 is of second order
+    order: float  # in the number of links: of the tip's distance from the exact cantilever's
+    # Of the measured one: the largest distance of the tip from that of the exact cantilever with
+    # the EI that its joints stand for, of all loads [L].
     error: float
-    error_of_twice: float
+    error_of_twice: float  # of a chain of the same layout with twice as many links [L]
 
 
 def order_in_links(found: MeasuredBeam) -> Order | None:
@@ -48,16 +35,6 @@ def order_in_links(found: MeasuredBeam) -> Order | None:
 
     Its layout is where the first and the last joint are within their links, and how much softer
     or stiffer than the others they are.
-
-    Parameters
-    ----------
-    found : MeasuredBeam
-        With its joints, and its tip under loads.
-
-    Returns
-    -------
-    Order or None
-        None where it has no order that could be stated: links of unequal length, a taper, a curve.
     """
     s = np.array([joint.s for joint in found.joints]) / found.length
     if len(s) < _FEWEST or tapers(found) or is_curved(found):
@@ -99,27 +76,7 @@ def _farthest(off: Floats) -> float:
 
 
 def tips_of_chain(places: Floats, compliances: Floats, loads: Floats) -> Floats:
-    """Where the tip of a chain of rigid links is under a force across its unloaded axis.
-
-    Parameters
-    ----------
-    places : array, shape (n,)
-        Arc lengths of its joints [L].
-    compliances : array, shape (n,)
-        Turn over moment of each [L/EI].
-    loads : array, shape (m,)
-        P L^2/EI, in increasing order: each state is found from the last one.
-
-    Returns
-    -------
-    array, shape (m, 2)
-        Displacement along the load, and along the axis towards the clamp [L].
-
-    Raises
-    ------
-    ArithmeticError
-        If Newton's method does not converge.
-    """
+    """Where the tip of a chain of rigid links is under a force across its unloaded axis."""
     lengths = np.diff(places, append=1.0)
     turns = np.zeros(len(places))
     tips = []

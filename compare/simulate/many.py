@@ -17,25 +17,6 @@ def sweep_many(
     """Sweep a case with each of several engines.
 
     One after the other: times are compared, and a machine with few cores would lend them unequally.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    settings : Settings
-        The numerics, the same for all.
-    names : sequence of str
-        Of the engines.
-    timeout : float
-        The longest that each may take [s].
-    done : callable
-        Called with each outcome as soon as it is there, so that nothing is lost if a later engine
-        is interrupted.
-
-    Returns
-    -------
-    list of Outcome
-        One for each name; what goes wrong with one does not stop the others.
     """
     found = []
     for name in names:

@@ -16,23 +16,7 @@ _PARTS = 8  # of the way from station to station
 
 
 def sweep_as_means(case: Case, settings: Settings, average: float) -> Readings:
-    """Sweep at rest, each station's clamp readings the means over the way round it.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    settings : Settings
-        The numerics.
-    average : float
-        Share of the way between two stations, as `mujoco_models.Motion` has it; 0 for the values
-        at the stations themselves.
-
-    Returns
-    -------
-    Readings
-        A station without a mean, since a place near it is not at rest, is ``"unsettled"``.
-    """
+    """Sweep at rest, each station's clamp readings the means over the way round it."""
     if average == 0:
         return simulate_sweep(case, settings)
     first, last = (float(x) for x in case.foot_x[[0, -1]])

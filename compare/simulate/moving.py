@@ -32,33 +32,7 @@ def measure_motion_budget(
     at_rest: Settings,
     advance: Callable[[], None] = lambda: None,
 ) -> tuple[MotionBudget, Mapping[str, Readings]]:
-    """Measure what the disagreement of a sweep in motion with the closed form is made of.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    motion, settings
-        Of the sweep in question.
-    at_rest : Settings
-        Of the sweep at rest that it is compared with.
-    advance : callable, optional
-        Called after every sweep, for progress bars.
-
-    Returns
-    -------
-    MotionBudget
-        The parts.
-    mapping of Readings
-        The sweeps, by the names of `slower_and_finer`, and ``rest``.
-
-    Raises
-    ------
-    InputError
-        If no station is in contact and trusted in all sweeps.
-    MemoryError
-        If the system ends a worker.
-    """
+    """Measure what the disagreement of a sweep in motion with the closed form is made of."""
     motions = slower_and_finer(motion)
     sweeps = {name: (move_alone, case, one, settings) for name, one in motions.items()}
     runs = _swept({**sweeps, "rest": (sweep_as_means, case, at_rest, motion.average)}, advance)
@@ -77,29 +51,6 @@ def measure_model_budget(
 
     ``at rest`` is of our chain with as many links. ``beam`` is the closed form of the vibrissa that
     was measured less that of the one that is stated.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    model : OwnModel
-        Its file and names.
-    motion, settings
-        Of the sweep in question.
-    advance : callable, optional
-        Called after every sweep, for progress bars.
-
-    Returns
-    -------
-    MotionBudget
-        The parts.
-    mapping of Readings
-        The sweeps, and ``beam``.
-
-    Raises
-    ------
-    InputError, MemoryError
-        As `measure_motion_budget` does, or as `mujoco_models.simulate_model`.
     """
     from mujoco_models import inspect_model  # MuJoCo is imported only where it is used
 
@@ -157,42 +108,14 @@ def _swept(
 
 
 def move_alone(case: Case, motion: Motion, settings: Settings) -> Readings:
-    """One sweep in motion, in a process of its own.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    motion, settings
-        The numerics.
-
-    Returns
-    -------
-    Readings
-        Of the sweep.
-    """
+    """One sweep in motion, in a process of its own."""
     from mujoco_models import simulate_motion  # MuJoCo is imported only where it is used
 
     return simulate_motion(case, motion, settings)
 
 
 def move_model_alone(case: Case, model: OwnModel, motion: Motion, settings: Settings) -> Readings:
-    """One sweep of a user's own model, in a process of its own.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    model : OwnModel
-        Its file and names.
-    motion, settings
-        The numerics.
-
-    Returns
-    -------
-    Readings
-        Of the sweep.
-    """
+    """One sweep of a user's own model, in a process of its own."""
     from mujoco_models import simulate_model  # MuJoCo is imported only where it is used
 
     return simulate_model(case, model, motion, settings)

@@ -42,18 +42,7 @@ _ARROW = {"arrowstyle": "-|>", "color": _FORCE, "linewidth": 1.8}
 
 
 def overview(case: Case) -> Figure:
-    """The sweep with the paper's sign convention, and the readings over the foot position.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-
-    Returns
-    -------
-    Figure
-        The sketch above, three panels below.
-    """
+    """The sweep with the paper's sign convention, and the readings over the foot position."""
     exact = solve_sweep(case)
     simulated = simulate_sweep(replace(case, sweep=Sweep(stations=60)))
     figure = Figure(figsize=(11, 6.4), layout="constrained")

@@ -41,15 +41,7 @@ _ALONE: dict[str, tuple[Any, ...]] = {
 
 
 def variants() -> Iterator[tuple[str, str, Motion, Settings]]:
-    """All sweeps of the page.
-
-    Yields
-    ------
-    setting, value : str
-        What is varied, and what it is.
-    motion, settings
-        The numerics.
-    """
+    """All sweeps of the page."""
     for name, values in _ALONE.items():
         for value in values:
             one = replace(_BASE, **{name: value})
@@ -79,22 +71,7 @@ def variants() -> Iterator[tuple[str, str, Motion, Settings]]:
 
 
 def measure(name: str, value: str, motion: Motion, settings: Settings) -> dict[str, Any]:
-    """One sweep in motion against the closed form.
-
-    Parameters
-    ----------
-    name, value : str
-        What is varied.
-    motion, settings
-        The numerics.
-
-    Returns
-    -------
-    dict
-        A row: the worst reading's rms in each phase relative to its largest magnitude, how late
-        the vibrissa lets go [L], the stations that chatter, and CPU seconds. A motion that diverges
-        has none of them.
-    """
+    """One sweep in motion against the closed form."""
     from mujoco_models import simulate_motion  # MuJoCo is imported only where it is used
 
     case = replace(named_case("catenary"), sweep=Sweep(_STATIONS), friction=motion.friction or 0.0)
@@ -120,13 +97,7 @@ def _worst(found: Mapping[str, Disagreement], phase: str) -> float:
 
 
 def main(path: Path) -> None:
-    """Sweep all variants, on all cores, and write them down.
-
-    Parameters
-    ----------
-    path : Path
-        A CSV file.
-    """
+    """Sweep all variants, on all cores, and write them down."""
     with Workers(available_cores()) as pool:
         rows = [*pool.map(measure, *zip(*variants(), strict=True))]
     table = pd.DataFrame(rows).astype({"chattering": "Int64"})

@@ -38,41 +38,19 @@ _EXPLICIT = ("euler", "implicit", "implicitfast", "rk4")  # in the springs
 
 @dataclass(frozen=True)
 class Remark:
-    """A line on a model.
+    """A line on a model."""
 
-    Attributes
-    ----------
-    kind : str
-        A ``"fault"`` moves readings by about a per cent or more; a ``"note"`` is good to know.
-    subject : str
-        As ``"clamp"``.
-    text : str
-        In a sentence.
-    """
-
+    # A ``"fault"`` moves readings by about a per cent or more; a ``"note"`` is good to know.
     kind: Literal["fault", "note"]
-    subject: str
-    text: str
+    subject: str  # as ``"clamp"``
+    text: str  # in a sentence
 
     def __str__(self) -> str:
         return f"{self.kind}, {self.subject}: {self.text}"
 
 
 def remarks(found: MeasuredBeam, stated: Beam | None = None) -> tuple[Remark, ...]:
-    """What there is to say of a model.
-
-    Parameters
-    ----------
-    found : MeasuredBeam
-        What was measured of it.
-    stated : Beam, optional
-        What its user takes it for, in the model's units.
-
-    Returns
-    -------
-    tuple of Remark
-        The faults first.
-    """
+    """What there is to say of a model."""
     said = [
         *_stiffness(found),
         *_stated(found, stated),

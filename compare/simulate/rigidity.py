@@ -19,18 +19,6 @@ def smooth_rigidity(found: MeasuredBeam, at: Floats | None = None) -> Floats:
     The fourth root of EI, in proportion to the radius of a round section, is fitted by a parabola
     in s with the least sum of deviations, over all joints but the first and the last: these stand
     for pieces of beam of other lengths, as the clamp and the tip are modelled.
-
-    Parameters
-    ----------
-    found : MeasuredBeam
-        With its joints.
-    at : array, shape (n,), optional
-        Arc lengths; those of the joints if there are none [length].
-
-    Returns
-    -------
-    array, shape (n,)
-        There [force length^2].
     """
     s = np.array([joint.s for joint in found.joints]) / found.length
     root = np.array([joint.flexural_rigidity for joint in found.joints]) ** 0.25
@@ -47,35 +35,13 @@ def smooth_rigidity(found: MeasuredBeam, at: Floats | None = None) -> Floats:
 
 
 def as_intended(found: MeasuredBeam) -> float:
-    """EI that a beam with that rigidity along it, clamped where this is, shows at its tip.
-
-    Parameters
-    ----------
-    found : MeasuredBeam
-        With its joints.
-
-    Returns
-    -------
-    float
-        L^3 over three times the integral of (L - s)^2/EI [force length^2].
-    """
+    """EI that a beam with that rigidity along it, clamped where this is, shows at its tip."""
     s = np.linspace(0, found.length, _POINTS)
     return _of_tip(s, smooth_rigidity(found, s))
 
 
 def as_stated(beam: Beam) -> float:
-    """EI that the tip of a vibrissa shows under a small force across it.
-
-    Parameters
-    ----------
-    beam : Beam
-        Uniform or not.
-
-    Returns
-    -------
-    float
-        As of `as_intended` [force length^2].
-    """
+    """EI that the tip of a vibrissa shows under a small force across it."""
     s = np.linspace(0, beam.length, _POINTS)
     return _of_tip(s, beam.rigidity_at(s))
 
@@ -86,18 +52,7 @@ def _of_tip(s: Floats, rigidity: Floats) -> float:
 
 
 def elastica_error(found: MeasuredBeam) -> float:
-    """How far the tip is from the exact cantilever's of the same small deflection, at most [L].
-
-    Parameters
-    ----------
-    found : MeasuredBeam
-        With its tip under loads.
-
-    Returns
-    -------
-    float
-        NaN unless the beam is uniform and straight: only then there is a closed form.
-    """
+    """How far the tip is from the exact cantilever's of the same small deflection, at most [L]."""
     if tapers(found) or is_curved(found):
         return float("nan")
     exact = tip_of(found.loads * found.length**2 / found.tip_rigidity)
@@ -105,18 +60,7 @@ def elastica_error(found: MeasuredBeam) -> float:
 
 
 def by_its_clamp(found: MeasuredBeam) -> float:
-    """EI that the tip shows by the first joint as it is and all others as they are meant.
-
-    Parameters
-    ----------
-    found : MeasuredBeam
-        With its joints.
-
-    Returns
-    -------
-    float
-        By the sum of (L - s)^2 over the joints' compliances [force length^2].
-    """
+    """EI that the tip shows by the first joint as it is and all others as they are meant."""
     rigidity = smooth_rigidity(found)
     compliance = np.array([joint.cell for joint in found.joints]) / rigidity
     compliance[0] = found.joints[0].compliance
@@ -125,19 +69,7 @@ def by_its_clamp(found: MeasuredBeam) -> float:
 
 
 def clamp_stiffness(found: MeasuredBeam) -> float:
-    """Rotational stiffness of the clamp that the first joint stands for beside its own cell.
-
-    Parameters
-    ----------
-    found : MeasuredBeam
-        With its joints.
-
-    Returns
-    -------
-    float
-        Moment by rotation [EI/L], with the EI that is meant; infinite where the first joint turns
-        by no more than its cell bends, to a hundredth of that.
-    """
+    """Rotational stiffness of the clamp that the first joint stands for beside its own cell."""
     bends = found.joints[0].cell / smooth_rigidity(found)[0]
     turns = found.joints[0].compliance - bends
     if turns <= _TURNS * bends:
@@ -146,35 +78,11 @@ def clamp_stiffness(found: MeasuredBeam) -> float:
 
 
 def tapers(found: MeasuredBeam) -> bool:
-    """Whether EI changes along the beam, by more than two per cent.
-
-    Parameters
-    ----------
-    found : MeasuredBeam
-        With its joints.
-
-    Returns
-    -------
-    bool
-        Single joints do not count.
-    """
+    """Whether EI changes along the beam, by more than two per cent."""
     rigidity = smooth_rigidity(found)
     return bool(np.ptp(rigidity) > _UNEVEN * rigidity.mean())
 
 
 def is_curved(found: MeasuredBeam, stated: float = 0.0) -> bool:
-    """Whether the beam at rest has another curvature than it should.
-
-    Parameters
-    ----------
-    found : MeasuredBeam
-        With its joints.
-    stated : float
-        The curvature that it should have [1/length].
-
-    Returns
-    -------
-    bool
-        True from 0.01/L on: the tip is then 0.005 L aside.
-    """
+    """Whether the beam at rest has another curvature than it should."""
     return abs(found.natural_curvature - stated) * found.length > _CURVATURE

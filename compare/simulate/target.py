@@ -14,24 +14,12 @@ from mujoco_models.settings import Settings
 
 @dataclass(frozen=True)
 class Followed:
-    """Advice, and what came of it.
+    """Advice, and what came of it."""
 
-    Attributes
-    ----------
-    target : float
-        The wanted error.
-    predicted : Advice
-        The settings, and what was expected.
-    error, seconds_a_station : float
-        What was measured with them.
-    reached : bool
-        Whether that is enough.
-    """
-
-    target: float
-    predicted: Advice
-    error: float
-    seconds_a_station: float
+    target: float  # the wanted error
+    predicted: Advice  # the settings, and what was expected
+    error: float  # what was measured with them
+    seconds_a_station: float  # what was measured with them
 
     @property
     def reached(self) -> bool:
@@ -39,40 +27,14 @@ class Followed:
         return self.error <= self.target
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``budget.json`` holds.
-
-        Returns
-        -------
-        dict
-            JSON can hold it.
-        """
+        """What ``budget.json`` holds."""
         return {**asdict(self), "reached": self.reached}
 
 
 def follow_advice(
     case: Case, found: Budget, runs: Mapping[str, Readings], target: float
 ) -> Followed:
-    """Ask for advice, sweep with the advised settings, and measure.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    found, runs
-        What `compare.simulate.controlled.measure_budget` returns of it.
-    target : float
-        Wanted error; see `advise`.
-
-    Returns
-    -------
-    Followed
-        What was predicted, and what was measured.
-
-    Raises
-    ------
-    InputError
-        If no settings reach the target.
-    """
+    """Ask for advice, sweep with the advised settings, and measure."""
     base = Settings(**runs["base"].provenance["settings"])
     coarser = simulate_sweep(case, coarser_mesh(base))
     predicted = advise(found, runs, coarser, target)

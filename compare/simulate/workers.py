@@ -19,13 +19,7 @@ _START = 120.0  # s; a worker is there within one or two, on a crowded machine w
 
 
 def available_cores() -> int:
-    """The number of cores that this process may use.
-
-    Returns
-    -------
-    int
-        At least 1.
-    """
+    """The number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):  # not on macOS, nor on Windows
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -36,19 +30,6 @@ class Workers(ProcessPoolExecutor):
 
     Each holds one end of a pipe whose other end only the leader has: it closes when the leader lets
     go of it, is killed, or crashes. Ctrl-C is the leader's affair alone.
-
-    Parameters
-    ----------
-    count : int
-        Number of processes.
-    preload : tuple of str
-        Modules that a server imports once; workers are forked from it and share its memory. Where
-        there is no such server, or without modules, each worker starts afresh.
-
-    Raises
-    ------
-    InputError
-        If the first worker does not start: then none would, again and again.
     """
 
     def __init__(self, count: int, preload: tuple[str, ...] = ()) -> None:
@@ -77,15 +58,7 @@ class Workers(ProcessPoolExecutor):
             raise
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """End the processes.
-
-        Parameters
-        ----------
-        wait : bool
-            Whether what is under way is finished first; otherwise they end at once.
-        cancel_futures : bool
-            Whether what waits is dropped.
-        """
+        """End the processes."""
         if not wait:
             self._held.close()
         super().shutdown(wait=wait, cancel_futures=cancel_futures)
@@ -104,11 +77,6 @@ def start_server(preload: tuple[str, ...]) -> None:
     """Let a server import what its workers share, while their leader goes on.
 
     Does nothing where there is no such server, or if it runs already.
-
-    Parameters
-    ----------
-    preload : tuple of str
-        Modules, as of `Workers`.
     """
     if _has_server():
         from multiprocessing import forkserver

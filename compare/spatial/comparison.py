@@ -212,18 +212,7 @@ def compare_space(
 
 
 def way(readings: SpatialReadings) -> Floats:
-    """How far along its way the foot is at the stations.
-
-    Parameters
-    ----------
-    readings : SpatialReadings
-        A sweep.
-
-    Returns
-    -------
-    array, shape (stations,)
-        [length]; straight from station to station where the column ``travel`` is missing.
-    """
+    """How far along its way the foot is at the stations."""
     recorded = readings.values("travel")
     if np.isfinite(recorded).all():
         return recorded

@@ -20,20 +20,6 @@ def paired_events(
 
     A source that records no events has those that its force shows: it touches or leaves between two
     stations, and its record does not say how. Then both ends are called ``"leaving"``.
-
-    Parameters
-    ----------
-    reference, candidate : SpatialReadings
-        Two sweeps.
-    travel : array, shape (stations,)
-        Way of the foot to the stations [length].
-    touching : Touching
-        Stations of both that touch.
-
-    Returns
-    -------
-    dict of Occurrence
-        By ``"touch"``, ``"slip-off"``, ``"release"``; the second of a kind is ``"touch 2"``.
     """
     both = [reference, candidate]
     if all("events" in one.provenance for one in both):

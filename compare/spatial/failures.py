@@ -9,18 +9,7 @@ from compare.spatial.measured import SpatialMeasurement
 
 
 def failures(found: SpatialMeasurement) -> Iterator[Failure]:
-    """Every limit that is exceeded.
-
-    Parameters
-    ----------
-    found : SpatialMeasurement
-        What the sweeps differ by, and how far they may.
-
-    Yields
-    ------
-    Failure
-        Components first, then contacts, phases, events and stations.
-    """
+    """Every limit that is exceeded."""
     if not found.compared.any():
         counts = f"reference {found.statuses['reference']}, candidate {found.statuses['candidate']}"
         yield Failure(

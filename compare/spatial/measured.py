@@ -13,63 +13,30 @@ from compare.spatial.noise import SpatialNoise, Touching
 
 @dataclass(frozen=True)
 class ComponentDisagreement:
-    """How far one component of the candidate is off, over the largest of its kind.
+    """How far one component of the candidate is off, over the largest of its kind."""
 
-    Attributes
-    ----------
-    rms, max : float
-        Over the compared stations; NaN if there are none.
-    at : float
-        Way of the foot where it is largest [length].
-    phase : str
-        The reference's phase there.
-    rms_by_phase : dict
-        By the reference's phases.
-    scale : float
-        The reference's largest component of force, or of moment, in the readings' unit.
-    """
-
-    rms: float
-    max: float
-    at: float
-    phase: str
-    rms_by_phase: dict[str, float]
-    scale: float
+    rms: float  # over the compared stations; NaN if there are none
+    max: float  # over the compared stations; NaN if there are none
+    at: float  # way of the foot where it is largest [length]
+    phase: str  # the reference's phase there
+    rms_by_phase: dict[str, float]  # by the reference's phases
+    scale: float  # the reference's largest component of force, or of moment, in the readings' unit
 
 
 @dataclass(frozen=True, eq=False)
 class ContactDisagreement:
-    """How far the contact points are apart [L], at the stations where both are known.
+    """How far the contact points are apart [L], at the stations where both are known."""
 
-    Attributes
-    ----------
-    rms, max : float
-        NaN if there is no such station.
-    stations : int
-        How many there are.
-    asked : int
-        At how many both touch with a force that noise cannot hide.
-    from_clamp : tuple of str
-        The sources that record no contacts: theirs are reconstructed from the clamp.
-    distance : array, shape (stations,)
-        Of each station of the sweeps; NaN where it is not known.
-    """
-
-    rms: float
-    max: float
-    stations: int
-    asked: int
+    rms: float  # naN if there is no such station
+    max: float  # naN if there is no such station
+    stations: int  # how many there are
+    asked: int  # at how many both touch with a force that noise cannot hide
+    # The sources that record no contacts: theirs are reconstructed from the clamp.
     from_clamp: tuple[str, ...]
-    distance: Floats
+    distance: Floats  # shape (stations,); Of each station of the sweeps; NaN where it is not known
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``comparison.json`` holds.
-
-        Returns
-        -------
-        dict
-            Without the single stations.
-        """
+        """What ``comparison.json`` holds."""
         return {name: value for name, value in vars(self).items() if name != "distance"}
 
 

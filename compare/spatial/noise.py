@@ -22,23 +22,14 @@ _CLEAR = 2.0  # times the least force that is felt: noise hides no such force
 
 @dataclass(frozen=True)
 class SpatialNoise:
-    """What noise adds to the limits of agreement in space.
-
-    Attributes
-    ----------
-    readings : NoiseAllowance
-        For each component, relative to the largest of its kind in the reference.
-    contact : float
-        The rms of contact points that noise alone moves, in all but one of 400 cases [L].
-    unknown : float
-        The share of stations at which it leaves no contact, in as many cases.
-    """
+    """What noise adds to the limits of agreement in space."""
 
     readings: NoiseAllowance = field(
         default_factory=lambda: NoiseAllowance(dict.fromkeys(COMPONENTS, 0.0))
-    )
+    )  # for each component, relative to the largest of its kind in the reference
+    # The rms of contact points that noise alone moves, in all but one of 400 cases [L].
     contact: float = 0.0
-    unknown: float = 0.0
+    unknown: float = 0.0  # the share of stations at which it leaves no contact, in as many cases
 
 
 class Touching(NamedTuple):
@@ -56,27 +47,7 @@ def noise_levels(
     noise: float | Literal["auto"],
     scales: Mapping[str, float],
 ) -> dict[str, float]:
-    """Noise of both sweeps together.
-
-    Parameters
-    ----------
-    reference, candidate : SpatialReadings
-        Two sweeps.
-    noise : float or "auto"
-        As `compare_space` takes it.
-    scales : mapping
-        By component, the largest of its kind in the reference.
-
-    Returns
-    -------
-    dict
-        Standard deviation by component, over its scale.
-
-    Raises
-    ------
-    InputError
-        If the noise is no share of the largest component.
-    """
+    """Noise of both sweeps together."""
     if noise != "auto":
         return checked_level(noise, COMPONENTS)
     one, other = component_noise(reference), component_noise(candidate)
@@ -95,19 +66,6 @@ def touching(
 
     A force counts if it stands out of its noise, stated or seen. Where that leaves in doubt whether
     a sweep touches, since the force that the other one has there is so small, it does as the other.
-
-    Parameters
-    ----------
-    reference, candidate : SpatialReadings
-        Two sweeps at the same stations.
-    stated : mapping
-        Standard deviation of each component [force], [force length]; of a sweep that does not
-        record its events itself.
-
-    Returns
-    -------
-    Touching
-        Without noise where there is a force.
     """
     sides = reference, candidate
     known = [component_noise(one, None if "events" in one.provenance else stated) for one in sides]
@@ -128,24 +86,7 @@ def spatial_noise(
     stated: Mapping[str, float],
     clear: Booleans,
 ) -> SpatialNoise:
-    """What noise of that level does to the reference's contacts, and adds to the limits.
-
-    Parameters
-    ----------
-    reference : SpatialReadings
-        The sweep without it.
-    level : mapping
-        Standard deviation by component, over the largest of its kind.
-    stated : mapping
-        The same in the readings' units.
-    clear : array of bool, shape (stations,)
-        At which contacts are compared.
-
-    Returns
-    -------
-    SpatialNoise
-        Nothing without noise.
-    """
+    """What noise of that level does to the reference's contacts, and adds to the limits."""
     if not any(level.values()):
         return SpatialNoise()
     if not clear.any():
@@ -160,18 +101,7 @@ def spatial_noise(
 
 
 def component_scales(reference: SpatialReadings) -> dict[str, float]:
-    """The largest component of force and of moment, in stations that touch.
-
-    Parameters
-    ----------
-    reference : SpatialReadings
-        A sweep.
-
-    Returns
-    -------
-    dict
-        By component, in its unit; 0 for a sweep that touches nowhere.
-    """
+    """The largest component of force and of moment, in stations that touch."""
     found: dict[str, float] = {}
     for names in (FORCE, MOMENT):
         values = np.abs(reference.values(*names)[reference.touching])

@@ -94,23 +94,7 @@ def compared(
     noise: float | Literal["auto"] = 0.0,
     frame: Frame = "world",
 ) -> Comparison | SpatialComparison:
-    """Compare two sweeps, if they are sweeps: a test's simulator may return anything.
-
-    Parameters
-    ----------
-    reference, candidate, tolerances, offset, noise, frame
-        As `assert_agreement` takes them.
-
-    Returns
-    -------
-    Comparison or SpatialComparison
-        Whether they agree or not.
-
-    Raises
-    ------
-    InputError
-        If one of the two is no `Readings`, nor both are `SpatialReadings`; else as `compare`.
-    """
+    """Compare two sweeps, if they are sweeps: a test's simulator may return anything."""
     if isinstance(reference, SpatialReadings):
         if offset != 0:
             raise InputError("offset", offset, "0 in space", "leave it out, or widen the limits")
@@ -128,20 +112,7 @@ def compared(
 
 
 def demand(comparison: Comparison | SpatialComparison, budget: Budget | None = None) -> None:
-    """Raise AssertionError unless `comparison` agrees.
-
-    Parameters
-    ----------
-    comparison : Comparison or SpatialComparison
-        What was found.
-    budget : Budget, optional
-        As `assert_agreement` takes it.
-
-    Raises
-    ------
-    AssertionError
-        If a limit is exceeded; its message is that of `assert_agreement`.
-    """
+    """Raise AssertionError unless `comparison` agrees."""
     __tracebackhide__ = True
     if comparison.agrees:
         return

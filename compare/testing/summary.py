@@ -16,24 +16,7 @@ from compare.spatial.comparison import SpatialComparison
 def report(
     found: Comparison | SpatialComparison, folder: Path, name: str, body: Body | None = None
 ) -> dict[str, Any]:
-    """Write the report of one comparison.
-
-    Parameters
-    ----------
-    found : Comparison or SpatialComparison
-        The comparison.
-    folder : Path
-        Where all reports of the run go.
-    name : str
-        Of this report's folder there.
-    body : Body, optional
-        What was swept past in space.
-
-    Returns
-    -------
-    dict
-        Its row of the summary, fit for JSON.
-    """
+    """Write the report of one comparison."""
     if isinstance(found, SpatialComparison):
         write_spatial_report(found, body, folder / name)
     else:
@@ -50,15 +33,7 @@ def report(
 
 
 def write_summary(rows: Iterable[Mapping[str, Any]], folder: Path) -> None:
-    """Write ``summary.json`` and ``summary.md`` into `folder`.
-
-    Parameters
-    ----------
-    rows : iterable of mappings
-        As `report` returns them, in any order.
-    folder : Path
-        Where the reports are.
-    """
+    """Write ``summary.json`` and ``summary.md`` into `folder`."""
     ordered = sorted(rows, key=lambda row: str(row["name"]))
     folder.mkdir(parents=True, exist_ok=True)
     write_whole(folder / "summary.json", json.dumps(ordered, indent=2))

@@ -12,28 +12,16 @@ GAINS = tuple(f"gain_{name}" for name in CLAMP_READINGS)
 
 @dataclass(frozen=True)
 class Kind:
-    """An input of a case.
+    """An input of a case."""
 
-    Attributes
-    ----------
-    dimension : str
-        SI unit of its dimension; empty for a plain number.
-    nominal : callable
-        Its value in a case; 0 for a place, which is not known relative to anything, and not finite
-        if the case has no such number.
-    unit : callable
-        What it is compared with: a small change is small against that.
-    changed : callable
-        The case with the input changed by so much; None if the foot's positions change instead.
-    positive : bool
-        Whether it cannot be negative.
-    """
-
-    dimension: str
+    dimension: str  # SI unit of its dimension; empty for a plain number
+    # Its value in a case; 0 for a place, which is not known relative to anything, and not finite if
+    # the case has no such number.
     nominal: Callable[[Case], float]
-    unit: Callable[[Case], float]
+    unit: Callable[[Case], float]  # what it is compared with: a small change is small against that
+    # The case with the input changed by so much; None if the foot's positions change instead.
     changed: Callable[[Case, float], Case] | None
-    positive: bool = False
+    positive: bool = False  # whether it cannot be negative
 
 
 def _length(case: Case) -> float:
@@ -109,20 +97,6 @@ def possible(case: Case, name: str, error: float) -> float:
     """An input's error that it can have: what would be negative has the other sign.
 
     So friction that is 0 by the case and uncertain is at most as large as stated.
-
-    Parameters
-    ----------
-    case : Case
-        The nominal problem.
-    name : str
-        Of an input, or of a gain.
-    error : float
-        As drawn, in the input's unit.
-
-    Returns
-    -------
-    float
-        `error`, or what makes an input that cannot be negative positive.
     """
     if name in GAINS or not INPUTS[name].positive:
         return error

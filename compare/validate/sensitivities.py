@@ -16,43 +16,21 @@ _MOST_FAILED = 0.1  # share of the samples that may be of no solvable problem
 
 @dataclass(frozen=True)
 class Sensitivities:
-    """What the inputs of a case do to its readings, over its stations.
+    """What the inputs of a case do to its readings, over its stations."""
 
-    Attributes
-    ----------
-    foot_x : array, shape (stations,)
-        [length]
-    readings : array, shape (inputs, 3, stations)
-        Derivative of the readings by each input, times its standard uncertainty; NaN where the
-        vibrissa is free.
-    snap_off : array, shape (inputs,)
-        The same of the snap-off's foot position [length]; 0 where there is none.
-    samples : array, shape (samples, 3, stations)
-        Change of the readings with all inputs off at once, drawn from what is stated; NaN where
-        the vibrissa is free.
-    predicted : array, shape (samples, 3, stations)
-        What the derivatives make of the same draws.
-    """
-
-    foot_x: Floats
+    foot_x: Floats  # shape (stations,); [length]
+    # Shape (inputs, 3, stations); Derivative of the readings by each input, times its standard
+    # uncertainty; NaN where the vibrissa is free.
     readings: Floats
+    # Shape (inputs,); The same of the snap-off's foot position [length]; 0 where there is none.
     snap_off: Floats
+    # Shape (samples, 3, stations); Change of the readings with all inputs off at once, drawn from
+    # what is stated; NaN where the vibrissa is free.
     samples: Floats
-    predicted: Floats
+    predicted: Floats  # shape (samples, 3, stations); What the derivatives make of the same draws
 
     def at(self, foot_x: Floats) -> "Sensitivities":
-        """The same at other foot positions, interpolated.
-
-        Parameters
-        ----------
-        foot_x : array, shape (n,)
-            [length]
-
-        Returns
-        -------
-        Sensitivities
-            NaN next to where the vibrissa is free.
-        """
+        """The same at other foot positions, interpolated."""
         order = np.argsort(self.foot_x)
         known = self.foot_x[order]
         right = np.clip(np.searchsorted(known, foot_x), 1, len(known) - 1)
@@ -73,29 +51,7 @@ class Sensitivities:
 
 
 def sensitivities(case: Case, stated: Uncertainties, samples: int, seed: int = 0) -> Sensitivities:
-    """Solve the case with its inputs changed, one by one and all at once.
-
-    Parameters
-    ----------
-    case : Case
-        The nominal problem.
-    stated : Uncertainties
-        Of its inputs.
-    samples : int
-        How many sets of errors are drawn.
-    seed : int
-        Of the draws.
-
-    Returns
-    -------
-    Sensitivities
-        In the unit of the case.
-
-    Raises
-    ------
-    InputError
-        If the case with its inputs changed as stated is often none that can be solved.
-    """
+    """Solve the case with its inputs changed, one by one and all at once."""
     nominal = swept(case)
     slopes = [_slope(case, name, nominal) for name in stated.inputs]
     shape = (len(slopes), *nominal.readings.shape)

@@ -16,50 +16,22 @@ NOISE, NUMERICS, SECOND_ORDER = "noise", "numerics", "second order"
 
 @dataclass(frozen=True)
 class Spread:
-    """What the errors of a validation make of the differences, all relative to the readings.
+    """What the errors of a validation make of the differences, all relative to the readings."""
 
-    Attributes
-    ----------
-    names : tuple of str
-        What each mode is of; several may be of one.
-    modes : array, shape (modes, differences)
-        What one standard uncertainty of an input, or of a part of the numerics, adds to every
-        difference at once: such errors are the same at all stations.
-    correlation : array, shape (modes, modes)
-        Coefficients of correlation of the modes' errors.
-    noise : array, shape (differences,)
-        Standard deviation of what is independent from difference to difference.
-    """
-
-    names: tuple[str, ...]
+    names: tuple[str, ...]  # what each mode is of; several may be of one
+    # Shape (modes, differences); What one standard uncertainty of an input, or of a part of the
+    # numerics, adds to every difference at once: such errors are the same at all stations.
     modes: Floats
-    correlation: Floats
+    correlation: Floats  # shape (modes, modes); Coefficients of correlation of the modes' errors
+    # Shape (differences,); Standard deviation of what is independent from difference to difference.
     noise: Floats
 
     def part(self, where: slice) -> "Spread":
-        """The same of some of the differences.
-
-        Parameters
-        ----------
-        where : slice
-            Which of them.
-
-        Returns
-        -------
-        Spread
-            With the same modes.
-        """
+        """The same of some of the differences."""
         return Spread(self.names, self.modes[:, where], self.correlation, self.noise[where])
 
     def shares(self) -> dict[str, float]:
-        """How much of the mean variance each name makes.
-
-        Returns
-        -------
-        dict
-            They sum up to 1, unless there is no uncertainty at all; correlated inputs share what
-            they make together.
-        """
+        """How much of the mean variance each name makes."""
         made = ((self.modes @ self.modes.T) * self.correlation).sum(axis=1)
         parts = dict.fromkeys((*self.names, NOISE), 0.0)
         for name, size in zip(self.names, made.tolist(), strict=True):
@@ -69,13 +41,7 @@ class Spread:
         return {name: part / total if total > 0 else 0.0 for name, part in parts.items()}
 
     def variance(self) -> Floats:
-        """Variance of every difference by the modes.
-
-        Returns
-        -------
-        array, shape (differences,)
-            Without that of the noise.
-        """
+        """Variance of every difference by the modes."""
         return np.asarray(((self.correlation @ self.modes) * self.modes).sum(axis=0))
 
     def limits(self, scale: Mapping[str, float] | None = None) -> tuple[float, float]:
@@ -85,17 +51,6 @@ class Spread:
         square, whose degrees of freedom follow from mean and variance (F. E. Satterthwaite, An
         approximate distribution of estimates of variance components, Biometrics Bulletin 2, 1946).
         Of one dominant input there is one degree and the factor is 2; of noise alone it tends to 1.
-
-        Parameters
-        ----------
-        scale : mapping, optional
-            What to multiply the uncertainty of a name with; 1 if left out.
-
-        Returns
-        -------
-        float, float
-            `u_val`, and the coverage factor k: the rms of a right model's differences stays below
-            k u_val in 95.45 % of all cases.
         """
         scale = {} if scale is None else scale
         factor = np.array([scale.get(name, 1.0) for name in self.names])
@@ -112,21 +67,7 @@ class Spread:
         return float(np.sqrt(trace / len(self.noise))), float(expand)
 
     def shrink(self, error: float, name: str) -> float | None:
-        """How small an uncertainty has to be for an error to stand out.
-
-        Parameters
-        ----------
-        error : float
-            Root mean square of the differences.
-        name : str
-            Of an input, ``"numerics"`` or ``"noise"``. What inputs do in second order shrinks
-            along with any of them.
-
-        Returns
-        -------
-        float or None
-            What to multiply it with, from 0 to 1; None if the rest alone hides the error.
-        """
+        """How small an uncertainty has to be for an error to stand out."""
 
         def hides(factor: float) -> bool:
             with_it = {} if name in (NOISE, NUMERICS) else {SECOND_ORDER: factor}

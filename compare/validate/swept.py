@@ -13,40 +13,14 @@ from compare.validate.inputs import GAINS, INPUTS
 
 @dataclass(frozen=True)
 class Swept:
-    """What a sensor reads of a case, over the stations of the nominal one.
+    """What a sensor reads of a case, over the stations of the nominal one."""
 
-    Attributes
-    ----------
-    readings : array, shape (3, stations)
-        NaN where the vibrissa is free or has no trusted state.
-    snap_off : float or None
-        Its foot position [length].
-    """
-
-    readings: Floats
-    snap_off: float | None
+    readings: Floats  # shape (3, stations); NaN where the vibrissa is free or has no trusted state
+    snap_off: float | None  # its foot position [length]
 
 
 def swept(case: Case, changes: Mapping[str, float] | None = None) -> Swept:
-    """The closed form's sweep of a case whose inputs are off, over the stations of the case.
-
-    Parameters
-    ----------
-    case : Case
-        The nominal problem.
-    changes : mapping, optional
-        By how much each input differs, in its unit.
-
-    Returns
-    -------
-    Swept
-        In the unit of the case; its ``foot_x`` are the nominal ones.
-
-    Raises
-    ------
-    InputError, ArithmeticError
-        If the changed problem is none that can be solved.
-    """
+    """The closed form's sweep of a case whose inputs are off, over the stations of the case."""
     changes = {} if changes is None else changes
     start, stop = (float(x) + changes.get("foot_x", 0.0) for x in case.foot_x[[0, -1]])
     varied = replace(case, sweep=Sweep(2, direction=case.sweep.direction))

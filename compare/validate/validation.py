@@ -30,28 +30,16 @@ _DOMINATES = 0.5  # share of the variance
 
 @dataclass(frozen=True)
 class Difference:
-    """A disagreement and its uncertainty as root mean squares, relative to the readings.
+    """A disagreement and its uncertainty as root mean squares, relative to the readings."""
 
-    Attributes
-    ----------
-    error : float
-        Of E = S - D, simulation less data.
-    u_num, u_input, u_data : float
-        Standard uncertainties by numerics, inputs and noise.
-    u_val : float
-        All three together: the root of the sum of their squares.
-    coverage : float
-        k, by which u_val is expanded: E of a right model stays below k u_val in 95.45 %.
-    shares : dict
-        How much of u_val squared each input, the numerics and the noise make.
-    """
-
-    error: float
-    u_num: float
-    u_input: float
-    u_data: float
-    u_val: float
+    error: float  # of E = S - D, simulation less data
+    u_num: float  # standard uncertainties by numerics, inputs and noise
+    u_input: float  # standard uncertainties by numerics, inputs and noise
+    u_data: float  # standard uncertainties by numerics, inputs and noise
+    u_val: float  # all three together: the root of the sum of their squares
+    # K, by which u_val is expanded: E of a right model stays below k u_val in 95.45 %.
     coverage: float
+    # How much of u_val squared each input, the numerics and the noise make.
     shares: dict[str, float]
 
     @property
@@ -65,13 +53,7 @@ class Difference:
         return self.error > self.limit
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``comparison.json`` holds.
-
-        Returns
-        -------
-        dict
-            All attributes and properties.
-        """
+        """What ``comparison.json`` holds."""
         return {**asdict(self), "limit": self.limit, "resolved": self.resolved}
 
 

@@ -43,29 +43,7 @@ _UNIT = SpatialInertia(1.0, np.zeros(3), UnitInertia(1, 1, 1))  # at rest masses
 
 
 class DrakeChain:
-    """Drake's plant and its context; see `mujoco_models.model.balance.Balance`.
-
-    Parameters
-    ----------
-    beam : Beam
-        A chain: where its joints and beads are, and how stiff its springs.
-    radius : float
-        Of the vibrissa, at the clamp [L].
-    obstacle : Obstacle
-        What it is swept past, without sharp corners.
-    contact_stiffness : float
-        Force over penetration at every bead [EI/L^3].
-
-    Attributes
-    ----------
-    radii : array, shape (n_beads,)
-        Of the beads [L].
-
-    Raises
-    ------
-    InputError
-        If the obstacle is one that only MuJoCo's links or sliding beads can touch.
-    """
+    """Drake's plant and its context; see `mujoco_models.model.balance.Balance`."""
 
     def __init__(
         self, beam: Beam, radius: float, obstacle: Obstacle, contact_stiffness: float

@@ -37,19 +37,7 @@ from mujoco_models.model.contacts import Contacts
 
 
 class Beads:
-    """The spheres, as places on links.
-
-    Parameters
-    ----------
-    links : list of RigidBody
-        Those of the chain.
-    carriers : array of int, shape (n_beads,)
-        The link that carries each of them.
-    places : array, shape (n_beads, 2)
-        In the frames of their links [L].
-    radii : array, shape (n_beads,)
-        Of the spheres [L].
-    """
+    """The spheres, as places on links."""
 
     def __init__(
         self, links: list[RigidBody], carriers: Integers, places: Floats, radii: Floats
@@ -57,18 +45,7 @@ class Beads:
         self.links, self.carriers, self.places, self.radii = links, carriers, places, radii
 
     def body(self, bead: int) -> RigidBody:
-        """The link of a bead.
-
-        Parameters
-        ----------
-        bead : int
-            Its number.
-
-        Returns
-        -------
-        RigidBody
-            Drake's.
-        """
+        """The link of a bead."""
         return self.links[int(self.carriers[bead])]
 
 
@@ -142,23 +119,7 @@ class Touch(Protocol):
 
 
 class OwnLaw:
-    """Drake's own compliant point contact between spheres and obstacle; see `Touch`.
-
-    Parameters
-    ----------
-    plant : MultibodyPlant
-        Not yet finalized; the spheres are added to it.
-    scene : SceneGraph
-        Its geometry.
-    beads : Beads
-        The spheres.
-    thing : GeometryId
-        The obstacle's geometry.
-    obstacle : RigidBody
-        Its body.
-    material : ProximityProperties
-        Of both, see `material`.
-    """
+    """Drake's own compliant point contact between spheres and obstacle; see `Touch`."""
 
     def __init__(
         self,
@@ -222,17 +183,7 @@ class OwnLaw:
 
 
 class ByDistance:
-    """Stiffness times the depth that Drake's distances have, as external forces; see `Touch`.
-
-    Parameters
-    ----------
-    plant : MultibodyPlant
-        Not yet finalized.
-    beads : Beads
-        The spheres; the obstacle is the only geometry that Drake has.
-    stiffness : float
-        Force over depth [EI/L^3].
-    """
+    """Stiffness times the depth that Drake's distances have, as external forces; see `Touch`."""
 
     def __init__(self, plant: MultibodyPlant, beads: Beads, stiffness: float) -> None:
         self._plant, self._beads, self._stiffness = plant, beads, stiffness
@@ -275,18 +226,7 @@ class ByDistance:
 
 
 def material(stiffness: float) -> ProximityProperties:
-    """What makes Drake's contact of two bodies as stiff as that, without friction and damping.
-
-    Parameters
-    ----------
-    stiffness : float
-        Force over penetration of a pair [EI/L^3].
-
-    Returns
-    -------
-    ProximityProperties
-        For both bodies: Drake has them one behind the other, each twice as stiff as the pair.
-    """
+    """What makes Drake's contact of two bodies as stiff as that, without friction and damping."""
     properties = ProximityProperties()
     AddContactMaterial(
         dissipation=0.0,

@@ -32,43 +32,17 @@ class LostError(Exception):
 
 
 class Held(NamedTuple):
-    """What the cable is held by.
+    """What the cable is held by."""
 
-    Attributes
-    ----------
-    slides : bool
-        By the sliding joint, otherwise at its tip.
-    arc_length : float
-        Where along the cable [L].
-    point : array, shape (2,)
-        Where in space, seen from the foot [L].
-    along : array, shape (2,)
-        Unit vector at right angles to the force there: the sliding cable's tangent.
-    """
-
-    slides: bool
-    arc_length: float
-    point: Floats
+    slides: bool  # by the sliding joint, otherwise at its tip
+    arc_length: float  # where along the cable [L]
+    point: Floats  # shape (2,); Where in space, seen from the foot [L]
+    # Shape (2,); Unit vector at right angles to the force there: the sliding cable's tangent.
     along: Floats
 
 
 class Cable:
-    """A cable of `elements` elements, and a point where it is held.
-
-    Parameters
-    ----------
-    elements : int
-        How many.
-    vibrissa : Vibrissa
-        What it stands for: each element has the compliance and the natural curvature of its part.
-
-    Attributes
-    ----------
-    held : Held
-        What it is held by.
-    beyond : bool
-        Whether it has slipped out of the sliding joint.
-    """
+    """A cable of `elements` elements, and a point where it is held."""
 
     def __init__(self, elements: int, vibrissa: Vibrissa) -> None:
         exudyn.config.printToConsole = False  # a step that fails is halved
@@ -177,25 +151,11 @@ class Cable:
             )
 
     def state(self) -> tuple[Held, list[Floats]]:
-        """How it is held, and its shape.
-
-        Returns
-        -------
-        held : Held
-            What by.
-        solver : list of array
-            Exudyn's coordinates and multipliers; both for `go_back`.
-        """
+        """How it is held, and its shape."""
         return self.held, [np.array(part) for part in self._system.systemData.GetSystemState()]
 
     def go_back(self, state: tuple[Held, list[Floats]]) -> None:
-        """Start from there.
-
-        Parameters
-        ----------
-        state : tuple
-            Of `state`.
-        """
+        """Start from there."""
         held, solver = state
         self._system.systemData.SetSystemState(solver, configuration=_START)
         self._hold(held)
@@ -205,15 +165,7 @@ class Cable:
         self._hold(self.held._replace(slides=False, arc_length=1.0))
 
     def let_slide(self, arc_length: float, point: Floats) -> None:
-        """Be held by the sliding joint.
-
-        Parameters
-        ----------
-        arc_length : float
-            Where the cable is in it [L].
-        point : array, shape (2,)
-            Where in space that is, seen from the foot [L].
-        """
+        """Be held by the sliding joint."""
         self._hold(self.held._replace(slides=True, arc_length=arc_length, point=point))
 
     def _hold(self, held: Held) -> None:
@@ -227,21 +179,6 @@ class Cable:
         Exudyn's sliding joint lets its force act where the cable was in it when the solution began,
         and a second time by how far it has slipped since. So the solution is repeated from there
         until it slips no more.
-
-        Parameters
-        ----------
-        point : array, shape (2,)
-            Where it is held, seen from the foot [L].
-
-        Returns
-        -------
-        array, shape (3,)
-            force_x, force_y and moment_z of the clamp.
-
-        Raises
-        ------
-        LostError
-            If it does not come to rest.
         """
         mbs = self._system
         mbs.SetObjectParameter(self._point, "referencePosition", [*point.tolist(), 0.0])
@@ -286,13 +223,7 @@ class Cable:
         return on
 
     def ends(self) -> tuple[Floats, Floats]:
-        """Positions and tangents of the nodes, of the state that `solve` found.
-
-        Returns
-        -------
-        positions, tangents : array, shape (n_elements + 1, 2)
-            Seen from the foot [L]; derivatives by arc length.
-        """
+        """Positions and tangents of the nodes, of the state that `solve` found."""
         coordinates = np.array([self._system.GetNodeOutput(i, _COORDINATES) for i in self._nodes])
         both = coordinates + self._upright
         return both[:, :2], both[:, 2:]

@@ -34,15 +34,7 @@ _INSIDE = 1e-4  # L; ten times a turn of the contour between these
 
 
 class Contact:
-    """A cable, a contour and where they touch; see `engines.stations.Rest`.
-
-    Parameters
-    ----------
-    case : Case
-        Of a sweep to the left.
-    elements : int
-        Of the cable.
-    """
+    """A cable, a contour and where they touch; see `engines.stations.Rest`."""
 
     def __init__(self, case: Case, elements: int) -> None:
         rest, self._line = case.beam.unloaded, case.centreline

@@ -28,33 +28,7 @@ def gate(
     stiffnesses: Sequence[float] = STIFFNESSES,
     advance: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
-    """Evaluate MuJoCo's states at rest in single precision, for several contact stiffnesses.
-
-    Parameters
-    ----------
-    case : Case
-        The problem, whichever way its foot moves.
-    settings : Settings
-        The numerics; the obstacle is always the primitive, so that no search on a mesh takes part.
-    stiffnesses : sequence of float
-        Of the contacts [EI/L^3].
-    advance : callable
-        Called after every station.
-
-    Returns
-    -------
-    pandas.DataFrame
-        A row for each stiffness and each station that MuJoCo brought to rest in contact,
-        dimensionless: ``contact_stiffness``, ``foot_x``, ``load``, the deepest contact's ``depth``
-        and ``resolution``; ``depth_error``, that contact's; ``lost``, whether Warp has no loaded
-        contact, and ``chance``, how likely that was to be; ``force_error`` and ``imbalance``, and
-        what was predicted of them.
-
-    Raises
-    ------
-    InputError
-        If MuJoCo's beam is not the planar chain, or it has no such vibrissa or obstacle.
-    """
+    """Evaluate MuJoCo's states at rest in single precision, for several contact stiffnesses."""
     if settings.beam != "chain" or not settings.planar:
         raise InputError(
             "beam for mujoco-warp",
@@ -80,21 +54,7 @@ def gate(
 
 
 def by_stiffness(table: pd.DataFrame) -> pd.DataFrame:
-    """What was found and what was predicted, for each contact stiffness.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        As `gate` returns it.
-
-    Returns
-    -------
-    pandas.DataFrame
-        A row a stiffness: ``contact_stiffness``, ``stations``, the medians of ``depth`` and
-        ``resolution``, ``lost`` and ``predicted_lost`` stations; rms of ``force_error`` over the
-        largest load and of ``imbalance`` [EI/L], and what was predicted of them; and
-        ``depth_error``, the rms of the deepest contacts' errors over their resolutions.
-    """
+    """What was found and what was predicted, for each contact stiffness."""
     rows = []
     for stiffness, group in table.groupby("contact_stiffness"):
         largest = group["load"].max()

@@ -24,20 +24,6 @@ def covariance(model: BeamModel, normal: Floats, beads: Integers) -> Floats:
 
     Neighbours share most of what is rounded: the cylinder's radius and place, the joints before
     them and the turns there. Only their own places and distances are rounded apart.
-
-    Parameters
-    ----------
-    model : BeamModel
-        In a configuration that MuJoCo has evaluated, past a cylinder.
-    normal : array, shape (n, 2)
-        Of the contacts, away from the obstacle.
-    beads : array of int, shape (n,)
-        The beads that touch, or nearly do.
-
-    Returns
-    -------
-    array, shape (n, n)
-        [L^2]
     """
     obstacle, layout = model.obstacle, model.layout
     centre, radius = obstacle.circle(model.lookout.window)  # type: ignore[attr-defined]
@@ -60,36 +46,12 @@ def covariance(model: BeamModel, normal: Floats, beads: Integers) -> Floats:
 
 
 def across(normal: Floats) -> Floats:
-    """How a turn of a lever shifts its end along the normal.
-
-    Parameters
-    ----------
-    normal : array, shape (n, 2)
-        Unit vectors.
-
-    Returns
-    -------
-    array, shape (n, 2)
-        To be multiplied by the lever.
-    """
+    """How a turn of a lever shifts its end along the normal."""
     return np.column_stack([normal[:, 1], -normal[:, 0]])
 
 
 def chance_of_loss(depth: Floats, together: Floats) -> float:
-    """How likely it is that none of the contacts is seen.
-
-    Parameters
-    ----------
-    depth : array, shape (n,)
-        Of all beads that touch or nearly do; negative if they do not [L].
-    together : array, shape (n, n)
-        Covariance of the depths [L^2].
-
-    Returns
-    -------
-    float
-        Probability, to 1e-3.
-    """
+    """How likely it is that none of the contacts is seen."""
     deviation = np.sqrt(np.diag(together))
     uncertain = depth > -_CERTAIN * deviation
     if (depth > _CERTAIN * deviation).any():
@@ -102,20 +64,7 @@ def chance_of_loss(depth: Floats, together: Floats) -> float:
 
 
 def force_deviation(depth: Floats, deviation: Floats) -> Floats:
-    """How far off the force of a contact is, over its stiffness: the rms of max(depth, 0).
-
-    Parameters
-    ----------
-    depth : array, shape (n,)
-        Negative where beads do not touch [L].
-    deviation : array, shape (n,)
-        Standard deviations of the depths [L].
-
-    Returns
-    -------
-    array, shape (n,)
-        [L]
-    """
+    """How far off the force of a contact is, over its stiffness: the rms of max(depth, 0)."""
     ratio, held = depth / deviation, np.maximum(depth, 0)
     mean = depth * norm.cdf(ratio) + deviation * norm.pdf(ratio)
     square = (depth**2 + deviation**2) * norm.cdf(ratio) + depth * deviation * norm.pdf(ratio)

@@ -18,21 +18,13 @@ _CONTACTS, _ROWS = 256, 256  # that Warp has room for; the beads that are near a
 
 @dataclass(frozen=True)
 class Evaluated:
-    """Contacts and forces of one configuration, dimensionless: L = EI = 1.
+    """Contacts and forces of one configuration, dimensionless: L = EI = 1."""
 
-    Attributes
-    ----------
-    distance : array, shape (n_beads,)
-        Of each bead's surface from the obstacle; infinite where Warp reports no contact [L].
-    force : array, shape (2,)
-        Of the obstacle on the beam [EI/L^2].
-    imbalance : float
-        Largest moment out of balance at a joint [EI/L].
-    """
-
+    # Shape (n_beads,); Of each bead's surface from the obstacle; infinite where Warp reports no
+    # contact [L].
     distance: Floats
-    force: Floats
-    imbalance: float
+    force: Floats  # shape (2,); Of the obstacle on the beam [EI/L^2]
+    imbalance: float  # largest moment out of balance at a joint [EI/L]
 
 
 def evaluate(model: BeamModel) -> Evaluated:
@@ -41,16 +33,6 @@ def evaluate(model: BeamModel) -> Evaluated:
     Warp's own kinematics, collisions, springs and constraints. The force of a contact is that of
     its constraint at zero acceleration, stiffness times depth. A step of Warp's would let
     the contact accelerate, and show a part of that only.
-
-    Parameters
-    ----------
-    model : BeamModel
-        Whose state was evaluated last; it is not changed.
-
-    Returns
-    -------
-    Evaluated
-        In double precision, from Warp's single.
     """
     compiled = _for_warp(model)
     there = mujoco_warp.put_model(compiled)

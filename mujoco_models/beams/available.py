@@ -8,15 +8,9 @@ from mujoco_models.allowed import BeamKind
 
 
 class Beams(tuple[BeamKind, ...]):
-    """The beams that there are; ``missing`` gives for each other one the reason why it is not.
+    """The beams that there are; ``missing`` gives for each other one the reason why it is not."""
 
-    Attributes
-    ----------
-    missing : dict
-        Reason by name.
-    """
-
-    missing: dict[str, str]
+    missing: dict[str, str]  # reason by name
 
 
 @cache  # the metadata are a long file
@@ -41,18 +35,7 @@ def available_beams() -> Beams:
 
 
 def require(beam: str) -> None:
-    """Refuse a beam that the installed MuJoCo lacks.
-
-    Parameters
-    ----------
-    beam : str
-        Its name.
-
-    Raises
-    ------
-    InputError
-        Naming the version that has it.
-    """
+    """Refuse a beam that the installed MuJoCo lacks."""
     beams = available_beams()
     if beam in beams.missing:
         raise InputError(

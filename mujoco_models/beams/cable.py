@@ -38,22 +38,7 @@ _XML = """
 
 
 class Cable(Balls):
-    """A composite cable; see `mujoco_models.beams.protocol.Beam`.
-
-    Parameters
-    ----------
-    settings : Settings
-        Number of segments, and which clamp.
-    spacing : float
-        Of the beads, at most [L].
-    vibrissa : Vibrissa, optional
-        What it is a model of.
-    twist : float
-        GJ/EI. At rest nothing twists the vibrissa, so that any would do; but the plugin's moments
-        derive from an energy only if it resists twisting as it does bending. At GJ = 0.1 EI or
-        10 EI the stiffness of a bent cable sideways is wrong by 2 % at N = 40, of second order in
-        1/N.
-    """
+    """A composite cable; see `mujoco_models.beams.protocol.Beam`."""
 
     def __init__(
         self,

@@ -20,27 +20,7 @@ _SPATIAL: _Kinds = {"chain": SpatialChain, "rod": SpatialRod, "cable": Cable}
 
 
 def build(settings: Settings, spacing: float, vibrissa: Vibrissa | None = None) -> Beam:
-    """The beam that the settings ask for, with beads at most `spacing` apart [L].
-
-    Parameters
-    ----------
-    settings : Settings
-        Which beam, of how many segments.
-    spacing : float
-        Of the beads [L].
-    vibrissa : Vibrissa, optional
-        What it is a model of; straight and rigidly clamped if it is not given.
-
-    Returns
-    -------
-    Beam
-        Not yet a model of MuJoCo's.
-
-    Raises
-    ------
-    InputError
-        If the installed MuJoCo lacks it, or it may leave the plane and is not plain.
-    """
+    """The beam that the settings ask for, with beads at most `spacing` apart [L]."""
     require(settings.beam)
     vibrissa = vibrissa or Vibrissa()
     if not (settings.planar or vibrissa.is_plain):

@@ -27,36 +27,27 @@ class Layout:
     curved. So the joints turn by what bends, and by nothing at rest; and where a curved vibrissa
     touches tangentially, its slope is the link's at that place. Straight links with turned joints
     would jump there by curvature times cell, which makes readings of first order in the cell.
-
-    Attributes
-    ----------
-    joints : array, shape (n_joints,)
-        Arc length of each joint, or vertex, where the beam bends; link i begins at joint i. The
-        first is at 0 if the clamp turns.
-    compliances : array, shape (n_joints,)
-        Turn of each joint by moment: of the piece of beam, a cell, that bends there, or of the
-        clamp [L/EI].
-    beads : array, shape (n_beads,)
-        Arc length of each bead, the last one at the tip; none before the first joint.
-    links : array of int, shape (n_beads,)
-        The link that carries each bead; a bead at a joint is carried by the link that ends there.
-    vibrissa : Vibrissa
-        What the beam stands for.
-    base : array, shape (n_joints, 2)
-        Where each link of the unloaded beam begins, as seen from the foot [L].
-    chords : array, shape (n_joints,)
-        Distance from a link's begin to its end; of a straight one, its length [L].
-    headings : array, shape (n_joints,)
-        Turn of the chord of each link of the unloaded beam from the upright, to the left [rad].
     """
 
+    # Shape (n_joints,); Arc length of each joint, or vertex, where the beam bends; link i begins at
+    # joint i. The first is at 0 if the clamp turns.
     joints: Floats
+    # Shape (n_joints,); Turn of each joint by moment: of the piece of beam, a cell, that bends
+    # there, or of the clamp [L/EI].
     compliances: Floats
+    # Shape (n_beads,); Arc length of each bead, the last one at the tip; none before the first
+    # joint.
     beads: Floats
+    # Shape (n_beads,); The link that carries each bead; a bead at a joint is carried by the link
+    # that ends there.
     links: Integers
-    vibrissa: Vibrissa
+    vibrissa: Vibrissa  # what the beam stands for
+    # Shape (n_joints, 2); Where each link of the unloaded beam begins, as seen from the foot [L].
     base: Floats
+    # Shape (n_joints,); Distance from a link's begin to its end; of a straight one, its length [L].
     chords: Floats
+    # Shape (n_joints,); Turn of the chord of each link of the unloaded beam from the upright, to
+    # the left [rad].
     headings: Floats
 
     @classmethod
@@ -68,27 +59,7 @@ class Layout:
         spacing: float,
         vibrissa: Vibrissa | None = None,
     ) -> "Layout":
-        """Beads at most `spacing` apart, and at least two to a link, or one at each link's end.
-
-        Parameters
-        ----------
-        joints : array, shape (n,)
-            Arc lengths where cells of a uniform beam bend; one that varies bends as far from there
-            as the centroid of a cell's compliance is from its middle [L].
-        cells : array, shape (n,)
-            Their lengths [L].
-        edges : array, shape (n + 1,)
-            Where one cell ends and the next one begins [L].
-        spacing : float
-            Of the beads [L]; infinite for one a link.
-        vibrissa : Vibrissa, optional
-            Straight, uniform and rigidly clamped if it is not given.
-
-        Returns
-        -------
-        Layout
-            With a joint more if the clamp turns.
-        """
+        """Beads at most `spacing` apart, and at least two to a link, or one at each link's end."""
         vibrissa = vibrissa or Vibrissa()
         softness, offset = vibrissa.bending(edges)
         joints, compliances = joints + offset, cells * softness
@@ -151,31 +122,12 @@ class Layout:
         return turned(there.T, -self.headings[self.links])
 
     def move(self, beads: Integers, places: Floats) -> None:
-        """Let beads be elsewhere on their links.
-
-        Parameters
-        ----------
-        beads : array of int, shape (n,)
-            Their numbers.
-        places : array, shape (n,)
-            Their arc lengths [L].
-        """
+        """Let beads be elsewhere on their links."""
         self.beads[beads] = places
         self.__dict__.pop("from_links", None)
 
     def tip_angle(self, angles: Floats) -> float:
-        """Slope angle of the tip.
-
-        Parameters
-        ----------
-        angles : array, shape (n_joints,)
-            Turns of the joints [rad].
-
-        Returns
-        -------
-        float
-            Angle from the foot line [rad].
-        """
+        """Slope angle of the tip."""
         return np.pi / 2 + float(angles.sum()) + self._tip_turn
 
     @cached_property
@@ -188,18 +140,6 @@ class Layout:
 
         A link's frame has its origin where the link begins, and its y axis along the chord; the
         foot's is upright.
-
-        Parameters
-        ----------
-        link : int
-            Number of the link; the one before it is the foot, for 0.
-
-        Returns
-        -------
-        offset : array, shape (2,)
-            Of the link's origin, in the frame before [L].
-        turn : float
-            Of the link's axes from the axes before [rad].
         """
         before, heading = np.zeros(2), 0.0
         if link > 0:
@@ -207,60 +147,19 @@ class Layout:
         return turned(self.base[link] - before, -heading), self.headings[link] - heading
 
     def within(self, link: int, s: Floats) -> Floats:
-        """Where arc lengths are in the frame of their link.
-
-        Parameters
-        ----------
-        link : int
-            Number of the link.
-        s : array, shape (n,)
-            Arc lengths [L].
-
-        Returns
-        -------
-        array, shape (2, n)
-            Across and along the chord [L].
-        """
+        """Where arc lengths are in the frame of their link."""
         there = self.vibrissa.at(s) - self.base[link]
         return turned(there.T, -float(self.headings[link]))
 
 
 def turned(vector: Floats, angle: float | Floats) -> Floats:
-    """A vector, turned to the left.
-
-    Parameters
-    ----------
-    vector : array, shape (2, ...)
-        One, or several.
-    angle : float, or array, shape (...)
-        Angle [rad].
-
-    Returns
-    -------
-    array, shape of `vector`
-        The turned ones.
-    """
+    """A vector, turned to the left."""
     cos, sin = np.cos(angle), np.sin(angle)
     return np.array([cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1]])
 
 
 def bead_spacing(segments: int, radius: float, curvature: float) -> float:
-    """How far apart beads may be on a beam of so many segments [L].
-
-    Parameters
-    ----------
-    segments : int
-        Number of segments.
-    radius : float
-        Of the vibrissa [L].
-    curvature : float
-        Largest curvature of the contour, may be 0 [1/L].
-
-    Returns
-    -------
-    float
-        Spacing [L].
-    """
+    """How far apart beads may be on a beam of so many segments [L]."""
     turning = OF_CURVATURE / max(curvature, OF_CURVATURE)
     of_contact = max(min(_OF_RADIUS * radius, turning), _LEAST)
     return min(of_contact, max(_OF_CELLS / segments**2, _LEAST_OF_CELLS))
@@ -272,19 +171,6 @@ def vertices(settings: Settings, grading: float = 0.0) -> Floats:
     The first segment is rigid in the clamp. If it straddles the clamp, as much before it as behind,
     the vertices that bend sit at the centres of their cells, and the beam is of second order; if it
     begins there (the naive beam), it is of first order.
-
-    Parameters
-    ----------
-    settings : Settings
-        Number of segments, and which clamp.
-    grading : float
-        How much longer segments grow towards the tip: by (1 + 3 grading) from the clamp on. The
-        naive beam has equal ones.
-
-    Returns
-    -------
-    array, shape (N + 1,)
-        Arc lengths, ascending [L].
     """
     n = settings.segments
     if settings.clamp == "naive":

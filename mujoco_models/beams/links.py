@@ -14,13 +14,7 @@ _ARMATURE = 1e-4  # of a joint with unit stiffness: likewise
 
 
 class HingedLinks:
-    """Links that turn about z, on hinges whose angles are MuJoCo's own coordinates.
-
-    Parameters
-    ----------
-    layout : Layout
-        Where the joints and the beads are.
-    """
+    """Links that turn about z, on hinges whose angles are MuJoCo's own coordinates."""
 
     def __init__(self, layout: Layout) -> None:
         self.layout = layout
@@ -81,18 +75,7 @@ class HingedLinks:
 
 
 def link_name(link: int) -> str:
-    """Name of a link's body.
-
-    Parameters
-    ----------
-    link : int
-        Its number.
-
-    Returns
-    -------
-    str
-        The name.
-    """
+    """Name of a link's body."""
     return _prefix(link) + _own_name(link)
 
 
@@ -105,18 +88,7 @@ def _own_name(link: int) -> str:
 
 
 def about_z(turn: float) -> Floats:
-    """A turn about z.
-
-    Parameters
-    ----------
-    turn : float
-        Angle [rad].
-
-    Returns
-    -------
-    array, shape (4,)
-        Quaternion.
-    """
+    """A turn about z."""
     return np.array([np.cos(turn / 2), 0, 0, np.sin(turn / 2)])
 
 

@@ -15,15 +15,7 @@ Furnish = Callable[[mujoco.MjsBody, int], None]
 
 
 def bare(body: mujoco.MjsBody, link: int) -> None:
-    """A link that carries nothing.
-
-    Parameters
-    ----------
-    body : mujoco.MjsBody
-        The link's.
-    link : int
-        Its number.
-    """
+    """A link that carries nothing."""
 
 
 class Beam(Protocol):

@@ -15,38 +15,17 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)  # of a piece of a cell, 
 
 @dataclass(frozen=True)
 class Vibrissa:
-    """Dimensionless: its length, and its flexural rigidity at the clamp, are 1.
+    """Dimensionless: its length, and its flexural rigidity at the clamp, are 1."""
 
-    Attributes
-    ----------
-    rest : Unloaded
-        Its shape and radius at rest.
-    rigidity : Along, optional
-        Flexural rigidity along it, in arc lengths of the case and any unit; if it is not given, it
-        follows the fourth power of the radius.
-    clamp_compliance : float
-        Turn of the clamp by moment, 0 if it is rigid [L/EI].
-    """
-
-    rest: Unloaded = field(default_factory=lambda: Beam().unloaded)
+    rest: Unloaded = field(default_factory=lambda: Beam().unloaded)  # its shape and radius at rest
+    # Flexural rigidity along it, in arc lengths of the case and any unit; if it is not given, it
+    # follows the fourth power of the radius.
     rigidity: Along | None = None
-    clamp_compliance: float = 0.0
+    clamp_compliance: float = 0.0  # turn of the clamp by moment, 0 if it is rigid [L/EI]
 
     @classmethod
     def of(cls, beam: Beam, clamp_stiffness: float = math.inf) -> "Vibrissa":
-        """That of a case whose foot moves to the left.
-
-        Parameters
-        ----------
-        beam : Beam
-            The case's.
-        clamp_stiffness : float
-            Moment of the clamp by its rotation [force length/rad].
-
-        Returns
-        -------
-        Vibrissa
-        """
+        """That of a case whose foot moves to the left."""
         given = beam.flexural_rigidity
         rigidity = given if isinstance(given, Along) else None
         return cls(beam.unloaded, rigidity, beam.moment_unit / clamp_stiffness)
@@ -68,69 +47,22 @@ class Vibrissa:
         return self.is_straight and uniform and self.clamp_compliance == 0
 
     def turn(self, s: Floats) -> Floats:
-        """By how much the unloaded vibrissa is turned from the upright, to the left.
-
-        Parameters
-        ----------
-        s : array, any shape
-            Arc length [L].
-
-        Returns
-        -------
-        array, shape of `s`
-            Angle [rad].
-        """
+        """By how much the unloaded vibrissa is turned from the upright, to the left."""
         return np.asarray(self.rest.at(s)[2] - np.pi / 2)
 
     def at(self, s: Floats) -> Floats:
-        """Where the unloaded vibrissa is, as seen from the foot.
-
-        Parameters
-        ----------
-        s : array, shape (...)
-            Arc length [L].
-
-        Returns
-        -------
-        array, shape (..., 2)
-            Position [L].
-        """
+        """Where the unloaded vibrissa is, as seen from the foot."""
         x, y, _ = self.rest.at(s)
         return np.stack([x, y], axis=-1)
 
     def thickness(self, s: Floats) -> Floats:
-        """Radius over that at the clamp.
-
-        Parameters
-        ----------
-        s : array, any shape
-            Arc length [L].
-
-        Returns
-        -------
-        array, shape of `s`
-            1 everywhere but on a cone.
-        """
+        """Radius over that at the clamp."""
         if not self.is_cone:
             return np.ones_like(s)
         return (self.rest.tip_radius + self.rest.taper(s)) / self.rest.base_radius
 
     def bending(self, edges: Floats) -> tuple[Floats, Floats]:
-        """How pieces of the vibrissa bend, and where.
-
-        Parameters
-        ----------
-        edges : array, shape (n + 1,)
-            Arc lengths at which n pieces begin and end, ascending [L].
-
-        Returns
-        -------
-        softness : array, shape (n,)
-            Mean of 1/rigidity over each piece: its compliance over that of as long a piece at the
-            clamp.
-        offset : array, shape (n,)
-            Of the centroid of its compliance from its middle, towards the tip [L].
-        """
+        """How pieces of the vibrissa bend, and where."""
         if self.rigidity is not None:
             return self._by_quadrature(self.rigidity, edges)
         thick = self.thickness(edges)

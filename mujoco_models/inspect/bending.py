@@ -7,28 +7,19 @@ from analytic.problem.arrays import Floats
 
 @dataclass(frozen=True, eq=False)
 class Bending:
-    """Small displacements about a state at rest.
+    """Small displacements about a state at rest."""
 
-    Attributes
-    ----------
-    compliances : array, shape (n_joints,)
-        Turn over moment of each joint, about the axis across the sweep [1/(force length)].
-    tip_compliance : float
-        Displacement of the tip over a force on it, both along the sweep [length/force].
-    squares : array, shape (n,)
-        Squares of the angular frequencies of free vibration, ascending [1/time^2].
-    damping : array, shape (n,)
-        Rates at which dampers slow these vibrations: twice the damping ratio times the angular
-        frequency [1/time].
-    slowest_without_armature : float
-        The first of the squares without the joints' own inertia [1/time^2].
-    stretch : float
-        Strain of its edges over a pull along them; 0 for what cannot stretch [1/force].
-    """
-
+    # Shape (n_joints,); Turn over moment of each joint, about the axis across the sweep [1/(force
+    # length)].
     compliances: Floats
+    # Displacement of the tip over a force on it, both along the sweep [length/force].
     tip_compliance: float
+    # Shape (n,); Squares of the angular frequencies of free vibration, ascending [1/time^2].
     squares: Floats
+    # Shape (n,); Rates at which dampers slow these vibrations: twice the damping ratio times the
+    # angular frequency [1/time].
     damping: Floats
+    # The first of the squares without the joints' own inertia [1/time^2].
     slowest_without_armature: float
+    # Strain of its edges over a pull along them; 0 for what cannot stretch [1/force].
     stretch: float = 0.0

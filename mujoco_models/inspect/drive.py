@@ -16,45 +16,15 @@ _FREE, _SLIDE = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_SLIDE
 
 @dataclass(frozen=True)
 class Mover:
-    """A mocap body, or a slide joint with or without an actuator.
+    """A mocap body, or a slide joint with or without an actuator."""
 
-    Attributes
-    ----------
-    mocap : int or None
-        The mocap body.
-    joint : int or None
-        The slide, or the free joint that is welded to the mocap body.
-    actuator : int or None
-        Of the slide.
-    """
-
-    mocap: int | None = None
-    joint: int | None = None
-    actuator: int | None = None
+    mocap: int | None = None  # the mocap body
+    joint: int | None = None  # the slide, or the free joint that is welded to the mocap body
+    actuator: int | None = None  # of the slide
 
 
 def mover_of(model: mujoco.MjModel, foot: int, left: Floats) -> Mover | None:
-    """What can move a body along the sweep.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's.
-    foot : int
-        The body.
-    left : array, shape (3,)
-        The direction of the sweep in the world.
-
-    Returns
-    -------
-    Mover or None
-        The innermost one; None if nothing can, or if a free joint lets it fall.
-
-    Raises
-    ------
-    InputError
-        If something else holds what could move it.
-    """
+    """What can move a body along the sweep."""
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     welded = None
@@ -72,39 +42,13 @@ def mover_of(model: mujoco.MjModel, foot: int, left: Floats) -> Mover | None:
 
 
 def slides(model: mujoco.MjModel, foot: int) -> Iterator[int]:
-    """Slide joints that carry a body, the innermost first.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's.
-    foot : int
-        The body.
-
-    Yields
-    ------
-    int
-        A joint.
-    """
+    """Slide joints that carry a body, the innermost first."""
     for body in holders(model, foot):
         yield from (j for j in _joints(model, body) if model.jnt_type[j] == _SLIDE)
 
 
 def holders(model: mujoco.MjModel, body: int) -> Iterator[int]:
-    """A body and all that hold it, but for the world; what is free is held by its weld.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's.
-    body : int
-        The innermost one.
-
-    Yields
-    ------
-    int
-        A body.
-    """
+    """A body and all that hold it, but for the world; what is free is held by its weld."""
     seen: set[int] = set()
     while body > 0 and body not in seen:
         yield body
@@ -114,27 +58,7 @@ def holders(model: mujoco.MjModel, body: int) -> Iterator[int]:
 
 
 def drive_of(model: mujoco.MjModel, foot: int, left: Floats) -> str | None:
-    """What can move a body along the sweep, in words.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's.
-    foot : int
-        The body.
-    left : array, shape (3,)
-        The direction of the sweep in the world.
-
-    Returns
-    -------
-    str or None
-        As ``"mocap body 'hand'"``; None if nothing can.
-
-    Raises
-    ------
-    InputError
-        As `mover_of` does.
-    """
+    """What can move a body along the sweep, in words."""
     mover = mover_of(model, foot, left)
     if mover is None:
         return None

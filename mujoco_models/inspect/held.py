@@ -20,32 +20,7 @@ _AT_REST = 1e-9  # of a joint's stiffness: rad by which it is out of balance
 
 
 class Held(Sensing):
-    """A model whose foot is held, without contacts and gravity, and loads on the tip.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's; a copy of it is held.
-    parts : Parts
-        What of it is the vibrissa.
-
-    Attributes
-    ----------
-    model, data : mujoco.MjModel, mujoco.MjData
-        The copy, and its state.
-    parts : Parts
-        As given.
-    dofs : array of int, shape (n,)
-        The coordinates in which the vibrissa bends.
-    gravity : array, shape (3,)
-        The model's.
-    cutoffs : array, shape (n_sensors,)
-        The model's, which are without effect here; 0 for none.
-    small : float
-        Loads by which sensors are probed, in the linear range [EI/L^2, EI/L].
-    tip_in_body : array, shape (3,)
-        Where the tip is in the frame of the last body.
-    """
+    """A model whose foot is held, without contacts and gravity, and loads on the tip."""
 
     small = 1e-4
 
@@ -107,23 +82,11 @@ class Held(Sensing):
         return np.array(self.data.xanchor[first])
 
     def load(self, force: Floats, torque: Floats) -> None:
-        """Load the tip.
-
-        Parameters
-        ----------
-        force, torque : array, shape (3,)
-            In the world frame, and they stay so; in the model's units.
-        """
+        """Load the tip."""
         self._force[:], self._torque[:] = force, torque
 
     def evaluate(self) -> Floats:
-        """What is out of balance at rest.
-
-        Returns
-        -------
-        array, shape (n,)
-            Generalised forces in `dofs`.
-        """
+        """What is out of balance at rest."""
         data = self.data
         data.qvel[:] = 0
         mujoco.mj_fwdPosition(self.model, data)  # where the tip is, before its load is put on it
@@ -135,13 +98,7 @@ class Held(Sensing):
         return np.asarray((data.qfrc_smooth + data.qfrc_constraint)[self.dofs])
 
     def stiffness(self) -> Floats:
-        """How what is out of balance falls with each turn, at the present state.
-
-        Returns
-        -------
-        array, shape (n, n)
-            Moments over turns.
-        """
+        """How what is out of balance falls with each turn, at the present state."""
         start = self.data.qpos.copy()
         columns = []
         for dof in self.dofs:
@@ -158,13 +115,7 @@ class Held(Sensing):
         return np.array(columns).T
 
     def unload(self) -> None:
-        """Take loads away and put the vibrissa to rest as it is by itself.
-
-        Raises
-        ------
-        InputError
-            As of `rest`.
-        """
+        """Take loads away and put the vibrissa to rest as it is by itself."""
         self.set_back()
         self.rest()
 
@@ -173,11 +124,6 @@ class Held(Sensing):
 
         A slope serves as long as its steps halve what is out of balance, those of other loads too;
         and they go on to where rounding stops them, since sensors are probed by small loads.
-
-        Raises
-        ------
-        InputError
-            If nothing holds a joint, or no rest is found.
         """
         before = np.inf
         for _ in range(_ITERATIONS):
@@ -223,18 +169,7 @@ class Held(Sensing):
         return slope
 
     def bending(self, axes: Floats) -> Bending:
-        """How it bends and vibrates about its present state, by its stiffness and inertia.
-
-        Parameters
-        ----------
-        axes : array, shape (3, 3)
-            Of the sweep, in rows.
-
-        Returns
-        -------
-        Bending
-            In the plane of the sweep; vibrations in all directions.
-        """
+        """How it bends and vibrates about its present state, by its stiffness and inertia."""
         stiffness = self.stiffness()
         flexibility = np.linalg.inv(stiffness)
         turns = self._turns(axes[2])

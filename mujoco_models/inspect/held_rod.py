@@ -33,24 +33,7 @@ _ON_EDGE = 0.05  # of its length, by which a site may be aside of the first edge
 
 
 class HeldRod(Sensing):
-    """A rod whose foot is held, without contacts and gravity, and loads on its tip.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's; a copy of it is held.
-    parts : Parts
-        What of it is the vibrissa.
-    rod : Rod
-        Its vertices.
-
-    Attributes
-    ----------
-    model, data, parts, dofs, gravity, cutoffs, small
-        As of `mujoco_models.inspect.held.Held`.
-    rod : Rod
-        As given.
-    """
+    """A rod whose foot is held, without contacts and gravity, and loads on its tip."""
 
     small = _TINY
 
@@ -121,13 +104,7 @@ class HeldRod(Sensing):
         return np.asarray(first + share * way if there else first)
 
     def unload(self) -> None:
-        """Take loads away and put the rod to rest as it is by itself.
-
-        Raises
-        ------
-        InputError
-            As of `rest`.
-        """
+        """Take loads away and put the rod to rest as it is by itself."""
         self.set_back()
         if self._unloaded is None:
             self.rest()
@@ -135,23 +112,11 @@ class HeldRod(Sensing):
         mujoco.mj_copyData(self.data, self.model, self._unloaded)
 
     def load(self, force: Floats, torque: Floats) -> None:
-        """Load the tip.
-
-        Parameters
-        ----------
-        force, torque : array, shape (3,)
-            In the world frame, and they stay so; in the model's units.
-        """
+        """Load the tip."""
         self._force, self._torque = force, torque
 
     def rest(self) -> None:
-        """Let the vibrissa come to rest under its loads, by steps of MuJoCo's.
-
-        Raises
-        ------
-        InputError
-            If it does not.
-        """
+        """Let the vibrissa come to rest under its loads, by steps of MuJoCo's."""
         if not self._settles(_LONGEST):
             name = mujoco.mj_id2name(self.model, mujoco.mjtObj.mjOBJ_FLEX, self.rod.flex)
             raise InputError(
@@ -217,18 +182,7 @@ class HeldRod(Sensing):
         return np.array(self.data.xaxis[first : first + count])
 
     def bending(self, axes: Floats) -> Bending:
-        """How it bends and vibrates about its own first state.
-
-        Parameters
-        ----------
-        axes : array, shape (3, 3)
-            Of the sweep, in rows.
-
-        Returns
-        -------
-        Bending
-            Of loads on the tip; vibrations are of masses on a chain with these joints.
-        """
+        """How it bends and vibrates about its own first state."""
         natural = self._rigidity / self._length**2
         unit = _SMALL * natural
         self.unload()

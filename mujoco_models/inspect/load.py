@@ -23,26 +23,7 @@ FORCE, TORQUE = "vibrissa-force", "vibrissa-torque"
 
 
 def load(path: Path, site: str | None = None) -> mujoco.MjModel:
-    """Read and compile a model; nothing of its files is changed.
-
-    Parameters
-    ----------
-    path : Path
-        MJCF or URDF; includes, meshes and textures are found as MuJoCo finds them.
-    site : str, optional
-        Where to add a force and a torque sensor, in memory.
-
-    Returns
-    -------
-    mujoco.MjModel
-        As its files say.
-
-    Raises
-    ------
-    InputError
-        If it is named otherwise, there is no such file or site, or MuJoCo does not take it; its own
-        words are quoted.
-    """
+    """Read and compile a model; nothing of its files is changed."""
     if path.suffix not in _SUFFIXES:
         raise InputError(
             "model", path, f"named {' or '.join(f'*{suffix}' for suffix in _SUFFIXES)}", "rename it"
@@ -66,25 +47,7 @@ def load(path: Path, site: str | None = None) -> mujoco.MjModel:
 
 
 def spec_of(path: Path, site: str | None = None) -> mujoco.MjSpec:
-    """A model as it can be added to, in memory.
-
-    Parameters
-    ----------
-    path : Path
-        MJCF or URDF that MuJoCo takes.
-    site : str, optional
-        Where to add a force and a torque sensor.
-
-    Returns
-    -------
-    mujoco.MjSpec
-        Not yet compiled.
-
-    Raises
-    ------
-    InputError
-        If it has no such site.
-    """
+    """A model as it can be added to, in memory."""
     spec = mujoco.MjSpec.from_file(str(path))
     if site is None:
         return spec

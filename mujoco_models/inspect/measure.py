@@ -26,45 +26,14 @@ _ALONG = 1e-3  # cosine of an axis that is across, and what it lacks of one that
 
 
 def inspect_model(path: Path, names: Names) -> MeasuredBeam:
-    """Load a model, find its vibrissa, and measure it.
-
-    Parameters
-    ----------
-    path : Path
-        MJCF or URDF.
-    names : Names
-        What is known of it.
-
-    Returns
-    -------
-    MeasuredBeam
-        In the model's own units.
-
-    Raises
-    ------
-    InputError
-        If the model, a name of it or the vibrissa cannot be used.
-    """
+    """Load a model, find its vibrissa, and measure it."""
     model = load(path, names.site)
     with unlogged():
         return measure(model, find(model, names), path)
 
 
 def hold(model: mujoco.MjModel, parts: Parts) -> Held | HeldRod:
-    """Hold the foot of a model.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's; a copy of it is held.
-    parts : Parts
-        What of it is the vibrissa.
-
-    Returns
-    -------
-    Held or HeldRod
-        In its own first state.
-    """
+    """Hold the foot of a model."""
     return Held(model, parts) if parts.rod is None else HeldRod(model, parts, parts.rod)
 
 
@@ -74,25 +43,6 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     All of it is MuJoCo's: the foot is held, loads are put on the tip, and Newton's method finds the
     rest. The axes of the sweep are x against the sweep, y along the vibrissa, z the axis of its
     hinges.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's.
-    parts : Parts
-        What of it is the vibrissa.
-    path : Path
-        Of its file.
-
-    Returns
-    -------
-    MeasuredBeam
-        In the model's own units.
-
-    Raises
-    ------
-    InputError
-        If nothing holds a joint, or it does not come to rest.
     """
     _check_constraints(model, parts)
     held = hold(model, parts)
@@ -144,18 +94,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
 
 
 def sweep_axes(held: Held | HeldRod) -> Floats:
-    """The axes of the sweep in the world frame.
-
-    Parameters
-    ----------
-    held : Held
-        At rest.
-
-    Returns
-    -------
-    array, shape (3, 3)
-        x, y and z in rows.
-    """
+    """The axes of the sweep in the world frame."""
     model, data = held.model, held.data
     nodes = np.vstack([held.clamp, held.joints, held.tip])
     ways = np.diff(nodes, axis=0)

@@ -10,56 +10,31 @@ from mujoco_models.motion import IntegratorKind
 
 @dataclass(frozen=True, eq=False)
 class Sensed:
-    """A sensor at the clamp.
+    """A sensor at the clamp."""
 
-    Attributes
-    ----------
-    name : str
-        The sensor's.
-    axes : array, shape (3, 3)
-        Its reading of a unit of the clamp's action on the vibrissa along x, y, z of the sweep, in
-        columns: a rotation, if it reads what it should.
-    place : array, shape (3,)
-        Where its site is, from the clamp, in the axes of the sweep [length].
-    lever : array, shape (3,)
-        From where its moments are counted, by its own readings; the same [length].
-    feels_contacts : bool
-        False where MuJoCo leaves them out: of a flex, by a sensor on what its vertices hang on.
-    cutoff : float
-        The largest reading that it gives; infinite if it has no such limit.
-    """
-
-    name: str
+    name: str  # the sensor's
+    # Shape (3, 3); Its reading of a unit of the clamp's action on the vibrissa along x, y, z of the
+    # sweep, in columns: a rotation, if it reads what it should.
     axes: Floats
+    # Shape (3,); Where its site is, from the clamp, in the axes of the sweep [length].
     place: Floats
+    # Shape (3,); From where its moments are counted, by its own readings; the same [length].
     lever: Floats
+    # False where MuJoCo leaves them out: of a flex, by a sensor on what its vertices hang on.
     feels_contacts: bool
-    cutoff: float
+    cutoff: float  # the largest reading that it gives; infinite if it has no such limit
 
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """A joint, as the springs of one body.
+    """A joint, as the springs of one body."""
 
-    Attributes
-    ----------
-    name : str
-        The body's, or as ``"body 3"``.
-    s : float
-        Its arc length from the clamp [length].
-    cell : float
-        Length of the piece of beam that it stands for: half way to its neighbours [length].
-    compliance : float
-        Turn over moment.
-    angle : float
-        Its turn at rest [rad].
-    """
-
-    name: str
-    s: float
+    name: str  # the body's, or as ``"body 3"``
+    s: float  # its arc length from the clamp [length]
+    # Length of the piece of beam that it stands for: half way to its neighbours [length].
     cell: float
-    compliance: float
-    angle: float
+    compliance: float  # turn over moment
+    angle: float  # its turn at rest [rad]
 
     @property
     def flexural_rigidity(self) -> float:
@@ -69,37 +44,19 @@ class Joint:
 
 @dataclass(frozen=True, eq=False)
 class Geom:
-    """A geom of the vibrissa.
+    """A geom of the vibrissa."""
 
-    Attributes
-    ----------
-    name : str
-        Its own, its body's, or as ``"geom 3"``.
-    start, end : float
-        Arc lengths of its axis [length].
-    radius : float
-        [length]
-    meets : bool
-        Whether it collides with an object that has MuJoCo's default contype and conaffinity.
-    stiffness : float
-        Force over penetration of its contacts at rest, about [force/length].
-    time_constant : float
-        Of its contacts, as its solref says; NaN if solref states a stiffness [time].
-    friction : float
-        Coefficient; 0 if its contacts have no friction.
-    margin : float
-        How far from an object its contacts already push, less their gap [length].
-    """
-
-    name: str
-    start: float
-    end: float
-    radius: float
+    name: str  # its own, its body's, or as ``"geom 3"``
+    start: float  # arc lengths of its axis [length]
+    end: float  # arc lengths of its axis [length]
+    radius: float  # [length]
+    # Whether it collides with an object that has MuJoCo's default contype and conaffinity.
     meets: bool
-    stiffness: float
+    stiffness: float  # force over penetration of its contacts at rest, about [force/length]
+    # Of its contacts, as its solref says; NaN if solref states a stiffness [time].
     time_constant: float
-    friction: float
-    margin: float
+    friction: float  # coefficient; 0 if its contacts have no friction
+    margin: float  # how far from an object its contacts already push, less their gap [length]
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,51 +23,27 @@ _ALIGNED = 1e-3  # rad and lengths of a link; a geom of the foot that goes on as
 
 @dataclass(frozen=True)
 class Names:
-    """The names that a user gives; what is None is looked for.
+    """The names that a user gives; what is None is looked for."""
 
-    Attributes
-    ----------
-    foot : str or None
-        The body that holds the vibrissa.
-    force, torque : str or None
-        The sensors at its clamp.
-    geoms : str or None
-        The vibrissa's geoms: names or patterns as ``whisker*``, separated by commas.
-    site : str or None
-        At the clamp, where sensors were added; they count instead of the model's own.
-    """
-
-    foot: str | None = None
-    force: str | None = None
-    torque: str | None = None
+    foot: str | None = None  # the body that holds the vibrissa
+    force: str | None = None  # the sensors at its clamp
+    torque: str | None = None  # the sensors at its clamp
+    # The vibrissa's geoms: names or patterns as ``whisker*``, separated by commas.
     geoms: str | None = None
+    # At the clamp, where sensors were added; they count instead of the model's own.
     site: str | None = None
 
 
 @dataclass(frozen=True)
 class Parts:
-    """The vibrissa in a compiled model.
+    """The vibrissa in a compiled model."""
 
-    Attributes
-    ----------
-    foot : int
-        The outermost of the bodies that hold it without a joint in between.
-    chain : tuple of int
-        Its bodies with joints, from the clamp to the tip.
-    geoms : tuple of int
-        Its geoms, from the clamp to the tip.
-    force, torque : int or None
-        The sensors at its clamp; None if there is none.
-    rod : Rod or None
-        The flex that it is, instead of geoms on hinges.
-    """
-
-    foot: int
-    chain: Chain
-    geoms: tuple[int, ...]
-    force: int | None
-    torque: int | None
-    rod: Rod | None = None
+    foot: int  # the outermost of the bodies that hold it without a joint in between
+    chain: Chain  # its bodies with joints, from the clamp to the tip
+    geoms: tuple[int, ...]  # its geoms, from the clamp to the tip
+    force: int | None  # the sensors at its clamp; None if there is none
+    torque: int | None  # the sensors at its clamp; None if there is none
+    rod: Rod | None = None  # the flex that it is, instead of geoms on hinges
 
 
 def find(model: mujoco.MjModel, names: Names) -> Parts:
@@ -75,23 +51,6 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
 
     It is the longest row of bodies, each on the one before by hinges or a ball without an
     actuator, or the vertices of a flex of dimension 1; what holds the first of them is the foot.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's.
-    names : Names
-        What is known.
-
-    Returns
-    -------
-    Parts
-        All of it.
-
-    Raises
-    ------
-    InputError
-        If a name is none of the model's, nothing looks like a vibrissa, or several things do.
     """
     asked = None if names.geoms is None else _geoms(model, names.geoms)
     rods = flexes(model)
@@ -144,20 +103,7 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
 
 
 def axis_of(model: mujoco.MjModel, geom: int) -> Floats:
-    """The axis of a geom in the frame of its body.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        With the geom.
-    geom : int
-        Which one.
-
-    Returns
-    -------
-    array, shape (2, 3)
-        Both ends, without the round caps of a capsule; they are the same for a sphere.
-    """
+    """The axis of a geom in the frame of its body."""
     kind = int(model.geom_type[geom])
     centre, half = np.zeros(3), np.zeros(3)
     if kind in _SLENDER:
@@ -190,20 +136,7 @@ def _turn(quaternion: Floats) -> Floats:
 
 
 def radius_of(model: mujoco.MjModel, geom: int) -> float:
-    """Half the thickness of a geom.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        With the geom.
-    geom : int
-        Which one.
-
-    Returns
-    -------
-    float
-        In the model's unit of length; of a flat one the mean of both.
-    """
+    """Half the thickness of a geom."""
     if int(model.geom_type[geom]) in (*_SLENDER, _SPHERE):
         return float(model.geom_size[geom, 0])
     return float(np.sort(model.geom_aabb[geom, 3:])[:2].mean())

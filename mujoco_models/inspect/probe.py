@@ -19,35 +19,14 @@ _DEPTH = 1e-3  # of a geom's radius
 
 
 class Probe:
-    """A model with a ball that can touch it.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        With the ball as its last body and geom.
-    """
+    """A model with a ball that can touch it."""
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self._model, self._data = model, mujoco.MjData(model)
         self._ball = model.geom(_NAME).id
 
     def weight(self, geom: int, place: Floats, across: Floats, radius: float) -> float | None:
-        """The acceleration by a unit of force that MuJoCo takes for a contact of a geom.
-
-        Parameters
-        ----------
-        geom : int
-            Which one; -1 for what a flex has there.
-        place, across : array, shape (3,)
-            On its axis, and the direction in which the ball is from there; in the world frame.
-        radius : float
-            Of the geom there.
-
-        Returns
-        -------
-        float or None
-            As of `mujoco_models.model.stiffness.stiffen`; None if they do not touch.
-        """
+        """The acceleration by a unit of force that MuJoCo takes for a contact of a geom."""
         data = self._data
         mujoco.mj_resetData(self._model, data)
         size = self._model.geom_size[self._ball, 0]
@@ -69,20 +48,7 @@ class Probe:
 
 
 def probe_of(path: Path, radius: float) -> Probe | None:
-    """A model with a ball, in memory, if it is stepped by ``discrete``.
-
-    Parameters
-    ----------
-    path : Path
-        Of the user's model.
-    radius : float
-        Of its geoms, about.
-
-    Returns
-    -------
-    Probe or None
-        None for other integrators, whose contacts are as stiff as their body's mass says.
-    """
+    """A model with a ball, in memory, if it is stepped by ``discrete``."""
     spec = mujoco.MjSpec.from_file(str(path))
     if spec.option.integrator != mujoco.mjtIntegrator.mjINT_DISCRETE:
         return None

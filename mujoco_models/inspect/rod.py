@@ -17,36 +17,16 @@ _FEWEST = 3  # vertices that are free to move
 
 @dataclass(frozen=True)
 class Rod:
-    """A flex of dimension 1 whose first two vertices are held.
+    """A flex of dimension 1 whose first two vertices are held."""
 
-    Attributes
-    ----------
-    flex : int
-        Its number.
-    vertices : tuple of int
-        From the clamp to the tip; the first two are on one body, all others on one each.
-    chain : tuple of int
-        The bodies of these others.
-    """
-
-    flex: int
+    flex: int  # its number
+    # From the clamp to the tip; the first two are on one body, all others on one each.
     vertices: tuple[int, ...]
-    chain: Chain
+    chain: Chain  # the bodies of these others
 
 
 def flexes(model: mujoco.MjModel) -> dict[Chain, int]:
-    """Flexes of dimension 1 on vertices that slide.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's.
-
-    Returns
-    -------
-    dict of int
-        Their numbers, by the bodies of their vertices that slide, in the model's order.
-    """
+    """Flexes of dimension 1 on vertices that slide."""
     slides = model.jnt_bodyid[model.jnt_type == int(mujoco.mjtJoint.mjJNT_SLIDE)]
     found = {}
     for flex in np.flatnonzero(np.asarray(model.flex_dim) == 1).tolist():
@@ -63,25 +43,7 @@ def _bodies(model: mujoco.MjModel, flex: int) -> Integers:
 
 
 def rod_of(model: mujoco.MjModel, flex: int) -> Rod:
-    """A flex of dimension 1 as a vibrissa.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's.
-    flex : int
-        Its number.
-
-    Returns
-    -------
-    Rod
-        From its clamp to its tip.
-
-    Raises
-    ------
-    InputError
-        If it is not one line of edges, does not bend elastically, or is not clamped.
-    """
+    """A flex of dimension 1 as a vibrissa."""
     bodies = _bodies(model, flex)
     vertices = int(model.flex_vertadr[flex]) + np.arange(len(bodies))
     name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_FLEX, flex) or ""

@@ -7,47 +7,17 @@ from analytic.problem.arrays import Floats
 
 
 class Sensing:
-    """A model and its state, as far as force and torque sensors go.
+    """A model and its state, as far as force and torque sensors go."""
 
-    Attributes
-    ----------
-    model, data : mujoco.MjModel, mujoco.MjData
-        Both of MuJoCo.
-    """
-
-    model: mujoco.MjModel
-    data: mujoco.MjData
+    model: mujoco.MjModel  # both of MuJoCo
+    data: mujoco.MjData  # both of MuJoCo
 
     def sensed(self, sensor: int) -> Floats:
-        """What a sensor reads.
-
-        Parameters
-        ----------
-        sensor : int
-            Its number.
-
-        Returns
-        -------
-        array, shape (3,)
-            In its own axes.
-        """
+        """What a sensor reads."""
         first = self.model.sensor_adr[sensor]
         return np.array(self.data.sensordata[first : first + 3])
 
     def site(self, sensor: int) -> tuple[Floats, Floats]:
-        """Where the site of a sensor is, and how it is turned.
-
-        Parameters
-        ----------
-        sensor : int
-            Its number.
-
-        Returns
-        -------
-        position : array, shape (3,)
-            In the world frame.
-        axes : array, shape (3, 3)
-            Its axes in the world frame, in columns.
-        """
+        """Where the site of a sensor is, and how it is turned."""
         site = self.model.sensor_objid[sensor]
         return np.array(self.data.site_xpos[site]), self.data.site_xmat[site].reshape(3, 3).copy()

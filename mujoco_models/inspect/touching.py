@@ -19,46 +19,14 @@ def touching(
     frame: tuple[Floats, Floats],
     probe: Probe | None,
 ) -> tuple[Geom, ...]:
-    """All that can touch, from the clamp to the tip.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's.
-    parts : Parts
-        What of it is the vibrissa.
-    data : mujoco.MjData
-        At rest with its foot held.
-    frame : pair of arrays, shapes (3,) and (3, 3)
-        The clamp in the world, and the axes of the sweep in rows.
-    probe : Probe or None
-        For how stiff contacts are under ``discrete``.
-
-    Returns
-    -------
-    tuple of Geom
-        Geoms, or the edges of a flex.
-    """
+    """All that can touch, from the clamp to the tip."""
     if parts.rod is not None:
         return tuple(_edges(model, parts.rod, data, frame, probe))
     return tuple(_geoms(model, parts, data, frame, probe))
 
 
 def thickness(model: mujoco.MjModel, parts: Parts) -> float:
-    """Half of that of the tip.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's.
-    parts : Parts
-        What of it is the vibrissa.
-
-    Returns
-    -------
-    float
-        In the model's unit of length.
-    """
+    """Half of that of the tip."""
     if parts.rod is not None:
         return float(model.flex_radius[parts.rod.flex])
     return radius_of(model, parts.geoms[-1])
@@ -152,20 +120,7 @@ def _stiffness(
 
 
 def name_of_geom(model: mujoco.MjModel, number: int) -> str:
-    """Of a geom, or of what has none.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's.
-    number : int
-        The geom; -1 for a flex.
-
-    Returns
-    -------
-    str
-        Its own, its body's, or its number.
-    """
+    """Of a geom, or of what has none."""
     if number < 0:
         return "the flex"
     own = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_GEOM, number)
@@ -174,20 +129,7 @@ def name_of_geom(model: mujoco.MjModel, number: int) -> str:
 
 
 def self_contacts(model: mujoco.MjModel, parts: Parts) -> tuple[str, ...]:
-    """Pairs that touch in the model's first state, one of them the vibrissa's.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's.
-    parts : Parts
-        What of it is the vibrissa.
-
-    Returns
-    -------
-    tuple of str
-        As ``"whisker0 and whisker1"``.
-    """
+    """Pairs that touch in the model's first state, one of them the vibrissa's."""
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     flex = -2 if parts.rod is None else parts.rod.flex

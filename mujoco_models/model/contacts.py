@@ -18,40 +18,24 @@ NOWHERE = dict.fromkeys(("contact_angle", "contact_arc_length", "contact_x", "co
 
 
 class Contacts(NamedTuple):
-    """The contacts of one configuration, loaded or within the gap; arrays of n contacts.
+    """The contacts of one configuration, loaded or within the gap; arrays of n contacts."""
 
-    Attributes
-    ----------
-    touch : array of int, shape (n,)
-        What touches: the number of the bead or, from n_beads on, one for each corner and link.
-    link : array of int, shape (n,)
-        The link that carries it.
-    on_side : array of bool, shape (n,)
-        Whether a corner is on the side of the link, along which it slides.
-    point : array, shape (n, 2)
-        The corner then; else the centre of the bead, or of the link's round end [L].
-    arc_length : array, shape (n,)
-        Along the beam [L].
-    normal : array, shape (n, 2)
-        Unit normal, away from the obstacle.
-    distance : array, shape (n,)
-        Of the beam's surface from the obstacle; negative where the contact is loaded [L].
-    fused : array of bool, shape (n,)
-        Which of them another contact stands for, see `BeamModel.evaluate`; they count as being as
-        far off as MuJoCo looks.
-    passed : bool
-        Whether a corner has gone through a link's axis, and MuJoCo pushes the wrong way.
-    """
-
+    # Shape (n,); What touches: the number of the bead or, from n_beads on, one for each corner and
+    # link.
     touch: Integers
-    link: Integers
+    link: Integers  # shape (n,); The link that carries it
+    # Shape (n,); Whether a corner is on the side of the link, along which it slides.
     on_side: Booleans
+    # Shape (n, 2); The corner then; else the centre of the bead, or of the link's round end [L].
     point: Floats
-    arc_length: Floats
-    normal: Floats
+    arc_length: Floats  # shape (n,); Along the beam [L]
+    normal: Floats  # shape (n, 2); Unit normal, away from the obstacle
+    # Shape (n,); Of the beam's surface from the obstacle; negative where the contact is loaded [L].
     distance: Floats
+    # Shape (n,); Which of them another contact stands for, see `BeamModel.evaluate`; they count as
+    # being as far off as MuJoCo looks.
     fused: Booleans
-    passed: bool
+    passed: bool  # whether a corner has gone through a link's axis, and MuJoCo pushes the wrong way
 
     @classmethod
     def of(
@@ -62,25 +46,7 @@ class Contacts(NamedTuple):
         joints: Floats,
         sides: Sides | None = None,
     ) -> "Contacts":
-        """All contacts that MuJoCo reports.
-
-        Parameters
-        ----------
-        data : mujoco.MjData
-            An evaluated configuration.
-        surface : Surface
-            What its geoms are.
-        layout : Layout
-            Of the beam.
-        joints : array, shape (n_joints, 2)
-            Where its joints are [L].
-        sides : Sides, optional
-            Those of this configuration, past corners; found anew if they are not given.
-
-        Returns
-        -------
-        Contacts
-        """
+        """All contacts that MuJoCo reports."""
         contact = data.contact
         if data.ncon == 0:
             none, nothing = np.zeros(0), np.zeros(0, dtype=int)
@@ -130,18 +96,7 @@ class Contacts(NamedTuple):
         )
 
     def nearest(self, count: int) -> "Contacts":
-        """Those with the smallest distances, in the same order.
-
-        Parameters
-        ----------
-        count : int
-            How many at most.
-
-        Returns
-        -------
-        Contacts
-            All of them, if there are no more.
-        """
+        """Those with the smallest distances, in the same order."""
         if len(self.distance) <= count:
             return self
         kept = np.sort(np.argpartition(self.distance, count)[:count])
@@ -156,19 +111,7 @@ class Contacts(NamedTuple):
         return np.asarray(self.distance < 0)
 
     def as_reading(self, place: Floats) -> dict[str, Any]:
-        """Phase and contact as a row of readings has them: the loaded contacts' mean, by force.
-
-        Parameters
-        ----------
-        place : array, shape (n, 2)
-            Where the engine has each contact [L].
-
-        Returns
-        -------
-        dict
-            ``phase``, the columns of the contact, and ``penetration``, dimensionless; free, with
-            NaN, if none is loaded.
-        """
+        """Phase and contact as a row of readings has them: the loaded contacts' mean, by force."""
         loaded = self.loaded
         if not loaded.any():
             return {"phase": "free", **NOWHERE, "penetration": 0.0}
@@ -191,18 +134,7 @@ class Contacts(NamedTuple):
         return float(np.diff(np.sort(self.arc_length[self.loaded])).max(initial=0.0))
 
     def touch_twice(self, layout: Layout) -> bool:
-        """Whether a vibrissa that is curved at rest touches in two places.
-
-        Parameters
-        ----------
-        layout : Layout
-            Of the beam.
-
-        Returns
-        -------
-        bool
-            A straight one bends away from the object, and touches in one.
-        """
+        """Whether a vibrissa that is curved at rest touches in two places."""
         if layout.vibrissa.is_straight:
             return False
         return self.apart > max(_APART, _LINKS * float(layout.lengths.max()))
@@ -214,16 +146,5 @@ class Contacts(NamedTuple):
 
 
 def slope_angle(normal: Floats) -> Floats:
-    """Slope angles of the contour with these normals.
-
-    Parameters
-    ----------
-    normal : array, shape (n, 2)
-        Away from the obstacle, which is above.
-
-    Returns
-    -------
-    array, shape (n,)
-        Slope angles [rad].
-    """
+    """Slope angles of the contour with these normals."""
     return np.asarray(np.arctan2(normal[:, 0], -normal[:, 1]))

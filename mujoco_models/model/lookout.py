@@ -55,17 +55,7 @@ class Scene(Protocol):
 
 
 class MujocoScene:
-    """That of a compiled model of MuJoCo's, whose collision masks are changed in place.
-
-    Parameters
-    ----------
-    model, data : mujoco.MjModel, mujoco.MjData
-        The compiled model and its state.
-    beads : array of int, shape (n_beads,)
-        The beads' geoms.
-    obstacle : Obstacle
-        What the beam is swept past.
-    """
+    """That of a compiled model of MuJoCo's, whose collision masks are changed in place."""
 
     def __init__(
         self, model: mujoco.MjModel, data: mujoco.MjData, beads: Integers, obstacle: Obstacle
@@ -95,28 +85,7 @@ class MujocoScene:
 
 
 class Lookout:
-    """The obstacle's window and the watched beads: all else is left out of collisions, for speed.
-
-    Parameters
-    ----------
-    scene : Scene
-        The engine's.
-    obstacle : Obstacle
-        What the beam is swept past.
-    radius : float
-        Of the vibrissa; the largest, of a cone [L].
-    layout : Layout
-        Which link has which beads.
-
-    Attributes
-    ----------
-    radii : array, shape (n_beads,)
-        Of the beads [L].
-    window : int
-        The obstacle's window that takes part in collisions.
-    watched : frozenset of int
-        The beads that do.
-    """
+    """The obstacle's window and the watched beads: all else is left out, for speed."""
 
     def __init__(self, scene: Scene, obstacle: Obstacle, radius: float, layout: Layout) -> None:
         self._scene, self._obstacle, self._radius = scene, obstacle, radius
@@ -131,30 +100,13 @@ class Lookout:
         self.watch(frozenset(self._all.tolist()))
 
     def use_window(self, window: int) -> None:
-        """Let the engine see what the obstacle has for this window.
-
-        Parameters
-        ----------
-        window : int
-            See `Obstacle.window_of`.
-        """
+        """Let the engine see what the obstacle has for this window."""
         if window != self.window:
             self._scene.show(window)
             self.window = window
 
     def move_window(self, loaded: Floats) -> bool:
-        """Ensure that all load rests on full resolution.
-
-        Parameters
-        ----------
-        loaded : array, shape (n,)
-            Places of the loaded contacts along the contour, see `Obstacle.place`.
-
-        Returns
-        -------
-        bool
-            True if the window had to be changed: the engine's answer is then out of date.
-        """
+        """Ensure that all load rests on full resolution."""
         if loaded.size == 0 or self._obstacle.is_inside(self.window, loaded):
             return False
         best = self._obstacle.window_of(float(loaded.mean()))
@@ -164,24 +116,12 @@ class Lookout:
         return True
 
     def face(self, slope: float) -> None:
-        """Use the window for a contact at this slope angle.
-
-        Parameters
-        ----------
-        slope : float
-            Of the contour [rad].
-        """
+        """Use the window for a contact at this slope angle."""
         place = self._obstacle.place(np.array([slope]))
         self.use_window(self._obstacle.window_of(float(place[0])))
 
     def follow_contact(self, contacts: Contacts) -> None:
-        """Use the window that is nearest to the deepest contact, if there is a loaded one.
-
-        Parameters
-        ----------
-        contacts : Contacts
-            Of the last evaluated configuration.
-        """
+        """Use the window that is nearest to the deepest contact, if there is a loaded one."""
         if contacts.loaded.any():
             deepest = contacts.slope[[np.argmin(contacts.distance)]]
             place = self._obstacle.place(deepest)
@@ -189,13 +129,7 @@ class Lookout:
                 self.use_window(self._obstacle.window_of(float(place[0])))
 
     def watch(self, beads: frozenset[int]) -> None:
-        """Let these beads, and no others, take part in collisions.
-
-        Parameters
-        ----------
-        beads : frozenset of int
-            Their numbers.
-        """
+        """Let these beads, and no others, take part in collisions."""
         if beads != self.watched:
             self._scene.collide(beads)
             self.watched = beads
@@ -203,13 +137,7 @@ class Lookout:
             self._idle[list(beads)] = False
 
     def unwatched(self) -> frozenset[int]:
-        """Beads that touch the obstacle, or may, while the engine does not look at them.
-
-        Returns
-        -------
-        frozenset of int
-            Their numbers.
-        """
+        """Beads that touch the obstacle, or may, while the engine does not look at them."""
         scene, obstacle, distance = self._scene, self._obstacle, self._radius + _NEAR
         # No bead is farther from the last one of its link than the link is long.
         near = obstacle.near(scene.bead_positions(self._last), distance + self._longest)
@@ -231,16 +159,6 @@ class Lookout:
 
         What collides is true to the contour near its window only: this makes sure, at every state
         at rest, that it has not let the beam through.
-
-        Parameters
-        ----------
-        contacts : Contacts
-            Of the last evaluated configuration.
-
-        Returns
-        -------
-        float or None
-            The place along the contour, see `Obstacle.place`; None if there is no such bead.
         """
         carries = contacts.touch[contacts.loaded | contacts.fused].tolist()
         unloaded = np.array(sorted(self.watched.difference(carries)), dtype=int)
@@ -258,16 +176,6 @@ class Lookout:
         The search over a mesh can end at a vertex far from the nearest one: a window of a circle of
         radius 0.038 L had facets of 0.11 rad so. If there is another window that has all of the
         contour around the loaded beads, it is used from now on.
-
-        Parameters
-        ----------
-        contacts : Contacts
-            Of the last evaluated configuration.
-
-        Returns
-        -------
-        bool
-            True if the engine's answer cannot be used.
         """
         if not self._obstacle.upright:
             return False
@@ -293,18 +201,7 @@ class Lookout:
         return True
 
     def is_crossed(self, joints: Floats) -> bool:
-        """Whether a link cuts through an obstacle with corners.
-
-        Parameters
-        ----------
-        joints : array, shape (n_joints, 2)
-            Where the links begin [L].
-
-        Returns
-        -------
-        bool
-            False if the obstacle has none.
-        """
+        """Whether a link cuts through an obstacle with corners."""
         if len(self._obstacle.corners) == 0:
             return False
         return self._obstacle.is_cut(

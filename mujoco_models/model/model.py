@@ -30,30 +30,7 @@ _IMPEDANCE = 0.9  # MuJoCo's d; with the stiffness set below it cancels out of t
 
 
 class BeamModel:
-    """MuJoCo's model and state; everything physical comes from it.
-
-    Parameters
-    ----------
-    beam : Beam
-        Which beam, and where its joints and beads are.
-    radius : float
-        Of the vibrissa [L].
-    obstacle : Obstacle
-        What it is swept past.
-    contact_stiffness : float
-        Force over penetration at every bead [EI/L^3].
-
-    Attributes
-    ----------
-    model, data : mujoco.MjModel, mujoco.MjData
-        MuJoCo's own.
-    lookout : Lookout
-        What takes part in collisions.
-    beads : array of int, shape (n_beads,)
-        The beads' geoms.
-    evaluations : int
-        How often `imbalance` was called.
-    """
+    """MuJoCo's model and state; everything physical comes from it."""
 
     def __init__(
         self, beam: Beam, radius: float, obstacle: Obstacle, contact_stiffness: float
@@ -98,25 +75,6 @@ class BeamModel:
 
         Elasticity and contacts only: with zero velocity nothing else acts. Contacts and clamp
         readings are then those of this configuration.
-
-        Parameters
-        ----------
-        foot_x : float
-            Foot position [L].
-        angles : array, shape (n_joints,)
-            Joint angles [rad].
-
-        Returns
-        -------
-        array, shape (n_joints,)
-            Moments [EI/L].
-
-        Raises
-        ------
-        DivergedError
-            If a moment is not finite.
-        MemoryError
-            If MuJoCo has no room for all contacts: it leaves some out and only warns.
         """
         self.move_foot(foot_x)
         self.beam.place(self.data, angles)
@@ -130,13 +88,7 @@ class BeamModel:
         return moments
 
     def move_foot(self, foot_x: float) -> None:
-        """Put the foot there.
-
-        Parameters
-        ----------
-        foot_x : float
-            Foot position [L].
-        """
+        """Put the foot there."""
         self.model.body_pos[self._foot, 0] = foot_x
 
     def evaluate(self) -> None:
@@ -174,16 +126,6 @@ class BeamModel:
         A force is the contact's stiffness times a depth, of which rounding is about 1e-15 L: 1e-8
         EI/L^2 at the usual stiffness. So loaded contacts give way, by no more than rounding, as
         leaves least out of balance. Forces and clamp readings are those then.
-
-        Parameters
-        ----------
-        rounding : float
-            By how much a contact gives way at most [L].
-
-        Returns
-        -------
-        array, shape (n_joints,)
-            Moments [EI/L].
         """
         model, data = self.model, self.data
         loaded = np.flatnonzero(data.efc_force)
@@ -198,25 +140,11 @@ class BeamModel:
         return self.beam.moments(self.moments())
 
     def moments(self) -> Floats:
-        """Elasticity and contacts in all of MuJoCo's coordinates.
-
-        Returns
-        -------
-        array, shape (nv,)
-            Generalised forces [EI/L].
-        """
+        """Elasticity and contacts in all of MuJoCo's coordinates."""
         return np.asarray(self.data.qfrc_passive + self.data.qfrc_constraint)
 
     def turn(self, start: Floats, turns: Floats) -> None:
-        """Evaluate the configuration that small turns make of another one.
-
-        Parameters
-        ----------
-        start : array, shape (nq,)
-            MuJoCo's coordinates to start from.
-        turns : array, shape (nv,)
-            Turns [rad].
-        """
+        """Evaluate the configuration that small turns make of another one."""
         configuration = start.copy()
         mujoco.mj_integratePos(self.model, configuration, turns, 1.0)
         self.data.qpos[:] = configuration
@@ -227,33 +155,11 @@ class BeamModel:
         return self.beam.stiffness(angles)
 
     def elastic_moments(self) -> Floats:
-        """The beam's own moment at each joint.
-
-        Returns
-        -------
-        array, shape (n_joints,)
-            Moments [EI/L].
-        """
+        """The beam's own moment at each joint."""
         return self.beam.moments(self.data.qfrc_passive)
 
     def creep(self, timestep: float) -> float:
-        """One step of MuJoCo's own motion without momentum.
-
-        Parameters
-        ----------
-        timestep : float
-            Length of the step, in MuJoCo's unit of time.
-
-        Returns
-        -------
-        float
-            The largest change of a coordinate.
-
-        Raises
-        ------
-        DivergedError
-            If MuJoCo warns of a bad state, which it then sets back to the straight beam.
-        """
+        """One step of MuJoCo's own motion without momentum."""
         model, data = self.model, self.data
         model.opt.integrator, model.opt.timestep = mujoco.mjtIntegrator.mjINT_DISCRETE, timestep
         before = data.qpos.copy()
@@ -266,13 +172,7 @@ class BeamModel:
         return float(np.abs(data.qpos - before).max())
 
     def contacts(self) -> Contacts:
-        """All reported contacts of the last evaluated configuration.
-
-        Returns
-        -------
-        Contacts
-            Loaded, or within the gap.
-        """
+        """All reported contacts of the last evaluated configuration."""
         joints = self.joint_positions()
         return Contacts.of(self.data, self._surface, self.layout, joints, self._sides)
 
@@ -281,72 +181,27 @@ class BeamModel:
         return np.asarray(self.data.contact.pos[:, :2])
 
     def contact_curvature(self, slope: Floats) -> Floats:
-        """Curvature of the contour that the beads' centres feel.
-
-        Parameters
-        ----------
-        slope : array, shape (n,)
-            Slope angles [rad].
-
-        Returns
-        -------
-        array, shape (n,)
-            Curvatures [1/L].
-        """
+        """Curvature of the contour that the beads' centres feel."""
         curvature = self.obstacle.curvature(slope)
         return np.asarray(curvature / (1 + self.radius * curvature))
 
     def slide_beads(self, contacts: Contacts) -> bool:
-        """Let a bead be where the beam is tangential, if beads are too far apart for the contour.
-
-        Parameters
-        ----------
-        contacts : Contacts
-            Of the last evaluated configuration.
-
-        Returns
-        -------
-        bool
-            True if beads have been moved: MuJoCo's answer is then out of date.
-        """
+        """Let a bead be where the beam is tangential, if beads are too far apart."""
         if not self._slides:
             return False
         curvature = self.contact_curvature(contacts.slope)
         return self._sliding.slide(contacts, curvature, self.joint_positions())
 
     def hold_beads(self) -> bool:
-        """Let all beads be where they were at first.
-
-        Returns
-        -------
-        bool
-            Whether any was elsewhere.
-        """
+        """Let all beads be where they were at first."""
         return self._sliding.hold()
 
     def slides(self, contacts: Contacts) -> Booleans:
-        """Which contacts are of a link whose beads slide.
-
-        Parameters
-        ----------
-        contacts : Contacts
-            Of the last evaluated configuration.
-
-        Returns
-        -------
-        array of bool, shape (n,)
-            Not the one at the tip.
-        """
+        """Which contacts are of a link whose beads slide."""
         return self._sliding.slides(contacts)
 
     def contact_rise(self) -> Floats:
-        """How fast the loaded contacts' mean place leaves the plane with each turn.
-
-        Returns
-        -------
-        array, shape (nv,)
-            Heights over turns [L/rad].
-        """
+        """How fast the loaded contacts' mean place leaves the plane with each turn."""
         contacts = self.contacts()
         loaded = np.minimum(contacts.distance, 0)
         rise, jacobian = np.zeros(self.model.nv), np.zeros((3, self.model.nv))
@@ -358,71 +213,30 @@ class BeamModel:
         return rise
 
     def joint_positions(self) -> Floats:
-        """Where the joints are.
-
-        Returns
-        -------
-        array, shape (n_joints, 2)
-            Positions [L].
-        """
+        """Where the joints are."""
         return np.asarray(self.data.xanchor[self._joints, :2])
 
     def bead_positions(self, beads: Integers) -> Floats:
-        """Where beads are.
-
-        Parameters
-        ----------
-        beads : array of int, shape (n,)
-            Their numbers.
-
-        Returns
-        -------
-        array, shape (n, 2)
-            Positions of their centres [L].
-        """
+        """Where beads are."""
         return np.asarray(self.data.geom_xpos[self.beads[beads], :2])
 
     def out_of_plane(self) -> float:
-        """Largest distance of a bead from the plane of the sweep.
-
-        Returns
-        -------
-        float
-            Distance [L].
-        """
+        """Largest distance of a bead from the plane of the sweep."""
         return float(np.abs(self.data.geom_xpos[self.beads, 2]).max())
 
     def extension(self) -> float:
-        """By how much MuJoCo's beam is longer than it should be, over its length.
-
-        Returns
-        -------
-        float
-            Difference in length [L].
-        """
+        """By how much MuJoCo's beam is longer than it should be, over its length."""
         ends = np.concatenate([self.data.xanchor, self.data.geom_xpos[self.beads[-1:]]])
         chords = ends[1:] - ends[:-1]
         bent = np.sqrt(np.einsum("ij,ij->i", chords, chords)).sum()
         return float(bent + self.layout.joints[0] - 1 + self.layout.arched)
 
     def clamp(self) -> clamp.Clamp:
-        """The clamp's action on the vibrissa, by MuJoCo's sensors.
-
-        Returns
-        -------
-        Clamp
-            In the world frame, at the foot [EI/L^2, EI/L].
-        """
+        """The clamp's action on the vibrissa, by MuJoCo's sensors."""
         return clamp.by_sensors(self.data)
 
     def discrepancy(self) -> float:
-        """By how much three accounts of the clamp differ, see `clamp.discrepancy`.
-
-        Returns
-        -------
-        float
-            The worst of all [EI/L^2, EI/L].
-        """
+        """By how much three accounts of the clamp differ, see `clamp.discrepancy`."""
         foot = self.data.xpos[self._foot, :2]
         by_contacts = clamp.by_contacts(self.data, foot, self._surface.moves)
         moment = float(self.elastic_moments()[0])

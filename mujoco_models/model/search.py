@@ -15,17 +15,6 @@ class Search:
     MuJoCo would search the whole mesh for every link whose box overlaps the mesh's: that is most of
     them, and ten times the cost. What is left out is out of its contacts' gap, too: nothing that
     MuJoCo says of a configuration depends on it.
-
-    Parameters
-    ----------
-    surface : Surface
-        Of beam and obstacle.
-    obstacle : Obstacle
-        What the beam is swept past.
-    layout : Layout
-        Of the beam.
-    model : mujoco.MjModel
-        Compiled.
     """
 
     def __init__(
@@ -37,15 +26,7 @@ class Search:
         self._reach = CONTACT_GAP + surface.radius + float(layout.lengths.max())
 
     def __call__(self, model: mujoco.MjModel, data: mujoco.MjData, joints: Floats) -> None:
-        """Find the contacts of a configuration.
-
-        Parameters
-        ----------
-        model, data : mujoco.MjModel, mujoco.MjData
-            The configuration's bodies are placed.
-        joints : array, shape (n_joints, 2)
-            Where the links begin [L].
-        """
+        """Find the contacts of a configuration."""
         if len(self._links) == 0:
             mujoco.mj_collision(model, data)
             return

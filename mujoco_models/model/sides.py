@@ -23,48 +23,20 @@ _SAME = 1e-4  # rad; a mesh's single precision turns a bead's normal at a corner
 
 
 class Sides(NamedTuple):
-    """The contacts of links with corners; arrays as long as MuJoCo's contacts.
+    """The contacts of links with corners; arrays as long as MuJoCo's contacts."""
 
-    Attributes
-    ----------
-    touch : array of bool, shape (n,)
-        Whether a link touches a corner; where not, a bead does, and the rest means nothing.
-    link, edge : array of int, shape (n,)
-        Their numbers.
-    s : array, shape (n,)
-        Where on the link, from where it begins [L].
-    along : array of bool, shape (n,)
-        Whether it is on the side of the link, not on a round end.
-    point : array, shape (n, 2)
-        The corner then; else the centre of the round end [L].
-    """
-
+    # Shape (n,); Whether a link touches a corner; where not, a bead does, and the rest means
+    # nothing.
     touch: Booleans
-    link: Integers
-    edge: Integers
-    s: Floats
-    along: Booleans
-    point: Floats
+    link: Integers  # shape (n,); Their numbers
+    edge: Integers  # shape (n,); Their numbers
+    s: Floats  # shape (n,); Where on the link, from where it begins [L]
+    along: Booleans  # shape (n,); Whether it is on the side of the link, not on a round end
+    point: Floats  # shape (n, 2); The corner then; else the centre of the round end [L]
 
     @classmethod
     def of(cls, data: mujoco.MjData, surface: Surface, layout: Layout, joints: Floats) -> "Sides":
-        """Those of a configuration.
-
-        Parameters
-        ----------
-        data : mujoco.MjData
-            An evaluated configuration.
-        surface : Surface
-            What its geoms are.
-        layout : Layout
-            Of the beam.
-        joints : array, shape (n_joints, 2)
-            Where its joints are [L].
-
-        Returns
-        -------
-        Sides
-        """
+        """Those of a configuration."""
         contact = data.contact
         link = surface.side_of[contact.geom].max(axis=1)
         edge = surface.edge_of[contact.geom].max(axis=1)
@@ -84,18 +56,6 @@ class Sides(NamedTuple):
 
         A round end does: the bead at that joint is the same ball. And a bead does, where it touches
         a corner that is on the side of a link next to it.
-
-        Parameters
-        ----------
-        data : mujoco.MjData
-            An evaluated configuration.
-        surface : Surface
-            What its geoms are.
-
-        Returns
-        -------
-        array of bool, shape (n,)
-            Of all of MuJoCo's contacts.
         """
         contact = data.contact
         found = self.touch & ~self.along

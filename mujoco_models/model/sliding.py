@@ -22,19 +22,7 @@ _ITS_OWN = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
 
 
 class SlidingBeads:
-    """Where the beads of a model are.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The places of the beads in their links are changed in it.
-    beads : array of int, shape (n_beads,)
-        The beads' geoms.
-    layout : Layout
-        Of the beam; the arc lengths of its beads are changed in place.
-    obstacle : Obstacle
-        What is touched.
-    """
+    """Where the beads of a model are."""
 
     def __init__(
         self, model: mujoco.MjModel, beads: Integers, layout: Layout, obstacle: Obstacle
@@ -49,37 +37,11 @@ class SlidingBeads:
         self._shared = False
 
     def needed(self, curvature: float) -> bool:
-        """Whether there may be a contact at which beads have to slide.
-
-        Parameters
-        ----------
-        curvature : float
-            The largest of the contour that a bead's centre feels [1/L].
-
-        Returns
-        -------
-        bool
-            False past corners, which touch the links' own sides.
-        """
+        """Whether there may be a contact at which beads have to slide."""
         return len(self._obstacle.corners) == 0 and curvature * self._spacing.max() >= _SHARP
 
     def slide(self, contacts: Contacts, curvature: Floats, joints: Floats) -> bool:
-        """Let a bead be where the link that touches is tangential to the contour.
-
-        Parameters
-        ----------
-        contacts : Contacts
-            Of the last evaluated configuration.
-        curvature : array, shape (n,)
-            Of the contour that the centre of each contact's bead feels [1/L].
-        joints : array, shape (n_joints, 2)
-            Where the joints are [L].
-
-        Returns
-        -------
-        bool
-            True if beads have been moved: MuJoCo's answer is then out of date.
-        """
+        """Let a bead be where the link that touches is tangential to the contour."""
         self._guided = False
         if len(contacts.link) == 0:
             return False
@@ -106,13 +68,7 @@ class SlidingBeads:
         return self._shift(link, there)
 
     def hold(self) -> bool:
-        """Put all beads where they were at first.
-
-        Returns
-        -------
-        bool
-            Whether any was elsewhere.
-        """
+        """Put all beads where they were at first."""
         moved, self._guided = self._link is not None, False
         if self._link is not None:
             back = np.flatnonzero(self._layout.links == self._link)
@@ -121,18 +77,7 @@ class SlidingBeads:
         return moved
 
     def slides(self, contacts: Contacts) -> Booleans:
-        """Which contacts are of a link whose beads slide.
-
-        Parameters
-        ----------
-        contacts : Contacts
-            Of the last evaluated configuration.
-
-        Returns
-        -------
-        array of bool, shape (n,)
-            Not the bead at the tip, which stays there.
-        """
+        """Which contacts are of a link whose beads slide."""
         if not self._guided:
             return np.zeros(len(contacts.link), dtype=bool)
         return np.asarray(contacts.link == self._link) & (contacts.touch < len(self._home) - 1)

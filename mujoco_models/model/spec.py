@@ -21,20 +21,6 @@ def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
     a convex body has a continuous derivative, so an equilibrium exists at every station; a capsule
     that lies along a facet has no single nearest point, its contact jumps from end to end, and
     nothing comes to rest. Sharp corners are what the capsules of the links touch.
-
-    Parameters
-    ----------
-    beam : Beam
-        Which beam, and where its joints and beads are.
-    radius : float
-        Of the vibrissa, at the clamp [L].
-    obstacle : Obstacle
-        What it is swept past.
-
-    Returns
-    -------
-    mujoco.MjSpec
-        The beads are its only spheres, in the order of the layout.
     """
     layout = beam.layout
     radii = radius * layout.vibrissa.thickness(layout.beads)
@@ -70,13 +56,7 @@ def _let_links_collide(beam: Beam, spec: mujoco.MjSpec) -> None:
 
 
 def add_options(spec: mujoco.MjSpec) -> None:
-    """Set what every model needs for its forces to be right to rounding.
-
-    Parameters
-    ----------
-    spec : mujoco.MjSpec
-        Changed in place.
-    """
+    """Set what every model needs for its forces to be right to rounding."""
     spec.memory = _MEMORY
     option = spec.option
     option.gravity = [0, 0, 0]
@@ -89,23 +69,7 @@ def add_options(spec: mujoco.MjSpec) -> None:
 
 
 def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
-    """What MuJoCo makes of it.
-
-    Parameters
-    ----------
-    spec : mujoco.MjSpec
-        Of a vibrissa and an object.
-
-    Returns
-    -------
-    mujoco.MjModel
-        Compiled.
-
-    Raises
-    ------
-    InputError
-        If it is too thin or too small for MuJoCo's precision.
-    """
+    """What MuJoCo makes of it."""
     try:
         return spec.compile()
     except (ValueError, mujoco.FatalError) as error:

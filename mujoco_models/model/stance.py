@@ -24,18 +24,6 @@ def stance(model: Balance, contacts: Contacts) -> Stance:
 
     A sweep goes from AHEAD to NEAR, and by snap-off to FAR or PASSED. Any other change of stance is
     no neighbour in a sweep: the beam was let through the object.
-
-    Parameters
-    ----------
-    model : Balance
-        Evaluated.
-    contacts : Contacts
-        Of that configuration.
-
-    Returns
-    -------
-    Stance
-        By the sides of the links that are loaded, or by where the object's lowest point is.
     """
     tip = model.bead_positions(np.array([len(model.layout.beads) - 1]))
     axis = np.concatenate([model.joint_positions(), tip])

@@ -13,19 +13,6 @@ def stiffen(
 
     At rest MuJoCo's contact force is -k/((1 - d) A) times the distance, with solref = (-k, -b), the
     impedance d of solimp, and A the acceleration by a unit of force.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        Changed in place.
-    geoms : array of int, shape (n,)
-        The beam's.
-    weight : array, shape (n,)
-        A [1/mass].
-    stiffness : float
-        Force over penetration.
-    impedance : float
-        The same at all depths.
     """
     with np.errstate(over="ignore"):  # of a motion that is about to diverge
         k = stiffness * (1 - impedance) * weight
@@ -41,20 +28,6 @@ def weights_in_last_step(
     This integrator counts the springs and dampers of a step as inertia, so that with the same
     solref a contact is harder by as much: 4 to 27 times at the tip, which is light, and about twice
     elsewhere. The inertia changes slowly, with the vibrissa's shape.
-
-    Parameters
-    ----------
-    model, data : mujoco.MjModel, mujoco.MjData
-        After the step.
-    friction : float
-        Coulomb's coefficient of all contacts.
-
-    Returns
-    -------
-    pairs : array of int, shape (n, 2)
-        The geoms of the contacts that MuJoCo solved.
-    weight : array, shape (n,)
-        The inverse inertia along their normals.
     """
     h, contact = model.opt.timestep, data.contact
     solved = contact.efc_address >= 0

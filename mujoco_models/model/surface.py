@@ -15,49 +15,22 @@ CONTACT_GAP = 0.01  # L; how far ahead the solver sees contacts that carry no fo
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """The geoms by which beam and obstacle touch, and what each geom is.
+    """The geoms by which beam and obstacle touch, and what each geom is."""
 
-    Attributes
-    ----------
-    beads : array of int, shape (n_beads,)
-        The beads' geoms.
-    sides : array of int, shape (n_links,)
-        Those of the links, if they collide with corners.
-    bead_of, side_of, edge_of : array of int, shape (ngeom,)
-        The number of the bead, link or corner that each geom is, or -1.
-    corners : Corners
-        The obstacle's.
-    radius : float
-        Of the vibrissa [L].
-    """
-
-    beads: Integers
-    sides: Integers
+    beads: Integers  # shape (n_beads,); The beads' geoms
+    sides: Integers  # shape (n_links,); Those of the links, if they collide with corners
+    # Shape (ngeom,); The number of the bead, link or corner that each geom is, or -1.
     bead_of: Integers
+    # Shape (ngeom,); The number of the bead, link or corner that each geom is, or -1.
     side_of: Integers
+    # Shape (ngeom,); The number of the bead, link or corner that each geom is, or -1.
     edge_of: Integers
-    corners: Corners
-    radius: float
+    corners: Corners  # the obstacle's
+    radius: float  # of the vibrissa [L]
 
     @classmethod
     def of(cls, model: mujoco.MjModel, links: int, corners: Corners, radius: float) -> "Surface":
-        """That of a compiled model.
-
-        Parameters
-        ----------
-        model : mujoco.MjModel
-            Its only spheres are the beads.
-        links : int
-            Number of the beam's links.
-        corners : Corners
-            The obstacle's.
-        radius : float
-            Of the vibrissa [L].
-
-        Returns
-        -------
-        Surface
-        """
+        """That of a compiled model."""
         beads = np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_SPHERE)
         sides = [model.geom(f"{SIDE_PREFIX}{i}").id for i in range(links if len(corners) else 0)]
         edges = [model.geom(f"{EDGE_PREFIX}{i}").id for i in range(len(corners))]

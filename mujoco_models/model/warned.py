@@ -13,16 +13,5 @@ _BAD_STATES = [
 
 
 def has_diverged(data: mujoco.MjData) -> bool:
-    """Whether a state has not been finite; MuJoCo only warns, and sets it back.
-
-    Parameters
-    ----------
-    data : mujoco.MjData
-        After a step.
-
-    Returns
-    -------
-    bool
-        Since the data were made.
-    """
+    """Whether a state has not been finite; MuJoCo only warns, and sets it back."""
     return bool(data.warning.number.take(_BAD_STATES).any())

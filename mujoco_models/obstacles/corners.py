@@ -22,50 +22,21 @@ _STRAIGHT = 1e-6  # rad; a side that turns less in all is one facet, which ends 
 
 @dataclass(frozen=True, eq=False)
 class Corners:
-    """The edges that stand on the plane of the sweep.
+    """The edges that stand on the plane of the sweep."""
 
-    Attributes
-    ----------
-    ends : array, shape (m, 2, 3)
-        Where each edge begins and ends [L].
-    outward : array, shape (m, 2)
-        Unit vectors half-way between the normals of the two facets.
-    radius : float
-        Of the capsules that MuJoCo takes for edges, which reach as far outward as those [L].
-    """
-
-    ends: Floats
-    outward: Floats
+    ends: Floats  # shape (m, 2, 3); Where each edge begins and ends [L]
+    outward: Floats  # shape (m, 2); Unit vectors half-way between the normals of the two facets
+    # Of the capsules that MuJoCo takes for edges, which reach as far outward as those [L].
     radius: float
 
     @classmethod
     def none(cls) -> "Corners":
-        """Those of a smooth obstacle.
-
-        Returns
-        -------
-        Corners
-            Without an edge.
-        """
+        """Those of a smooth obstacle."""
         return cls(np.zeros((0, 2, 3)), np.zeros((0, 2)), 0.0)
 
     @classmethod
     def of(cls, vertices: Floats, edges: Floats, radius: float) -> "Corners":
-        """Those of a polygon, if one is sharp.
-
-        Parameters
-        ----------
-        vertices : array, shape (n, 2)
-            Lower side of the section, from left to right; its ends are corners too [L].
-        edges : array, shape (n, 2, 3)
-            The ends of the edge through each vertex [L].
-        radius : float
-            See the attributes [L].
-
-        Returns
-        -------
-        Corners
-        """
+        """Those of a polygon, if one is sharp."""
         run, rise = np.diff(vertices, axis=0).T
         angles = np.concatenate([[-np.pi / 2], np.arctan2(rise, run), [np.pi / 2]])
         turn = np.diff(angles)
@@ -81,33 +52,14 @@ class Corners:
         return len(self.ends)
 
     def nearest(self, edge: Integers, points: Floats) -> Floats:
-        """Where edges are nearest to points.
-
-        Parameters
-        ----------
-        edge : array of int, shape (n,)
-            Each point's edge.
-        points : array, shape (n, 3)
-            Positions [L].
-
-        Returns
-        -------
-        array, shape (n, 3)
-            Positions on the edges [L].
-        """
+        """Where edges are nearest to points."""
         begin, end = self.ends[edge].transpose(1, 0, 2)
         run = end - begin
         share = ((points - begin) * run).sum(axis=1) / (run**2).sum(axis=1)
         return np.asarray(begin + np.clip(share, 0, 1)[:, None] * run)
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
-        """Add the edges to the world body.
-
-        Parameters
-        ----------
-        spec : mujoco.MjSpec
-            Changed in place.
-        """
+        """Add the edges to the world body."""
         inset = np.insert(self.radius * self.outward, 2, 0.0, axis=1)
         for i, (begin, end) in enumerate(self.ends - inset[:, None]):
             spec.worldbody.add_geom(
@@ -122,19 +74,6 @@ class Corners:
 
 
 def upright(vertices: Floats, half_length: float) -> Floats:
-    """Edges along z through vertices of the section.
-
-    Parameters
-    ----------
-    vertices : array, shape (n, 2)
-        Where they stand [L].
-    half_length : float
-        How far they reach on either side of the plane [L].
-
-    Returns
-    -------
-    array, shape (n, 2, 3)
-        Their ends [L].
-    """
+    """Edges along z through vertices of the section."""
     ends = [np.insert(vertices, 2, z, axis=1) for z in (-half_length, half_length)]
     return np.stack(ends, axis=1)

@@ -33,16 +33,7 @@ _STRAIGHT = 1e-6
 
 
 class Faceted(Obstacle):
-    """An obstacle of flat facets.
-
-    Parameters
-    ----------
-    vertices : array, shape (n, 2)
-        Lower side of its section, a convex polygon, from left to right, in units of the vibrissa's
-        length.
-    slopes : tuple of float
-        Smallest and largest slope angle at which it can be touched [rad].
-    """
+    """An obstacle of flat facets."""
 
     faceted = True
 
@@ -84,18 +75,7 @@ class Faceted(Obstacle):
         return np.asarray(np.maximum(_FLAT, _SINGLE / np.hypot(*np.diff(self.vertices, axis=0).T)))
 
     def vertex(self, slope: Floats) -> Integers:
-        """Number of the vertex at which each slope angle is passed.
-
-        Parameters
-        ----------
-        slope : array, shape (n,)
-            Slope angles [rad].
-
-        Returns
-        -------
-        array of int, shape (n,)
-            Numbers of vertices.
-        """
+        """Number of the vertex at which each slope angle is passed."""
         return np.searchsorted(self.facet_angles, slope)
 
     def support(self, slope: float) -> Floats:
@@ -220,16 +200,6 @@ def touchable(case: Case) -> tuple[float, float]:
     """Slope angles between which a case's object can be touched.
 
     An end of the object is a corner; there a bead may touch a little above the widest place.
-
-    Parameters
-    ----------
-    case : Case
-        Of a sweep to the left.
-
-    Returns
-    -------
-    low, high : float
-        Slope angles [rad].
     """
     low, high = case.centreline.at(np.array(case.reach)).alpha
     upright = np.pi / 2 - 1e-9
@@ -244,17 +214,6 @@ def add_hull(spec: mujoco.MjSpec, vertices: Floats, inner: Floats, size: float) 
     near the contact: there, rounding is 1e-9 instead of 1e-7. The speck is an octahedron whose axes
     of inertia are those of the world, so that both ends of a prism round alike and its sides stay
     flat.
-
-    Parameters
-    ----------
-    spec : mujoco.MjSpec
-        Changed in place.
-    vertices : array, shape (n, 3)
-        The points [L].
-    inner : array, shape (3,)
-        Centre of the speck, inside the hull [L].
-    size : float
-        Smallest half axis of the speck; the largest is three times that [L].
     """
     speck = inner + size * np.kron(np.diag([1, 2, 3]), [[1], [-1]])
     faces = len(vertices) + np.array(_OCTAHEDRON, dtype=np.int32)

@@ -27,23 +27,7 @@ _SPECK = 0.1  # of the depth at which it lies in the mesh
 
 
 class FileMesh(Faceted):
-    """A mesh that knows its section.
-
-    Parameters
-    ----------
-    case : Case
-        Whose contour is the section of `solid`.
-    solid : ConvexMesh
-        In units of the vibrissa's length.
-    corner_radius : float
-        Of the edges at sharp corners [L].
-
-    Raises
-    ------
-    InputError
-        If it has too many vertices for MuJoCo to find its hull in a reasonable time; or if its
-        sides are so tilted that its section is not what the vibrissa touches.
-    """
+    """A mesh that knows its section."""
 
     windows = 1
 
@@ -80,18 +64,7 @@ class FileMesh(Faceted):
         )
 
     def hull(self, window: int) -> Floats:
-        """The mesh's own points.
-
-        Parameters
-        ----------
-        window : int
-            The only one.
-
-        Returns
-        -------
-        array, shape (n, 3)
-            Positions [L].
-        """
+        """The mesh's own points."""
         return self._solid.vertices
 
     def add_to(self, spec: mujoco.MjSpec) -> None:

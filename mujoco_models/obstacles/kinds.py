@@ -10,26 +10,7 @@ from mujoco_models.settings import Settings
 
 
 def place(case: Case, settings: Settings) -> Obstacle:
-    """The obstacle that the settings ask for.
-
-    Parameters
-    ----------
-    case : Case
-        Of a sweep to the left.
-    settings : Settings
-        Which obstacle, and how fine.
-
-    Returns
-    -------
-    Obstacle
-        Dimensionless, L = 1.
-
-    Raises
-    ------
-    InputError
-        If MuJoCo has no such obstacle for the case's contour, or it has sharp corners and the
-        vibrissa is a cone.
-    """
+    """The obstacle that the settings ask for."""
     obstacle = _made(case, settings)
     if len(obstacle.corners) and case.beam.tip_radius not in (None, case.beam.radius):
         raise InputError(

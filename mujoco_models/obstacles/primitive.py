@@ -32,15 +32,7 @@ class _Circles(NamedTuple):
 
 
 class Primitive(Obstacle):
-    """One cylinder along z, wherever the contact is; a window is one of the contour's circles.
-
-    Parameters
-    ----------
-    circles : _Circles
-        Of curvature, at equal steps of slope angle, in units of the vibrissa's length.
-    outline : Prism
-        The contour as a fine polygon, for what is far from the contact.
-    """
+    """One cylinder along z, wherever the contact is; a window is one of the contour's circles."""
 
     faceted = False
 
@@ -51,22 +43,7 @@ class Primitive(Obstacle):
 
     @classmethod
     def of(cls, case: Case) -> "Primitive":
-        """The part of the case's object that the vibrissa can reach.
-
-        Parameters
-        ----------
-        case : Case
-            Of a sweep to the left.
-
-        Returns
-        -------
-        Primitive
-
-        Raises
-        ------
-        InputError
-            If its contour has corners.
-        """
+        """The part of the case's object that the vibrissa can reach."""
         body = case.profile.scaled(1 / case.beam.length)
         begin, end = case.centreline.at(np.array(case.reach)).alpha
         slope = np.linspace(begin, end, 2 + int((end - begin) / _STEP))
@@ -119,20 +96,7 @@ class Primitive(Obstacle):
         model.geom_pos[geom, :2] = self._circles.centre[window]
 
     def circle(self, window: int) -> tuple[Floats, float]:
-        """A window's circle of curvature, for engines that make a cylinder of it themselves.
-
-        Parameters
-        ----------
-        window : int
-            Its number.
-
-        Returns
-        -------
-        centre : array, shape (2,)
-            Position [L].
-        radius : float
-            Of the circle [L].
-        """
+        """A window's circle of curvature, for engines that make a cylinder of it themselves."""
         return self._circles.centre[window], float(self._circles.radius[window])
 
     def curvature(self, slope: Floats) -> Floats:

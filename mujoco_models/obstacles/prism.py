@@ -33,19 +33,7 @@ _BEYOND = 0.3  # L; how far the mesh goes on beyond the reach of the vibrissa
 
 
 class Prism(Faceted):
-    """The meshes that stand for an extruded polygon.
-
-    Parameters
-    ----------
-    vertices, slopes
-        See `Faceted`.
-    exact : bool
-        Whether the contour is that polygon; else the polygon is inscribed in it.
-    radius : float
-        Of the vibrissa [L].
-    corner_radius : float
-        Of the edges at sharp corners [L].
-    """
+    """The meshes that stand for an extruded polygon."""
 
     upright = True
 
@@ -68,19 +56,6 @@ class Prism(Faceted):
         It has `points` vertices if the contour is curved, or else those of the contour. Where the
         contour goes on beyond reach, so does the polygon, along its tangent: a tip that presses on
         the very end must not be pushed out through the top.
-
-        Parameters
-        ----------
-        case : Case
-            Of a sweep to the left.
-        points : int
-            Of the polygon, if the contour is curved.
-        corner_radius : float
-            Of the edges at sharp corners [L].
-
-        Returns
-        -------
-        Prism
         """
         last, first = case.reach
         body = case.profile.scaled(1 / case.beam.length)
@@ -206,18 +181,7 @@ class Prism(Faceted):
         return bool((np.abs(places - centre) <= self._fine[centre] - 2).all())
 
     def hull(self, window: int) -> Floats:
-        """The points of a window in double precision, one end of the extrusion after the other.
-
-        Parameters
-        ----------
-        window : int
-            Its number.
-
-        Returns
-        -------
-        array, shape (n, 3)
-            Positions [L].
-        """
+        """The points of a window in double precision, one end of the extrusion after the other."""
         kept = self._kept(int(self._centres[window]))
         polygon = np.vstack([self.vertices[kept], self.outline[-1]])
         ends = [np.insert(polygon, 2, z, axis=1) for z in (-HALF_DEPTH, HALF_DEPTH)]

@@ -48,215 +48,56 @@ class Obstacle(ABC):
 
     @abstractmethod
     def add_to(self, spec: mujoco.MjSpec) -> None:
-        """Add the geom to the world body.
-
-        Parameters
-        ----------
-        spec : mujoco.MjSpec
-            Changed in place.
-        """
+        """Add the geom to the world body."""
 
     @abstractmethod
     def show(self, model: mujoco.MjModel, geom: int, window: int) -> None:
-        """Let what is best for `window`, and nothing else, take part in collisions.
-
-        Parameters
-        ----------
-        model : mujoco.MjModel
-            Changed in place.
-        geom : int
-            Its number in the model.
-        window : int
-            Which window.
-        """
+        """Let what is best for `window`, and nothing else, take part in collisions."""
 
     @abstractmethod
     def curvature(self, slope: Floats) -> Floats:
-        """Curvature of the contour where it has these slope angles.
-
-        Parameters
-        ----------
-        slope : array, shape (n,)
-            Slope angles [rad].
-
-        Returns
-        -------
-        array, shape (n,)
-            Curvatures [1/L].
-        """
+        """Curvature of the contour where it has these slope angles."""
 
     def across(self, slope: Floats) -> Floats:
-        """How much slower a contact's normal turns because the edge that it passes is not upright.
-
-        Parameters
-        ----------
-        slope : array, shape (n,)
-            Slope angles [rad].
-
-        Returns
-        -------
-        array, shape (n,)
-            The square of what of a slide along the contour is across the edge; 1 for a prism.
-        """
+        """How much slower a contact's normal turns where the edge that it passes leans."""
         return np.ones(len(slope))
 
     @abstractmethod
     def support(self, slope: float) -> Floats:
-        """The point of the contour that a line at this slope angle touches.
-
-        Parameters
-        ----------
-        slope : float
-            Slope angle [rad].
-
-        Returns
-        -------
-        array, shape (2,)
-            Position [L].
-        """
+        """The point of the contour that a line at this slope angle touches."""
 
     @abstractmethod
     def faces(self, slope: Floats) -> bool:
-        """Whether contacts with these slope angles are with the contour, not with its far side.
-
-        Parameters
-        ----------
-        slope : array, shape (n,)
-            Slope angles [rad].
-
-        Returns
-        -------
-        bool
-            Of all of them.
-        """
+        """Whether contacts with these slope angles are with the contour, not with its far side."""
 
     @abstractmethod
     def near(self, points: Floats, distance: float | Floats) -> Integers:
-        """Which of the points may be nearer to the contour than a distance.
-
-        Parameters
-        ----------
-        points : array, shape (n, 2)
-            Positions [L].
-        distance : float, or array of shape (n,)
-            From the contour, one for all or one a point [L].
-
-        Returns
-        -------
-        array of int, shape (m,)
-            Their numbers.
-        """
+        """Which of the points may be nearer to the contour than a distance."""
 
     @abstractmethod
     def clearance(self, point: Floats) -> tuple[float, float]:
-        """Distance of a point from the contour.
-
-        Parameters
-        ----------
-        point : array, shape (2,)
-            Position [L].
-
-        Returns
-        -------
-        distance : float
-            Negative inside [L].
-        place : float
-            Of the nearest point of the contour, in the measure of `place`.
-        """
+        """Distance of a point from the contour."""
 
     def gap(self, window: int, points: Floats) -> tuple[Floats, Floats] | None:
-        """How far points are from the contour as MuJoCo has it, to rounding.
-
-        Parameters
-        ----------
-        window : int
-            Its number; the points are near to what it has of the contour.
-        points : array, shape (n, 2)
-            Positions [L].
-
-        Returns
-        -------
-        tuple of array, shape (n,) and (n, 2), or None
-            Distances, negative inside [L], and unit vectors from the nearest points of the contour,
-            outwards. None if only MuJoCo knows them.
-        """
+        """How far points are from the contour as MuJoCo has it, to rounding."""
         return None
 
     def from_tangents(self, points: Floats, slope: Floats) -> Floats:
-        """How far points are below tangents of the contour; asked of upright obstacles only.
-
-        Parameters
-        ----------
-        points : array, shape (n, 2)
-            Positions [L].
-        slope : array, shape (n,)
-            Slope angles of the tangents, one for each point [rad].
-
-        Returns
-        -------
-        array, shape (n,)
-            No point is nearer to the contour than that [L].
-        """
+        """How far points are below tangents of the contour; asked of upright obstacles only."""
         raise TypeError(f"{type(self).__name__} is not upright")
 
     def is_cut(self, polyline: Floats) -> bool:
-        """Whether a piece of a polyline is inside; asked of obstacles with corners only.
-
-        Parameters
-        ----------
-        polyline : array, shape (n, 2)
-            Its vertices [L].
-
-        Returns
-        -------
-        bool
-            Touching it from outside does not count.
-        """
+        """Whether a piece of a polyline is inside; asked of obstacles with corners only."""
         raise TypeError(f"{type(self).__name__} has no corners")
 
     @abstractmethod
     def place(self, slope: Floats) -> Floats:
-        """Where along the contour these slope angles are, in whatever measure windows have.
-
-        Parameters
-        ----------
-        slope : array, shape (n,)
-            Slope angles [rad].
-
-        Returns
-        -------
-        array, shape (n,)
-            Places.
-        """
+        """Where along the contour these slope angles are, in whatever measure windows have."""
 
     @abstractmethod
     def window_of(self, place: float) -> int:
-        """The window that is best for a place.
-
-        Parameters
-        ----------
-        place : float
-            Along the contour.
-
-        Returns
-        -------
-        int
-            Number of the window.
-        """
+        """The window that is best for a place."""
 
     @abstractmethod
     def is_inside(self, window: int, places: Floats) -> bool:
-        """Whether a window has all of the contour around some places.
-
-        Parameters
-        ----------
-        window : int
-            Its number.
-        places : array, shape (n,)
-            Along the contour.
-
-        Returns
-        -------
-        bool
-            Of all of them.
-        """
+        """Whether a window has all of the contour around some places."""

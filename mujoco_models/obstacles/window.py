@@ -25,15 +25,7 @@ _GOLDEN = np.pi * (3 - np.sqrt(5))
 
 
 def add_room(spec: mujoco.MjSpec, count: int) -> None:
-    """Add a geom with a mesh of `count` vertices to the world body.
-
-    Parameters
-    ----------
-    spec : mujoco.MjSpec
-        Changed in place.
-    count : int
-        How many, at least.
-    """
+    """Add a geom with a mesh of `count` vertices to the world body."""
     number = np.arange(max(count, _LEAST))
     height = 1 - (2 * number + 1) / len(number)
     across = np.sqrt(1 - height**2)
@@ -54,19 +46,7 @@ def add_room(spec: mujoco.MjSpec, count: int) -> None:
 
 
 def write_prism(model: mujoco.MjModel, geom: int, polygon: Floats, origin: Floats) -> None:
-    """Let the geom be an upright prism, on either side of the plane of the sweep.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        Changed in place.
-    geom : int
-        One of `add_room`.
-    polygon : array, shape (n, 2)
-        The vertices of a convex polygon, counterclockwise: half as many as there is room for [L].
-    origin : array, shape (2,)
-        Near the contact: single precision is that of distances from there [L].
-    """
+    """Let the geom be an upright prism, on either side of the plane of the sweep."""
     mesh, count = model.geom_dataid[geom], len(polygon)
     begin = model.mesh_vertadr[mesh]
     ends = model.mesh_vert[begin : begin + 2 * count].reshape(2, count, 3)
@@ -109,18 +89,7 @@ def _graph(count: int) -> Integers:
 
 
 def prism_faces(count: int) -> Integers:
-    """The triangles of a prism over a convex polygon.
-
-    Parameters
-    ----------
-    count : int
-        Vertices of the polygon: counterclockwise those of the near end, and then of the far end.
-
-    Returns
-    -------
-    array of int, shape (4 count - 4, 3)
-        Numbers of vertices, counterclockwise from outside.
-    """
+    """The triangles of a prism over a convex polygon."""
     this = np.arange(count)
     after = np.roll(this, -1)
     fan = this[:1].repeat(count - 2), this[1:-1], this[2:]

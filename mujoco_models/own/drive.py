@@ -18,15 +18,7 @@ class Drive(ABC):
 
     @abstractmethod
     def move(self, data: mujoco.MjData, way: float, speed: float) -> None:
-        """Say where the foot is to be at the end of a step.
-
-        Parameters
-        ----------
-        data : mujoco.MjData
-            Changed in place.
-        way, speed : float
-            To the left, since the start [length, length/time].
-        """
+        """Say where the foot is to be at the end of a step."""
 
 
 class Mocap(Drive):
@@ -75,27 +67,7 @@ class Actuated(Drive):
 
 
 def drive_to(model: mujoco.MjModel, foot: int, left: Floats) -> Drive:
-    """What can move a body to the left.
-
-    Parameters
-    ----------
-    model : mujoco.MjModel
-        The user's.
-    foot : int
-        The body.
-    left : array, shape (3,)
-        The direction of the sweep in the world.
-
-    Returns
-    -------
-    Drive
-        The innermost one that there is.
-
-    Raises
-    ------
-    InputError
-        If nothing moves it along the sweep.
-    """
+    """What can move a body to the left."""
     mover = mover_of(model, foot, left)
     if mover is None:
         name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, foot)

@@ -36,32 +36,7 @@ _ITERATIONS, _TOLERANCE = 500, 1e-12  # of Newton's method, which takes two or t
 
 
 class OwnModelInMotion:
-    """A user's model and its state; what it reports is dimensionless, in the case's units and T1.
-
-    Parameters
-    ----------
-    own : OwnModel
-        The model's file, and what is changed of it.
-    held : Held or HeldRod
-        The same model, at rest with its foot held.
-    measured : MeasuredBeam
-        What was measured of it.
-    beam : Beam
-        The case's; its units are the model's.
-    obstacle : Prism
-        The case's object.
-    motion : Motion
-        Speed and contact stiffness.
-    foot_x : float
-        Where the foot starts, in the case's frame [L].
-
-    Attributes
-    ----------
-    time : float
-        Of the state that is reported [T1].
-    label : str
-        What the object is.
-    """
+    """A user's model and its state; in dimensionless numbers of the case and T1."""
 
     def __init__(
         self,
@@ -188,20 +163,7 @@ class OwnModelInMotion:
         return float(self._start + moved / self._beam.length)
 
     def step(self, speed: float) -> None:
-        """One step of MuJoCo's, at whose end the foot should have gone on at a given speed.
-
-        Parameters
-        ----------
-        speed : float
-            Of the foot to the left [L/T1].
-
-        Raises
-        ------
-        DivergedError
-            If MuJoCo warns of a bad state.
-        InputError
-            If the foot does not follow.
-        """
+        """One step of MuJoCo's, at whose end the foot should have gone on at a given speed."""
         self.time = self.now
         self._way += speed * self.model.opt.timestep / self._period
         unit = self._beam.length
@@ -221,13 +183,7 @@ class OwnModelInMotion:
             )  # fmt: skip
 
     def clamp(self) -> Clamp:
-        """The clamp's action on the vibrissa, by the model's own sensors.
-
-        Returns
-        -------
-        Clamp
-            In the case's frame, at the foot [EI/L^2, EI/L].
-        """
+        """The clamp's action on the vibrissa, by the model's own sensors."""
         force, _ = self._sensed(self._parts.force)
         moment, at = self._sensed(self._parts.torque)
         carried = np.empty(3)
@@ -260,18 +216,7 @@ class OwnModelInMotion:
         return found
 
     def state(self, speed: float) -> dict[str, Any]:
-        """Contact and energy of the last step, dimensionless.
-
-        Parameters
-        ----------
-        speed : float
-            Of the foot [L/T1].
-
-        Returns
-        -------
-        dict
-            By column.
-        """
+        """Contact and energy of the last step, dimensionless."""
         return {
             **self._touched(),
             "tip_angle": self._tip_angle(),

@@ -15,73 +15,23 @@ class Skin(ABC):
 
     @abstractmethod
     def has(self, contact: int) -> bool:
-        """Whether a contact is one of the vibrissa's.
-
-        Parameters
-        ----------
-        contact : int
-            Its number.
-
-        Returns
-        -------
-        bool
-            Whatever it touches.
-        """
+        """Whether a contact is one of the vibrissa's."""
 
     @abstractmethod
     def arc_length(self, contact: int, inward: Floats) -> float:
-        """Of the point of the axis that is nearest to a contact.
-
-        Parameters
-        ----------
-        contact : int
-            Its number.
-        inward : array, shape (3,)
-            Unit vector from the object into the vibrissa.
-
-        Returns
-        -------
-        float
-            From the clamp [L].
-        """
+        """Of the point of the axis that is nearest to a contact."""
 
     @abstractmethod
     def tip_direction(self) -> Floats:
-        """Of the last link or edge.
-
-        Returns
-        -------
-        array, shape (3,)
-            A unit vector in the world.
-        """
+        """Of the last link or edge."""
 
     @abstractmethod
     def elastic_energy(self) -> float:
-        """Of the whole model.
-
-        Returns
-        -------
-        float
-            Up to a constant [force length].
-        """
+        """Of the whole model."""
 
 
 class Links(Skin):
-    """Geoms on bodies with hinges.
-
-    Parameters
-    ----------
-    model, data : mujoco.MjModel, mujoco.MjData
-        The model in motion.
-    chain : tuple of int
-        Its bodies.
-    geoms : frozenset of int
-        The vibrissa's.
-    nodes : array, shape (n_links + 1,)
-        Arc lengths of the joints and the tip [length].
-    tip : array, shape (3,)
-        The tip in the frame of the last body [length].
-    """
+    """Geoms on bodies with hinges."""
 
     def __init__(
         self,
@@ -135,19 +85,7 @@ class Links(Skin):
 
 
 class Edges(Skin):
-    """A flex.
-
-    Parameters
-    ----------
-    model, data : mujoco.MjModel, mujoco.MjData
-        The model in motion.
-    rod : Rod
-        Its vertices.
-    nodes : array, shape (n_vertices - 1,)
-        Arc lengths of all vertices but the first, which is at the clamp or before it [length].
-    compliances : array, shape (n_vertices - 2,)
-        Turn over moment at each inner vertex [1/(force length)].
-    """
+    """A flex."""
 
     def __init__(
         self,

@@ -31,23 +31,7 @@ def run_own(
     advance: Callable[[], None],
     keep: Callable[[Readings], None],
 ) -> Readings:
-    """Sweep a user's model to the left; see `mujoco_models.simulate_model`.
-
-    Parameters
-    ----------
-    case, own, motion, settings, advance, keep
-        As there; the case is one of a sweep to the left.
-
-    Returns
-    -------
-    Readings
-        As there.
-
-    Raises
-    ------
-    InputError, DivergedError
-        As there.
-    """
+    """Sweep a user's model to the left; see `mujoco_models.simulate_model`."""
     model = load(own.file, own.site)
     parts = find(model, Names(own.foot, own.force, own.torque, own.geoms, own.site))
     with unlogged():

@@ -12,29 +12,7 @@ _CCD_ITERATIONS = 500  # of MuJoCo's search for the nearest point of an ellipsoi
 
 
 def assembled(spec: mujoco.MjSpec, links: int, tangent: Floats, radius: float) -> mujoco.MjModel:
-    """Beam and body with a bead on each link, the clamp's sensors, and the foot along its tangent.
-
-    Parameters
-    ----------
-    spec : mujoco.MjSpec
-        Of the beam, with the body in it; changed in place.
-    links : int
-        How many the beam has.
-    tangent : array, shape (3,)
-        Of the vibrissa at its clamp.
-    radius : float
-        Of the vibrissa [L].
-
-    Returns
-    -------
-    mujoco.MjModel
-        Compiled.
-
-    Raises
-    ------
-    InputError
-        If that is impossible.
-    """
+    """Beam and body with a bead on each link, clamp sensors, and a foot along its tangent."""
     add_options(spec)
     spec.option.ccd_iterations = _CCD_ITERATIONS
     foot = spec.body(FOOT)

@@ -74,18 +74,7 @@ class Linearised(NamedTuple):
     """Of the stiffness, what a velocity's own spring has, shape (nv,) [EI/L]."""
 
     def curvature(self, state: State) -> Floats:
-        """The same with the bead where its link is nearest to the body, if it slides.
-
-        Parameters
-        ----------
-        state : State
-            Where the system is.
-
-        Returns
-        -------
-        array, shape (nv, nv)
-            [EI/L]
-        """
+        """The same with the bead where its link is nearest to the body, if it slides."""
         if not state.sliding:
             return self.stiffness
         share = state.force / max(self.along, _FLATTEST)
@@ -93,15 +82,7 @@ class Linearised(NamedTuple):
 
 
 class Balance:
-    """The equations of balance on a model.
-
-    Parameters
-    ----------
-    model : SpaceModel
-        MuJoCo's.
-    tolerance : float
-        The largest moment that may be out of balance [EI/L].
-    """
+    """The equations of balance on a model."""
 
     def __init__(self, model: SpaceModel, tolerance: float) -> None:
         self.model, self._tolerance = model, tolerance
@@ -115,22 +96,7 @@ class Balance:
         self._before = before
 
     def converge(self, state: State, surface: Surface, foot: Floats) -> tuple[State, Touch] | None:
-        """The equilibrium to which Newton's method leads.
-
-        Parameters
-        ----------
-        state : State
-            Where it begins.
-        surface : Surface
-            What is touched.
-        foot : array, shape (3,)
-            Position of the foot [L].
-
-        Returns
-        -------
-        state, touch or None
-            None if it leads nowhere.
-        """
+        """The equilibrium to which Newton's method leads."""
         model = self.model
         for _ in range(_QUICK if isinstance(surface, Feature) else _ITERATIONS):
             state, touch = self.seen(state, surface, foot)
@@ -154,22 +120,7 @@ class Balance:
         return None
 
     def along(self, state: State, surface: Surface, by: Floats) -> State:
-        """The first step, as the foot moves, by the equations at the start.
-
-        Parameters
-        ----------
-        state : State
-            At rest, with the model in it.
-        surface : Surface
-            What is touched.
-        by : array, shape (3,)
-            How the foot moves [L].
-
-        Returns
-        -------
-        State
-            Not at rest.
-        """
+        """The first step, as the foot moves, by the equations at the start."""
         model = self.model
         touch = surface.touch(state.link, state.s)
         slope = float(touch.normal @ model.direction(state.link))
@@ -183,24 +134,7 @@ class Balance:
         return self._step(state, moved) or state
 
     def seen(self, state: State, surface: Surface, foot: Floats) -> tuple[State, Touch]:
-        """Where the bead of a state is.
-
-        Parameters
-        ----------
-        state : State
-            Its bead is first put on the right link.
-        surface : Surface
-            What is touched.
-        foot : array, shape (3,)
-            Position of the foot [L].
-
-        Returns
-        -------
-        state : State
-            Sliding, or held at the tip or a joint; the model is placed.
-        touch : Touch
-            Of its bead.
-        """
+        """Where the bead of a state is."""
         self.model.place(foot, state.configuration)
         state = self._inward(state)
         touch = surface.touch(state.link, state.s)
@@ -234,24 +168,7 @@ class Balance:
         return state
 
     def linearised(self, state: State, touch: Touch, slope: float, turning: Floats) -> Linearised:
-        """The equations of balance at a state in which the model has been placed.
-
-        Parameters
-        ----------
-        state : State
-            Configuration, bead and force.
-        touch : Touch
-            Of the bead.
-        slope : float
-            Cosine between normal and link.
-        turning : array, shape (3, 3)
-            How the normal turns as the bead's centre moves [1/L].
-
-        Returns
-        -------
-        Linearised
-            First and second derivatives.
-        """
+        """The equations of balance at a state in which the model has been placed."""
         model, force, n = self.model, state.force, touch.normal
         moved, carry = self.moved(state.link, touch.centre), self._carriers(state.link)
         swung = -(model.axes[:carry] @ _crossed_by(n))
@@ -282,20 +199,7 @@ class Balance:
         )
 
     def moved(self, link: int, centre: Floats) -> Floats:
-        """How a place of a link moves with the joints' turns.
-
-        Parameters
-        ----------
-        link : int
-            Its number.
-        centre : array, shape (3,)
-            The place [L].
-
-        Returns
-        -------
-        array, shape (nv, 3)
-            [L]
-        """
+        """How a place of a link moves with the joints' turns."""
         model, carry = self.model, self._carriers(link)
         found = np.zeros((len(model.joint_of), 3))
         found[:carry] = cross(model.axes[:carry], centre - model.anchors[:carry])
@@ -358,22 +262,7 @@ class Balance:
         return (link - 1, low) if link > 0 else (link, low)
 
     def is_stable(self, state: State, touch: Touch, surface: Surface) -> bool:
-        """Whether the energy is least at an equilibrium in which the model has been placed.
-
-        Parameters
-        ----------
-        state : State
-            The equilibrium.
-        touch : Touch
-            Of its bead.
-        surface : Surface
-            What is touched.
-
-        Returns
-        -------
-        bool
-            Whether its second derivative is positive.
-        """
+        """Whether the energy is least at an equilibrium in which the model has been placed."""
         system = self._derivatives(state, touch, surface)
         return not dpotrf(self._whole(state, system), lower=1)[1]
 
@@ -382,20 +271,7 @@ class Balance:
         return np.asarray(system.curvature(state) + self._k * np.outer(system.push, system.push))
 
     def softest(self, state: State, touch: Touch, surface: Surface) -> tuple[float, Floats]:
-        """How stable an equilibrium is in which the model has been placed.
-
-        Parameters
-        ----------
-        state, touch, surface
-            As of `is_stable`.
-
-        Returns
-        -------
-        stability : float
-            Least eigenvalue of the stiffness over that of the joints' springs; positive if stable.
-        turns : array, shape (nv,)
-            That are resisted least.
-        """
+        """How stable an equilibrium is in which the model has been placed."""
         system = self._derivatives(state, touch, surface)
         scale = 1 / np.sqrt(system.own)
         whole = self._whole(state, system) * scale[:, None] * scale
@@ -412,18 +288,7 @@ class Balance:
 
 
 def cross(one: Floats, other: Floats) -> Floats:
-    """As `numpy.cross` of rows, in a fifth of its time.
-
-    Parameters
-    ----------
-    one, other : array, shape (n, 3)
-        Vectors.
-
-    Returns
-    -------
-    array, shape (n, 3)
-        One times the other.
-    """
+    """As `numpy.cross` of rows, in a fifth of its time."""
     x, y, z = one.T
     u, v, w = other.T
     found = np.empty_like(other)

@@ -205,23 +205,7 @@ class UniversalRod(Universal, SpatialRod):
 
 
 def build(settings: SpatialSettings) -> SpaceBeam:
-    """The beam that the settings ask for.
-
-    Parameters
-    ----------
-    settings : SpatialSettings
-        Which beam, of how many segments.
-
-    Returns
-    -------
-    SpaceBeam
-        Straight and uniform.
-
-    Raises
-    ------
-    InputError
-        If the installed MuJoCo lacks it.
-    """
+    """The beam that the settings ask for."""
     require(settings.beam)
     planar = Settings(beam=settings.beam, segments=settings.segments, clamp=settings.clamp)
     if settings.beam == "rod":

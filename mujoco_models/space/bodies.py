@@ -42,67 +42,28 @@ Osculating: TypeAlias = Callable[[Floats, Floats], Circle]
 
 @dataclass(frozen=True)
 class Shape:
-    """What MuJoCo has for a body.
+    """What MuJoCo has for a body."""
 
-    Attributes
-    ----------
-    label : str
-        What provenance says of it.
-    faceted : bool
-        Whether it consists of flat faces.
-    difference : float
-        The displacement by which the turning of MuJoCo's normals is measured [L]: as small as their
-        precision allows.
-    blur : float
-        Error of MuJoCo's normals [rad]: what a force leaves out of balance, and Newton's method
-        cannot remove.
-    off : float
-        Error of its distances [L], likewise.
-    osculating : callable, optional
-        Of a prism: maps a normal and a point near by to the cylinder that has the contour's circle
-        of curvature there. MuJoCo's cylinder follows the contact; where the rest of the body is, a
-        mesh says.
-    inscribed : float
-        How far that mesh may be off the contour [L].
-    """
-
-    label: str
-    faceted: bool
+    label: str  # what provenance says of it
+    faceted: bool  # whether it consists of flat faces
+    # The displacement by which the turning of MuJoCo's normals is measured [L]: as small as their
+    # precision allows.
     difference: float
+    # Error of MuJoCo's normals [rad]: what a force leaves out of balance, and Newton's method
+    # cannot remove.
     blur: float = 0.0
-    off: float = 0.0
+    off: float = 0.0  # error of its distances [L], likewise
+    # Of a prism: maps a normal and a point near by to the cylinder that has the contour's circle of
+    # curvature there. MuJoCo's cylinder follows the contact; where the rest of the body is, a mesh
+    # says.
     osculating: Osculating | None = None
-    inscribed: float = 0.0
+    inscribed: float = 0.0  # how far that mesh may be off the contour [L]
 
 
 def add_body(
     spec: mujoco.MjSpec, body: Body, centre: Floats, reach: float, contour_points: int
 ) -> Shape:
-    """Add a body to the world.
-
-    Parameters
-    ----------
-    spec : mujoco.MjSpec
-        Changed in place.
-    body : Body
-        In L.
-    centre : array, shape (3,)
-        Of the way of the foot [L].
-    reach : float
-        How far from there the vibrissa gets [L].
-    contour_points : int
-        Points of a prism's polygon.
-
-    Returns
-    -------
-    Shape
-        What it is.
-
-    Raises
-    ------
-    InputError
-        If a mesh has too many vertices for MuJoCo, or the body is of a kind that it has not.
-    """
+    """Add a body to the world."""
     reach = reach + _MARGIN
     if isinstance(body, Ellipsoid):
         return _ellipsoid(spec, body)

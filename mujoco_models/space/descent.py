@@ -53,25 +53,7 @@ class _Near(NamedTuple):
 
 
 def descend(rest: Rest, start: Settled, foot: Floats, far: float) -> Settled | None:
-    """Where a vibrissa comes to rest that was stable until now.
-
-    Parameters
-    ----------
-    rest : Rest
-        Newton's method on MuJoCo's model.
-    start : Settled
-        The last stable state.
-    foot : array, shape (3,)
-        Position of the foot, a little beyond [L].
-    far : float
-        How far the contact may get [L].
-
-    Returns
-    -------
-    Settled or None
-        None if it loses its contact, or the contact gets farther than `far`. If it was still on its
-        way after the last step, or hardly moved, it is not `stable`.
-    """
+    """Where a vibrissa comes to rest that was stable until now."""
     model, state, inertia, unloaded, slow = rest.model, start.state, _INERTIA, 0, 0
     begin, pressing = model.contact(start.touch), {state.link}
     _, softest = rest.softest(start, foot)

@@ -76,21 +76,7 @@ class _Bent(NamedTuple):
 
 
 class Forecast:
-    """Newton's method on the picture of a chain.
-
-    Parameters
-    ----------
-    layout : Layout
-        Where the joints are.
-    law : callable
-        Of a joint's energy, times its compliance.
-    tangent : array, shape (3,)
-        Of the vibrissa at its clamp.
-    radius : float
-        Of the vibrissa [L].
-    contact_stiffness : float
-        Force over penetration [EI/L^3].
-    """
+    """Newton's method on the picture of a chain."""
 
     def __init__(
         self, layout: Layout, law: Law, tangent: Floats, radius: float, contact_stiffness: float
@@ -109,26 +95,7 @@ class Forecast:
         near: Floats | None = None,
         far: float = math.inf,
     ) -> Bow | None:
-        """The equilibrium to which Newton's method leads.
-
-        Parameters
-        ----------
-        start : Bow
-            Where it begins.
-        surface : Feature
-            What is touched.
-        foot : array, shape (3,)
-            Position of the foot [L].
-        near : array, shape (3,), optional
-            Where the bead's centre is to be, about [L].
-        far : float
-            A step away from there that leads farther than this leads nowhere [L].
-
-        Returns
-        -------
-        Bow or None
-            None if Newton's method leads nowhere, or to where nothing presses.
-        """
+        """The equilibrium to which Newton's method leads."""
         bow, before, apart, not_halved = start, math.inf, math.inf, 0
         onto = surface.basis @ self._tangent
         clamp = foot + self._begins[0] * self._tangent
@@ -158,20 +125,7 @@ class Forecast:
     def bow(
         self, tangents: Floats, link: int, s: float, force: Floats, sliding: bool
     ) -> Bow | None:
-        """A chain, turned into the plane of its clamp and of the force on it.
-
-        Parameters
-        ----------
-        tangents : array, shape (n_links, 3)
-            Unit vectors along the links.
-        link, s, force, sliding
-            As of `Bow`.
-
-        Returns
-        -------
-        Bow or None
-            None if the force is along the clamp's tangent.
-        """
+        """A chain, turned into the plane of its clamp and of the force on it."""
         across = force - (force @ self._tangent) * self._tangent
         size = float(np.linalg.norm(across))
         if size <= HEAD_ON * np.linalg.norm(force):
@@ -181,21 +135,7 @@ class Forecast:
         return Bow(angles, side, link, s, force, sliding)
 
     def between(self, one: Bow, other: Bow, share: float) -> Bow | None:
-        """Between two equilibria on the same face, edge or corner.
-
-        Parameters
-        ----------
-        one, other : Bow
-            The equilibria.
-        share : float
-            Of the way from one to the other.
-
-        Returns
-        -------
-        Bow or None
-            None if the bead slides in one and is held in the other, or an edge without end has been
-            passed to its other side.
-        """
+        """Between two equilibria on the same face, edge or corner."""
         alike = one.sliding == other.sliding and (one.sliding or one.link == other.link)
         if not alike or one.force @ other.force <= 0:
             return None
@@ -205,20 +145,7 @@ class Forecast:
         return Bow(angles, self._side(force, one.side), link, s, force, one.sliding)
 
     def centre(self, bow: Bow, foot: Floats) -> Floats:
-        """Of the bead.
-
-        Parameters
-        ----------
-        bow : Bow
-            Of the vibrissa.
-        foot : array, shape (3,)
-            Position of the foot [L].
-
-        Returns
-        -------
-        array, shape (3,)
-            [L]
-        """
+        """Of the bead."""
         bent = self._bent(bow)
         along = self._begins[0] + bent.along
         return np.asarray(foot + along * self._tangent + bent.aside * bow.side)

@@ -28,24 +28,7 @@ _EDGE = 1e-4  # L, to which the end of a face is enclosed
 
 
 def over_faces(rest: Rest, held: Settled, foot: Floats, far: float) -> Settled | None:
-    """Where it comes to rest.
-
-    Parameters
-    ----------
-    rest : Rest
-        Where a model comes to rest.
-    held : Settled
-        The last stable state.
-    foot : array, shape (3,)
-        Position of the foot, a little beyond [L].
-    far : float
-        How far the contact may get [L].
-
-    Returns
-    -------
-    Settled or None
-        None if none holds it, if several edges do, or the body is none of faces.
-    """
+    """Where it comes to rest."""
     model = rest.model
     if not model.shape.faceted:
         return None

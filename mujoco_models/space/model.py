@@ -47,21 +47,6 @@ class SpaceModel:
 
     The vibrissa touches with one bead, a sphere on its axis, which slides along the link that
     carries it to where that is nearest to the body.
-
-    Parameters
-    ----------
-    beam : SpaceBeam
-        Which beam.
-    spec : mujoco.MjSpec
-        Of the beam, with the body in it.
-    shape : Shape
-        What MuJoCo has for the body.
-    tangent : array, shape (3,)
-        Of the vibrissa at its clamp.
-    radius : float
-        Of the vibrissa [L].
-    contact_stiffness : float
-        Force over penetration [EI/L^3].
     """
 
     def __init__(
@@ -107,15 +92,7 @@ class SpaceModel:
         self.straight = model.qpos0.copy()
 
     def place(self, foot: Floats, configuration: Floats) -> None:
-        """Put the vibrissa there, and let MuJoCo see where its links are and how its springs pull.
-
-        Parameters
-        ----------
-        foot : array, shape (3,)
-            Position of the foot [L].
-        configuration : array, shape (nq,)
-            MuJoCo's coordinates.
-        """
+        """Put the vibrissa there, and let MuJoCo evaluate links and springs."""
         model, data = self.model, self.data
         model.body_pos[self._foot] = foot
         data.qpos[:], data.qvel[:] = configuration, 0
@@ -152,53 +129,16 @@ class SpaceModel:
         return np.array(self.data.xmat[self._foot].reshape(3, 3))
 
     def direction(self, link: int) -> Floats:
-        """Of a link's axis.
-
-        Parameters
-        ----------
-        link : int
-            Its number.
-
-        Returns
-        -------
-        array, shape (3,)
-            Unit vector towards the tip.
-        """
+        """Of a link's axis."""
         return np.asarray(self.data.xmat[self._links[link]].reshape(3, 3)[:, 1])
 
     def centre(self, link: int, s: float) -> Floats:
-        """Of a bead.
-
-        Parameters
-        ----------
-        link : int
-            Number of the link.
-        s : float
-            Arc length of the bead, on that link [L].
-
-        Returns
-        -------
-        array, shape (3,)
-            [L]
-        """
+        """Of a bead."""
         start = self.data.xpos[self._links[link]]
         return np.asarray(start + (s - self._begins[link]) * self.direction(link))
 
     def touch(self, link: int, s: float) -> Touch:
-        """MuJoCo's nearest point of the body to a bead on a link.
-
-        Parameters
-        ----------
-        link : int
-            Number of the link.
-        s : float
-            Arc length of the bead, on that link [L].
-
-        Returns
-        -------
-        Touch
-            Place, normal and distance.
-        """
+        """MuJoCo's nearest point of the body to a bead on a link."""
         centre = self.centre(link, s)
         normal, distance = self._nearest(link, centre)
         if self.shape.osculating is not None:
@@ -211,18 +151,7 @@ class SpaceModel:
         return Touch(centre, normal, distance)
 
     def contact(self, touch: Touch) -> Floats:
-        """Where the body is touched.
-
-        Parameters
-        ----------
-        touch : Touch
-            Of a bead.
-
-        Returns
-        -------
-        array, shape (3,)
-            On the body's surface [L].
-        """
+        """Where the body is touched."""
         return np.asarray(touch.centre - (self.radius + touch.distance) * touch.normal)
 
     def _follow(self, normal: Floats, centre: Floats) -> None:
@@ -236,24 +165,7 @@ class SpaceModel:
         model.geom_pos[body] = self.data.geom_xpos[body] = circle.centre
 
     def curved(self, link: int, touch: Touch, step: float) -> tuple[Floats, Floats]:
-        """How fast and about what MuJoCo's normal turns as the bead moves, by central differences.
-
-        Parameters
-        ----------
-        link : int
-            The link that carries the bead.
-        touch : Touch
-            Where it is.
-        step : float
-            The displacement [L].
-
-        Returns
-        -------
-        rates : array, shape (2,)
-            Ascending; below 0 by rounding only: the body is convex [1/L].
-        ways : array, shape (2, 3)
-            Unit vectors across the normal, into which it turns if the bead moves along them.
-        """
+        """How fast and about what MuJoCo's normal turns as the bead moves."""
         one, other = sides = across(touch.normal)
         by_one, by_other = (
             (sides @ (self._nearest(link, ahead)[0] - self._nearest(link, behind)[0])).tolist()
@@ -270,36 +182,12 @@ class SpaceModel:
         return np.array([mean - apart, mean + apart]) / (2 * step), ways
 
     def turning(self, link: int, touch: Touch, step: float) -> Floats:
-        """How MuJoCo's normal turns as the bead's centre moves.
-
-        Parameters
-        ----------
-        link, touch, step
-            As of `curved`.
-
-        Returns
-        -------
-        array, shape (3, 3)
-            Symmetric, no eigenvalue below 0 [1/L].
-        """
+        """How MuJoCo's normal turns as the bead's centre moves."""
         rates, ways = self.curved(link, touch, step)
         return np.asarray((ways.T * np.maximum(rates, 0.0)) @ ways)
 
     def probe(self, link: int, centre: Floats) -> Touch:
-        """The nearest point to a bead wherever it is.
-
-        Parameters
-        ----------
-        link : int
-            Whose bead.
-        centre : array, shape (3,)
-            Where it is to be [L].
-
-        Returns
-        -------
-        Touch
-            Place, normal and distance.
-        """
+        """The nearest point to a bead wherever it is."""
         return Touch(centre, *self._nearest(link, centre))
 
     def _nearest(self, link: int, centre: Floats) -> tuple[Floats, float]:
@@ -311,20 +199,7 @@ class SpaceModel:
         return away * (outward / math.sqrt(away @ away)), float(distance)
 
     def distance_of_link(self, link: int) -> tuple[float, float]:
-        """How far a link is from the body, and where on it that is.
-
-        Parameters
-        ----------
-        link : int
-            Its number.
-
-        Returns
-        -------
-        distance : float
-            Between the surfaces, negative if they overlap [L].
-        arc_length : float
-            Of the nearest place, on the link [L].
-        """
+        """How far a link is from the body, and where on it that is."""
         side = self._sides[link]
         distance = mujoco.mj_geomDistance(
             self.model, self.data, side, self._outline, _FAR, self._ends
@@ -339,15 +214,6 @@ class SpaceModel:
 
         A link that is d away has none nearer than d less a link's length beside it, so that most
         need not be asked for.
-
-        Returns
-        -------
-        distance : float
-            Between the surfaces [L].
-        link : int
-            Its number.
-        arc_length : float
-            Of its nearest place [L].
         """
         best, found, at = np.inf, len(self.ends) - 1, 1.0
         link = len(self.ends) - 1
@@ -363,18 +229,6 @@ class SpaceModel:
 
         A convex body is on one side of the plane that touches it at the contact, so that a link is
         no nearer to the body than to that plane.
-
-        Parameters
-        ----------
-        touch : Touch
-            The contact.
-        depth : float
-            How near another link may be [L].
-
-        Returns
-        -------
-        distance, link, arc_length
-            As of `nearest_link`; `depth` and the last link if none is nearer.
         """
         height = touch.normal @ touch.centre - touch.distance
         joints = self.data.xpos[self._links] @ touch.normal
@@ -388,25 +242,7 @@ class SpaceModel:
         return self.beam.blocks(self.data.qpos)
 
     def rest(self, link: int | None, s: float) -> float:
-        """Let MuJoCo evaluate all its forces on the configuration, with a bead in its place.
-
-        Parameters
-        ----------
-        link : int or None
-            The link whose bead may touch; None if none does.
-        s : float
-            Where it is [L].
-
-        Returns
-        -------
-        float
-            The largest moment of springs and contact that is out of balance at a joint [EI/L].
-
-        Raises
-        ------
-        DivergedError
-            If a moment is not finite.
-        """
+        """Let MuJoCo evaluate all its forces on the configuration, with a bead in its place."""
         model, data = self.model, self.data
         model.geom_conaffinity[self._beads] = 0
         if link is not None:
@@ -420,13 +256,7 @@ class SpaceModel:
         return float(np.abs(found).max())
 
     def clamp(self) -> Clamped:
-        """MuJoCo's sensors at the clamp, of what `rest` evaluated.
-
-        Returns
-        -------
-        Clamped
-            Force and moment, and how far they are from the contacts' sum.
-        """
+        """MuJoCo's sensors at the clamp, of what `rest` evaluated."""
         turn = self.data.site_xmat[self._site].reshape(3, 3)
         force, moment = (turn @ part for part in self.data.sensordata.reshape(2, 3))
         held = np.zeros((2, 3))
@@ -443,18 +273,7 @@ class SpaceModel:
 
 
 def across(normal: Floats) -> Floats:
-    """Two unit vectors across one and across each other.
-
-    Parameters
-    ----------
-    normal : array, shape (3,)
-        Unit vector.
-
-    Returns
-    -------
-    array, shape (2, 3)
-        Right-handed with the first.
-    """
+    """Two unit vectors across one and across each other."""
     x, y, z = normal.tolist()
     if abs(z) < max(abs(x), abs(y)):
         size = math.hypot(x, y)

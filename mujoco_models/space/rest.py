@@ -36,15 +36,7 @@ class Settled(NamedTuple):
 
 
 class Rest:
-    """Where a model comes to rest.
-
-    Parameters
-    ----------
-    model : SpaceModel
-        MuJoCo's.
-    tolerance : float
-        The largest moment that may be out of balance [EI/L].
-    """
+    """Where a model comes to rest."""
 
     def __init__(self, model: SpaceModel, tolerance: float) -> None:
         self.model, self._tolerance = model, tolerance
@@ -68,24 +60,6 @@ class Rest:
         """The equilibrium to which Newton's method leads.
 
         Its first step is one along the branch: of the linearised equations at the start.
-
-        Parameters
-        ----------
-        start : State
-            Where it begins.
-        surface : Surface
-            What is touched.
-        begin, foot : array, shape (3,)
-            Where the foot was at `start`, and where it is now [L].
-        near, far
-            Where the bead is to be, about, as of `Forecast.rest`.
-        sought : callable
-            Whether what is foreseen is of any use.
-
-        Returns
-        -------
-        Settled or None
-            None if it leads nowhere, or to where nothing presses.
         """
         self.model.place(begin, start.configuration)
         bow = self._bow(start, surface)
@@ -100,22 +74,7 @@ class Rest:
     def follow(
         self, held: Settled, begin: Floats, foot: Floats, far: float = np.inf
     ) -> Settled | None:
-        """The stable equilibrium on the same surface to which Newton's method leads.
-
-        Parameters
-        ----------
-        held : Settled
-            Where it begins.
-        begin, foot : array, shape (3,)
-            Where the foot was, and where it is now [L].
-        far : float
-            How far from where it was the bead may be, as of `Forecast.rest` [L].
-
-        Returns
-        -------
-        Settled or None
-            As of `settle`.
-        """
+        """The stable equilibrium on the same surface to which Newton's method leads."""
         if held.bow is None:
             found = self.settle(held.state, held.surface, begin, foot)
         else:
@@ -126,20 +85,7 @@ class Rest:
         return found if found is not None and found.stable else None
 
     def between(self, held: Settled, found: Settled, share: float) -> Settled:
-        """Where to begin between two equilibria on the same surface.
-
-        Parameters
-        ----------
-        held, found : Settled
-            The equilibria.
-        share : float
-            Of the way from `held` to `found`.
-
-        Returns
-        -------
-        Settled
-            The first one, with a forecast that starts there if there is one.
-        """
+        """Where to begin between two equilibria on the same surface."""
         if held.bow is None or found.bow is None:
             return held
         assert self._forecast is not None
@@ -153,42 +99,12 @@ class Rest:
         near: Floats | None = None,
         far: float = np.inf,
     ) -> Bow | None:
-        """Where it will rest, as far as is known without MuJoCo.
-
-        Parameters
-        ----------
-        bow : Bow
-            Where it begins.
-        surface : Surface
-            What is touched.
-        foot : array, shape (3,)
-            Position of the foot [L].
-        near, far
-            Where the bead is to be, about, as of `Forecast.rest`.
-
-        Returns
-        -------
-        Bow or None
-            None if Newton's method leads nowhere.
-        """
+        """Where it will rest, as far as is known without MuJoCo."""
         assert self._forecast is not None and isinstance(surface, Feature)
         return self._forecast.rest(bow, surface, foot, near, far)
 
     def centre(self, bow: Bow, foot: Floats) -> Floats:
-        """Of the bead of what is foreseen.
-
-        Parameters
-        ----------
-        bow : Bow
-            The forecast.
-        foot : array, shape (3,)
-            Position of the foot [L].
-
-        Returns
-        -------
-        array, shape (3,)
-            [L]
-        """
+        """Of the bead of what is foreseen."""
         assert self._forecast is not None
         return self._forecast.centre(bow, foot)
 
@@ -196,20 +112,6 @@ class Rest:
         """The equilibrium by MuJoCo's own balance, next to a forecast that stays where the mesh is.
 
         What has left its face, edge or corner is nowhere to rest; it only says where it left.
-
-        Parameters
-        ----------
-        bow : Bow
-            The forecast.
-        surface : Surface
-            What is touched.
-        foot : array, shape (3,)
-            Position of the foot [L].
-
-        Returns
-        -------
-        Settled or None
-            As of `settle`.
         """
         assert isinstance(surface, Feature)
         state, touch = self._bent(bow), surface.touched(self.centre(bow, foot))
@@ -249,40 +151,12 @@ class Rest:
         return None
 
     def softest(self, found: Settled, foot: Floats) -> tuple[float, Floats]:
-        """How stable an equilibrium is.
-
-        Parameters
-        ----------
-        found : Settled
-            The equilibrium.
-        foot : array, shape (3,)
-            Position of the foot [L].
-
-        Returns
-        -------
-        stability : float
-            Least eigenvalue of the stiffness over that of the joints' springs; positive if stable.
-        turns : array, shape (nv,)
-            That are resisted least.
-        """
+        """How stable an equilibrium is."""
         self.model.place(foot, found.state.configuration)
         return self.balance.softest(found.state, found.touch, found.surface)
 
     def exactly(self, found: Settled, foot: Floats) -> Settled | None:
-        """The same where the mesh has it to rounding: a face's direction is known to less.
-
-        Parameters
-        ----------
-        found : Settled
-            On a mesh or not.
-        foot : array, shape (3,)
-            Position of the foot [L].
-
-        Returns
-        -------
-        Settled or None
-            As of `settle`.
-        """
+        """The same where the mesh has it to rounding: a face's direction is known to less."""
         model, state = self.model, found.state
         if not isinstance(found.surface, Feature):
             return found

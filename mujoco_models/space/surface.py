@@ -107,18 +107,7 @@ class Feature(NamedTuple):
         return self.touched(self.model.centre(link, s))
 
     def touched(self, centre: Floats) -> Touch:
-        """The same of a bead wherever it is.
-
-        Parameters
-        ----------
-        centre : array, shape (3,)
-            Where it is to be [L].
-
-        Returns
-        -------
-        Touch
-            Place, normal and distance.
-        """
+        """The same of a bead wherever it is."""
         away = centre - self.point
         if self.flat:
             return Touch(centre, self.normal, float(away @ self.normal) - self.model.radius)
@@ -132,37 +121,11 @@ class Feature(NamedTuple):
         return np.asarray((self.span - np.outer(n, n)) / (touch.distance + self.model.radius))
 
     def missed(self, link: int, s: float) -> float:
-        """How far the mesh is from being as if this were all of it.
-
-        Parameters
-        ----------
-        link : int
-            The link that carries the bead.
-        s : float
-            Its arc length [L].
-
-        Returns
-        -------
-        float
-            Between the places that both have for the contact, or between the distances [L].
-        """
+        """How far the mesh is from being as if this were all of it."""
         return self.missed_at(link, self.model.centre(link, s))
 
     def missed_at(self, link: int, centre: Floats) -> float:
-        """The same for a bead wherever it is.
-
-        Parameters
-        ----------
-        link : int
-            Whose bead.
-        centre : array, shape (3,)
-            Where it is to be [L].
-
-        Returns
-        -------
-        float
-            [L]
-        """
+        """The same for a bead wherever it is."""
         ours, found = self.touched(centre), self.model.probe(link, centre)
         apart = found.distance + self.model.radius
         return max(
@@ -172,22 +135,7 @@ class Feature(NamedTuple):
 
 
 def surface_at(model: SpaceModel, link: int, touch: Touch) -> Surface:
-    """What a bead touches.
-
-    Parameters
-    ----------
-    model : SpaceModel
-        Placed.
-    link : int
-        The link that carries it.
-    touch : Touch
-        By MuJoCo.
-
-    Returns
-    -------
-    Surface
-        Of a mesh the face, edge or corner.
-    """
+    """What a bead touches."""
     if not model.shape.faceted:
         return Whole(model)
     apart = touch.distance + model.radius
@@ -205,20 +153,6 @@ def features_at(model: SpaceModel, link: int, centre: Floats) -> list[Feature]:
     """The faces and the edges of a mesh that meet where a bead touches, faces first.
 
     They are looked for from next to the body, where the fans of normals of edges are narrow.
-
-    Parameters
-    ----------
-    model : SpaceModel
-        Of a mesh.
-    link : int
-        Whose bead.
-    centre : array, shape (3,)
-        Where it is [L].
-
-    Returns
-    -------
-    list of Feature
-        Each once.
     """
     touch = model.probe(link, centre)
     low = model.contact(touch) + BESIDE * touch.normal
@@ -228,24 +162,7 @@ def features_at(model: SpaceModel, link: int, centre: Floats) -> list[Feature]:
 def features_around(
     model: SpaceModel, link: int, centre: Floats, known: Sequence[Feature] = ()
 ) -> list[Feature]:
-    """The faces and the edges of a mesh next to a bead, faces first.
-
-    Parameters
-    ----------
-    model : SpaceModel
-        Of a mesh.
-    link : int
-        Whose bead.
-    centre : array, shape (3,)
-        Where it is to be [L].
-    known : sequence of Feature
-        Which need not be found again.
-
-    Returns
-    -------
-    list of Feature
-        Each once, and none of those known.
-    """
+    """The faces and the edges of a mesh next to a bead, faces first."""
     ring = _ring(model.probe(link, centre).normal, 8)
     rings = [centre + size * model.radius * ring for size in _RINGS]
     return _features(model, link, np.concatenate(rings), known)
@@ -255,20 +172,6 @@ def edges_of(model: SpaceModel, faces: Sequence[Feature], centre: Floats) -> lis
     """The edges in which faces meet around a corner, or in which two do.
 
     The fan of an edge's normals is narrow, and what lies next to a corner is mostly faces.
-
-    Parameters
-    ----------
-    model : SpaceModel
-        Of a mesh.
-    faces : sequence of Feature
-        All that meet there, and no others.
-    centre : array, shape (3,)
-        Of a bead next to it [L].
-
-    Returns
-    -------
-    list of Feature
-        One for each pair of neighbours.
     """
     if len(faces) < 2:
         return []

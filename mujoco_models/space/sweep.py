@@ -52,23 +52,7 @@ def run_space(
     advance: Callable[[], None] = lambda: None,
     keep: Callable[[SpatialReadings], None] = lambda _: None,
 ) -> SpatialReadings:
-    """Sweep the beam in space; see `mujoco_models.simulate_space`.
-
-    Parameters
-    ----------
-    case, settings, advance, keep
-        As there.
-
-    Returns
-    -------
-    SpatialReadings
-        As there.
-
-    Raises
-    ------
-    InputError, DivergedError
-        As there.
-    """
+    """Sweep the beam in space; see `mujoco_models.simulate_space`."""
     begun = time.process_time()
     model = compiled(case, settings)
     way = case.way
@@ -113,25 +97,7 @@ def run_space(
 
 
 def compiled(case: SpatialCase, settings: SpatialSettings) -> SpaceModel:
-    """Beam and body of a case.
-
-    Parameters
-    ----------
-    case : SpatialCase
-        The problem.
-    settings : SpatialSettings
-        The numerics.
-
-    Returns
-    -------
-    SpaceModel
-        MuJoCo's.
-
-    Raises
-    ------
-    InputError
-        As `mujoco_models.simulate_space` does.
-    """
+    """Beam and body of a case."""
     if case.beam.radius == 0:
         raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
     beam, way = build(settings), case.way

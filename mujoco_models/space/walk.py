@@ -61,19 +61,7 @@ class Station(NamedTuple):
 
 
 class Walk:
-    """A walk along the way of the foot.
-
-    Parameters
-    ----------
-    model : SpaceModel
-        MuJoCo's.
-    rest : Rest
-        Newton's method on it.
-    foot : callable
-        Maps a distance along the way [L] to the foot's position [L], shape (3,).
-    marks : array
-        Where along the way its corners are [L].
-    """
+    """A walk along the way of the foot."""
 
     def __init__(
         self,
@@ -90,18 +78,7 @@ class Walk:
         self.events: list[Event] = []
 
     def go_to(self, target: float) -> Station:
-        """Go on to a station.
-
-        Parameters
-        ----------
-        target : float
-            Along the way, not before the last one [L].
-
-        Returns
-        -------
-        Station
-            What it comes to.
-        """
+        """Go on to a station."""
         if self._failures == _GIVEN_UP:
             if self._gap(target) <= 0:
                 self._at = target
@@ -180,13 +157,7 @@ class Walk:
         self._at, self._held = at, self._rest.settle(start, surface, foot, foot)
 
     def _follow(self, target: float) -> bool:
-        """Along the stable branch to the station, or to its end and what comes after it.
-
-        Returns
-        -------
-        bool
-            False if the vibrissa does not come to rest.
-        """
+        """Along the stable branch to the station, or to its end and what comes after it."""
         stride = np.inf  # how far Newton's method leads
         while self._at < target:
             goal = min(target, self._at + stride)
@@ -216,22 +187,7 @@ class Walk:
         self._at, self._held = goal, found
 
     def _to_the_edge(self, found: Settled, goal: float) -> tuple[float, Settled | None]:
-        """Up to the place where the contact leaves its face, edge or corner.
-
-        Parameters
-        ----------
-        found : Settled
-            Where it has left.
-        goal : float
-            Where that is [L].
-
-        Returns
-        -------
-        goal : float
-            Where it has left, at most 1e-4 L on [L].
-        found : Settled or None
-            There; None if Newton's method leads nowhere.
-        """
+        """Up to the place where the contact leaves its face, edge or corner."""
         tries = 0
         while goal - self._at > _CROSSED:
             step, beside = goal - self._at, _BESIDE[tries % len(_BESIDE)]

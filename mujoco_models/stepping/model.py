@@ -49,30 +49,7 @@ _CONES = {
 
 
 class MovingModel:
-    """MuJoCo's model and state of a vibrissa in motion; L = EI = T1 = 1.
-
-    Parameters
-    ----------
-    beam : Beam
-        Which beam; its links turn on hinges.
-    radius : float
-        Of the vibrissa [L].
-    obstacle : Obstacle
-        What it is swept past.
-    motion : Motion
-        How it is stepped.
-    foot_x : float
-        Where the foot starts [L].
-
-    Attributes
-    ----------
-    model, data : mujoco.MjModel, mujoco.MjData
-        MuJoCo's own. The first coordinate is the foot's, all others are the joints'.
-    obstacle : Obstacle
-        As given.
-    time : float
-        Of the state that is reported [T1].
-    """
+    """MuJoCo's model and state of a vibrissa in motion; L = EI = T1 = 1."""
 
     def __init__(
         self,
@@ -159,16 +136,6 @@ class MovingModel:
 
         What the model reports afterwards is the state at the beginning of the step, as MuJoCo's
         sensors do.
-
-        Parameters
-        ----------
-        speed : float
-            Of the foot [L/T1].
-
-        Raises
-        ------
-        DivergedError
-            If MuJoCo warns of a bad state, which it then sets back to the straight beam.
         """
         self.time = float(self.data.time)
         change = -speed - float(self.data.qvel[0])
@@ -207,24 +174,12 @@ class MovingModel:
         return np.asarray(self.data.geom_xpos.take(self._surface.beads, axis=0))
 
     def contacts(self) -> Contacts:
-        """What MuJoCo reports of the last step, loaded or not.
-
-        Returns
-        -------
-        Contacts
-            Of the state that is reported.
-        """
+        """What MuJoCo reports of the last step, loaded or not."""
         joints = np.asarray(self.data.xanchor[1:, :2])
         return Contacts.of(self.data, self._surface, self._layout, joints)
 
     def clamp(self) -> Clamp:
-        """The clamp's action on the vibrissa, by MuJoCo's sensors.
-
-        Returns
-        -------
-        Clamp
-            In the world frame, at the foot [EI/L^2, EI/L].
-        """
+        """The clamp's action on the vibrissa, by MuJoCo's sensors."""
         return by_sensors(self.data)
 
     @property
@@ -247,18 +202,7 @@ class MovingModel:
         return bool(self.contacts().loaded.any())
 
     def state(self, speed: float) -> dict[str, Any]:
-        """Contact and energy of the last step, dimensionless.
-
-        Parameters
-        ----------
-        speed : float
-            Of the foot [L/T1].
-
-        Returns
-        -------
-        dict
-            By column.
-        """
+        """Contact and energy of the last step, dimensionless."""
         return {
             **self.contacts().as_reading(self.data.contact.pos[:, :2]),
             "tip_angle": self.tip_angle,
@@ -267,18 +211,7 @@ class MovingModel:
         }
 
     def kinetic_share(self, speed: float) -> float:
-        """Kinetic energy, seen from the foot, over kinetic and elastic energy.
-
-        Parameters
-        ----------
-        speed : float
-            Of the foot [L/T1].
-
-        Returns
-        -------
-        float
-            From 0 to 1; 0 if there is no energy at all.
-        """
+        """Kinetic energy, seen from the foot, over kinetic and elastic energy."""
         seen = self.data.qvel.copy()
         seen[0] += speed
         product = np.zeros_like(seen)

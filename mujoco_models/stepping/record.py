@@ -15,24 +15,12 @@ _APART = 0.05  # of a station's way; without contact there, the mean is off by a
 
 @dataclass(frozen=True)
 class Sample:
-    """One step of MuJoCo's.
+    """One step of MuJoCo's."""
 
-    Attributes
-    ----------
-    time : float
-        Since the start [T1].
-    foot_x : float
-        Foot position [L].
-    clamp : array, shape (3,)
-        Force and moment, as the sensor gives them [EI/L^2, EI/L].
-    touches : bool
-        Whether a contact is loaded.
-    """
-
-    time: float
-    foot_x: float
-    clamp: Floats
-    touches: bool
+    time: float  # since the start [T1]
+    foot_x: float  # foot position [L]
+    clamp: Floats  # shape (3,); Force and moment, as the sensor gives them [EI/L^2, EI/L]
+    touches: bool  # whether a contact is loaded
 
 
 class Record:
@@ -40,20 +28,6 @@ class Record:
 
     Between two steps the readings are taken to be linear in the foot's position, so that the means
     are centred at the stations wherever the steps fall.
-
-    Parameters
-    ----------
-    stations : array, shape (n,)
-        Foot positions, decreasing [L].
-    average : float
-        Share of the way between two stations to take the mean over.
-
-    Attributes
-    ----------
-    rows : list of dict
-        Of the stations that are complete.
-    first_touch : float or None
-        Foot position of the first contact; None if there was none.
     """
 
     def __init__(self, stations: Floats, average: float) -> None:
@@ -82,18 +56,7 @@ class Record:
         return len(self.rows) == len(self._stations)
 
     def crosses(self, before: Sample, after: Sample) -> bool:
-        """Whether the next station lies between two steps.
-
-        Parameters
-        ----------
-        before, after : Sample
-            Consecutive ones.
-
-        Returns
-        -------
-        bool
-            True once a station.
-        """
+        """Whether the next station lies between two steps."""
         return (
             not self.complete
             and self._pending is None
@@ -101,15 +64,7 @@ class Record:
         )
 
     def note(self, before: Sample, after: Sample, state: dict[str, Any]) -> None:
-        """Keep the raw readings and the state at the station between two steps.
-
-        Parameters
-        ----------
-        before, after : Sample
-            Consecutive ones.
-        state : dict
-            What else there is to say of it, by column.
-        """
+        """Keep the raw readings and the state at the station between two steps."""
         share = (before.foot_x - self._stations[len(self.rows)]) / (before.foot_x - after.foot_x)
         raw = before.clamp + share * (after.clamp - before.clamp)
         self._held = before.touches and after.touches
@@ -120,18 +75,7 @@ class Record:
         }
 
     def take(self, before: Sample, after: Sample) -> bool:
-        """Add the way between two steps to the mean of the present station.
-
-        Parameters
-        ----------
-        before, after : Sample
-            Consecutive ones.
-
-        Returns
-        -------
-        bool
-            Whether that completes the station; the same two steps may then belong to the next one.
-        """
+        """Add the way between two steps to the mean of the present station."""
         if before.touches != after.touches:
             self._losses += before.touches
         apart = self.first_touch is not None and not (before.touches and after.touches)

@@ -37,23 +37,7 @@ def run_motion(
     advance: Callable[[], None] = lambda: None,
     keep: Callable[[Readings], None] = lambda _: None,
 ) -> Readings:
-    """Sweep the beam to the left; see `mujoco_models.simulate_motion`.
-
-    Parameters
-    ----------
-    case, motion, settings, advance, keep
-        As there; the case is one of a sweep to the left.
-
-    Returns
-    -------
-    Readings
-        As there.
-
-    Raises
-    ------
-    InputError, DivergedError
-        As there.
-    """
+    """Sweep the beam to the left; see `mujoco_models.simulate_motion`."""
     model, motion, record, about = _prepared(case, motion, settings)
     return sweep_moving(model, case, motion, record, about, advance, keep)
 
@@ -65,23 +49,7 @@ def run_there_and_back(
     advance: Callable[[], None] = lambda: None,
     keep: Callable[[Readings], None] = lambda _: None,
 ) -> tuple[Readings, Readings]:
-    """Sweep the beam to the left and back; see `mujoco_models.simulate_there_and_back`.
-
-    Parameters
-    ----------
-    case, motion, settings, advance, keep
-        As there; the case is one of a sweep to the left.
-
-    Returns
-    -------
-    on, back : Readings
-        As there.
-
-    Raises
-    ------
-    InputError, DivergedError
-        As there.
-    """
+    """Sweep the beam to the left and back; see `mujoco_models.simulate_there_and_back`."""
     model, motion, record, about = _prepared(case, motion, settings)
     way = _Way(model, case, motion, about)
     on = way.swept(record, way.on, advance, keep)
@@ -104,20 +72,7 @@ def _prepared(
 
 
 def start_of(record: Record, motion: Motion) -> float:
-    """Where the foot starts, to have its speed on the way to the first station.
-
-    Parameters
-    ----------
-    record : Record
-        Of the sweep.
-    motion : Motion
-        Its speed and soft start.
-
-    Returns
-    -------
-    float
-        Foot position [L].
-    """
+    """Where the foot starts, to have its speed on the way to the first station."""
     return record.first + motion.speed * (motion.ramp / 2 + motion.timestep)
 
 
@@ -130,33 +85,7 @@ def sweep_moving(
     advance: Callable[[], None],
     keep: Callable[[Readings], None],
 ) -> Readings:
-    """Move a model past all stations.
-
-    Parameters
-    ----------
-    model : Moving
-        At its start.
-    case : Case
-        Of a sweep to the left.
-    motion : Motion
-        With the model's time step.
-    record : Record
-        Empty.
-    about : dict
-        What provenance says of the model, and its ``source``.
-    advance, keep
-        As `mujoco_models.simulate_motion` takes them.
-
-    Returns
-    -------
-    Readings
-        In the units of the case's beam; the time stays in T1.
-
-    Raises
-    ------
-    DivergedError
-        If the motion does not stay finite.
-    """
+    """Move a model past all stations."""
     way = _Way(model, case, motion, about)
     return way.swept(record, way.on, advance, keep)
 

@@ -24,30 +24,6 @@ def load_tip(
 
     The load is MuJoCo's own, an actuator on a site; Newton's method on MuJoCo's balance finds the
     rest.
-
-    Parameters
-    ----------
-    load : float
-        P L^2/EI.
-    settings : Settings
-        Beam, number of segments, clamp and tolerance; nothing else matters without a contact.
-    vibrissa : Beam, optional
-        Straight and uniform if it is not given.
-    clamp_stiffness : float
-        Moment of the clamp by its rotation [force length/rad].
-
-    Returns
-    -------
-    across, shortening : float
-        Displacement of the tip along the load, which is to the right, and along the clamp's
-        tangent, towards the clamp [L].
-
-    Raises
-    ------
-    InputError
-        If the installed MuJoCo lacks the beam.
-    RuntimeError
-        If the beam does not come to rest.
     """
     vibrissa = vibrissa or Beam()
     beam = build(settings, 1.0, Vibrissa.of(vibrissa, clamp_stiffness))

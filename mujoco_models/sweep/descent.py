@@ -17,27 +17,7 @@ _SHORTER, _LONGER = 2.0, 0.25  # the most by which inertia changes from one step
 
 
 def descend(model: Balance, foot_x: float, start: State, numerics: Numerics, steps: int) -> State:
-    """Let the beam go down, with the foot at `foot_x`, until it is free or rests.
-
-    Parameters
-    ----------
-    model : Balance
-        The beam and the obstacle.
-    foot_x : float
-        Foot position [L].
-    start : State
-        The last state at rest, or nearly.
-    numerics : Numerics
-        Constants of the way down.
-    steps : int
-        The most that it may take.
-
-    Returns
-    -------
-    State
-        Without forces if the beam has lost its contact; else where it came to rest, or where it was
-        after these steps. Whether that is a state at rest, `relax` decides.
-    """
+    """Let the beam go down, with the foot at `foot_x`, until it is free or rests."""
     model.lookout.watch(around(model, start.forces, numerics.reach) | one_bead_a_link(model))
     if start.slope is not None:
         model.lookout.face(start.slope)

@@ -27,21 +27,11 @@ _UNITS = {
 
 @dataclass(frozen=True)
 class Account:
-    """What the readings of a sweep say of their origin.
+    """What the readings of a sweep say of their origin."""
 
-    Attributes
-    ----------
-    source : str
-        Who produces them.
-    provenance : mapping
-        ``engine``, with its version, and ``settings``.
-    begun : float
-        Processor time when the work began [s].
-    """
-
-    source: str
-    provenance: Mapping[str, Any]
-    begun: float
+    source: str  # who produces them
+    provenance: Mapping[str, Any]  # ``engine``, with its version, and ``settings``
+    begun: float  # processor time when the work began [s]
 
 
 def follow(
@@ -51,29 +41,7 @@ def follow(
     advance: Callable[[], None] = lambda: None,
     keep: Callable[[Readings], None] = lambda _: None,
 ) -> Readings:
-    """Go to all stations, one after the other.
-
-    Parameters
-    ----------
-    case : Case
-        Of a sweep to the left.
-    walk : Walk
-        At the first station.
-    account : Account
-        For the provenance.
-    advance, keep : callable
-        See `mujoco_models.simulate_sweep`.
-
-    Returns
-    -------
-    Readings
-        In the units of the case's beam.
-
-    Raises
-    ------
-    DivergedError, MemoryError, ClampError
-        As `mujoco_models.simulate_sweep` does.
-    """
+    """Go to all stations, one after the other."""
     rows: list[dict[str, Any]] = []
     doubts: Counter[str] = Counter()
     try:

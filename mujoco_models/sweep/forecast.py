@@ -16,25 +16,7 @@ from mujoco_models.sweep.state import State, turned
 
 
 def forecast(model: Balance, foot_x: float, start: State, numerics: Numerics) -> State | None:
-    """Where the beam will rest with its foot at `foot_x`, near `start`.
-
-    Parameters
-    ----------
-    model : Balance
-        The beam and the obstacle.
-    foot_x : float
-        Foot position [L].
-    start : State
-        Where to start from, with a load.
-    numerics : Numerics
-        Constants of the way there.
-
-    Returns
-    -------
-    State or None
-        Not known to be at rest; None if nothing is found, or it is of no use: past sharp corners,
-        or inside the object. The lookout faces what is touched.
-    """
+    """Where the beam will rest with its foot at `foot_x`, near `start`."""
     if len(model.obstacle.corners):
         return None
     picture = Picture(model, start.forces, numerics.ahead)

@@ -37,26 +37,7 @@ class _OnFacets(Newton):
 
 
 def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> State | None:
-    """The minimum of the energy that is down from `start`, with the foot at `foot_x`.
-
-    Parameters
-    ----------
-    model : Balance
-        The beam and the obstacle.
-    foot_x : float
-        Foot position [L].
-    start : State
-        Where to start from.
-    numerics : Numerics
-        Constants of the way there.
-
-    Returns
-    -------
-    State or None
-        Not known to be at rest; None past sharp corners, inside the object, or if nothing is found.
-        The lookout faces what is touched. Where one bead that slides is loaded, the picture has it
-        hung up on the next one that does not, and the engine's way to rest is short.
-    """
+    """The minimum of the energy that is down from `start`, with the foot at `foot_x`."""
     if len(model.obstacle.corners):
         return None
     picture = Picture(model, start.forces, numerics.ahead, follow=True)

@@ -19,33 +19,15 @@ from mujoco_models.sweep.unilateral import unilateral
 
 
 class Touch(NamedTuple):
-    """Where beads are, and which way the obstacle faces them.
+    """Where beads are, and which way the obstacle faces them."""
 
-    Attributes
-    ----------
-    bead : array of int, shape (n,)
-        Their numbers.
-    normal_angle : array, shape (n,)
-        Slope angles of the contour there [rad].
-    position : array, shape (n, 2)
-        Of their centres [L].
-    """
-
-    bead: Integers
-    normal_angle: Floats
-    position: Floats
+    bead: Integers  # shape (n,); Their numbers
+    normal_angle: Floats  # shape (n,); Slope angles of the contour there [rad]
+    position: Floats  # shape (n, 2); Of their centres [L]
 
 
 class Newton:
-    """Newton's method, with what it remembers from one step to the next.
-
-    Parameters
-    ----------
-    model : Mechanics
-        Evaluated at the state that a step starts from.
-    numerics : Numerics
-        Constants.
-    """
+    """Newton's method, with what it remembers from one step to the next."""
 
     def __init__(self, model: Mechanics, numerics: Numerics) -> None:
         self._model = model
@@ -55,27 +37,7 @@ class Newton:
         self._doubled = 0  # of the addition to the springs in the last step
 
     def step(self, state: State, contacts: Contacts, inertia: float = 0.0) -> State:
-        """The next iterate.
-
-        Parameters
-        ----------
-        state : State
-            The configuration in which the model is.
-        contacts : Contacts
-            MuJoCo's, of that configuration.
-        inertia : float
-            Makes the step shorter, in units of each joint's stiffness.
-
-        Returns
-        -------
-        State
-            With the imbalance of `state`: its own is not known yet.
-
-        Raises
-        ------
-        DivergedError
-            If the stiffness is not finite.
-        """
+        """The next iterate."""
         model, numerics = self._model, self._numerics
         contacts = contacts.nearest(max(numerics.at_once, 2 * len(state.forces)))
         curvature = self._curvature(contacts)
@@ -216,20 +178,7 @@ class Newton:
 
 
 def levers(contacts: Contacts, joints: Floats) -> tuple[Floats, Floats]:
-    """How the contacts' points move as each link turns alone.
-
-    Parameters
-    ----------
-    contacts : Contacts
-        n of them.
-    joints : array, shape (n_links, 2)
-        Where the links begin [L].
-
-    Returns
-    -------
-    along, across : array, shape (n, n_links)
-        Along the normals, and along the contour, negative if that is the way of its slope [L/rad].
-    """
+    """How the contacts' points move as each link turns alone."""
     # From joint to joint, and from where a contact's link begins straight to the contact. An arrow
     # times the conjugate of the normal is what of it is along the normal, and across to the left.
     places, count = in_plane(joints), len(joints)
@@ -240,34 +189,12 @@ def levers(contacts: Contacts, joints: Floats) -> tuple[Floats, Floats]:
 
 
 def in_plane(vectors: Floats) -> Complexes:
-    """Vectors of the plane as complex numbers.
-
-    Parameters
-    ----------
-    vectors : array, shape (n, 2)
-        Theirs.
-
-    Returns
-    -------
-    array of complex, shape (n,)
-        x + iy.
-    """
+    """Vectors of the plane as complex numbers."""
     return np.ascontiguousarray(vectors).view(complex)[:, 0]
 
 
 def of_links(moments: Floats) -> Floats:
-    """Generalised forces of the links' own angles, from those of the joints between them.
-
-    Parameters
-    ----------
-    moments : array, shape (n,)
-        Moments at the joints [EI/L].
-
-    Returns
-    -------
-    array, shape (n,)
-        What turns each link alone [EI/L].
-    """
+    """Generalised forces of the links' own angles, from those of the joints between them."""
     found = moments.copy()
     found[:-1] -= moments[1:]
     return found

@@ -8,145 +8,112 @@ class Numerics:
     """Constants of the rest solver and of the walk, each with its reason.
 
     What happens when one is off was tried on the catenary and the parabola (chain, N = 40).
-
-    Parameters
-    ----------
-    iterations : int
-        Newton steps before a station is tried in smaller steps of the foot. Usually 2
-        to 4 suffice; with fewer than a contact needs that changes its facet, steps are halved in
-        vain.
-    in_vain : int
-        Newton steps in a row without a better one, and the rest are not tried. From 6 to 25 nothing
-        changes on twenty sweeps at random, but for a third of their cost.
-    slow : float
-        Newton's method that comes nearer by less than this from step to step does not know the
-        stiffness at hand, and learns from its own steps. A tip that rounds a soft corner comes to
-        rest in half of the evaluations then; with 0.5 or 0.05 nothing changes on eight sweeps.
-    learns : float
-        It does so at less than this out of balance, over 1 + the load [EI/L]. Farther off, a beam
-        that lets go is kept from it: without a bound 2 of 50 sweeps did not snap off. At 1e-2
-        nothing changes.
-    stiffening : float
-        So much of each loaded contact's stiffness convexifies the quadratic model [EI/L^3], at most
-        half of it; the rest is the contact's compliance. Next to rest that is as good as any other
-        split, and Newton's method is quadratic. It matters on the way: at 1e3 the model is not
-        convex short of a fold already, the contour's curvature is left out of it, and to come to
-        rest takes twenty evaluations; above 1e6 forecasts take more steps.
-    stiffening_of_facets : float
-        The same past facets, whose curvature is not known well. At 1e2 the model leaves
-        the branch 1.9e-3 L before the catenary's fold, and descents take it there, in three times
-        the time; at 10 stations run out of their budget. From 1e2 to 1e6 the snap-off moves by less
-        than 7e-5 L.
-    nearly : float
-        Tolerances out of balance below which rounding of depths may be what is left.
-    forecasts : int
-        The most steps of a forecast. Usually 2 or 3 suffice; where there is no state at rest near
-        the last one, more are in vain.
-    foreseen : float
-        A forecast ends with a step that turns all links by less than this [rad]: what is left is of
-        the order of its square.
-    largest_turn : float
-        Of any link in one Newton step [rad]. At 1 the solver jumps to another state at rest, 1.8e-3
-        away, which is "ok" by itself; from 0.1 to 0.5 nothing changes.
-    at_once : int
-        The most contacts that a Newton step sees, the nearest ones: along the flank of a needle
-        thousands of beads are within MuJoCo's reach, and those that come to be loaded are seen in
-        the next step. Twice as many as are loaded, if these are more: a beam that lies on a flat
-        facet rests on hundreds, and without all of them no step ends at rest.
-    same_normal : float
-        What rounding makes of a facet's normal [rad]. Above a facet's turn, every corner would be
-        taken for flat, and Newton's method would not settle on it.
-    ahead, margin : int
-        Beads beyond the loaded ones that take part in collisions, and that must do so. With fewer,
-        the load moves on to a bead that does not collide, and steps are repeated; the state at rest
-        is checked against all beads.
-    branch_turn : float
-        A link that turns farther than this from one state at rest to the next has left the branch
-        [rad]. Too large, and a jump to another branch passes for a step; too small, and every
-        step of the foot is halved. From 0.1 to 0.7 nothing changes.
-    left_turn : float
-        Newton's method on its way from there is followed no further than this [rad]: it hardly ever
-        comes back.
-    largest_shift : float
-        A contact whose slope angle jumps by more than this from one state at rest to the next has
-        left the branch [rad]. A corner that passes from bead to bead turns the force by up to 0.7.
-    facet_shift : float
-        The same where the obstacle has sharp corners. At 1.0 a tip goes on to rest on the next
-        facet while it is still held on its own, at one station in 1,600 of random polygons.
-    same_facet : float
-        A contact at a slope angle nearer than this to that of a facet is on the facet [rad].
-    flicker : float
-        Newton's method that stops at less than this out of balance, over 1 + the load, has hardly
-        left the branch, but jumps from facet to facet, or from bead to bead: a descent ends that
-        [EI/L]. At a hundredth of it, the tips of needles take steps ten times as short.
-    refinements : int
-        Newton steps with MuJoCo's own derivative, where a descent does not end that.
-    difference : float
-        The turn that the derivative is taken by [rad]: short of the depth of a contact over the
-        beam's length, 1e-7, and far above rounding.
-    confirm_step : float
-        A snap-off is confirmed if the beam is carried off with the foot so far beyond the last
-        state at rest [L]: the most by which a wrong stiffness of the solver can displace it.
-    reach : int
-        Beads beyond the loaded ones that take part in collisions during a descent, beside one of
-        every link. From 8 to 32 nothing changes.
-    gentle_turn : float
-        Of any link in a step of a descent, about [rad]. From 1e-3 to 1e-2 beams 1e-4 L before their
-        fold are held, and beams as far beyond are let go; at 1e-3 it takes ten times as long.
-    inertia : float
-        What the steps of a descent begin with, in units of each joint's stiffness; it changes until
-        they are as gentle as that.
-    descent_steps, flicker_steps : int
-        The most steps of a descent that decides, and of one that ends a flicker. 60 are usual; past
-        many corners it takes more.
-    unloaded_steps : int
-        So many steps of a descent in a row without a load, and the beam is free.
-    fallen : float
-        A step of a descent that is shorter than this has come to rest [rad].
-    budget : int
-        The most evaluations that a station may take; it is unsettled then. Snap-off takes 500.
-    least_budget : int
-        The budget halves after such a station, down to this, and doubles again after one that
-        settles: a sweep that has lost its way ends in bounded time.
-    smallest_step : float
-        A jump that a step of the foot as small as this does not prevent is a snap-off [L]. It is
-        how well snap-off is located; 1e-6 moves it by less than 1e-4.
-    load_held : float
-        A load that vanishes at once was let go, one below this just faded [EI/L^2]. At 0, a
-        load that fades away at the end of reach would be taken for a snap-off.
     """
 
+    # Newton steps before a station is tried in smaller steps of the foot. Usually 2 to 4 suffice;
+    # with fewer than a contact needs that changes its facet, steps are halved in vain.
     iterations: int = 25
+    # Newton steps in a row without a better one, and the rest are not tried. From 6 to 25 nothing
+    # changes on twenty sweeps at random, but for a third of their cost.
     in_vain: int = 8
+    # Newton's method that comes nearer by less than this from step to step does not know the
+    # stiffness at hand, and learns from its own steps. A tip that rounds a soft corner comes to
+    # rest in half of the evaluations then; with 0.5 or 0.05 nothing changes on eight sweeps.
     slow: float = 0.2
+    # It does so at less than this out of balance, over 1 + the load [EI/L]. Farther off, a beam
+    # that lets go is kept from it: without a bound 2 of 50 sweeps did not snap off. At 1e-2 nothing
+    # changes.
     learns: float = 1e-3
+    # So much of each loaded contact's stiffness convexifies the quadratic model [EI/L^3], at most
+    # half of it; the rest is the contact's compliance. Next to rest that is as good as any other
+    # split, and Newton's method is quadratic. It matters on the way: at 1e3 the model is not convex
+    # short of a fold already, the contour's curvature is left out of it, and to come to rest takes
+    # twenty evaluations; above 1e6 forecasts take more steps.
     stiffening: float = 1e5
+    # The same past facets, whose curvature is not known well. At 1e2 the model leaves the branch
+    # 1.9e-3 L before the catenary's fold, and descents take it there, in three times the time; at
+    # 10 stations run out of their budget. From 1e2 to 1e6 the snap-off moves by less than 7e-5 L.
     stiffening_of_facets: float = 1e3
+    # Tolerances out of balance below which rounding of depths may be what is left.
     nearly: float = 1e3
+    # The most steps of a forecast. Usually 2 or 3 suffice; where there is no state at rest near the
+    # last one, more are in vain.
     forecasts: int = 5
+    # A forecast ends with a step that turns all links by less than this [rad]: what is left is of
+    # the order of its square.
     foreseen: float = 1e-6
+    # Of any link in one Newton step [rad]. At 1 the solver jumps to another state at rest, 1.8e-3
+    # away, which is "ok" by itself; from 0.1 to 0.5 nothing changes.
     largest_turn: float = 0.3
+    # The most contacts that a Newton step sees, the nearest ones: along the flank of a needle
+    # thousands of beads are within MuJoCo's reach, and those that come to be loaded are seen in the
+    # next step. Twice as many as are loaded, if these are more: a beam that lies on a flat facet
+    # rests on hundreds, and without all of them no step ends at rest.
     at_once: int = 200
+    # What rounding makes of a facet's normal [rad]. Above a facet's turn, every corner would be
+    # taken for flat, and Newton's method would not settle on it.
     same_normal: float = 1e-9
+    # Beads beyond the loaded ones that take part in collisions, and that must do so. With fewer,
+    # the load moves on to a bead that does not collide, and steps are repeated; the state at rest
+    # is checked against all beads.
     ahead: int = 4
+    # Beads beyond the loaded ones that take part in collisions, and that must do so. With fewer,
+    # the load moves on to a bead that does not collide, and steps are repeated; the state at rest
+    # is checked against all beads.
     margin: int = 2
+    # A link that turns farther than this from one state at rest to the next has left the branch
+    # [rad]. Too large, and a jump to another branch passes for a step; too small, and every step of
+    # the foot is halved. From 0.1 to 0.7 nothing changes.
     branch_turn: float = 0.35
+    # Newton's method on its way from there is followed no further than this [rad]: it hardly ever
+    # comes back.
     left_turn: float = 0.7
+    # A contact whose slope angle jumps by more than this from one state at rest to the next has
+    # left the branch [rad]. A corner that passes from bead to bead turns the force by up to 0.7.
     largest_shift: float = 1.0
+    # The same where the obstacle has sharp corners. At 1.0 a tip goes on to rest on the next facet
+    # while it is still held on its own, at one station in 1,600 of random polygons.
     facet_shift: float = 0.1
+    # A contact at a slope angle nearer than this to that of a facet is on the facet [rad].
     same_facet: float = 1e-3
+    # Newton's method that stops at less than this out of balance, over 1 + the load, has hardly
+    # left the branch, but jumps from facet to facet, or from bead to bead: a descent ends that
+    # [EI/L]. At a hundredth of it, the tips of needles take steps ten times as short.
     flicker: float = 1e-4
+    # Newton steps with MuJoCo's own derivative, where a descent does not end that.
     refinements: int = 4
+    # The turn that the derivative is taken by [rad]: short of the depth of a contact over the
+    # beam's length, 1e-7, and far above rounding.
     difference: float = 1e-8
+    # A snap-off is confirmed if the beam is carried off with the foot so far beyond the last state
+    # at rest [L]: the most by which a wrong stiffness of the solver can displace it.
     confirm_step: float = 1e-4
+    # Beads beyond the loaded ones that take part in collisions during a descent, beside one of
+    # every link. From 8 to 32 nothing changes.
     reach: int = 16
+    # Of any link in a step of a descent, about [rad]. From 1e-3 to 1e-2 beams 1e-4 L before their
+    # fold are held, and beams as far beyond are let go; at 1e-3 it takes ten times as long.
     gentle_turn: float = 1e-2
+    # What the steps of a descent begin with, in units of each joint's stiffness; it changes until
+    # they are as gentle as that.
     inertia: float = 100.0
+    # The most steps of a descent that decides, and of one that ends a flicker. 60 are usual; past
+    # many corners it takes more.
     descent_steps: int = 1000
+    # The most steps of a descent that decides, and of one that ends a flicker. 60 are usual; past
+    # many corners it takes more.
     flicker_steps: int = 100
+    # So many steps of a descent in a row without a load, and the beam is free.
     unloaded_steps: int = 20
-    fallen: float = 1e-10
+    fallen: float = 1e-10  # A step of a descent that is shorter than this has come to rest [rad]
+    # The most evaluations that a station may take; it is unsettled then. Snap-off takes 500.
     budget: int = 5000
+    # The budget halves after such a station, down to this, and doubles again after one that
+    # settles: a sweep that has lost its way ends in bounded time.
     least_budget: int = 400
+    # A jump that a step of the foot as small as this does not prevent is a snap-off [L]. It is how
+    # well snap-off is located; 1e-6 moves it by less than 1e-4.
     smallest_step: float = 1e-5
+    # A load that vanishes at once was let go, one below this just faded [EI/L^2]. At 0, a load that
+    # fades away at the end of reach would be taken for a snap-off.
     load_held: float = 1e-2

@@ -16,24 +16,7 @@ _FARTHER = 2 ** np.arange(8) - 1  # reaches: where the contact is looked for, al
 
 
 class Picture:
-    """What of a `Balance` Newton's method needs, without an engine.
-
-    Parameters
-    ----------
-    model : Balance
-        Whose picture it is; it is not evaluated.
-    loaded : collection of int
-        The beads that touch.
-    reach : int
-        How many more on either side may come to touch.
-    follow : bool
-        Whether a contact that slides on to other beads is followed.
-
-    Attributes
-    ----------
-    radii : array, shape (n_beads,)
-        Theirs [L].
-    """
+    """What of a `Balance` Newton's method needs, without an engine."""
 
     def __init__(
         self, model: Balance, loaded: Collection[int], reach: int = 0, *, follow: bool = False
@@ -61,20 +44,7 @@ class Picture:
         self._none = np.zeros(len(self._beads), dtype=bool)
 
     def look(self, foot_x: float, angles: Floats) -> Contacts | None:
-        """Where a configuration touches; what else is asked is of that.
-
-        Parameters
-        ----------
-        foot_x : float
-            Foot position [L].
-        angles : array, shape (n_joints,)
-            Joint angles [rad]; not changed between two looks.
-
-        Returns
-        -------
-        Contacts or None
-            Of the beads; None if the obstacle says nothing of that.
-        """
+        """Where a configuration touches; what else is asked is of that."""
         looked = foot_x, self._model.lookout.window
         if angles is self._angles and looked == self._looked:
             return self._seen
@@ -148,34 +118,12 @@ class Picture:
         return self._none[: len(contacts.link)]
 
     def energy(self, contacts: Contacts) -> float:
-        """That of the springs and of what is pressed in.
-
-        Parameters
-        ----------
-        contacts : Contacts
-            Of the last configuration.
-
-        Returns
-        -------
-        float
-            By EI/L.
-        """
+        """That of the springs and of what is pressed in."""
         angles, depth = self._angles, np.minimum(contacts.distance, 0)
         toward = sum(w * (1 - x) * self.stiffness(x * angles) for x, w in _RULE)
         bent = float(angles @ (angles * toward))
         return bent + self.contact_stiffness / 2 * float(depth @ depth)
 
     def is_inside(self, contacts: Contacts) -> bool:
-        """Whether a bead is so deep in the object that it may be pushed out on the far side.
-
-        Parameters
-        ----------
-        contacts : Contacts
-            Of the last configuration.
-
-        Returns
-        -------
-        bool
-            From half of its radius on.
-        """
+        """Whether a bead is so deep in the object that it may be pushed out on the far side."""
         return bool((contacts.distance <= -self.radii / 2).any())

@@ -29,32 +29,7 @@ def relax(
     stay: float | None = None,
     held: bool = False,
 ) -> State:
-    """Bring the beam to rest with its foot at `foot_x`, from `start`.
-
-    Parameters
-    ----------
-    model : Balance
-        The beam and the obstacle; left in the returned state.
-    foot_x : float
-        Foot position [L].
-    start : State
-        Where to start from.
-    tolerance : float
-        Largest moment out of balance at rest [EI/L].
-    numerics : Numerics
-        Constants of the way there.
-    leave : State, optional
-        The last state on the branch: what has turned too far from it is followed no further.
-    stay : float, optional
-        Slope angle of a facet: two iterates in a row off it are followed no further, either [rad].
-    held : bool
-        Whether beads stay where they are, also where they should slide.
-
-    Returns
-    -------
-    State
-        Not settled if Newton's method did not get there; the caller takes smaller steps then.
-    """
+    """Bring the beam to rest with its foot at `foot_x`, from `start`."""
     lookout, obstacle = model.lookout, model.obstacle
     newton, secant = Newton(model, numerics), Secant()
     state = best = State(start.angles, start.forces)
@@ -132,22 +107,6 @@ def refine(model: Balance, foot_x: float, start: State, numerics: Numerics) -> S
     """Newton's method with the differences of MuJoCo's moments, from a state that nearly rests.
 
     What `relax` knows of the stiffness of beam and contact takes no part in it.
-
-    Parameters
-    ----------
-    model : Balance
-        The beam and the obstacle.
-    foot_x : float
-        Foot position [L].
-    start : State
-        Where to start from; what is watched then is watched here.
-    numerics : Numerics
-        Constants of the way there.
-
-    Returns
-    -------
-    State
-        The best of its iterates; whether that is at rest, `relax` decides.
     """
     angles, count = start.angles, len(start.angles)
     best = replace(start, imbalance=np.inf)
@@ -167,22 +126,7 @@ def refine(model: Balance, foot_x: float, start: State, numerics: Numerics) -> S
 
 
 def around(model: Balance, loaded: dict[int, float], reach: int) -> frozenset[int]:
-    """The loaded beads, and as many on either side; all past corners, where they are few.
-
-    Parameters
-    ----------
-    model : Balance
-        Whose beads they are.
-    loaded : dict
-        Contact force by bead [EI/L^2].
-    reach : int
-        How many on either side.
-
-    Returns
-    -------
-    frozenset of int
-        Their numbers.
-    """
+    """The loaded beads, and as many on either side; all past corners, where they are few."""
     count = len(model.layout.beads)
     if len(model.obstacle.corners):
         return frozenset(range(count) if loaded else ())
@@ -195,20 +139,6 @@ def graded(model: Balance, loaded: dict[int, float], reach: int) -> frozenset[in
     """Those `around` the loaded beads, and ever fewer ones farther out.
 
     A load that has to pass over hundreds of beads is then in a few steps where it belongs.
-
-    Parameters
-    ----------
-    model : Balance
-        Whose beads they are.
-    loaded : dict
-        Contact force by bead [EI/L^2].
-    reach : int
-        How many on either side are without a gap.
-
-    Returns
-    -------
-    frozenset of int
-        Their numbers.
     """
     near = around(model, loaded, reach)
     if not loaded or len(model.obstacle.corners):
@@ -225,35 +155,12 @@ def spread(beads: frozenset[int], count: int) -> frozenset[int]:
     """So many of these beads, from the first one to the last.
 
     A beam that has sprung through the obstacle touches with thousands, and rests on a few of them.
-
-    Parameters
-    ----------
-    beads : frozenset of int
-        Their numbers.
-    count : int
-        The most.
-
-    Returns
-    -------
-    frozenset of int
-        Their numbers.
     """
     every = -(-len(beads) // count)
     return frozenset(sorted(beads)[::every])
 
 
 def one_bead_a_link(model: Balance) -> frozenset[int]:
-    """The last bead of each link: they see a contact coming long before it is loaded.
-
-    Parameters
-    ----------
-    model : Balance
-        Whose beads they are.
-
-    Returns
-    -------
-    frozenset of int
-        Their numbers.
-    """
+    """The last bead of each link: they see a contact coming long before it is loaded."""
     links = model.layout.links
     return frozenset(np.flatnonzero(np.diff(links, append=links[-1] + 1)).tolist())

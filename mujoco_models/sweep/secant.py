@@ -24,20 +24,7 @@ class Secant:
         self._steps: deque[Floats] = deque(maxlen=_KEPT + 1)
 
     def better(self, angles: Floats, step: Floats) -> Floats:
-        """The step to where Newton's would be zero, by those before it.
-
-        Parameters
-        ----------
-        angles : array, shape (n_joints,)
-            Where it starts: joint angles [rad].
-        step : array, shape (n_joints,)
-            Newton's own [rad].
-
-        Returns
-        -------
-        array, shape (n_joints,)
-            Newton's own, too, until there are enough to learn from [rad].
-        """
+        """The step to where Newton's would be zero, by those before it."""
         self._places.append(angles)
         self._steps.append(step)
         if len(self._steps) <= _AWAITED:

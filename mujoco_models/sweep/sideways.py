@@ -22,38 +22,16 @@ _ALONG_Z = 0.5  # of a joint's unit axis; it is either 0 or 1
 
 @dataclass(frozen=True)
 class Sideways:
-    """Resistance of a planar equilibrium to leaving its plane.
+    """Resistance of a planar equilibrium to leaving its plane."""
 
-    Attributes
-    ----------
-    stiffness : float
-        Force across the plane over displacement, at the contact [EI/L^3].
-    stable : bool
-        Whether the vibrissa returns to its plane, whichever way it is turned out of it.
-    joints : array, shape (n, n)
-        Moments of the n joint axes in the plane by turns about them [EI/L].
-    axes : array of int, shape (n,)
-        Which of MuJoCo's velocities these are.
-    """
-
-    stiffness: float
-    stable: bool
+    stiffness: float  # force across the plane over displacement, at the contact [EI/L^3]
+    stable: bool  # whether the vibrissa returns to its plane, whichever way it is turned out of it
+    # Shape (n, n); Moments of the n joint axes in the plane by turns about them [EI/L].
     joints: Floats
-    axes: Integers
+    axes: Integers  # shape (n,); Which of MuJoCo's velocities these are
 
     def softest(self, count: int) -> Floats:
-        """The turns that are resisted least.
-
-        Parameters
-        ----------
-        count : int
-            How many velocities MuJoCo has.
-
-        Returns
-        -------
-        array, shape (count,)
-            One of MuJoCo's velocities, of norm 1.
-        """
+        """The turns that are resisted least."""
         mode = np.zeros(count)
         mode[self.axes] = np.linalg.eigh(self.joints)[1][:, 0]
         return mode
@@ -64,16 +42,6 @@ def sideways(model: BeamModel) -> Sideways:
 
     The derivative of MuJoCo's own moments by turns out of the plane, by differences; the model is
     left as it was.
-
-    Parameters
-    ----------
-    model : BeamModel
-        At rest in the plane.
-
-    Returns
-    -------
-    Sideways
-        Its stiffness across the plane.
     """
     data, count = model.data, model.model.nv
     axes = np.flatnonzero(np.abs(data.cdof[:, 2]) < _ALONG_Z)

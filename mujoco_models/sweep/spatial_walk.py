@@ -36,13 +36,7 @@ class _Departure(NamedTuple):
 
 
 class SpatialWalk(Walk[BeamModel]):
-    """A walk that leaves the plane where the planar equilibrium is not stable in space.
-
-    Attributes
-    ----------
-    left_plane : float or None
-        Where the beam first left the plane of the sweep [L].
-    """
+    """A walk that leaves the plane where the planar equilibrium is not stable in space."""
 
     def __init__(
         self, model: BeamModel, foot_x: float, tolerance: float, numerics: Numerics | None = None

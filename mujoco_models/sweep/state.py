@@ -10,45 +10,20 @@ from mujoco_models.model.stance import Stance
 
 @dataclass(frozen=True)
 class State:
-    """A configuration of the beam.
+    """A configuration of the beam."""
 
-    Attributes
-    ----------
-    angles : array, shape (n_joints,)
-        Joint angles [rad].
-    forces : dict
-        Contact force by what touches, see `Contacts` [EI/L^2].
-    imbalance : float
-        Largest moment out of balance at any joint [EI/L].
-    settled : bool
-        Whether that is below the tolerance, with the whole beam looking at the obstacle.
-    stance : Stance
-        Where the beam is then relative to the object.
-    slope : float or None
-        Slope angle of the contour at the contact, once settled, if there is one [rad].
-    """
-
-    angles: Floats
-    forces: dict[int, float]
-    imbalance: float = np.inf
+    angles: Floats  # shape (n_joints,); Joint angles [rad]
+    forces: dict[int, float]  # contact force by what touches, see `Contacts` [EI/L^2]
+    imbalance: float = np.inf  # largest moment out of balance at any joint [EI/L]
+    # Whether that is below the tolerance, with the whole beam looking at the obstacle.
     settled: bool = False
-    stance: Stance = Stance.AHEAD
+    stance: Stance = Stance.AHEAD  # where the beam is then relative to the object
+    # Slope angle of the contour at the contact, once settled, if there is one [rad].
     slope: float | None = None
 
     @classmethod
     def straight(cls, joints: int) -> "State":
-        """The unloaded beam.
-
-        Parameters
-        ----------
-        joints : int
-            How many it has.
-
-        Returns
-        -------
-        State
-            Not yet known to be at rest.
-        """
+        """The unloaded beam."""
         return cls(np.zeros(joints), {})
 
     @property
@@ -63,16 +38,5 @@ class State:
 
 
 def turned(angles: Floats, before: Floats) -> float:
-    """The farthest that any link has turned.
-
-    Parameters
-    ----------
-    angles, before : array, shape (n_joints,)
-        Joint angles of two configurations [rad].
-
-    Returns
-    -------
-    float
-        Turn of a link in the plane [rad].
-    """
+    """The farthest that any link has turned."""
     return float(np.abs(np.cumsum(angles - before)).max())

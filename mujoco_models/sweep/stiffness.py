@@ -23,49 +23,15 @@ _IN_RANGE = 1  # LAPACK's dstebz: count the eigenvalues between two bounds
 
 @dataclass(frozen=True)
 class Stiffness:
-    """Second derivative of an energy by the angles of the links.
+    """Second derivative of an energy by the angles of the links."""
 
-    Attributes
-    ----------
-    springs : array, shape (n,)
-        Of the joints [EI/L].
-    links : array, shape (n,)
-        What each link's own turn adds [EI/L].
-    directions : array, shape (m, n)
-        Of what has low rank.
-    weights : array, shape (m,)
-        The stiffness in each of them, not 0 [EI/L].
-    """
-
-    springs: Floats
-    links: Floats
-    directions: Floats
-    weights: Floats
+    springs: Floats  # shape (n,); Of the joints [EI/L]
+    links: Floats  # shape (n,); What each link's own turn adds [EI/L]
+    directions: Floats  # shape (m, n); Of what has low rank
+    weights: Floats  # shape (m,); The stiffness in each of them, not 0 [EI/L]
 
     def solve(self, moments: Floats, near: int = 0) -> tuple[Floats, int]:
-        """The turns of the links under moments.
-
-        Parameters
-        ----------
-        moments : array, shape (k, n)
-            Generalised forces of the links' angles, k times [EI/L].
-        near : int
-            How often an addition to all springs was doubled for a stiffness like this one: the
-            search begins there, and finds the same from anywhere.
-
-        Returns
-        -------
-        turns : array, shape (k, n)
-            By this stiffness, if it is positive definite; else without its negative weights, and
-            with the least addition that is needed then [rad].
-        doubled : int
-            How often that was doubled; 0 without one.
-
-        Raises
-        ------
-        DivergedError
-            If the stiffness is not finite.
-        """
+        """The turns of the links under moments."""
         rows = np.concatenate([moments, self.directions])
         if not math.isfinite((self.springs + self.links).sum() + rows.sum()):
             raise DivergedError("the stiffness is not finite")

@@ -32,25 +32,7 @@ def run_sweep(
     keep: Callable[[Readings], None] = lambda _: None,
     numerics: Numerics | None = None,
 ) -> Readings:
-    """Sweep the beam to the left; see `mujoco_models.simulate_sweep`.
-
-    Parameters
-    ----------
-    case, settings, advance, keep
-        As there; the case is one of a sweep to the left.
-    numerics : Numerics, optional
-        Constants of the rest solver, which no reading should depend on.
-
-    Returns
-    -------
-    Readings
-        As there.
-
-    Raises
-    ------
-    InputError, DivergedError, MemoryError, ClampError
-        As there.
-    """
+    """Sweep the beam to the left; see `mujoco_models.simulate_sweep`."""
     begun = time.process_time()
     walk = set_out(case, settings, numerics)
     about = {
@@ -62,27 +44,7 @@ def run_sweep(
 
 
 def set_out(case: Case, settings: Settings, numerics: Numerics | None = None) -> Walk[BeamModel]:
-    """The beam, straight, with its foot at the first station of a sweep to the left.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    settings : Settings
-        The numerics that are the user's.
-    numerics : Numerics, optional
-        Those that are not.
-
-    Returns
-    -------
-    Walk
-        At the first station, not yet at rest.
-
-    Raises
-    ------
-    InputError
-        If the case's beam has no radius, the object rubs, or MuJoCo has no such beam or obstacle.
-    """
+    """The beam, straight, with its foot at the first station of a sweep to the left."""
     beam, obstacle = parts(case, settings)
     model = BeamModel(beam, case.radius, obstacle, settings.contact_stiffness)
     kind = Walk if settings.planar else SpatialWalk
@@ -90,29 +52,7 @@ def set_out(case: Case, settings: Settings, numerics: Numerics | None = None) ->
 
 
 def parts(case: Case, settings: Settings, engine: str = "MuJoCo") -> tuple[Beam, Obstacle]:
-    """The beam and the obstacle, before an engine makes a model of them.
-
-    Parameters
-    ----------
-    case : Case
-        Of a sweep to the left.
-    settings : Settings
-        The numerics.
-    engine : str
-        What errors call the engine.
-
-    Returns
-    -------
-    beam : Beam
-        Its joints, beads and stiffness.
-    obstacle : Obstacle
-        Dimensionless, L = 1.
-
-    Raises
-    ------
-    InputError
-        As of `set_out`.
-    """
+    """The beam and the obstacle, before an engine makes a model of them."""
     if case.friction != 0:
         raise InputError(
             "friction",

@@ -18,15 +18,9 @@ _CUT = 1e-13  # of the largest gap: what rounding leaves open
 
 
 class _Few(NamedTuple):
-    """The compliance of contacts as a matrix.
+    """The compliance of contacts as a matrix."""
 
-    Attributes
-    ----------
-    whole : array, shape (n, n)
-        [L^3/EI].
-    """
-
-    whole: Floats
+    whole: Floats  # shape (n, n); [L^3/EI]
 
     def forces(self, held: Integers, gap: Floats) -> Floats | None:
         """What closes the gaps of those that are held; None if that is not stable."""
@@ -40,19 +34,15 @@ class _Few(NamedTuple):
 
 
 class _Many(NamedTuple):
-    """The same where contacts outnumber the links, which is what its rank is.
+    """The same where contacts outnumber the links, which is what its rank is."""
 
-    Attributes
-    ----------
-    comes, turns : array, shape (n, n_links)
-        How far each contact moves as a link turns, and how links turn under a unit of its force.
-    soft : array, shape (n,)
-        The contacts' own [L^3/EI].
-    """
-
+    # Shape (n, n_links); How far each contact moves as a link turns, and how links turn under a
+    # unit of its force.
     comes: Floats
+    # Shape (n, n_links); How far each contact moves as a link turns, and how links turn under a
+    # unit of its force.
     turns: Floats
-    soft: Floats
+    soft: Floats  # shape (n,); The contacts' own [L^3/EI]
 
     @property
     def whole(self) -> Floats:
@@ -76,22 +66,6 @@ def unilateral(comes: Floats, turns: Floats, soft: Floats, gap: Floats, guess: B
 
     What pulls is let go and what is cut is pressed, until nothing does; usually at once. If that
     goes round in circles, an active-set method that never does finds them.
-
-    Parameters
-    ----------
-    comes, turns : array, shape (n, n_links)
-        How far each contact moves as a link turns, and how links turn under a unit of its force.
-    soft : array, shape (n,)
-        Each contact's own compliance [L^3/EI].
-    gap : array, shape (n,)
-        How far off contacts are without any force, negative if they would be cut [L].
-    guess : array of bool, shape (n,)
-        Those that may push.
-
-    Returns
-    -------
-    array, shape (n,)
-        f >= 0 that minimises f.C.f/2 + gap.f with the compliance C of them all [EI/L^2].
     """
     compliance: _Few | _Many
     if len(gap) > comes.shape[1]:

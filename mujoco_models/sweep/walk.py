@@ -42,26 +42,7 @@ _OF_A_CURVED_TIP = {
 
 
 class Walk(Generic[Model]):
-    """The beam on its way: the last state on the branch, and the one before it.
-
-    Parameters
-    ----------
-    model : Balance
-        The beam and the obstacle, as an engine has them.
-    foot_x : float
-        Where the foot of the straight beam starts, clear of the object [L].
-    tolerance : float
-        Largest moment out of balance at rest [EI/L].
-    numerics : Numerics, optional
-        Constants of the way.
-
-    Attributes
-    ----------
-    snap_off : float or None
-        Where the last contact was let go [L].
-    doubt : str or None
-        Why the station where the beam is cannot be trusted.
-    """
+    """The beam on its way: the last state on the branch, and the one before it."""
 
     def __init__(
         self, model: Model, foot_x: float, tolerance: float, numerics: Numerics | None = None
@@ -94,11 +75,6 @@ class Walk(Generic[Model]):
         Where even the smallest step leaves the branch, a descent on MuJoCo's balance decides
         whether the vibrissa has snapped off. A station that is not reached so is unsettled, and
         the next one is tried from the last state on the branch.
-
-        Parameters
-        ----------
-        target : float
-            Foot position of the next station [L].
         """
         numerics = self._numerics
         self.doubt = self._advance(target, self.model.evaluations + self._budget)
@@ -321,19 +297,7 @@ class Walk(Generic[Model]):
         return self._curved and state.forces.keys() == {tip}
 
     def row(self) -> dict[str, Any]:
-        """The readings of the state that the beam is in.
-
-        Returns
-        -------
-        dict
-            Dimensionless, by column; see `mujoco_models.simulate_sweep`.
-
-        Raises
-        ------
-        ClampError
-            If the clamp's sensors differ from what holds the beam by more than its residual can
-            explain.
-        """
+        """The readings of the state that the beam is in."""
         model, state = self.model, self._shown
         clamp, contacts = model.clamp(), model.contacts()
         row: dict[str, Any] = {

@@ -12,13 +12,7 @@ _SHORT = 0.8  # of the way to a fold that is foreseen: what is left is its uncer
 
 
 class Walls:
-    """The places ahead at which no neighbour of the last state was found.
-
-    Parameters
-    ----------
-    smallest_step : float
-        Of the foot [L].
-    """
+    """The places ahead at which no neighbour of the last state was found."""
 
     def __init__(self, smallest_step: float) -> None:
         self._found: list[tuple[float, State]] = []  # the nearest one last
@@ -41,50 +35,20 @@ class Walls:
         return next(resting, self._found[-1][1])
 
     def add(self, trial: float, state: State, foot_x: float) -> None:
-        """Remember that there was no neighbour.
-
-        Parameters
-        ----------
-        trial : float
-            Where the foot was [L].
-        state : State
-            What was found there instead.
-        foot_x : float
-            Where the last state is [L].
-        """
+        """Remember that there was no neighbour."""
         self._held = 0
         others = [(x, other) for x, other in self._found if x != trial]
         self._found = sorted([*others, (trial, state)], key=lambda wall: -abs(wall[0] - foot_x))
 
     def leave_behind(self, foot_x: float, target: float) -> None:
-        """Forget those that the foot has come past.
-
-        Parameters
-        ----------
-        foot_x, target : float
-            Where it is, and where it is to go [L].
-        """
+        """Forget those that the foot has come past."""
         self._held += 1
         self._found = [
             (x, state) for x, state in self._found if (x - foot_x) * (target - foot_x) > 0
         ]
 
     def aim(self, trail: Sequence[tuple[float, State]], follows: Callable[[State], bool]) -> float:
-        """Where to try next.
-
-        Parameters
-        ----------
-        trail : sequence of (float, State)
-            The last states and where they were [L].
-        follows : callable
-            Whether a state is a neighbour of the last one.
-
-        Returns
-        -------
-        float
-            The farthest wall that is none any more; else short of the fold that is foreseen, or
-            half of the way to the nearest wall [L].
-        """
+        """Where to try next."""
         for x, state in self._found:
             if follows(state):
                 return x
@@ -102,18 +66,7 @@ class Walls:
 
 
 def fold(trail: Sequence[tuple[float, State]]) -> float | None:
-    """Where a branch turns back, by the parabola through its last three states.
-
-    Parameters
-    ----------
-    trail : sequence of (float, State)
-        Foot positions [L] and states.
-
-    Returns
-    -------
-    float or None
-        Foot position [L]; None if they show none.
-    """
+    """Where a branch turns back, by the parabola through its last three states."""
     if len(trail) < 3 or len({state.stance for _, state in trail[-3:]}) > 1:
         return None
     x0, x1, x2 = (x for x, _ in trail[-3:])

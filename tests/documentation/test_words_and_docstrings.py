@@ -1,4 +1,4 @@
-"""Every public function says what it takes and returns, in words of today."""
+"""Every exported function says what it takes and returns, in words of today."""
 
 import pytest
 

@@ -18,42 +18,18 @@ _MIRRORED = np.array([[-1.0], [1.0], [-1.0]])  # force_x, force_y and moment_z, 
 
 @dataclass(frozen=True)
 class Expected:
-    """Readings of the case's vibrissa at the stations of a sweep.
+    """Readings of the case's vibrissa at the stations of a sweep."""
 
-    Attributes
-    ----------
-    case : Case
-        The problem; its direction counts, but not its own stations.
-    readings : array, shape (3, n)
-        In the case's units; zero before the first contact, NaN where the vibrissa has let go or has
-        no state that slides on.
-    loaded : array of bool, shape (n,)
-        Where there is a state that slides on.
-    places : array, shape (m, 3)
-        Contour parameter, normal force and excess of these, of the sweep to the left.
-    """
-
-    case: Case
+    case: Case  # the problem; its direction counts, but not its own stations
+    # Shape (3, n); In the case's units; zero before the first contact, NaN where the vibrissa has
+    # let go or has no state that slides on.
     readings: Floats
-    loaded: Booleans
+    loaded: Booleans  # shape (n,); Where there is a state that slides on
+    # Shape (m, 3); Contour parameter, normal force and excess of these, of the sweep to the left.
     places: Floats
 
     def beside(self, case: Case, foot_x: Floats) -> Floats:
-        """The readings of nearly the same case, from the states that are known.
-
-        Parameters
-        ----------
-        case : Case
-            One of the same direction.
-        foot_x : array, shape (n,)
-            Nearly the same foot positions, in the order of the sweep [length].
-
-        Returns
-        -------
-        array, shape (3, n)
-            But for the square of what the two cases differ by; those of this case where no state
-            slides on.
-        """
+        """The readings of nearly the same case, from the states that are known."""
         found = self.readings.copy()
         leftward, stations = _to_the_left(case, foot_x)
         beam = leftward.beam
@@ -67,20 +43,7 @@ class Expected:
         return found
 
     def scaled(self, case: Case, factor: float) -> "Expected":
-        """Those of a vibrissa that is stiffer throughout, in a rigid clamp.
-
-        Parameters
-        ----------
-        case : Case
-            The same but for the rigidity.
-        factor : float
-            By which it is larger.
-
-        Returns
-        -------
-        Expected
-            Its shapes are the same, and so are the states in units of its rigidity.
-        """
+        """Those of a vibrissa that is stiffer throughout, in a rigid clamp."""
         return replace(self, case=case, readings=factor * self.readings)
 
     @cached_property
@@ -92,20 +55,7 @@ class Expected:
 
 
 def expected_readings(case: Case, foot_x: Floats) -> Expected:
-    """Force and moment at the clamp, as the case's vibrissa has them at the stations of a sweep.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    foot_x : array, shape (n,)
-        In the order of the sweep [length].
-
-    Returns
-    -------
-    Expected
-        Readings and the states that they are of.
-    """
+    """Force and moment at the clamp, as the case's vibrissa has them at the stations of a sweep."""
     leftward, stations = _to_the_left(case, foot_x)
     solved = solve(leftward, stations)
     ok = solved.columns["status"] == "ok"

@@ -21,15 +21,6 @@ class Fit:
 
     Noise of the foot position moves all three readings of its station along their slopes over the
     foot position; both enter the station's covariance.
-
-    Parameters
-    ----------
-    measured : Measured
-        The readings.
-    given : Case
-        All that is known; of what is unknown, in which units.
-    names : tuple of str
-        The unknowns, of `UNKNOWNS`.
     """
 
     def __init__(self, measured: Measured, given: Case, names: tuple[str, ...]) -> None:
@@ -42,68 +33,23 @@ class Fit:
         self._last: tuple[Floats, Expected | None] = np.empty(0), None
 
     def sought(self, numbers: Floats) -> Sought:
-        """The vibrissa with these numbers.
-
-        Parameters
-        ----------
-        numbers : array, shape (unknowns,)
-            As `Unknown.now` gives them.
-
-        Returns
-        -------
-        Sought
-            The given one but for them.
-        """
+        """The vibrissa with these numbers."""
         found = Sought(self.given)
         for kind, number in zip(self.kinds, numbers.tolist(), strict=True):
             found = kind.tried(found, self.given, number)
         return found
 
     def expected(self, numbers: Floats) -> Floats:
-        """The readings that these numbers make one expect.
-
-        Parameters
-        ----------
-        numbers : array, shape (unknowns,)
-            As `Unknown.now` gives them.
-
-        Returns
-        -------
-        array, shape (3, n)
-            NaN where there is no state that slides on.
-        """
+        """The readings that these numbers make one expect."""
         found = self._solved(numbers)
         return np.full_like(self.measured.readings, np.nan) if found is None else found.readings
 
     def misses(self, numbers: Floats) -> Floats:
-        """What they differ from the measured ones by, over the noise.
-
-        Parameters
-        ----------
-        numbers : array, shape (unknowns,)
-            As `Unknown.now` gives them.
-
-        Returns
-        -------
-        array, shape (3 n,)
-            Beyond the snap-off the readings next to it are taken, so that all of it is continuous;
-            without any state, none.
-        """
+        """What they differ from the measured ones by, over the noise."""
         return self._missed(self.expected(numbers))
 
     def jacobian(self, numbers: Floats) -> Floats:
-        """Derivatives of the misses.
-
-        Parameters
-        ----------
-        numbers : array, shape (unknowns,)
-            As `Unknown.now` gives them.
-
-        Returns
-        -------
-        array, shape (3 n, unknowns)
-            By differences to one side, good to five digits, of the states that there are.
-        """
+        """Derivatives of the misses."""
         found = self._solved(numbers)
         columns = np.zeros((self.measured.readings.size, len(numbers)))
         if found is None:
@@ -119,18 +65,7 @@ class Fit:
         return columns
 
     def scaled_rigidity(self, numbers: Floats) -> Floats:
-        """The same with the rigidity that fits best if nothing else depended on it.
-
-        Parameters
-        ----------
-        numbers : array, shape (unknowns,)
-            As `Unknown.now` gives them.
-
-        Returns
-        -------
-        array, shape (unknowns,)
-            The numbers themselves if the rigidity is known.
-        """
+        """The same with the rigidity that fits best if nothing else depended on it."""
         if "flexural_rigidity" not in self.names:
             return numbers
         zero = np.einsum("nij,jn->ni", self._whitening, -self.measured.readings).ravel()
@@ -144,20 +79,7 @@ class Fit:
         return scaled
 
     def best_from(self, numbers: Floats) -> tuple[Floats, float]:
-        """Least squares.
-
-        Parameters
-        ----------
-        numbers : array, shape (unknowns,)
-            Where to start.
-
-        Returns
-        -------
-        numbers : array, shape (unknowns,)
-            The best ones near by.
-        cost : float
-            Sum of squares.
-        """
+        """Least squares."""
         with np.errstate(divide="ignore", invalid="ignore"):  # where nothing touches, no slope
             found = least_squares(
                 self.misses,

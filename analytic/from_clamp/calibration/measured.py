@@ -21,53 +21,19 @@ _DECADES = 6  # by which loads may differ from EI/L^2 and EI/L; else the units d
 
 @dataclass(frozen=True)
 class Measured:
-    """Readings of a sweep, as a fit needs them.
+    """Readings of a sweep, as a fit needs them."""
 
-    Attributes
-    ----------
-    foot_x : array, shape (n,)
-        Of the stations that count, in the order of the sweep [length].
-    readings : array, shape (3, n)
-        Force and moment at the clamp.
-    spread : array, shape (4,)
-        Standard deviation of the foot position and of the three readings.
-    """
-
-    foot_x: Floats
-    readings: Floats
-    spread: Floats
+    foot_x: Floats  # shape (n,); Of the stations that count, in the order of the sweep [length]
+    readings: Floats  # shape (3, n); Force and moment at the clamp
+    spread: Floats  # shape (4,); Standard deviation of the foot position and of the three readings
 
     def at(self, kept: Booleans) -> "Measured":
-        """Some of the stations.
-
-        Parameters
-        ----------
-        kept : array of bool, shape (n,)
-            Which ones.
-
-        Returns
-        -------
-        Measured
-            Of them.
-        """
+        """Some of the stations."""
         return Measured(self.foot_x[kept], self.readings[:, kept], self.spread)
 
 
 def check_size(readings: Readings, case: Case) -> None:
-    """Refuse readings that have no load, or are in other units than the case.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep.
-    case : Case
-        What they are taken to be of.
-
-    Raises
-    ------
-    InputError
-        If a reading is zero throughout, or of another magnitude than any vibrissa's.
-    """
+    """Refuse readings that have no load, or are in other units than the case."""
     beam = case.beam
     for name, unit in zip(
         CLAMP_READINGS, (beam.force_unit, beam.force_unit, beam.moment_unit), strict=True
@@ -90,27 +56,7 @@ def check_size(readings: Readings, case: Case) -> None:
 def measured_under_load(
     readings: Readings, noise: Mapping[str, float] | None, unknowns: int
 ) -> Measured:
-    """The stations under load, but for those next to the snap-off.
-
-    Parameters
-    ----------
-    readings : Readings
-        One sweep.
-    noise : mapping or None
-        Standard deviation by sensed column; None for what the readings show.
-    unknowns : int
-        How many numbers are to be found from them.
-
-    Returns
-    -------
-    Measured
-        In the order of the sweep, no two at one foot position.
-
-    Raises
-    ------
-    InputError
-        If the noise is no such mapping, or too few stations are under load.
-    """
+    """The stations under load, but for those next to the snap-off."""
     stated = None if noise is None else checked_noise(noise)
     known = reading_noise(readings) if stated is None else stated
     spread = np.array([known.get(name, 0.0) for name in SENSED])

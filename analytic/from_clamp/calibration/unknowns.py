@@ -26,32 +26,18 @@ class Sought:
 
 @dataclass(frozen=True)
 class Unknown:
-    """A quantity that is fitted, as a dimensionless number on which the readings depend smoothly.
+    """A fitted quantity, as a dimensionless number on which the readings depend smoothly."""
 
-    Attributes
-    ----------
-    now : callable
-        The number, of what is tried.
-    tried : callable
-        What is tried, with another such number; the second argument is the case as it was given,
-        which has the units.
-    value : callable
-        What a user calls the quantity, in the case's units.
-    lowest, highest : float
-        What the number can be.
-    possible : tuple of bool
-        Whether the quantity itself can be as at either end: a clamp can be rigid.
-    starts : tuple of float
-        Numbers from which a fit starts, beside that of the case.
-    """
-
-    now: Callable[[Sought, Case], float]
+    now: Callable[[Sought, Case], float]  # the number, of what is tried
+    # What is tried, with another such number; the second argument is the case as it was given,
+    # which has the units.
     tried: Callable[[Sought, Case, float], Sought]
-    value: Callable[[Sought], float]
-    lowest: float
-    highest: float
+    value: Callable[[Sought], float]  # what a user calls the quantity, in the case's units
+    lowest: float  # what the number can be
+    highest: float  # what the number can be
+    # Whether the quantity itself can be as at either end: a clamp can be rigid.
     possible: tuple[bool, bool]
-    starts: tuple[float, ...]
+    starts: tuple[float, ...]  # numbers from which a fit starts, beside that of the case
 
 
 def _rigidity(sought: Sought, given: Case, number: float) -> Sought:
@@ -155,25 +141,7 @@ The clamp is fitted by its compliance, of which a rigid one is an end, and ``off
 
 
 def checked_unknowns(names: object, case: Case) -> tuple[str, ...]:
-    """The names of what is to be found.
-
-    Parameters
-    ----------
-    names : object
-        As a user gives them.
-    case : Case
-        What else is known.
-
-    Returns
-    -------
-    tuple of str
-        Each a name in `UNKNOWNS`, and a number of the case.
-
-    Raises
-    ------
-    InputError
-        If there is none, one is no such name, is there twice, or is none of the case's numbers.
-    """
+    """The names of what is to be found."""
     if isinstance(names, str):
         names = (names,)
     known = ", ".join(UNKNOWNS)

@@ -19,16 +19,6 @@ def in_plane(sensed: Sensed) -> Answer:
 
     phi' = -(M - F_y x + F_x y): G. R. Scholz and C. D. Rahn, Profile sensing with an actuated
     whisker, IEEE Transactions on Robotics and Automation 20, 2004.
-
-    Parameters
-    ----------
-    sensed : Sensed
-        Loaded stations.
-
-    Returns
-    -------
-    Answer
-        None where the moment does not fall to zero before the tip, or next to it.
     """
     ends = [_in_plane(block) for block in _blocks(*sensed)]
     x, y = np.concatenate(ends, axis=1) if ends else np.zeros((2, 0))
@@ -36,18 +26,7 @@ def in_plane(sensed: Sensed) -> Answer:
 
 
 def in_space(sensed: Sensed) -> Answer:
-    """The same as `spatial_contact`, of readings in a plane.
-
-    Parameters
-    ----------
-    sensed : Sensed
-        Loaded stations.
-
-    Returns
-    -------
-    Answer
-        As of `in_plane`.
-    """
+    """The same as `spatial_contact`, of readings in a plane."""
     none = np.zeros_like(sensed.foot_x)
     force = np.column_stack([-sensed.across, sensed.along, none])
     moment = np.column_stack([none, none, sensed.moment])
@@ -61,19 +40,6 @@ def spatial_contact(force: Floats, moment: Floats, tangent: Floats) -> Floats:
     r' = t, t' = t x m, m = M - r x F, up to where m vanishes: T. N. Clements and C. D. Rahn,
     Three-dimensional contact imaging with an actuated whisker, IEEE Transactions on Robotics 22,
     2006.
-
-    Parameters
-    ----------
-    force, moment : array, shape (n, 3)
-        The clamp's action on the vibrissa [EI/L^2, EI/L].
-    tangent : array, shape (n, 3)
-        Of the vibrissa at its clamp, of length 1.
-
-    Returns
-    -------
-    array, shape (n, 3)
-        Contact points, relative to the foot; NaN where the moment does not fall to zero before the
-        tip, or next to it [L].
     """
     ends = [_in_space(*block) for block in _blocks(force, moment, tangent)]
     return np.concatenate(ends) if ends else np.zeros((0, 3))

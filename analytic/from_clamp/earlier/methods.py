@@ -10,25 +10,14 @@ from analytic.from_clamp.earlier.sensed import Answer, Sensed
 
 @dataclass(frozen=True)
 class Method:
-    """A way to find the contact from the clamp.
+    """A way to find the contact from the clamp."""
 
-    Attributes
-    ----------
-    source : str
-        Author and year.
-    needs : tuple of str
-        What it has to know: of ``"moment"``, ``"force"``, ``"rigidity"``, ``"first contact"``,
-        ``"slope"`` and ``"length"``.
-    assumes : str
-        What it takes for granted, in a few words.
-    estimate : callable
-        The contact on the vibrissa's axis from `Sensed`.
-    """
-
-    source: str
+    source: str  # author and year
+    # What it has to know: of ``"moment"``, ``"force"``, ``"rigidity"``, ``"first contact"``,
+    # ``"slope"`` and ``"length"``.
     needs: tuple[str, ...]
-    assumes: str
-    estimate: Callable[[Sensed], Answer]
+    assumes: str  # what it takes for granted, in a few words
+    estimate: Callable[[Sensed], Answer]  # the contact on the vibrissa's axis from `Sensed`
 
 
 METHODS: dict[str, Method] = {

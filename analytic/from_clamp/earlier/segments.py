@@ -26,24 +26,7 @@ class _Bent(NamedTuple):
 
 
 def by_segments(sensed: Sensed, segments: int = 40, half_cell: bool = False) -> Answer:
-    """The contact from which the segments turn the base by as much as the force says.
-
-    Parameters
-    ----------
-    sensed : Sensed
-        Loaded stations.
-    segments : int
-        Number of segments of the whole vibrissa.
-    half_cell : bool
-        Whether the vibrissa also bends over the half of the last segment that belongs to the clamp,
-        which makes the model one of second order. As published, that segment is rigid, and the
-        model of first order.
-
-    Returns
-    -------
-    Answer
-        None where no contact on the vibrissa turns it so far.
-    """
+    """The contact from which the segments turn the base by as much as the force says."""
     force = np.hypot(sensed.across, sensed.along)
     # Where the force is normal to the vibrissa, at the contact, the base is turned away by so much.
     turn = np.arctan2(sensed.along, sensed.across)
@@ -64,22 +47,7 @@ def by_segments(sensed: Sensed, segments: int = 40, half_cell: bool = False) -> 
 def contact_under(
     force: Floats, arc_length: Floats, segments: int = 40, half_cell: bool = False
 ) -> Answer:
-    """Where the model has the contact, given the force's size and place: its forward problem.
-
-    Parameters
-    ----------
-    force : array, shape (n,)
-        Size of the contact force [EI/L^2].
-    arc_length : array, shape (n,)
-        Of the contact, from the clamp [L].
-    segments, half_cell
-        As of `by_segments`.
-
-    Returns
-    -------
-    Answer
-        Relative to the foot [L].
-    """
+    """Where the model has the contact, given the force's size and place: its forward problem."""
     whole = np.floor(arc_length * segments + _ROUNDING)
     rest = np.maximum(arc_length - whole / segments, 0.0)
     half = 0.5 / segments if half_cell else 0.0

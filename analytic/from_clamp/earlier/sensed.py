@@ -28,18 +28,7 @@ class Answer(NamedTuple):
     """Position [L]."""
 
     def where(self, valid: Booleans) -> "Answer":
-        """The same, with no answer where a method's assumptions do not hold.
-
-        Parameters
-        ----------
-        valid : array of bool, shape (n,)
-            Where they do.
-
-        Returns
-        -------
-        Answer
-            NaN elsewhere.
-        """
+        """The same, with no answer where a method's assumptions do not hold."""
         return Answer(*(_masked(values, valid) for values in self))
 
 

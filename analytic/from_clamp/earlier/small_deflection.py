@@ -7,18 +7,7 @@ from analytic.problem.arrays import Floats
 
 
 def binary(sensed: Sensed) -> Answer:
-    """The tip of the straight vibrissa, wherever there is a load: contact or no contact.
-
-    Parameters
-    ----------
-    sensed : Sensed
-        Loaded stations.
-
-    Returns
-    -------
-    Answer
-        Exact at the first contact.
-    """
+    """The tip of the straight vibrissa, wherever there is a load: contact or no contact."""
     return Answer(sensed.foot_x, np.ones_like(sensed.foot_x))
 
 
@@ -28,16 +17,6 @@ def from_moment_and_travel(sensed: Sensed) -> Answer:
     A cantilever that is displaced by delta at the height eta has the moment 3 delta/eta^2 at its
     clamp (the idea of M. Kaneko, N. Kanayama and T. Tsuji, Active antenna for contact sensing,
     IEEE Transactions on Robotics and Automation 14, 1998, for a translation; derived here).
-
-    Parameters
-    ----------
-    sensed : Sensed
-        Loaded stations.
-
-    Returns
-    -------
-    Answer
-        None before the first contact.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         height = np.sqrt(3 * sensed.travel / sensed.moment)
@@ -51,18 +30,6 @@ def from_slope_and_travel(sensed: Sensed, sensor: float = 0.05) -> Answer:
     2 tau d^3 - 6 delta x d + 3 delta x^2 = 0, its largest root (the idea of D. Kim and R. Moeller,
     Biomimetic whiskers for shape recognition, Robotics and Autonomous Systems 55, 2007; derived
     here). The slope is what the clamp's readings make of it, M x - Q x^2/2.
-
-    Parameters
-    ----------
-    sensed : Sensed
-        Loaded stations.
-    sensor : float
-        Distance of the sensor from the clamp [L].
-
-    Returns
-    -------
-    Answer
-        None before the first contact.
     """
     slope = sensor * sensed.moment - sensor**2 * sensed.across / 2
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -78,16 +45,6 @@ def from_force_and_moment(sensed: Sensed) -> Answer:
 
     After J. A. Birdwell and others, Biomechanical models for radial distance determination by the
     rat vibrissal system, Journal of Neurophysiology 98, 2007.
-
-    Parameters
-    ----------
-    sensed : Sensed
-        Loaded stations.
-
-    Returns
-    -------
-    Answer
-        None where the force across the vibrissa vanishes or pulls.
     """
     lever, deflection = _lever(sensed), sensed.across
     with np.errstate(over="ignore", invalid="ignore"):
@@ -98,16 +55,6 @@ def from_force_and_moment_of_cone(sensed: Sensed) -> Answer:
     """A cone that ends in a point: the lever a = M/Q, the deflection Q a^3/(3 (1 - a)) there.
 
     After Birdwell and others, as `from_force_and_moment`; the flexural rigidity at the base is 1.
-
-    Parameters
-    ----------
-    sensed : Sensed
-        Loaded stations.
-
-    Returns
-    -------
-    Answer
-        None where the force across the vibrissa vanishes or pulls, or at the tip and beyond.
     """
     lever = _lever(sensed)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
@@ -120,16 +67,6 @@ def from_beam_column(sensed: Sensed) -> Answer:
 
     M = Q tan(k a)/k with k^2 = P gives the height a, and the deflection is (Q/P)(tan(k a)/k - a);
     S. P. Timoshenko and J. M. Gere, Theory of elastic stability, 1961, section 1.11.
-
-    Parameters
-    ----------
-    sensed : Sensed
-        Loaded stations.
-
-    Returns
-    -------
-    Answer
-        None where the vibrissa is pulled (P <= 0), where k a would be beyond pi/2.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         k = np.sqrt(sensed.along)

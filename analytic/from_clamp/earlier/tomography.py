@@ -13,23 +13,6 @@ def outline_of_tangents(angle: ArrayLike, distance: ArrayLike) -> Floats:
     A tangent whose outward normal has the angle theta lies at the distance h(theta) from the
     origin, the support function of the body. The idea of first contacts as rays is tomography's;
     derived here.
-
-    Parameters
-    ----------
-    angle : array_like, shape (n,)
-        Of the tangents' outward normals, ascending, over less than a full turn [rad].
-    distance : array_like, shape (n,)
-        Of the tangents from the origin, along the normals [length].
-
-    Returns
-    -------
-    array, shape (n, 2)
-        Vertices; the last one is where the last tangent meets the first [length].
-
-    Raises
-    ------
-    InputError
-        If there are fewer than three tangents, or two neighbours are half a turn apart or more.
     """
     theta, h = np.asarray(angle, dtype=float), np.asarray(distance, dtype=float)
     if theta.ndim != 1 or theta.shape != h.shape or len(theta) < 3:

@@ -33,27 +33,6 @@ def check_convex(
     The chord between two points of a strictly convex contour has a slope angle between those of the
     tangents there. The long chords are next to each other and miss nothing that is large. The short
     ones begin where a golden-section sequence puts them: evenly, and in step with no wave.
-
-    Parameters
-    ----------
-    xi, eta : callable
-        Coordinates of the point with a given slope angle; arrays to arrays [length].
-    alpha_range : tuple of float
-        Smallest and largest slope angle [rad].
-    radius : callable, optional
-        Radius of curvature at a given slope angle [length].
-    label : str
-        What an error calls the contour.
-    known : bool
-        Whether it is of a family whose closed form is convex: what is left to find is where its
-        numbers leave those of the machine, and that a few short chords show.
-
-    Raises
-    ------
-    InputError
-        If the functions return something else, a chord has a wrong slope, the contour has a corner
-        within its range or is lost in the rounding of its coordinates, or the radius of curvature
-        is not that of the points.
     """
     lowest, highest = alpha_range
     inset = 1e-6 * (highest - lowest)  # open families have their poles at +-pi/2

@@ -19,11 +19,6 @@ class Contours:
     Those of one family, as catenaries of any width and height, differ in numbers alone: their
     functions are called once, with arrays in place of the numbers. All others are called one by
     one.
-
-    Parameters
-    ----------
-    contours : sequence of Contour
-        At least one.
     """
 
     def __init__(self, contours: Sequence[Contour]) -> None:
@@ -53,20 +48,7 @@ class Contours:
         return np.concatenate([contour.parameter(level) for contour in self.contours])
 
     def at(self, owner: Integers, t: Floats) -> ContourPoint:
-        """Points of the contours.
-
-        Parameters
-        ----------
-        owner : array of int, shape (n,)
-            The number of each point's contour, ascending.
-        t : array, shape (n,)
-            Contour parameters.
-
-        Returns
-        -------
-        ContourPoint
-            Arrays of shape (n,).
-        """
+        """Points of the contours."""
         if len(self.contours) == 1:
             return self.contours[0].at(t)
         if len(self._members) == 1:

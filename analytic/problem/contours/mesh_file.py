@@ -60,26 +60,6 @@ def read_body(file: str | Path, hull: bool, tolerance: float) -> Body:
     Vertices at one place are merged whatever their texture or normals, inside-out meshes are turned
     and vertices inside the hull are dropped. A body of more than 50,000 vertices is thinned to that
     number at most.
-
-    Parameters
-    ----------
-    file : str or Path
-        STL, OBJ, PLY, OFF, GLB or glTF.
-    hull : bool
-        Whether to take the convex hull of an open or dented mesh.
-    tolerance : float
-        How far vertices may lie outside the body, in the file's unit, so that it has fewer.
-
-    Returns
-    -------
-    Body
-        What may be touched.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, its mesh is flat or, unless `hull`, open or dented, or no 50,000
-        vertices are as near as `tolerance`.
     """
     from scipy.spatial import QhullError  # slow to load, as trimesh is
 

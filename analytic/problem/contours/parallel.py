@@ -11,23 +11,10 @@ from analytic.problem.numbers import positive
 
 @dataclass(frozen=True)
 class Parallel(Contour):
-    """What lies at a distance below a contour whose parameter is its slope angle.
+    """What lies at a distance below a contour whose parameter is its slope angle."""
 
-    Parameters
-    ----------
-    of : Contour
-        The contour; it turns at the same rate everywhere, round its corners too.
-    radius : float
-        The distance, positive [length].
-
-    Raises
-    ------
-    InputError
-        If the distance cannot be.
-    """
-
-    of: Contour
-    radius: float
+    of: Contour  # the contour; it turns at the same rate everywhere, round its corners too
+    radius: float  # the distance, positive [length]
 
     def __post_init__(self) -> None:
         positive("radius of the parallel curve", self.radius)

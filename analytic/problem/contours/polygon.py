@@ -22,23 +22,13 @@ class Polygon(Contour):
     Along an edge the slope angle stays and the point moves; round a vertex the point stays, or
     moves on an arc about it on the parallel curve, and the angle moves. The parameter t counts arc
     length along the edges and angle round the vertices, from the left end.
-
-    Parameters
-    ----------
-    vertices : array, shape (n, 2)
-        From the leftmost to the rightmost vertex along the lower side [length].
-    distance : float
-        Of the parallel curve from the polygon [length].
-    label : str
-        What reports call the contour.
-    solid : ConvexMesh, optional
-        What it is the section of.
     """
 
+    # Shape (n, 2); From the leftmost to the rightmost vertex along the lower side [length].
     vertices: Floats
-    distance: float = 0.0
-    label: str = "polygon"
-    solid: ConvexMesh | None = None
+    distance: float = 0.0  # of the parallel curve from the polygon [length]
+    label: str = "polygon"  # what reports call the contour
+    solid: ConvexMesh | None = None  # what it is the section of
 
     @property
     def t_range(self) -> tuple[float, float]:

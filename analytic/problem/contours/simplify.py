@@ -17,23 +17,6 @@ def thinned(points: Floats, tolerance: float, most: int) -> tuple[Floats, float]
     It begins with the point farthest out in each of some hundred ranges of directions. Then, round
     by round, each face of the hull gets the point that is farthest outside of it. Few faces need no
     more than a sample of the points; the last round, and what is said of it, has all of them.
-
-    Parameters
-    ----------
-    points : array, shape (n, 3)
-        On the surface, or inside [length].
-    tolerance : float
-        Allowed distance [length]; 0 keeps all if they are few enough.
-    most : int
-        How many points may remain, whatever the tolerance.
-
-    Returns
-    -------
-    kept : array, shape (m, 3)
-        Some of `points`; all of them if they are few enough and none can be spared.
-    miss : float
-        How far the others lie outside of the hull of these, measured from the planes of the faces
-        nearest to them [length].
     """
     if tolerance == 0 and len(points) <= most:
         return points, 0.0
@@ -75,13 +58,7 @@ def _farthest(points: Floats) -> Integers:
 
 
 def _outside(points: Floats, kept: Floats) -> tuple[Floats, Integers]:
-    """How far points lie outside of the hull of `kept`, and of which of its faces.
-
-    Raises
-    ------
-    scipy.spatial.QhullError
-        If `kept` lie in a plane.
-    """
+    """How far points lie outside of the hull of `kept`, and of which of its faces."""
     from scipy.spatial import ConvexHull, KDTree  # slow to load
 
     middle, size = kept.mean(axis=0), np.ptp(kept, axis=0).max()

@@ -8,23 +8,14 @@ from analytic.problem.arrays import Floats
 
 @dataclass(frozen=True, eq=False)
 class ConvexMesh:
-    """The hull of points, cut by the plane of the sweep at z = 0.
+    """The hull of points, cut by the plane of the sweep at z = 0."""
 
-    Parameters
-    ----------
-    vertices : array, shape (n, 3)
-        In the case's frame [length].
-    tilt : float
-        The largest z component of its unit normals along the lower side of the section: 0 where
-        the mesh is a prism there, or symmetric about the plane. Where it is not, the section is
-        not what a bead touches; see `gap`.
-    name : str
-        Of the file.
-    """
-
-    vertices: Floats
+    vertices: Floats  # shape (n, 3); In the case's frame [length]
+    # The largest z component of its unit normals along the lower side of the section: 0 where the
+    # mesh is a prism there, or symmetric about the plane. Where it is not, the section is not what
+    # a bead touches; see `gap`.
     tilt: float
-    name: str
+    name: str  # of the file
 
     def gap(self, radius: float) -> float:
         """How much earlier a bead touches the body than it would touch the section's prism.
@@ -32,40 +23,13 @@ class ConvexMesh:
         A face whose normal leaves the plane by the angle t keeps the bead's centre at the distance
         r / cos(t) from the section, and presses it out of the plane with tan(t) times the force in
         it.
-
-        Parameters
-        ----------
-        radius : float
-            Of the bead, r [length].
-
-        Returns
-        -------
-        float
-            r (1 / cos(t) - 1), at most [length].
         """
         return radius * (1 / math.sqrt(max(1 - self.tilt**2, 1e-300)) - 1)
 
     def scaled(self, factor: float) -> "ConvexMesh":
-        """Enlarged about the origin.
-
-        Parameters
-        ----------
-        factor : float
-            Positive.
-
-        Returns
-        -------
-        ConvexMesh
-            With the same tilt.
-        """
+        """Enlarged about the origin."""
         return replace(self, vertices=factor * self.vertices)
 
     def mirrored(self) -> "ConvexMesh":
-        """The mirror image, x to -x.
-
-        Returns
-        -------
-        ConvexMesh
-            With the same tilt.
-        """
+        """The mirror image, x to -x."""
         return replace(self, vertices=self.vertices * [-1, 1, 1])

@@ -25,21 +25,7 @@ _INSIDE = 1e-9  # L; by how much a point may seem to lie in the object
 
 
 def is_clear(centreline: Contour, contact: States) -> Booleans:
-    """Whether states touch the object nowhere else.
-
-    Parameters
-    ----------
-    centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length.
-    contact : States
-        Of n contacts.
-
-    Returns
-    -------
-    array of bool, shape (n,)
-        False where another part of the vibrissa would be inside; looked at in 16 places of the
-        loaded span and 16 of the free end.
-    """
+    """Whether states touch the object nowhere else."""
     clear = _bends_one_way(contact)
     left = np.flatnonzero(~clear & np.isfinite(contact.excess))
     if left.size:
@@ -112,22 +98,7 @@ def _is_outside(centreline: Contour, contact: States) -> Booleans:
 
 
 def is_rest_clear(centreline: Contour, vibrissa: Vibrissa, foot_x: Floats) -> Booleans:
-    """Whether the unloaded vibrissa stays outside the object.
-
-    Parameters
-    ----------
-    centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length.
-    vibrissa : Vibrissa
-        Its numbers.
-    foot_x : array, shape (n,)
-        Foot positions [L].
-
-    Returns
-    -------
-    array of bool, shape (n,)
-        False where some of its 16 places would be inside.
-    """
+    """Whether the unloaded vibrissa stays outside the object."""
     s = np.broadcast_to(_PLACES[:, None], (_PLACES.size, foot_x.size))
     x, y, _ = vibrissa.unloaded.at(s)
     outside = _outside(centreline, x + foot_x, y, vibrissa.unloaded.taper(s))

@@ -9,22 +9,7 @@ from analytic.solver.general.states import States
 
 
 def to_columns(found: States, again: Booleans, beam: Beam) -> dict[str, Column]:
-    """The readings of states at rest.
-
-    Parameters
-    ----------
-    found : States
-        Of n contacts; NaN in the excess marks points that no vibrissa reaches.
-    again : array of bool, shape (n,)
-        Which would touch the object in a second place, and are none.
-    beam : Beam
-        The vibrissa, whose units the columns are in.
-
-    Returns
-    -------
-    dict of array, shape (n,)
-        The columns of `Readings.table` by name.
-    """
+    """The readings of states at rest."""
     alpha, xi, eta = found.point[:3]
     force, mu = found.force * beam.force_unit, found.vibrissa.friction
     radius, length = found.vibrissa.radius, found.arc_length

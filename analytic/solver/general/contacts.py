@@ -26,25 +26,6 @@ def contacts(centreline: Contour, t: Floats, vibrissa: Vibrissa) -> States:
     They are those of the sweep along the contour, with what follows after the snap-off; of two at
     the same point the later one. Points that it does not come to are tried from the paper's
     vibrissa there, as it is given its curvature, its elastic clamp and its friction.
-
-    Parameters
-    ----------
-    centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length.
-    t : array, shape (n,)
-        Contour parameters.
-    vibrissa : Vibrissa
-        Its numbers.
-
-    Returns
-    -------
-    States
-        Of n contacts; the excess is NaN where none was found.
-
-    Raises
-    ------
-    InputError
-        If the vibrissa cannot reach the contour.
     """
     reach = contact_range(centreline)
     touch = first_touch(centreline, reach, vibrissa.unloaded)

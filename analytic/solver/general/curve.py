@@ -54,19 +54,7 @@ class Curve(NamedTuple):
     breaks: Floats
 
     def start(self, t: float, excess: float) -> Point:
-        """The unloaded vibrissa at first contact.
-
-        Parameters
-        ----------
-        t, excess : float
-            Contour parameter and excess of the contact.
-
-        Returns
-        -------
-        Point
-            Its direction is that of the growing force. A tip that lies along the contour may go
-            either way: it is in Phase B if its excess falls from nothing.
-        """
+        """The unloaded vibrissa at first contact."""
         here = self._loaded(np.array([t, 0.0, excess]))
         if excess == 0 and here.direction[_W] < 0:
             here = self._loaded(np.array([t, 0.0, INSIDE]))
@@ -77,22 +65,7 @@ class Curve(NamedTuple):
         return here if here.direction[_F] > 0 else _reversed(here)
 
     def advance(self, behind: Point | None, here: Point, length: float) -> tuple[Point, ...]:
-        """The next points of the curve, at most a step ahead.
-
-        Parameters
-        ----------
-        behind : Point or None
-            The one before on the same smooth part, if there is one.
-        here : Point
-            Where to go on from.
-        length : float
-            Of the step.
-
-        Returns
-        -------
-        tuple of Point
-            One; two at a kink, one on each side; none if the step is too long for Newton's method.
-        """
+        """The next points of the curve, at most a step ahead."""
         z = self._ahead(behind, here, length)
         if z[_F] < 0:
             return self._stopped(here, (here.z[_F] / (here.z[_F] - z[_F]), _F, 0.0, math.nan), z)
@@ -144,20 +117,7 @@ class Curve(NamedTuple):
         return first, second if same else _reversed(second)
 
     def turn(self, begin: Point, end: Point, rate: Callable[[Point], float]) -> Point | None:
-        """Where something is least between two points of a smooth part.
-
-        Parameters
-        ----------
-        begin, end : Point
-            Between which its rate changes from negative to positive.
-        rate : callable
-            Its derivative by the curve's length, at a point.
-
-        Returns
-        -------
-        Point or None
-            None if Newton's method loses the curve.
-        """
+        """Where something is least between two points of a smooth part."""
         chord = end.z - begin.z
         normal = chord / self._scale(begin.z) ** 2
         length = float(chord @ normal)
@@ -182,18 +142,7 @@ class Curve(NamedTuple):
         return found
 
     def turning(self, here: Point, new: Point) -> float:
-        """By how much the curve turns between two points.
-
-        Parameters
-        ----------
-        here, new : Point
-            The points.
-
-        Returns
-        -------
-        float
-            Angle between the directions, the force measured by its size [rad].
-        """
+        """By how much the curve turns between two points."""
         scale = self._scale(here.z)
         a, b = here.direction / scale, new.direction / scale
         return float(np.arccos(np.clip(a @ b / np.sqrt((a @ a) * (b @ b)), -1, 1)))

@@ -27,24 +27,7 @@ class Nodes(NamedTuple):
 
 
 def nodes(centreline: Contour, vibrissa: Vibrissa, t: Floats, z: Floats) -> Nodes:
-    """What solved contacts say of those beside them.
-
-    Parameters
-    ----------
-    centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length.
-    vibrissa : Vibrissa
-        Its numbers.
-    t : array, shape (m,)
-        Contour parameters, ascending.
-    z : array, shape (m, 2)
-        Force and excess; NaN where there is no contact.
-
-    Returns
-    -------
-    Nodes
-        At these parameters.
-    """
+    """What solved contacts say of those beside them."""
     _, rates = with_rates(centreline.at(t), z[:, 0], z[:, 1], vibrissa)
     slopes = np.stack([rates.twist, rates.above], axis=1)
     a, b, c, d = slopes[:, 0, 1], slopes[:, 0, 2], slopes[:, 1, 1], slopes[:, 1, 2]
@@ -57,26 +40,7 @@ def nodes(centreline: Contour, vibrissa: Vibrissa, t: Floats, z: Floats) -> Node
 def between(
     centreline: Contour, vibrissa: Vibrissa, known: Nodes, t: Floats
 ) -> tuple[Floats, Booleans]:
-    """Contacts that start from Hermite's cubic between their neighbours.
-
-    Parameters
-    ----------
-    centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length.
-    vibrissa : Vibrissa
-        Its numbers.
-    known : Nodes
-        Two or more.
-    t : array, shape (n,)
-        Contour parameters between the first and the last of the nodes.
-
-    Returns
-    -------
-    z : array, shape (n, 2)
-        Force and excess.
-    found : array of bool, shape (n,)
-        Whether they balance, in the phase of both neighbours.
-    """
+    """Contacts that start from Hermite's cubic between their neighbours."""
     z, found = np.empty((len(t), 2)), np.zeros(len(t), dtype=bool)
     for begin in range(0, len(t), _CHUNK):
         part = slice(begin, begin + _CHUNK)

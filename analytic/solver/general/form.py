@@ -20,54 +20,24 @@ _PLACES = 257
 
 @dataclass(frozen=True)
 class Form:
-    """Rigidity, natural curvature and radius of a vibrissa along its length.
+    """Rigidity, natural curvature and radius of a vibrissa along its length."""
 
-    Parameters
-    ----------
-    unloaded : Unloaded
-        Natural curvature and radius.
-    rigidity : Along or float
-        EI(s)/EI(0); or the ratio of a cone's radii, whose fourth power it follows.
-    share : float
-        Exponent of the rigidity: 1, or less on the way from the uniform vibrissa to this one.
-    """
-
-    unloaded: Unloaded
+    unloaded: Unloaded  # natural curvature and radius
+    # EI(s)/EI(0); or the ratio of a cone's radii, whose fourth power it follows.
     rigidity: Along | float
+    # Exponent of the rigidity: 1, or less on the way from the uniform vibrissa to this one.
     share: float = 1.0
 
     @classmethod
     def of(cls, beam: Beam) -> "Form":
-        """What varies along a beam.
-
-        Parameters
-        ----------
-        beam : Beam
-            The vibrissa.
-
-        Returns
-        -------
-        Form
-            Dimensionless.
-        """
+        """What varies along a beam."""
         rest, rigidity = beam.unloaded, beam.flexural_rigidity
         if isinstance(rigidity, Along):
             return cls(rest, rigidity.times(1 / beam.base_rigidity, 1 / beam.length))
         return cls(rest, rest.tip_radius / rest.base_radius if rest.base_radius else 1.0)
 
     def scaled(self, share: float) -> "Form":
-        """The form a part of the way from the uniform, straight vibrissa to this one.
-
-        Parameters
-        ----------
-        share : float
-            From 0 to 1.
-
-        Returns
-        -------
-        Form
-            Its radius at the tip is the same.
-        """
+        """The form a part of the way from the uniform, straight vibrissa to this one."""
         rest = self.unloaded
         natural = rest.natural
         less = natural.times(share) if isinstance(natural, Along) else natural * share
@@ -75,18 +45,7 @@ class Form:
         return replace(self, unloaded=Unloaded(less, base, rest.tip_radius), share=share)
 
     def flexibility(self, s: Floats) -> Floats:
-        """EI(0)/EI(s).
-
-        Parameters
-        ----------
-        s : array, any shape
-            Arc length from the clamp [L].
-
-        Returns
-        -------
-        array, shape of `s`
-            Positive.
-        """
+        """EI(0)/EI(s)."""
         if isinstance(self.rigidity, Along):
             inverse = 1 / self.rigidity(s)
             return inverse if self.share == 1 else inverse**self.share
@@ -94,33 +53,11 @@ class Form:
         return np.asarray(inverse**2 if self.share == 1 else inverse ** (2 * self.share))
 
     def panel(self, begin: Floats, end: Floats) -> Panel:
-        """The form between two places.
-
-        Parameters
-        ----------
-        begin, end : array, shape (n,)
-            Arc lengths from the clamp [L].
-
-        Returns
-        -------
-        Panel
-            Of n vibrissae.
-        """
+        """The form between two places."""
         return Panel.between(begin, end, self.flexibility, self.unloaded.curvature)
 
     def known_panel(self, begin: float, end: float) -> Panel:
-        """The form between two places that many spans run through, computed once.
-
-        Parameters
-        ----------
-        begin, end : float
-            Arc lengths from the clamp [L].
-
-        Returns
-        -------
-        Panel
-            The same for all vibrissae.
-        """
+        """The form between two places that many spans run through, computed once."""
         key = begin, end
         if key not in self._known:
             self._known[key] = self.panel(np.array([begin]), np.array([end]))

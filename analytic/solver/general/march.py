@@ -63,30 +63,7 @@ def march(
     finer: int = 1,
     trail: list[Trail] | None = None,
 ) -> Place:
-    """March along spans from the contact to the clamp, or back.
-
-    Parameters
-    ----------
-    form : Form
-        What varies along the vibrissa.
-    theta, m : array, shape (n,)
-        Slope angle from the force's, and moment, where the march begins.
-    force : array, shape (n,)
-        Dimensionless, not negative.
-    length : array, shape (n,)
-        Arc length of the contact [L].
-    from_clamp : bool
-        Whether to march from the clamp to the contact.
-    finer : int
-        Into how many parts each panel is divided beyond what is needed.
-    trail : list, optional
-        What the places on the way are added to.
-
-    Returns
-    -------
-    Place
-        At the other end; NaN where a force is negative, or too large for the panels.
-    """
+    """March along spans from the contact to the clamp, or back."""
     nowhere = ~((force >= 0) & (length >= 0))
     here = Place(np.where(nowhere, np.nan, theta), m, *np.zeros((3, len(theta))))
     force = np.where(nowhere, 0.0, force)
@@ -117,24 +94,7 @@ def march(
 def back_to_clamp(
     form: Form, theta: Floats, m: Floats, force: Floats, length: Floats, finer: int = 1
 ) -> Start:
-    """As `span.back_to_clamp`, of a vibrissa that varies.
-
-    Parameters
-    ----------
-    form : Form
-        What varies along the vibrissa.
-    theta, m : array, any shape
-        Slope angle at the contact, from the force's [rad]; moment there, dimensionless.
-    force, length : array, same shape
-        As `march`.
-    finer : int
-        As `march`.
-
-    Returns
-    -------
-    Start
-        Of the same shape.
-    """
+    """As `span.back_to_clamp`, of a vibrissa that varies."""
     given = np.broadcast_arrays(theta, m, force, length)
     shape = given[0].shape
     end = march(form, *(np.array(values, dtype=float).ravel() for values in given), finer=finer)

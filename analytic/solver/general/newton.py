@@ -25,22 +25,7 @@ _LEAST = 1 / 64  # of a step whose parts make a miss larger, too
 
 
 def solve(misses: Misses, jacobian: Jacobian, start: Floats) -> tuple[Floats, Floats]:
-    """Zeros next to `start`.
-
-    Parameters
-    ----------
-    misses, jacobian : callable
-        The equations and their derivatives.
-    start : array, shape (n, k)
-        First guesses of k unknowns.
-
-    Returns
-    -------
-    unknowns : array, shape (n, k)
-        The best that was found.
-    missed : array, shape (n,)
-        The largest of its k misses; infinite where there was none.
-    """
+    """Zeros next to `start`."""
     z = np.array(start, dtype=float)
     everywhere = np.arange(len(z))
     values = misses(z, everywhere)

@@ -51,20 +51,7 @@ class Panel(NamedTuple):
         flexibility: Callable[[Floats], Floats],
         curvature: Callable[[Floats], Floats],
     ) -> "Panel":
-        """The panel between two places.
-
-        Parameters
-        ----------
-        begin, end : array, shape (k,)
-            Arc lengths from the clamp [L].
-        flexibility, curvature : callable
-            EI(0)/EI and natural curvature by arc length.
-
-        Returns
-        -------
-        Panel
-            Of k vibrissae.
-        """
+        """The panel between two places."""
         length = end - begin
         s = begin + _SHARES * length
         flexible, natural = flexibility(s), curvature(s)
@@ -81,18 +68,7 @@ class Panel(NamedTuple):
         )
 
     def turned(self, pull: Floats) -> Floats:
-        """By how much a pull across the vibrissa turns nodes and end.
-
-        Parameters
-        ----------
-        pull : array, shape (NODES, n)
-            At the nodes, over the force.
-
-        Returns
-        -------
-        array, shape (NODES + 1, n)
-            Over the force [rad].
-        """
+        """By how much a pull across the vibrissa turns nodes and end."""
         if self.twice is not None:
             return np.asarray(self.twice.dot(pull))
         return np.asarray(_TO_ALL.dot(self.give * TO_NODES.dot(pull)))

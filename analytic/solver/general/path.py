@@ -58,14 +58,7 @@ class Path(NamedTuple):
         return int(np.argmin(self.foot_x))
 
     def events(self) -> dict[str, int | None]:
-        """What happens on the way to the snap-off, and at which point; None where it does not.
-
-        Returns
-        -------
-        dict
-            The first contact, the first start and the last end of Phase B, the contact nearest to
-            the clamp in Phase B, and the snap-off, of a curve that is complete.
-        """
+        """What happens on the way to the snap-off, and at which point; None where it does not."""
         excess = self.z[: self.snap_off + 1, 2]
         inside = excess < 0
         change = np.flatnonzero(inside[1:] != inside[:-1]) + 1
@@ -79,40 +72,13 @@ class Path(NamedTuple):
         }
 
     def cells(self, foot_x: Floats) -> Integers:
-        """The cell that holds the state at each foot position.
-
-        Parameters
-        ----------
-        foot_x : array, shape (n,)
-            Between first contact and snap-off [L].
-
-        Returns
-        -------
-        array of int, shape (n,)
-            Of the first cell whose end lies at or left of the foot position: a sweep comes by the
-            points at which the foot position falls below all before.
-        """
+        """The cell that holds the state at each foot position."""
         least = np.minimum.accumulate(self.foot_x)
         end = np.searchsorted(-least, -foot_x, side="left")
         return np.clip(end, 1, len(least) - 1) - 1
 
     def share(self, cells: Integers, wanted: Floats, coordinate: int | None) -> Floats:
-        """How far along its cell something has a wanted value, by Hermite's cubic.
-
-        Parameters
-        ----------
-        cells : array of int, shape (n,)
-            Cells between whose ends it lies.
-        wanted : array, shape (n,)
-            Values of a coordinate of ``z``, or of the foot position.
-        coordinate : int or None
-            Which coordinate; None for the foot position.
-
-        Returns
-        -------
-        array, shape (n,)
-            From 0 to 1, to a millionth.
-        """
+        """How far along its cell something has a wanted value, by Hermite's cubic."""
         foot = coordinate is None
         value = self.foot_x if foot else self.z[:, coordinate]
         rate = (
@@ -129,20 +95,7 @@ class Path(NamedTuple):
         return low
 
     def at(self, cells: Integers, share: Floats) -> Floats:
-        """Places in cells, by Hermite's cubic: what Newton's method starts from.
-
-        Parameters
-        ----------
-        cells : array of int, shape (n,)
-            The cells.
-        share : array, shape (n,)
-            How far along each, from 0 to 1.
-
-        Returns
-        -------
-        array, shape (n, 3)
-            Contour parameter, force and excess, of the cell's phase.
-        """
+        """Places in cells, by Hermite's cubic: what Newton's method starts from."""
         length = self.length(cells)[:, None]
         z = _cubic(
             share[:, None],
@@ -157,18 +110,7 @@ class Path(NamedTuple):
         return z
 
     def length(self, cells: Integers) -> Floats:
-        """The length of cells, as chords.
-
-        Parameters
-        ----------
-        cells : array of int, shape (n,)
-            The cells.
-
-        Returns
-        -------
-        array, shape (n,)
-            The force measured by its size.
-        """
+        """The length of cells, as chords."""
         way = self.z[cells + 1] - self.z[cells]
         way[:, 1] /= np.maximum(self.least_force, self.z[cells, 1])
         return np.asarray(np.sqrt(np.einsum("nk,nk->n", way, way)))
@@ -184,24 +126,7 @@ def _cubic(share: Floats, begin: Floats, rate: Floats, end: Floats, end_rate: Fl
 def follow(
     centreline: Contour, vibrissa: Vibrissa, touch: Touch, reach: tuple[float, float]
 ) -> Path:
-    """Follow the equilibria from first contact to where force or reach end.
-
-    Parameters
-    ----------
-    centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length.
-    vibrissa : Vibrissa
-        Its numbers.
-    touch : Touch
-        The first contact.
-    reach : tuple of float
-        Contour parameters of the last point within reach and of the uppermost on the right.
-
-    Returns
-    -------
-    Path
-        At least two points.
-    """
+    """Follow the equilibria from first contact to where force or reach end."""
     # A curved vibrissa comes as far up as its length when it is straightened, and no farther.
     reach = reach[0], centreline.t_range[1]
     curve = Curve(centreline, vibrissa, reach, centreline.breaks())

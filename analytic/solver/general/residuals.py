@@ -22,20 +22,6 @@ def residuals(columns: dict[str, Column], beam: Beam, vibrissa: Vibrissa) -> dic
     alone. Where rigidity or natural curvature vary it is the solver's way on panels of half the
     length, so that it shows the error of collocation: clamp readings of double precision do not
     determine the slope of a tip that is sharp.
-
-    Parameters
-    ----------
-    columns : dict of array, shape (n,)
-        Columns of `Readings.table`, of a sweep to the left.
-    beam : Beam
-        The vibrissa.
-    vibrissa : Vibrissa
-        Its dimensionless numbers.
-
-    Returns
-    -------
-    dict of array, shape (n,)
-        As `analytic.solver.residuals.residuals`; the curvature at the contact is one of the misses.
     """
 
     def column(name: str, unit: float) -> Floats:
@@ -86,24 +72,7 @@ def residuals(columns: dict[str, Column], beam: Beam, vibrissa: Vibrissa) -> dic
 def without_inexact(
     columns: dict[str, Column], beam: Beam, vibrissa: Vibrissa
 ) -> dict[str, Column]:
-    """The readings of states at rest, but for those that collocation has not solved well enough.
-
-    Parameters
-    ----------
-    columns : dict of array, shape (n,)
-        As `residuals`.
-    beam : Beam
-        The vibrissa.
-    vibrissa : Vibrissa
-        Its dimensionless numbers.
-
-    Returns
-    -------
-    dict of array, shape (n,)
-        The same where nothing varies along the vibrissa: the closed form has no such error. Else
-        ``status`` is ``"diverged"``, and the readings are NaN, where one misses its conditions by
-        more than `SOLVED`.
-    """
+    """The readings of states at rest, but for those that collocation has not solved well enough."""
     if vibrissa.form is None:
         return columns
     missed = np.maximum(*residuals(columns, beam, vibrissa).values())

@@ -40,22 +40,7 @@ class Start(NamedTuple):
 
 
 def back_to_clamp(theta: Floats, kappa: Floats, force: Floats, length: Floats) -> Start:
-    """March from the contact back to the clamp.
-
-    Parameters
-    ----------
-    theta, kappa : array, any shape
-        Slope angle at the contact, from the force's [rad]; curvature there, dimensionless.
-    force : array, same shape
-        Dimensionless, not negative.
-    length : array, same shape
-        Arc length from the clamp to the contact [L].
-
-    Returns
-    -------
-    Start
-        Of the same shape, dimensionless; right for spans of up to one period.
-    """
+    """March from the contact back to the clamp."""
     chi = np.pi / 4 - theta / 2
     p1, g1, v1 = np.sin(chi), np.cos(chi), -kappa / 2
     energy = force * p1**2 + v1**2

@@ -46,20 +46,7 @@ class Vibrissa(NamedTuple):
 
     @classmethod
     def of(cls, beam: Beam, clamp_stiffness: float, friction: float) -> "Vibrissa":
-        """The numbers of a beam in its clamp, made dimensionless.
-
-        Parameters
-        ----------
-        beam : Beam
-            The vibrissa.
-        clamp_stiffness, friction : float
-            Moment of the clamp by its rotation [force length/rad]; coefficient.
-
-        Returns
-        -------
-        Vibrissa
-            Dimensionless.
-        """
+        """The numbers of a beam in its clamp, made dimensionless."""
         rest = beam.unloaded
         return cls(
             0.0 if isinstance(rest.natural, Along) else rest.natural,
@@ -77,18 +64,7 @@ class Vibrissa(NamedTuple):
         return Unloaded(self.natural_curvature, self.radius, self.radius)
 
     def radius_at(self, s: Floats) -> Floats | float:
-        """Radius.
-
-        Parameters
-        ----------
-        s : array, any shape
-            Arc length from the clamp [L].
-
-        Returns
-        -------
-        array, shape of `s`, or float
-            [L].
-        """
+        """Radius."""
         return self.radius if self.form is None else self.radius + self.form.unloaded.taper(s)
 
     @property
@@ -102,20 +78,7 @@ class Vibrissa(NamedTuple):
         return 0.0 if self.form is None else self.form.unloaded.lean
 
     def felt(self, point: ContourPoint, length: Floats) -> ContourPoint:
-        """The contour that the centreline feels where its radius is not the tip's.
-
-        Parameters
-        ----------
-        point : ContourPoint
-            Of the contour that it feels at the tip; arrays of shape (n,).
-        length : array, shape (n,)
-            Arc length of the contact [L].
-
-        Returns
-        -------
-        ContourPoint
-            Of the parallel curve at the distance of the radius there.
-        """
+        """The contour that the centreline feels where its radius is not the tip's."""
         if self.form is None:
             return point
         taper = self.form.unloaded.taper(length)
@@ -128,37 +91,13 @@ class Vibrissa(NamedTuple):
         )
 
     def back_to_clamp(self, slope: Floats, couple: Floats, force: Floats, length: Floats) -> Start:
-        """March from the contact back to the clamp.
-
-        Parameters
-        ----------
-        slope : array, any shape
-            Slope angle at the contact, from the force's [rad].
-        couple, force, length : array, same shape
-            Friction's couple at the contact, force on it and its arc length, dimensionless.
-
-        Returns
-        -------
-        Start
-            Of the same shape, dimensionless.
-        """
+        """March from the contact back to the clamp."""
         if self.form is None:
             return back_to_clamp(slope, self.natural_curvature - couple, force, length)
         return march.back_to_clamp(self.form, slope, -couple, force, length)
 
     def scaled(self, share: float) -> "Vibrissa":
-        """The vibrissa a part of the way from the paper's to this one, its radius as it is.
-
-        Parameters
-        ----------
-        share : float
-            From 0 to 1.
-
-        Returns
-        -------
-        Vibrissa
-            Dimensionless.
-        """
+        """The vibrissa a part of the way from the paper's to this one, its radius as it is."""
         return Vibrissa(
             share * self.natural_curvature,
             share * self.compliance,
@@ -188,18 +127,7 @@ class States(NamedTuple):
     vibrissa: Vibrissa
 
     def at(self, which: Integers) -> "States":
-        """Some of the states.
-
-        Parameters
-        ----------
-        which : array of int, shape (m,)
-            Their numbers.
-
-        Returns
-        -------
-        States
-            Of m contacts.
-        """
+        """Some of the states."""
         point = ContourPoint(*(values[which] for values in self.point))
         return States(
             point,
@@ -250,22 +178,7 @@ class States(NamedTuple):
 
 
 def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibrissa) -> States:
-    """The vibrissa from a contact back to its clamp.
-
-    Parameters
-    ----------
-    point : ContourPoint
-        Where the contour that the centreline feels at the tip is touched; arrays of shape (n,).
-    force, excess : array, shape (n,)
-        Normal force, not negative, and excess.
-    vibrissa : Vibrissa
-        Its numbers.
-
-    Returns
-    -------
-    States
-        Whether or not the clamp has its slope and the foot its height.
-    """
+    """The vibrissa from a contact back to its clamp."""
     mu = vibrissa.friction
     push = np.sqrt(1 + mu**2) * force
     lean = np.arctan(mu)
@@ -312,20 +225,6 @@ def with_rates(
 
     The span as seen from the contact does not depend on alpha, so that the derivative by t is exact
     and one-sided at a contour's breaks; the other two are differences that do not change the phase.
-
-    Parameters
-    ----------
-    point : ContourPoint
-        Where the centreline's contour is touched; arrays of shape (n,).
-    force, excess : array, shape (n,)
-        Normal force, not negative, and excess.
-    vibrissa : Vibrissa
-        Its numbers.
-
-    Returns
-    -------
-    States, Rates
-        Of n contacts.
     """
     step_f = _DIFFERENCE * np.maximum(vibrissa.least_force, force)
     step_w = np.where(excess < 0, -_DIFFERENCE, _DIFFERENCE)

@@ -16,49 +16,14 @@ _BALANCED = 1e-11  # L, rad; beyond, no state was found
 def solve_beside(
     centreline: Contour, vibrissa: Vibrissa, foot_x: Floats, z: Floats, slopes: Floats
 ) -> States:
-    """States next to those of a problem that is solved, by one step of Newton's method.
-
-    Parameters
-    ----------
-    centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length; nearly that which is
-        solved.
-    vibrissa : Vibrissa
-        Its numbers, nearly those of the vibrissa that is solved.
-    foot_x : array, shape (n,)
-        Foot positions, nearly those of its states [L].
-    z : array, shape (n, 3)
-        Contour parameter, normal force and excess of its states.
-    slopes : array, shape (n, 3, 3)
-        As `slopes_at` has them.
-
-    Returns
-    -------
-    States
-        Of n contacts, but for the square of what the two differ by.
-    """
+    """States next to those of a problem that is solved, by one step of Newton's method."""
     missed = _misses(centreline, vibrissa, foot_x, z)
     t, force, excess = (z - np.linalg.solve(slopes, missed[..., None])[..., 0]).T
     return states(centreline.at(t), np.maximum(force, 0.0), excess, vibrissa)
 
 
 def slopes_at(centreline: Contour, vibrissa: Vibrissa, z: Floats) -> Floats:
-    """Derivatives of what states miss and of their foot positions.
-
-    Parameters
-    ----------
-    centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length.
-    vibrissa : Vibrissa
-        Its numbers.
-    z : array, shape (n, 3)
-        Contour parameter, normal force and excess.
-
-    Returns
-    -------
-    array, shape (n, 3, 3)
-        Of twist, height and foot position by these.
-    """
+    """Derivatives of what states miss and of their foot positions."""
     _, rates = with_rates(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
     return np.stack(rates, axis=1)
 
@@ -75,24 +40,6 @@ def solve_places(
     """Contour parameter, force and excess of the state at each foot position on the path.
 
     Newton's method starts from the cubic through the path's points and directions.
-
-    Parameters
-    ----------
-    centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length.
-    vibrissa : Vibrissa
-        Its numbers.
-    path : Path
-        From first contact to where the vibrissa lets go.
-    foot_x : array, shape (n,)
-        Foot positions on it [L].
-
-    Returns
-    -------
-    z : array, shape (n, 3)
-        Contour parameter, normal force and excess.
-    found : array of bool, shape (n,)
-        Whether the state balances, and is that of the station's cell of the path.
     """
     cells = path.cells(foot_x)
     guess = path.at(cells, path.share(cells, foot_x, None))

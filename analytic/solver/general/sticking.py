@@ -37,24 +37,7 @@ class Sticking(NamedTuple):
 
 
 def stick(centreline: Contour, vibrissa: Vibrissa, start: Floats, until: float) -> Sticking:
-    """Let the foot go back, to the right, while nothing slides.
-
-    Parameters
-    ----------
-    centreline : Contour
-        Contour that the centreline feels, in units of the vibrissa's length.
-    vibrissa : Vibrissa
-        Its numbers; the friction is that of sliding on.
-    start : array, shape (3,)
-        Contour parameter, normal force and excess of a state that slides on.
-    until : float
-        Where the foot stops [L].
-
-    Returns
-    -------
-    Sticking
-        From there until it slides back, or the foot stops.
-    """
+    """Let the foot go back, to the right, while nothing slides."""
     limit = float(np.arctan(vibrissa.friction))
     z = [np.append(start, limit)]
     foot_x = [float(_states(centreline, vibrissa, z[0][None]).foot_x[0])]
@@ -100,29 +83,7 @@ def _ended(
 
 
 def between(centreline: Contour, vibrissa: Vibrissa, known: Sticking, foot_x: Floats) -> Floats:
-    """The sticking states at given foot positions.
-
-    Parameters
-    ----------
-    centreline : Contour
-        As of `stick`.
-    vibrissa : Vibrissa
-        As of `stick`.
-    known : Sticking
-        The way.
-    foot_x : array, shape (n,)
-        Between its ends [L].
-
-    Returns
-    -------
-    array, shape (n, 4)
-        As `Sticking.z`.
-
-    Raises
-    ------
-    ArithmeticError
-        If one is not found.
-    """
+    """The sticking states at given foot positions."""
     guess = np.stack([np.interp(foot_x, known.foot_x, column) for column in known.z.T], axis=1)
     found, missed = _at_foot(centreline, vibrissa, known.z[0], foot_x, guess)
     if not (missed <= _BALANCED).all():

@@ -32,20 +32,7 @@ class Solved(NamedTuple):
 
 
 def solve(case: Case, stations: Floats | None = None) -> Solved:
-    """Solve a sweep to the left.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    stations : array, shape (n,), optional
-        Foot positions in any order [length]; the case's if not given.
-
-    Returns
-    -------
-    Solved
-        In the units of the case's beam; the events in lengths.
-    """
+    """Solve a sweep to the left."""
     beam = case.beam
     vibrissa = Vibrissa.of(beam, case.clamp_stiffness, case.friction)
     stations = case.foot_x if stations is None else stations

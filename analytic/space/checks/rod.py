@@ -43,24 +43,7 @@ def integrate_rod(
 def integrate_rods(
     tangent: Floats, force: Floats, moment: Floats, length: Floats, points: int = 2
 ) -> tuple[Floats, Floats, Floats]:
-    """March many rods from the same clamp together, each by the same share of its length.
-
-    Parameters
-    ----------
-    tangent : array, shape (3,)
-        Of the clamp.
-    force, moment : array, shape (n, 3)
-        Of the clamp, dimensionless; force and moment act on the vibrissa.
-    length : array, shape (n,)
-        Arc lengths to march [L].
-    points : int
-        How many states are wanted of each, at equal distances, both ends among them.
-
-    Returns
-    -------
-    place, direction, moment : array, shape (n, points, 3)
-        Relative to the foot [L], of length 1, and in the section [EI/L].
-    """
+    """March many rods from the same clamp together, each by the same share of its length."""
     n = len(length)
 
     def rate(_: float, state: Floats) -> Floats:

@@ -25,23 +25,6 @@ def component_noise(
     jump, too; but one force, wherever it acts and in whatever frame, has no moment along itself:
     what F . M jumps by is noise and nothing else, and if it is less than what was seen allows, what
     was seen is so much less noise.
-
-    Parameters
-    ----------
-    readings : SpatialReadings
-        One sweep; only its six components are used, and status.
-    stated : mapping, optional
-        Standard deviation by component, in its unit.
-
-    Returns
-    -------
-    dict
-        By component, in its unit.
-
-    Raises
-    ------
-    InputError
-        If what is stated is none of the components', or no standard deviation.
     """
     given = {} if stated is None else dict(stated)
     for name, value in given.items():
@@ -63,37 +46,11 @@ def component_noise(
 
 
 def least_force(readings: SpatialReadings, noise: Mapping[str, float]) -> float:
-    """The force below which a station is taken for free.
-
-    Parameters
-    ----------
-    readings : SpatialReadings
-        Of whose vibrissa.
-    noise : mapping
-        From `component_noise`.
-
-    Returns
-    -------
-    float
-        [force]
-    """
+    """The force below which a station is taken for free."""
     return max(_SIGMAS * max(noise[name] for name in FORCE), UNLOADED * readings.beam.force_unit)
 
 
 def felt(readings: SpatialReadings, noise: Mapping[str, float]) -> Booleans:
-    """Trusted stations with a force that noise does not make.
-
-    Parameters
-    ----------
-    readings : SpatialReadings
-        One sweep.
-    noise : mapping
-        From `component_noise`.
-
-    Returns
-    -------
-    array of bool, shape (stations,)
-        Without noise those of `SpatialReadings.touching`.
-    """
+    """Trusted stations with a force that noise does not make."""
     force = np.linalg.norm(readings.values(*FORCE), axis=1)
     return np.asarray(readings.trusted & (force > least_force(readings, noise)))

@@ -159,24 +159,7 @@ def wrench_complaint(found: pd.DataFrame) -> str | None:
 def contacts_moved(
     readings: SpatialReadings, noise: Mapping[str, float], at: Integers, seed: int = 0
 ) -> Floats:
-    """How far noise moves the contacts that are found, sample by sample.
-
-    Parameters
-    ----------
-    readings : SpatialReadings
-        One sweep.
-    noise : mapping
-        Standard deviations of the six components by name, each in its unit.
-    at : array of int, shape (touching,)
-        Stations with a force.
-    seed : int
-        Of the samples.
-
-    Returns
-    -------
-    array, shape (400, touching)
-        Distances [length]; NaN where the disturbed readings are of no contact.
-    """
+    """How far noise moves the contacts that are found, sample by sample."""
     beam = readings.beam
     deviation = np.array([noise.get(name, 0.0) for name in COMPONENTS])
     far, _, reach = _samples(

@@ -14,25 +14,7 @@ _LARGEST = 1e100
 
 
 def vector(name: str, value: ArrayLike) -> Floats:
-    """Three finite numbers.
-
-    Parameters
-    ----------
-    name : str
-        What an error calls them.
-    value : array_like, shape (3,)
-        What was given.
-
-    Returns
-    -------
-    array, shape (3,)
-        The numbers.
-
-    Raises
-    ------
-    InputError
-        If they are none.
-    """
+    """Three finite numbers."""
     try:
         found = np.array(value, dtype=float)
     except (TypeError, ValueError, OverflowError) as error:
@@ -43,25 +25,7 @@ def vector(name: str, value: ArrayLike) -> Floats:
 
 
 def direction(name: str, value: ArrayLike) -> Floats:
-    """A vector of length 1 along three numbers.
-
-    Parameters
-    ----------
-    name : str
-        What an error calls them.
-    value : array_like, shape (3,)
-        What was given.
-
-    Returns
-    -------
-    array, shape (3,)
-        Of length 1.
-
-    Raises
-    ------
-    InputError
-        If they are none, or all zero.
-    """
+    """A vector of length 1 along three numbers."""
     found = vector(name, value)
     size = float(np.linalg.norm(found))
     if not size > 1 / _LARGEST:
@@ -70,25 +34,7 @@ def direction(name: str, value: ArrayLike) -> Floats:
 
 
 def axes(name: str, value: ArrayLike) -> Floats:
-    """Three unit vectors normal to each other, from three that nearly are.
-
-    Parameters
-    ----------
-    name : str
-        What an error calls them.
-    value : array_like, shape (3, 3)
-        A row each.
-
-    Returns
-    -------
-    array, shape (3, 3)
-        A rotation: rows of length 1, normal to each other to rounding, right-handed.
-
-    Raises
-    ------
-    InputError
-        If they are more than 1e-6 from a rotation.
-    """
+    """Three unit vectors normal to each other, from three that nearly are."""
     try:
         given = np.array(value, dtype=float)
     except (TypeError, ValueError, OverflowError) as error:

@@ -29,20 +29,6 @@ def straight_gap(body: Body, foot: Floats, tangent: Floats, radius: float) -> Ga
 
     The distance from a convex body is convex along a line: its slope, the cosine between normal and
     vibrissa, changes its sign once.
-
-    Parameters
-    ----------
-    body : Body
-        In L.
-    foot, tangent : array, shape (3,)
-        Where the vibrissa begins [L], and its direction.
-    radius : float
-        Of the vibrissa [L].
-
-    Returns
-    -------
-    Gap
-        Distance, and where.
     """
     from scipy.optimize import brentq  # slow to load, and stating a case needs none of it
 
@@ -62,17 +48,7 @@ def straight_gap(body: Body, foot: Floats, tangent: Floats, radius: float) -> Ga
 
 
 class Way:
-    """The straight vibrissa along a way of its foot, in units of its length.
-
-    Parameters
-    ----------
-    body : Body
-        In L.
-    path : FootPath
-        The way; lengths are divided by `length`.
-    length, radius : float
-        Of the vibrissa [length].
-    """
+    """The straight vibrissa along a way of its foot, in units of its length."""
 
     def __init__(self, body: Body, path: FootPath, length: float, radius: float) -> None:
         self.body = body
@@ -84,53 +60,19 @@ class Way:
         self._slopes = np.diff(self._corners, axis=0) / np.diff(self.marks)[:, None]
 
     def foot(self, travel: float) -> Floats:
-        """A foot position.
-
-        Parameters
-        ----------
-        travel : float
-            Along the way [L].
-
-        Returns
-        -------
-        array, shape (3,)
-            [L]
-        """
+        """A foot position."""
         travel = min(max(travel, 0.0), float(self.marks[-1]))
         leg = min(int(self.marks.searchsorted(travel, "right")), len(self._slopes)) - 1
         return np.asarray(self._corners[leg] + (travel - self.marks[leg]) * self._slopes[leg])
 
     def gap(self, travel: float) -> Gap:
-        """How near the straight vibrissa is there.
-
-        Parameters
-        ----------
-        travel : float
-            Along the way [L].
-
-        Returns
-        -------
-        Gap
-            Distance, and where.
-        """
+        """How near the straight vibrissa is there."""
         return straight_gap(self.body, self.foot(travel), self.path.clamp_tangent, self.radius)
 
     def lowest_contact(self, travel: float, arc_length: float) -> float:
         """Where the side of the straight vibrissa begins to touch.
 
         Along an upright face it touches everywhere, and bends about the face's lower end.
-
-        Parameters
-        ----------
-        travel : float
-            Along the way [L].
-        arc_length : float
-            Of a contact [L].
-
-        Returns
-        -------
-        float
-            The least arc length of one [L].
         """
         foot, tangent = self.foot(travel), self.path.clamp_tangent
         low, high = 0.0, arc_length
@@ -146,16 +88,6 @@ class Way:
         """Where the straight vibrissa touches, from where it is clear.
 
         Along each straight leg of the way the distance is convex, so it falls to zero once.
-
-        Parameters
-        ----------
-        begin : float
-            Along the way [L].
-
-        Returns
-        -------
-        float or None
-            Along the way [L]; None if it does not touch any more.
         """
         for end in self.marks[self.marks > begin]:
             touch = self._on_leg(begin, float(end))
@@ -165,18 +97,7 @@ class Way:
         return None
 
     def next_clear(self, begin: float) -> float | None:
-        """Where the straight vibrissa is clear of the body again.
-
-        Parameters
-        ----------
-        begin : float
-            Along the way [L]; it is not clear there.
-
-        Returns
-        -------
-        float or None
-            Along the way [L]; None if it is never.
-        """
+        """Where the straight vibrissa is clear of the body again."""
         for end in self.marks[self.marks > begin]:
             if self._size(float(end)) > 0:
                 return self._crossing(begin, float(end))
@@ -184,15 +105,7 @@ class Way:
         return None
 
     def nearest(self) -> tuple[float, Gap]:
-        """Where the straight vibrissa is nearest to the body, at the way's corners and between.
-
-        Returns
-        -------
-        travel : float
-            Along the way [L].
-        gap : Gap
-            How near.
-        """
+        """Where the straight vibrissa is nearest to the body, at the way's corners and between."""
         from scipy.optimize import minimize_scalar
 
         legs = zip(self.marks[:-1], self.marks[1:], strict=True)
@@ -201,13 +114,7 @@ class Way:
         return min(found, key=lambda one: one[1].size)
 
     def meets_clamp(self) -> float | None:
-        """Where the clamp itself would run into the body.
-
-        Returns
-        -------
-        float or None
-            Along the way, where it is deepest [L]; None if it passes the body.
-        """
+        """Where the clamp itself would run into the body."""
         from scipy.optimize import minimize_scalar
 
         def clear(travel: float) -> float:

@@ -49,22 +49,7 @@ class Touching(NamedTuple):
 
 
 def descend(scene: Scene, start: Contact, foot: Floats) -> Iterator[Touching]:
-    """Where a vibrissa that has lost its hold touches, step by step.
-
-    Parameters
-    ----------
-    scene : Scene
-        Body, clamp tangent, radius.
-    start : Contact
-        The last stable state.
-    foot : array, shape (3,)
-        Where the foot is now [L].
-
-    Yields
-    ------
-    Touching
-        Where it presses most. It ends when the vibrissa comes clear of the body.
-    """
+    """Where a vibrissa that has lost its hold touches, step by step."""
     links = _links(scene, start)
     stiffness = _springs()
     free = 0

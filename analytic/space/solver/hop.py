@@ -49,22 +49,7 @@ class _Step(NamedTuple):
 
 
 def landing(scene: Scene, start: Contact, begin: Floats, foot: Floats) -> Contact | None:
-    """The stable state of less energy to which a vibrissa goes that has lost its hold.
-
-    Parameters
-    ----------
-    scene : Scene
-        Body, clamp tangent, radius.
-    start : Contact
-        The last stable state.
-    begin, foot : array, shape (3,)
-        The foot's position in that state, and one just beyond [L].
-
-    Returns
-    -------
-    Contact or None
-        None if it comes clear of the body, or gets farther than 0.12 L.
-    """
+    """The stable state of less energy to which a vibrissa goes that has lost its hold."""
     # No more than it had, and what the foot has done since: its step is short, but so may a
     # vibrissa be bent that little.
     limit = start.energy * (1 + _SLACK) + start.force * _apart(foot, begin)

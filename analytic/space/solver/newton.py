@@ -20,24 +20,7 @@ _PHASE_SLACK = 1e-12  # rad and L: at the limit both phases are the same state
 
 
 def settle(scene: Scene, start: Contact, foot: Floats, reach: float = np.inf) -> Contact | None:
-    """The contact that a foot position has, from one near by.
-
-    Parameters
-    ----------
-    scene : Scene
-        Body, clamp tangent, radius.
-    start : Contact
-        Near by, of either phase.
-    foot : array, shape (3,)
-        The foot [L].
-    reach : float
-        How far from there it is sought [L].
-
-    Returns
-    -------
-    Contact or None
-        In its right phase, with the foot there to some roundings; None if there is none near by.
-    """
+    """The contact that a foot position has, from one near by."""
     for _ in range(_SWITCHES):
         found = _newton(scene, start, foot, reach)
         if found is None:

@@ -39,18 +39,7 @@ class Plane(NamedTuple):
 
     @classmethod
     def of(cls, tangent: Floats, normal: Floats) -> "Plane":
-        """The plane of two directions.
-
-        Parameters
-        ----------
-        tangent, normal : array, shape (3,)
-            Of length 1.
-
-        Returns
-        -------
-        Plane
-            With alpha from 0 to pi.
-        """
+        """The plane of two directions."""
         down = -float(normal @ tangent)
         sideways = normal + down * tangent
         sine = float(np.linalg.norm(sideways))
@@ -87,20 +76,7 @@ class Loaded(NamedTuple):
 
 
 def loaded_part(excess: float, alpha: float) -> Loaded:
-    """A vibrissa loaded at its end.
-
-    Parameters
-    ----------
-    excess : float
-        Rotation w of its end, positive [rad].
-    alpha : float
-        Slope angle of the surface, positive [rad].
-
-    Returns
-    -------
-    Loaded
-        Of unit length; not finite where there is no such state.
-    """
+    """A vibrissa loaded at its end."""
     w, a = np.array(excess), np.array(alpha)
     with np.errstate(all="ignore"):  # beyond an upright or level surface: not finite, and no state
         integrals = span(w, a)

@@ -92,37 +92,14 @@ def is_stable(contact: Contact, radius: float) -> bool:
 
 
 def margin(form: Floats) -> float:
-    """The least eigenvalue of a quadratic form, its rows scaled by their size.
-
-    Parameters
-    ----------
-    form : array, shape (n, n)
-        Symmetric.
-
-    Returns
-    -------
-    float
-        Positive where the form is.
-    """
+    """The least eigenvalue of a quadratic form, its rows scaled by their size."""
     size = np.sqrt(np.abs(np.diag(form)))
     size = np.where(size > 0, size, 1.0)
     return float(np.linalg.eigvalsh(form / np.outer(size, size))[0])
 
 
 def end_stiffness(contact: Contact) -> Floats:
-    """Forces and moment of the end of the loaded part, by its displacement and rotation.
-
-    Parameters
-    ----------
-    contact : Contact
-        An equilibrium.
-
-    Returns
-    -------
-    array, shape (2, 2) or (3, 3)
-        Along the surface, along the normal and, in Phase B, of the rotation; symmetric,
-        dimensionless.
-    """
+    """Forces and moment of the end of the loaded part, by its displacement and rotation."""
     loaded, s, alpha = contact.loaded, contact.arc_length, contact.plane.alpha
     sine, cosine = np.sin(alpha), np.cos(alpha)
     # From (height, reach) to (along the surface, along the normal).

@@ -45,22 +45,7 @@ class Walked(NamedTuple):
 
 
 def walk(scene: Scene, way: Way, travel: Sequence[float] | Floats) -> Walked:
-    """Every station's state, in order.
-
-    Parameters
-    ----------
-    scene : Scene
-        Body, clamp tangent, radius.
-    way : Way
-        Of the foot.
-    travel : sequence of float
-        Stations along it, ascending [L].
-
-    Returns
-    -------
-    Walked
-        Contacts and events.
-    """
+    """Every station's state, in order."""
     return _Walker(scene, way).along(travel)
 
 

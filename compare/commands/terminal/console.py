@@ -18,24 +18,12 @@ from rich.text import Text
 
 
 def print_line(text: str) -> None:
-    """Print a line as it is: no markup, no folding.
-
-    Parameters
-    ----------
-    text : str
-        The line.
-    """
+    """Print a line as it is: no markup, no folding."""
     console().print(text, soft_wrap=True, markup=False)
 
 
 def print_written(path: Path) -> None:
-    """Print which file there is now.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    """
+    """Print which file there is now."""
     print_line(f"wrote {path}")
 
 
@@ -46,20 +34,7 @@ class _Rate(ProgressColumn):
 
 @contextmanager
 def progress(what: str, total: int) -> Iterator[Callable[[], None]]:
-    """Show a bar with rate and remaining time on a terminal, nothing elsewhere.
-
-    Parameters
-    ----------
-    what : str
-        What is counted.
-    total : int
-        How many there are.
-
-    Yields
-    ------
-    callable
-        To be called after each of them.
-    """
+    """Show a bar with rate and remaining time on a terminal, nothing elsewhere."""
     console = Console(stderr=True, highlight=False)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), _Rate(),
                TimeRemainingColumn())  # fmt: skip
@@ -71,11 +46,5 @@ def progress(what: str, total: int) -> Iterator[Callable[[], None]]:
 
 
 def console() -> Console:
-    """Standard output, as it is now: tests and notebooks replace it.
-
-    Returns
-    -------
-    rich.console.Console
-        Without colours of its own.
-    """
+    """Standard output, as it is now: tests and notebooks replace it."""
     return Console(highlight=False)

@@ -30,13 +30,7 @@ _MEANINGS = {
 
 
 def print_sweep(readings: Readings) -> None:
-    """Print what a sweep found, in a line: stations, phases, snap-off, the worst residuals.
-
-    Parameters
-    ----------
-    readings : Readings
-        Of an engine.
-    """
+    """Print what a sweep found, in a line: stations, phases, snap-off, the worst residuals."""
     table, length = readings.table, readings.beam.length
     parts = [f"{int(readings.trusted.sum())} of {len(table)} stations ok"]
     parts += _untrusted(readings)
@@ -83,13 +77,7 @@ def _untrusted(readings: Readings) -> list[str]:
 
 
 def note_rows(readings: Readings) -> None:
-    """Say on standard error what was assumed of a rig's file or done to its rows, if anything.
-
-    Parameters
-    ----------
-    readings : Readings
-        As `compare.read_measured` returns them.
-    """
+    """Say on standard error what was assumed of a rig's file or done to its rows, if anything."""
     rows = readings.provenance.get("rows", {})
     notes = []
     if ASSUMED in readings.provenance:
@@ -113,17 +101,7 @@ def note_rows(readings: Readings) -> None:
 
 
 def print_reconstruction(readings: Readings, found: pd.DataFrame, method: str) -> None:
-    """Print what a reconstruction found, in a line.
-
-    Parameters
-    ----------
-    readings : Readings
-        What the contact was found from.
-    found : pandas.DataFrame
-        As `analytic.reconstruct` returns it.
-    method : str
-        By which method.
-    """
+    """Print what a reconstruction found, in a line."""
     counts = found["phase"].value_counts()
     touching = int(np.isfinite(found["contact_x"].to_numpy(dtype=float)).sum())
     words = [
@@ -151,15 +129,7 @@ def print_reconstruction(readings: Readings, found: pd.DataFrame, method: str) -
 
 
 def print_passes(passes: "Sequence[Pass]", repeats: "Mapping[tuple[str, str], Repeat]") -> None:
-    """Print what was read of each pass, what was not used, and how far passes repeat each other.
-
-    Parameters
-    ----------
-    passes : sequence of Pass
-        All of them.
-    repeats : mapping of Repeat
-        By the names of the two passes.
-    """
+    """Print what was read of each pass, what was not used, and how far passes repeat each other."""
     numbers = ("rows", "kept", "sorted", "gaps")
     rows = Table(
         Column("pass", overflow="fold"), "to the", *(_number(name) for name in numbers), "not kept",
@@ -194,15 +164,7 @@ def print_passes(passes: "Sequence[Pass]", repeats: "Mapping[tuple[str, str], Re
 
 
 def print_methods(found: pd.DataFrame, title: str) -> None:
-    """Print each method's median error by noise, and how many contacts it has an answer for.
-
-    Parameters
-    ----------
-    found : pandas.DataFrame
-        As `compare.measure.methods.method_errors` has it.
-    title : str
-        Which sweep.
-    """
+    """Print each method's median error by noise, and how many contacts it has an answer for."""
     levels = sorted(found["noise"].unique())
     heads = ("answers", *(f"noise\n{level:g}" if level else "no\nnoise" for level in levels))
     table = Table(

@@ -25,13 +25,7 @@ if TYPE_CHECKING:
 
 
 def print_comparison(comparison: Comparison) -> None:
-    """Print the verdict, and why.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        What was found.
-    """
+    """Print the verdict, and why."""
     console().print(_summary(comparison))
     print_line("relative to each reading's largest magnitude; lengths in L")
     for line in validation_lines(comparison):
@@ -77,15 +71,7 @@ def _summary(comparison: Comparison) -> Table:
 
 
 def print_budget(found: "Budget", case: str) -> None:
-    """Print the parts, the verdict and the suspects.
-
-    Parameters
-    ----------
-    found : Budget
-        What was measured.
-    case : str
-        Name of the case.
-    """
+    """Print the parts, the verdict and the suspects."""
     console().print(_budget_table(found, case))
     print_line(f"{headline(found)}.")
     for suspect in found.suspects:
@@ -109,13 +95,7 @@ def _budget_table(found: "Budget", case: str) -> Table:
 
 
 def print_advice(advice: "Followed") -> None:
-    """Print the advised settings, with what was predicted and measured of them.
-
-    Parameters
-    ----------
-    advice : Followed
-        Advice, and what came of it.
-    """
+    """Print the advised settings, with what was predicted and measured of them."""
     settings = advice.predicted.settings
     mesh = f" of {settings.contour_points} points" if settings.obstacle == "mesh" else ""
     print_line(
@@ -132,15 +112,7 @@ def print_advice(advice: "Followed") -> None:
 
 
 def print_motion_budget(found: "MotionBudget", case: str) -> None:
-    """Print the parts of a disagreement in motion, and the verdict.
-
-    Parameters
-    ----------
-    found : MotionBudget
-        What was measured.
-    case : str
-        Name of the case.
-    """
+    """Print the parts of a disagreement in motion, and the verdict."""
     title = Text(f"Budget of {case} in motion, rms +- uncertainty")
     table = Table("part", *CLAMP_READINGS, title=title)
     for name, readings in found.parts.items():
@@ -157,13 +129,7 @@ def print_motion_budget(found: "MotionBudget", case: str) -> None:
 
 
 def print_fastest(found: "Fastest") -> None:
-    """Print the fastest motion with a wanted error, and what was tried.
-
-    Parameters
-    ----------
-    found : Fastest
-        What was measured.
-    """
+    """Print the fastest motion with a wanted error, and what was tried."""
     print_line(
         f"Fastest for {found.target:g}: {found.speed:.3g} L/T1, {found.error:.1e} rms, "
         f"{found.seconds:.1f} s; {found.at_rest:.1e} is left at rest."
@@ -172,15 +138,7 @@ def print_fastest(found: "Fastest") -> None:
 
 
 def print_at_rest(rest: Comparison, motion: Comparison) -> None:
-    """Print what of a disagreement in motion is there at rest, and what the motion adds.
-
-    Parameters
-    ----------
-    rest : Comparison
-        Of the closed form and the same model at rest.
-    motion : Comparison
-        Of the model at rest and in motion.
-    """
+    """Print what of a disagreement in motion is there at rest, and what the motion adds."""
     settings = rest.candidate.provenance["settings"]
     for what, found in (
         (f"at rest, with contacts of {settings['contact_stiffness']:.1e} EI/L^3", rest),
@@ -193,13 +151,7 @@ def print_at_rest(rest: Comparison, motion: Comparison) -> None:
 
 
 def print_side_by_side(found: "SideBySide") -> None:
-    """Print the candidates against the reference and, if there are several, against each other.
-
-    Parameters
-    ----------
-    found : SideBySide
-        All comparisons.
-    """
+    """Print the candidates against the reference and, if there are several, against each other."""
     against = Table(
         "", Column("candidate", overflow="fold"), *CLAMP_READINGS, "snap-off", "ms/station",
         title=Text(f"Against {found.reference}: rms relative to each reading's largest magnitude"),
@@ -230,13 +182,7 @@ def print_side_by_side(found: "SideBySide") -> None:
 
 
 def print_engines(many: "ManyEngines") -> None:
-    """Print each engine against the closed form, and what the disagreement is made of.
-
-    Parameters
-    ----------
-    many : ManyEngines
-        All sweeps of a case.
-    """
+    """Print each engine against the closed form, and what the disagreement is made of."""
     table = Table(
         "engine", *CLAMP_READINGS, "snap-off", "ms", "",
         title=Text(f"{many.case.name}: each engine against the closed form, relative rms"),
@@ -262,15 +208,7 @@ def print_engines(many: "ManyEngines") -> None:
 
 
 def print_float32(found: pd.DataFrame, case: str) -> None:
-    """Print what single precision loses, by contact stiffness.
-
-    Parameters
-    ----------
-    found : pandas.DataFrame
-        As `engines.warp.gate.by_stiffness` returns it.
-    case : str
-        Its name.
-    """
+    """Print what single precision loses, by contact stiffness."""
     table = Table(
         "stiffness", "depth", "resolution", "lost", "force off", "imbalance",
         title=Text(f"{case}: MuJoCo's states at rest in single precision"),

@@ -25,30 +25,7 @@ def write_animation(
     frames: int = 60,
     advance: Callable[[], None] = lambda: None,
 ) -> list[Path]:
-    """Draw the sweep in motion, from the sensed readings of both models alone.
-
-    Parameters
-    ----------
-    reference, candidate : Readings
-        Two sweeps of the same beam; a frame shows a station of the first and the nearest one of
-        the second.
-    folder : Path
-        Where ``animation.gif`` and the stills, ``still-1.png`` and so on, are written.
-    frames : int
-        Number of frames, at least 2; no more than there are stations.
-    advance : callable, optional
-        Called after every frame, for progress bars.
-
-    Returns
-    -------
-    list of Path
-        The files, each of which appears whole.
-
-    Raises
-    ------
-    InputError
-        If there are too few frames, or nothing is touched.
-    """
+    """Draw the sweep in motion, from the sensed readings of both models alone."""
     moving = Motion.of(reference), Motion.of(candidate)
     touching = np.flatnonzero(np.isin(moving[0].phase, ("tip", "tangent")))
     chosen = framed(touching, len(reference.table), frames, reference.source)

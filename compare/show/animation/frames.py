@@ -7,29 +7,7 @@ from analytic.problem.arrays import Integers
 
 
 def framed(touching: Integers, stations: int, frames: int, source: str) -> Integers:
-    """Evenly over all of the sweep, if it touches anything.
-
-    Parameters
-    ----------
-    touching : array of int, shape (n,)
-        Numbers of the stations in contact.
-    stations : int
-        How many there are.
-    frames : int
-        How many frames, at least 2; no more than there are stations.
-    source : str
-        Whose stations they are.
-
-    Returns
-    -------
-    array of int, shape (m,)
-        Their numbers, ascending.
-
-    Raises
-    ------
-    InputError
-        If there are too few frames, or nothing is touched.
-    """
+    """Evenly over all of the sweep, if it touches anything."""
     if frames < 2:
         raise InputError("--frames", frames, "2 or more", "60 is usual")
     if not touching.size:

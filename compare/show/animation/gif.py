@@ -17,18 +17,6 @@ def save_gif(images: list[Image.Image], path: Path) -> Path:
     """Write an animation, whole or not at all.
 
     All frames share one palette, so that nothing flickers and only what changes is stored.
-
-    Parameters
-    ----------
-    images : list of Image
-        Frames of one size.
-    path : Path
-        The GIF.
-
-    Returns
-    -------
-    Path
-        `path`.
     """
     palette = Image.new("P", (1, 1))
     palette.putpalette(_palette(images[:: max(1, len(images) // 8)]).tobytes())

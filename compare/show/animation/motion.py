@@ -13,32 +13,22 @@ _DOTS = 10  # of a dotted vibrissa, at equal steps of arc length
 
 @dataclass(frozen=True)
 class Motion:
-    """One sweep as it is drawn: lengths in L, forces in EI/L^2, moments in EI/L.
+    """One sweep as it is drawn: lengths in L, forces in EI/L^2, moments in EI/L."""
 
-    Attributes
-    ----------
-    readings : Readings
-        The sweep.
-    foot_x : array, shape (stations,)
-        Foot positions.
-    x, y, curvature : array, shape (stations, points)
-        The centreline from clamp to tip, and the magnitude of its curvature.
-    contact : array, shape (stations, 2)
-        Where the body is touched; NaN where it is not.
-    clamp : dict of array, shape (stations,)
-        The clamp readings.
-    phase : array of str, shape (stations,)
-        As judged from the clamp.
-    """
-
-    readings: Readings
-    foot_x: Floats
+    readings: Readings  # the sweep
+    foot_x: Floats  # shape (stations,); Foot positions
+    # Shape (stations, points); The centreline from clamp to tip, and the magnitude of its
+    # curvature.
     x: Floats
+    # Shape (stations, points); The centreline from clamp to tip, and the magnitude of its
+    # curvature.
     y: Floats
+    # Shape (stations, points); The centreline from clamp to tip, and the magnitude of its
+    # curvature.
     curvature: Floats
-    contact: Floats
-    clamp: dict[str, Floats]
-    phase: Words
+    contact: Floats  # shape (stations, 2); Where the body is touched; NaN where it is not
+    clamp: dict[str, Floats]  # shape (stations,); The clamp readings
+    phase: Words  # shape (stations,); As judged from the clamp
 
     @property
     def force(self) -> Floats:
@@ -47,18 +37,7 @@ class Motion:
 
     @classmethod
     def of(cls, readings: Readings) -> "Motion":
-        """The sweep that these readings show, in units of their beam.
-
-        Parameters
-        ----------
-        readings : Readings
-            The sweep.
-
-        Returns
-        -------
-        Motion
-            What is drawn.
-        """
+        """The sweep that these readings show, in units of their beam."""
         beam = readings.beam
         x, y = deflected_shapes(readings)
         units = (beam.force_unit, beam.force_unit, beam.moment_unit)
@@ -74,18 +53,7 @@ class Motion:
         )
 
     def beads(self, station: int) -> tuple[Floats, Floats]:
-        """Points on the centreline at equal steps of arc length.
-
-        Parameters
-        ----------
-        station : int
-            Of the sweep.
-
-        Returns
-        -------
-        x, y : array, shape (10,)
-            Coordinates [L].
-        """
+        """Points on the centreline at equal steps of arc length."""
         x, y = self.x[station], self.y[station]
         along = np.append(0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y))))
         at = np.linspace(0, along[-1], _DOTS + 1)[1:]

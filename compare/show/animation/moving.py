@@ -17,30 +17,7 @@ def pictures(
     advance: Callable[[], None],
     dpi: int,
 ) -> Iterator[Image.Image]:
-    """A picture of each station; what stands still is drawn once.
-
-    Parameters
-    ----------
-    canvas : FigureCanvasAgg
-        Of the figure.
-    moving : sequence of Artist
-        What differs from station to station, the lowest first.
-    heading : Text
-        Says the same at many stations, and is drawn once for all of these.
-    show : callable
-        Puts them where they are at a station.
-    stations : iterable of int
-        Their numbers.
-    advance : callable
-        Called after every picture.
-    dpi : int
-        Pixels an inch.
-
-    Yields
-    ------
-    Image
-        In colour.
-    """
+    """A picture of each station; what stands still is drawn once."""
     figure = canvas.figure
     figure.set_dpi(dpi)
     for artist in (*moving, heading):

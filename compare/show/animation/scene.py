@@ -52,22 +52,7 @@ class Scene:
         advance: Callable[[], None] = lambda: None,
         dpi: int = _DPI,
     ) -> Iterator[Image.Image]:
-        """A picture of each station.
-
-        Parameters
-        ----------
-        stations : iterable of int
-            Of the reference.
-        advance : callable
-            Called after every picture.
-        dpi : int
-            Pixels an inch.
-
-        Returns
-        -------
-        iterator of Image
-            In colour.
-        """
+        """A picture of each station."""
         moving = sorted(self._moving, key=lambda artist: artist.zorder)
         return pictures(self._canvas, moving, self._phase, self._show, stations, advance, dpi)
 

@@ -48,31 +48,7 @@ def write_space_animation(
     frames: int = 60,
     advance: Callable[[], None] = lambda: None,
 ) -> list[Path]:
-    """Draw the sweep in motion, from the clamp readings of both models alone.
-
-    Parameters
-    ----------
-    reference, candidate : SpatialReadings
-        Two sweeps at the same stations.
-    folder : Path
-        Where ``animation.gif`` and the stills, ``still-1.png`` to ``still-4.png``, are written.
-    body : Body, optional
-        In the unit of length of the readings.
-    frames : int
-        Number of frames, at least 2; no more than there are stations.
-    advance : callable, optional
-        Called after every frame, for progress bars.
-
-    Returns
-    -------
-    list of Path
-        The files, each of which appears whole.
-
-    Raises
-    ------
-    InputError
-        If there are too few frames, or nothing is touched.
-    """
+    """Draw the sweep in motion, from the clamp readings of both models alone."""
     touching = np.flatnonzero(reference.touching)
     chosen = framed(touching, len(reference.table), frames, reference.source)
     moving = _Moving(SweepScene.of(reference, body), SweepScene.of(candidate, None))

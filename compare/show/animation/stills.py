@@ -17,36 +17,12 @@ _SHARES = (0.1, 0.4, 0.7, 1.0)  # of the stations in contact; the last is just b
 
 
 def shown(touching: Integers) -> list[int]:
-    """The stations of which there are stills.
-
-    Parameters
-    ----------
-    touching : array of int, shape (n,)
-        Those in contact; at least one.
-
-    Returns
-    -------
-    list of int
-        Four of them, from first to last.
-    """
+    """The stations of which there are stills."""
     return [int(touching[round(share * (len(touching) - 1))]) for share in _SHARES]
 
 
 def save_stills(images: Iterable[Image.Image], folder: Path) -> list[Path]:
-    """Write PNGs, each of them whole or not at all.
-
-    Parameters
-    ----------
-    images : iterable of Image
-        In colour.
-    folder : Path
-        Where ``still-1.png`` and so on are written.
-
-    Returns
-    -------
-    list of Path
-        The files.
-    """
+    """Write PNGs, each of them whole or not at all."""
     written = []
     for number, image in enumerate(images, start=1):
         buffer = io.BytesIO()

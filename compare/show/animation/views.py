@@ -26,17 +26,7 @@ _LOWEST, _HIGHEST = -0.1, 1.08  # L; the least that is shown
 
 
 class View:
-    """The object, both vibrissae, the contact and its force, in one pair of axes.
-
-    Parameters
-    ----------
-    ax : Axes
-        Where to draw.
-    motions : pair of Motion
-        Reference and candidate.
-    follows : bool
-        Whether the picture moves with the foot, which shows the vibrissa large.
-    """
+    """The object, both vibrissae, the contact and its force, in one pair of axes."""
 
     def __init__(self, ax: Axes, motions: tuple[Motion, Motion], follows: bool) -> None:
         self.ax, self._motions, self._follows = ax, motions, follows
@@ -81,13 +71,7 @@ class View:
         ]  # fmt: skip
 
     def frame(self, size: tuple[float, float]) -> None:
-        """Choose limits that fill the axes and that nothing will leave.
-
-        Parameters
-        ----------
-        size : pair of float
-            Of the figure, in inches.
-        """
+        """Choose limits that fill the axes and that nothing will leave."""
         x = np.concatenate(
             [(m.x - m.foot_x[:, None] * self._follows).ravel() for m in self._motions]
         )
@@ -103,15 +87,7 @@ class View:
         self.ax.set_ylim(low - tall, high + tall)
 
     def show(self, station: int, other: int) -> None:
-        """Move to a station.
-
-        Parameters
-        ----------
-        station : int
-            Of the reference.
-        other : int
-            Of the candidate: the one that is shown with it.
-        """
+        """Move to a station."""
         reference, candidate = self._motions
         origin = reference.foot_x[station] if self._follows else 0.0
         x, y = reference.x[station] - origin, reference.y[station]
@@ -156,15 +132,7 @@ class Curve:
         self.moving: list[Artist] = [self._line, self._dots, self._head]
 
     def show(self, station: int, other: int) -> None:
-        """Grow up to a station.
-
-        Parameters
-        ----------
-        station : int
-            Of the reference.
-        other : int
-            Of the candidate: the one that is shown with it.
-        """
+        """Grow up to a station."""
         (x, values), (other_x, other_values) = self._curves
         self._line.set_data(x[: station + 1], values[: station + 1])
         self._dots.set_data(other_x[: other + 1], other_values[: other + 1])

@@ -17,18 +17,7 @@ _PANEL = (4.3, 3.1)  # inches
 
 
 def picture(found: Budget) -> Figure:
-    """Draw all readings side by side, under a sentence that says what they show.
-
-    Parameters
-    ----------
-    found : Budget
-        What is drawn.
-
-    Returns
-    -------
-    Figure
-        A panel for each reading.
-    """
+    """Draw all readings side by side, under a sentence that says what they show."""
     width, height = _PANEL
     figure = Figure(
         figsize=(width * len(CLAMP_READINGS) * 0.85, height + 0.4), layout="constrained"
@@ -49,18 +38,7 @@ def picture(found: Budget) -> Figure:
 
 
 def panels(found: Budget) -> dict[str, Figure]:
-    """Draw a picture for each reading.
-
-    Parameters
-    ----------
-    found : Budget
-        What is drawn.
-
-    Returns
-    -------
-    dict of Figure
-        By reading.
-    """
+    """Draw a picture for each reading."""
     figures = {}
     for reading in CLAMP_READINGS:
         figures[reading] = figure = Figure(figsize=_PANEL, layout="constrained")
@@ -69,18 +47,7 @@ def panels(found: Budget) -> dict[str, Figure]:
 
 
 def headline(found: Budget) -> str:
-    """What the picture shows, in one sentence.
-
-    Parameters
-    ----------
-    found : Budget
-        What is drawn.
-
-    Returns
-    -------
-    str
-        The largest part, and whether what remains matters.
-    """
+    """What the picture shows, in one sentence."""
     rest = short(max(part.rms for part in found.parts["unexplained"].values()))
     if found.closes:
         remains = f"at most {rest} stays unexplained, and the budget closes"

@@ -17,20 +17,6 @@ def with_fold(readings: Readings, phase: Words, x: Floats, y: Floats) -> tuple[F
     At a fold a reading grows with the square root of the foot's distance, so it is a smooth
     function of that root: a cubic spline in the root goes through the last stations, and on to the
     snap-off itself if the stations determine it there. Then the curve is broken, as the reading is.
-
-    Parameters
-    ----------
-    readings : Readings
-        The sweep; its source must have located the snap-off, else nothing is added.
-    phase : array of str, shape (stations,)
-        As judged from the clamp.
-    x, y : array, shape (stations,)
-        Foot positions [L] and the reading, as drawn.
-
-    Returns
-    -------
-    x, y : array, shape (points,)
-        The curve, in sweep order.
     """
     if readings.snap_off is None:
         return x, y

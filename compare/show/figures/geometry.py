@@ -42,18 +42,7 @@ _CONTACT: dict[str, Any] = {"color": INK, "marker": "o", "markersize": 1.5, "lin
 
 
 def geometry(comparison: Comparison) -> Figure:
-    """Draw the object and the deflected vibrissa, coloured by phase, in both models.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        Drawn from its readings alone.
-
-    Returns
-    -------
-    Figure
-        The reference above the candidate, at equal scales.
-    """
+    """Draw the object and the deflected vibrissa, coloured by phase, in both models."""
     figure = Figure()
     axes = figure.subplots(2, 1, sharex=True, sharey=True)
     sides = {"reference": comparison.reference, "candidate": comparison.candidate}
@@ -80,20 +69,7 @@ def geometry(comparison: Comparison) -> Figure:
 
 
 def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
-    """Draw the contact points that the clamp readings show, with their uncertainty if known.
-
-    Parameters
-    ----------
-    readings : Readings
-        The sweep.
-    found : pandas.DataFrame
-        As of `analytic.reconstruct`.
-
-    Returns
-    -------
-    Figure
-        The points, the vibrissa at some stations, and the object where the source recorded it.
-    """
+    """Draw the contact points that the clamp readings show, with their uncertainty if known."""
     figure = Figure(layout="constrained")
     ax = figure.subplots()
     _draw_shapes(ax, readings, found["phase"].to_numpy(dtype=str))
@@ -133,17 +109,7 @@ def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
 
 
 def at_equal_scales(figure: Figure, axes: Sequence[Axes], width: float) -> None:
-    """Make a figure as high as its axes need, one above the other, at equal scales.
-
-    Parameters
-    ----------
-    figure : Figure
-        With a legend below.
-    axes : sequence of Axes
-        With one and the same range.
-    width : float
-        Of the figure, in inches.
-    """
+    """Make a figure as high as its axes need, one above the other, at equal scales."""
     wide, high = (np.ptp(limits) for limits in (axes[0].get_xlim(), axes[0].get_ylim()))
     for ax in axes:
         ax.set_aspect("equal")

@@ -21,20 +21,7 @@ _STATIONS = 400
 
 
 def hysteresis(name: str = "rubbing", turns: tuple[float, ...] = (1.2, 0.2)) -> Figure:
-    """Draw the clamp's moment there and back, and where the vibrissa lets go, with friction.
-
-    Parameters
-    ----------
-    name : str
-        A named case with friction.
-    turns : tuple of float
-        Foot positions at which the foot turns round [L].
-
-    Returns
-    -------
-    Figure
-        Force and moment over the foot position, and the shift of the snap-off over the coefficient.
-    """
+    """Draw the clamp's moment there and back, and where the vibrissa lets go, with friction."""
     figure = Figure(figsize=(11, 3.8), layout="constrained")
     force, moment, snap_off = figure.subplots(1, 3)
     case = named_case(name)

@@ -27,20 +27,7 @@ _LEAST = 1e-6  # L; what is less is drawn there: no sensor sees the difference
 
 
 def picture(found: pd.DataFrame, title: str) -> Figure:
-    """Draw median and worst error of each method, a panel for each phase.
-
-    Parameters
-    ----------
-    found : pandas.DataFrame
-        As `method_errors` has it.
-    title : str
-        Which sweep.
-
-    Returns
-    -------
-    Figure
-        Methods from top to bottom; each level of noise has a line from the median to the worst.
-    """
+    """Draw median and worst error of each method, a panel for each phase."""
     methods = list(dict.fromkeys(found["method"]))
     phases = [name for name in ("tip", "tangent") if _count(found, name)]
     figure = Figure(
@@ -68,21 +55,7 @@ def picture(found: pd.DataFrame, title: str) -> Figure:
 
 
 def side_by_side(found: pd.DataFrame, title: str) -> Figure:
-    """Draw how each method fares on readings of different vibrissae, without noise.
-
-    Parameters
-    ----------
-    found : pandas.DataFrame
-        As `method_errors` has it, with a column ``readings``.
-    title : str
-        Which case.
-
-    Returns
-    -------
-    Figure
-        A panel for each phase: methods from top to bottom, readings from left to right, in each
-        cell the median error, and its colour.
-    """
+    """Draw how each method fares on readings of different vibrissae, without noise."""
     found = found[found["noise"] == found["noise"].min()]
     methods, kinds = (list(dict.fromkeys(found[name])) for name in ("method", "readings"))
     phases = [name for name in ("tip", "tangent") if _count(found, name)]

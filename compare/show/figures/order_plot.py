@@ -14,18 +14,7 @@ _SECOND = 2  # the order of a beam that first bends half a cell from the clamp
 
 
 def convergence_picture(found: Mapping[int, Mapping[str, float]]) -> Figure:
-    """Draw disagreement against the number of segments, with the fitted and the expected order.
-
-    Parameters
-    ----------
-    found : mapping
-        Root mean square by number of segments and reading.
-
-    Returns
-    -------
-    Figure
-        Both axes are logarithmic.
-    """
+    """Draw disagreement against the number of segments, with the fitted and the expected order."""
     figure = Figure(figsize=(5.6, 3.9), layout="constrained")
     ax = figure.subplots()
     n = np.array(list(found), dtype=float)

@@ -32,18 +32,7 @@ _BEYOND_TIP = 1.1  # L; as far as a noisy contact is drawn
 
 
 def dots(comparison: Comparison) -> dict[str, Any]:
-    """How the candidate is drawn: the smaller the more stations it has.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        Whose candidate is drawn.
-
-    Returns
-    -------
-    dict
-        Style of a line, as of `Axes.plot`.
-    """
+    """How the candidate is drawn: the smaller the more stations it has."""
     size = 2.0 if len(comparison.candidate.table) > 100 else 3.5
     return {**_DOTS, "markersize": size}
 
@@ -52,11 +41,6 @@ def place_labels(ax: Axes) -> None:
     """Put the labels of axes past their numbers, whatever these are.
 
     To measure the numbers, as is done otherwise, takes as long as to draw them.
-
-    Parameters
-    ----------
-    ax : Axes
-        Of their final size, with room for the labels.
     """
     pixels = ax.figure.dpi / 72  # a point
     ax.xaxis.set_label_coords(0.5, -_BELOW * pixels / ax.bbox.height)
@@ -64,54 +48,17 @@ def place_labels(ax: Axes) -> None:
 
 
 def foot(readings: Readings) -> Floats:
-    """Foot positions as they are drawn.
-
-    Parameters
-    ----------
-    readings : Readings
-        The sweep.
-
-    Returns
-    -------
-    array, shape (stations,)
-        [L]
-    """
+    """Foot positions as they are drawn."""
     return readings.values("foot_x") / readings.beam.length
 
 
 def unit(readings: Readings, name: str) -> float:
-    """The unit that a clamp reading is drawn in.
-
-    Parameters
-    ----------
-    readings : Readings
-        The sweep.
-    name : str
-        Of a clamp reading.
-
-    Returns
-    -------
-    float
-        In the readings' own unit.
-    """
+    """The unit that a clamp reading is drawn in."""
     return readings.beam.moment_unit if name == "moment_z" else readings.beam.force_unit
 
 
 def reading_label(readings: Readings, name: str) -> str:
-    """A reading's symbol and the unit it is drawn in, with what that is where it is known.
-
-    Parameters
-    ----------
-    readings : Readings
-        The sweep.
-    name : str
-        Of a clamp reading, or ``contact_arc_length``.
-
-    Returns
-    -------
-    str
-        As ``$F_{Ax}$ / ($EI/L^2$ = 0.8 mN)``.
-    """
+    """A reading's symbol and the unit it is drawn in, with what that is where it is known."""
     if not readings.beam.si or name not in CLAMP_READINGS:
         return axis_label(name)
     kind: Kind = "moment" if name == "moment_z" else "force"
@@ -120,39 +67,13 @@ def reading_label(readings: Readings, name: str) -> str:
 
 
 def foot_label(readings: Readings) -> str:
-    """What an axis of foot positions is called.
-
-    Parameters
-    ----------
-    readings : Readings
-        The sweep.
-
-    Returns
-    -------
-    str
-        With the length of the vibrissa, where its unit is known.
-    """
+    """What an axis of foot positions is called."""
     beam = readings.beam
     return FOOT + (f"   ($L$ = {quantity(beam.length, 'length', beam)})" if beam.si else "")
 
 
 def scaled(readings: Readings, judged: Classification, name: str) -> Floats:
-    """A reading as it is drawn.
-
-    Parameters
-    ----------
-    readings : Readings
-        The sweep.
-    judged : Classification
-        Its phases, and the contact that they were judged by.
-    name : str
-        Of a clamp reading, or ``contact_arc_length`` for the reconstructed one.
-
-    Returns
-    -------
-    array, shape (stations,)
-        In units of the beam; NaN where it is not to be trusted, or no place on the vibrissa.
-    """
+    """A reading as it is drawn."""
     if name in CLAMP_READINGS:
         return np.where(readings.trusted, readings.values(name) / unit(readings, name), np.nan)
     return on_vibrissa(1 - judged.shortfall)
@@ -162,32 +83,12 @@ def on_vibrissa(s: Floats) -> Floats:
     """Arc lengths of contacts, without those that are no place on the vibrissa.
 
     Without a load the noise of a rig puts a contact anywhere; with one, a little beyond the tip.
-
-    Parameters
-    ----------
-    s : array, any shape
-        Arc lengths [L].
-
-    Returns
-    -------
-    array, same shape
-        NaN where there is no contact to draw.
     """
     return np.where((s > 0) & (s < _BEYOND_TIP), s, np.nan)
 
 
 def shade_phases(ax: Axes, foot_x: Floats, phase: Words) -> None:
-    """Draw the contact phases of a sweep as a background over its foot positions.
-
-    Parameters
-    ----------
-    ax : Axes
-        Where.
-    foot_x : array, shape (stations,)
-        In the unit of the axis.
-    phase : array of str, shape (stations,)
-        As of `compare.sense.phases.Classification`.
-    """
+    """Draw the contact phases of a sweep as a background over its foot positions."""
     for begin, end, name in zip(*stretches(phase), strict=True):
         if name in ("tip", "tangent"):
             ax.axvspan(
@@ -200,31 +101,12 @@ def shade_phases(ax: Axes, foot_x: Floats, phase: Words) -> None:
 
 
 def shade_reference(ax: Axes, comparison: Comparison) -> None:
-    """Draw the contact phases of a comparison's reference as a background.
-
-    Parameters
-    ----------
-    ax : Axes
-        Where; over foot positions [L].
-    comparison : Comparison
-        Drawn from its readings alone.
-    """
+    """Draw the contact phases of a comparison's reference as a background."""
     shade_phases(ax, foot(comparison.reference), comparison.judged["reference"].phase)
 
 
 def key(ax: Axes) -> tuple[list[Artist], list[str]]:
-    """What the lines and the shades of a reading's axes mean.
-
-    Parameters
-    ----------
-    ax : Axes
-        With labelled lines.
-
-    Returns
-    -------
-    handles, labels : list
-        For a legend.
-    """
+    """What the lines and the shades of a reading's axes mean."""
     handles, labels = ax.get_legend_handles_labels()
     shades: list[Artist] = [
         Line2D([], [], color=PHASE_COLOURS[p], alpha=0.35, linewidth=7) for p in ("tip", "tangent")

@@ -35,22 +35,7 @@ _A, _B = PHASE_COLOURS["tip"], PHASE_COLOURS["tangent"]
 
 
 def paper_figures(case: Case, readings: Readings) -> dict[str, Figure]:
-    """Draw the paper's figures for a case, as far as they are of its vibrissa.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-    readings : Readings
-        Its exact sweep.
-
-    Returns
-    -------
-    dict of Figure
-        ``figure-12``, ``figure-14``, ``figure-15``, ``figure-16``. The first shows eq. 21, which is
-        the paper's vibrissa's alone; so is the reconstruction by (26) in the last two. Of one
-        that varies along its length there is no reconstruction, and no figure 16.
-    """
+    """Draw the paper's figures for a case, as far as they are of its vibrissa."""
     if case.beam.varies:
         return {"figure-14": profile(readings), "figure-15": observables(readings)}
     return {
@@ -62,18 +47,7 @@ def paper_figures(case: Case, readings: Readings) -> dict[str, Figure]:
 
 
 def contact_length(case: Case) -> Figure:
-    """Draw fig. 12: s1 of eq. 21 over the contour, with the limits of Phase B.
-
-    Parameters
-    ----------
-    case : Case
-        The problem.
-
-    Returns
-    -------
-    Figure
-        Arc length over the contour's slope angle.
-    """
+    """Draw fig. 12: s1 of eq. 21 over the contour, with the limits of Phase B."""
     figure = Figure(figsize=(6.5, 4), layout="constrained")
     ax = figure.subplots()
     case.require_plain("figure 12")
@@ -108,18 +82,7 @@ def contact_length(case: Case) -> Figure:
 
 
 def profile(readings: Readings) -> Figure:
-    """Draw fig. 14: the contour, with the contacts of the sweep by phase.
-
-    Parameters
-    ----------
-    readings : Readings
-        An exact sweep.
-
-    Returns
-    -------
-    Figure
-        At equal scales.
-    """
+    """Draw fig. 14: the contour, with the contacts of the sweep by phase."""
     figure = Figure(layout="constrained")
     ax = figure.subplots()
     scale = readings.beam.length
@@ -138,18 +101,7 @@ def profile(readings: Readings) -> Figure:
 
 
 def observables(readings: Readings) -> Figure:
-    """Draw fig. 15: clamp force, clamp moment and the error of the reconstruction over x0.
-
-    Parameters
-    ----------
-    readings : Readings
-        An exact sweep.
-
-    Returns
-    -------
-    Figure
-        Four panels.
-    """
+    """Draw fig. 15: clamp force, clamp moment and the error of the reconstruction over x0."""
     figure = Figure(figsize=(9, 6), layout="constrained")
     axes = figure.subplots(2, 2).ravel()
     x = foot(readings)
@@ -174,18 +126,7 @@ def observables(readings: Readings) -> Figure:
 
 
 def reconstruction_error(readings: Readings) -> Figure:
-    """Draw fig. 16: the error of the reconstruction, by the paper's integration and in closed form.
-
-    Parameters
-    ----------
-    readings : Readings
-        An exact sweep.
-
-    Returns
-    -------
-    Figure
-        On a logarithmic axis.
-    """
+    """Draw fig. 16: the error of the reconstruction, by integration and in closed form."""
     figure = Figure(figsize=(6.5, 4), layout="constrained")
     ax = figure.subplots()
     _error(ax, readings)

@@ -14,18 +14,7 @@ _MOST = 12  # names in the legend
 
 
 def picture(passes: Sequence[Pass]) -> Figure:
-    """Draw the three readings of each pass.
-
-    Parameters
-    ----------
-    passes : sequence of Pass
-        Of one rig.
-
-    Returns
-    -------
-    Figure
-        A panel for each reading; dots to the left, crosses to the right.
-    """
+    """Draw the three readings of each pass."""
     figure = Figure(figsize=(PAGE_WIDTH, 7.0), layout="constrained")
     axes = figure.subplots(len(CLAMP_READINGS), 1, sharex=True)
     for ax, name in zip(axes, CLAMP_READINGS, strict=True):

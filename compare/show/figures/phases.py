@@ -19,18 +19,7 @@ _AXES = {"left": 0.107, "right": 0.99, "top": 0.98, "bottom": 0.15, "hspace": 0.
 
 
 def phase_criterion(comparison: Comparison) -> Figure:
-    """Draw criterion (26) of the paper, zero in Phase B, and the contact, at the tip in Phase A.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        Drawn from what its readings were judged by.
-
-    Returns
-    -------
-    Figure
-        The criterion above the contact's arc length.
-    """
+    """Draw criterion (26) of the paper, zero in Phase B, and the contact, at the tip in Phase A."""
     figure = Figure(figsize=(PAGE_WIDTH, 5.4))
     axes = figure.subplots(2, 1, sharex=True, gridspec_kw=_AXES)
     for readings, which, style in (

@@ -34,18 +34,7 @@ _BARS = (
 
 
 def quasi_static(table: pd.DataFrame) -> Figure:
-    """Draw the errors by setting, and how late the vibrissa lets go.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        A row a sweep: ``setting``, ``value``, ``tip``, ``tangent``, ``late``, ``chattering``.
-
-    Returns
-    -------
-    Figure
-        Five panels of curves, and one of bars.
-    """
+    """Draw the errors by setting, and how late the vibrissa lets go."""
     figure = Figure(figsize=(11, 7.4), layout="constrained")
     grid = figure.add_gridspec(3, 3, width_ratios=[1, 1, 1.15])
     speed = figure.add_subplot(grid[0, 0])

@@ -49,18 +49,7 @@ _ROW_OF_AXES = {
 
 
 def readings(comparison: Comparison) -> Figure:
-    """Draw clamp force, moment and reconstructed contact, and differences, side by side.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        Drawn from its readings alone.
-
-    Returns
-    -------
-    Figure
-        The readings above, the differences below.
-    """
+    """Draw clamp force, moment and reconstructed contact, and differences, side by side."""
     figure = Figure(figsize=(12, 5.4))
     upper, lower = figure.subplots(
         2, 4, sharex=True, height_ratios=[2.2, 1], gridspec_kw=_ROW_OF_AXES
@@ -74,37 +63,12 @@ def readings(comparison: Comparison) -> Figure:
 
 
 def reading_panels(comparison: Comparison) -> dict[str, Figure]:
-    """Draw the same, a picture for each reading.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        Drawn from its readings alone.
-
-    Returns
-    -------
-    dict of Figure
-        By reading.
-    """
+    """Draw the same, a picture for each reading."""
     return {name: _panel(comparison, name) for name in SYMBOLS}
 
 
 def at_snap_off(panels: Mapping[str, Figure], comparison: Comparison) -> dict[str, Figure]:
-    """Show what is around the snap-off in the panels of the clamp readings.
-
-    Parameters
-    ----------
-    panels : mapping of Figure
-        Of `reading_panels`, drawn by now: they are changed, for others like them would take as long
-        to make as to draw.
-    comparison : Comparison
-        The same.
-
-    Returns
-    -------
-    dict of Figure
-        By reading; empty if there is no snap-off.
-    """
+    """Show what is around the snap-off in the panels of the clamp readings."""
     places = [comparison.snap_off.reference, comparison.snap_off.candidate]
     known = [place / comparison.reference.beam.length for place in places if place is not None]
     if not known:

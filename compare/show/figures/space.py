@@ -39,18 +39,7 @@ _LEAST = 1e-12  # L; contacts that are closer are drawn at this
 
 
 def sweep_in_space(scene: SweepScene) -> Figure:
-    """Draw the body, the vibrissa at some stations, the contacts found, and the readings.
-
-    Parameters
-    ----------
-    scene : SweepScene
-        Of a sweep.
-
-    Returns
-    -------
-    Figure
-        The scene, and below it force and moment over the way of the foot.
-    """
+    """Draw the body, the vibrissa at some stations, the contacts found, and the readings."""
     readings = scene.readings
     figure = Figure(figsize=(PAGE_WIDTH, 0.8 * PAGE_WIDTH), layout="constrained")
     grid = figure.add_gridspec(2, 2, height_ratios=(1.8, 1))
@@ -82,18 +71,7 @@ def sweep_in_space(scene: SweepScene) -> Figure:
 
 
 def both_in_space(comparison: SpatialComparison) -> Figure:
-    """Draw the six components of both sweeps over the way of the foot, and their differences.
-
-    Parameters
-    ----------
-    comparison : SpatialComparison
-        Of two sweeps.
-
-    Returns
-    -------
-    Figure
-        Force on the left, moment on the right, differences below.
-    """
+    """Draw the six components of both sweeps over the way of the foot, and their differences."""
     figure = Figure(figsize=(PAGE_WIDTH, 0.6 * PAGE_WIDTH), layout="constrained")
     grid = figure.subplots(2, 2, sharex=True, height_ratios=(2, 1))
     one, other = comparison.reference, comparison.candidate
@@ -128,18 +106,7 @@ def both_in_space(comparison: SpatialComparison) -> Figure:
 
 
 def contacts_in_space(comparison: SpatialComparison) -> Figure:
-    """Draw when both sweeps touch, in which phase, and how far their contacts are apart.
-
-    Parameters
-    ----------
-    comparison : SpatialComparison
-        Of two sweeps.
-
-    Returns
-    -------
-    Figure
-        A strip for each sweep, its touches and leavings marked, and distances below.
-    """
+    """Draw when both sweeps touch, in which phase, and how far their contacts are apart."""
     figure = Figure(figsize=(PAGE_WIDTH, 0.4 * PAGE_WIDTH), layout="constrained")
     strips, below = figure.subplots(2, 1, sharex=True, height_ratios=(1, 1.6))
     length = comparison.reference.beam.length
@@ -178,18 +145,7 @@ def contacts_in_space(comparison: SpatialComparison) -> Figure:
 
 
 def parts_in_space(parts: Parts) -> Figure:
-    """Draw what a disagreement is made of.
-
-    Parameters
-    ----------
-    parts : Parts
-        Of a sweep.
-
-    Returns
-    -------
-    Figure
-        A bar a part.
-    """
+    """Draw what a disagreement is made of."""
     figure = Figure(figsize=(0.6 * PAGE_WIDTH, 0.2 * PAGE_WIDTH), layout="constrained")
     ax = figure.subplots()
     sizes = {
@@ -205,15 +161,7 @@ def parts_in_space(parts: Parts) -> Figure:
 
 
 def draw_scene(ax: Axes3D, scene: SweepScene) -> None:
-    """Draw what does not move: the body and the way of the foot, with axes of equal scale.
-
-    Parameters
-    ----------
-    ax : Axes3D
-        Where.
-    scene : SweepScene
-        Of a sweep.
-    """
+    """Draw what does not move: the body and the way of the foot, with axes of equal scale."""
     faces = scene.faces
     if len(faces):
         across = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 1])
@@ -242,18 +190,7 @@ def draw_scene(ax: Axes3D, scene: SweepScene) -> None:
 
 
 def upright(points: Floats) -> Floats:
-    """From the case's axes, y up, to the picture's, whose third points up.
-
-    Parameters
-    ----------
-    points : array, shape (..., 3)
-        In the case's axes.
-
-    Returns
-    -------
-    array, shape (..., 3)
-        In the picture's.
-    """
+    """From the case's axes, y up, to the picture's, whose third points up."""
     return points[..., [0, 2, 1]]
 
 

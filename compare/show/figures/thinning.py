@@ -19,23 +19,7 @@ _CELLS = (500, 250)  # across and up a cloud of dots; of each cell one is drawn
 
 
 def draw(ax: Axes, x: Floats, y: Floats, **style: Any) -> Line2D:  # noqa: ANN401
-    """Plot a line or dots, thinned where there are more than a picture can show.
-
-    Parameters
-    ----------
-    ax : Axes
-        Where.
-    x, y : array, shape (stations,)
-        In sweep order.
-    **style
-        As of `Axes.plot`. Dots are what has ``linestyle=""``; many become an image behind the
-        lines.
-
-    Returns
-    -------
-    Line2D
-        What was drawn.
-    """
+    """Plot a line or dots, thinned where there are more than a picture can show."""
     are_dots = style.get("linestyle") == ""
     kept = cloud(x, y) if are_dots else envelope(y)
     (line,) = ax.plot(x[kept], y[kept], **style)
@@ -45,18 +29,7 @@ def draw(ax: Axes, x: Floats, y: Floats, **style: Any) -> Line2D:  # noqa: ANN40
 
 
 def envelope(y: Floats) -> Integers:
-    """Stations that draw the same picture as all of them: no peak and no dip is lost.
-
-    Parameters
-    ----------
-    y : array, shape (stations,)
-        One reading in sweep order; NaN where there is nothing to draw.
-
-    Returns
-    -------
-    array of int, shape (kept,)
-        Their indices, ascending: all of them, if they are few.
-    """
+    """Stations that draw the same picture as all of them: no peak and no dip is lost."""
     if len(y) <= _FEW:
         return np.arange(len(y))
     lowest, highest = (np.where(np.isnan(y), bound, y) for bound in (np.inf, -np.inf))
@@ -68,18 +41,7 @@ def envelope(y: Floats) -> Integers:
 
 
 def cloud(x: Floats, y: Floats) -> Integers:
-    """Points that draw the same cloud as all of them: one of each small cell.
-
-    Parameters
-    ----------
-    x, y : array, shape (n,)
-        Places; those that are not finite are left out.
-
-    Returns
-    -------
-    array of int, shape (kept,)
-        Their indices, ascending: all finite ones, if they are few.
-    """
+    """Points that draw the same cloud as all of them: one of each small cell."""
     finite = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
     if len(finite) <= _FEW:
         return finite
@@ -92,20 +54,7 @@ def cloud(x: Floats, y: Floats) -> Integers:
 
 
 def stretches(phase: Words) -> tuple[Integers, Integers, Words]:
-    """Uninterrupted stretches of one phase, as many as a picture can show.
-
-    Parameters
-    ----------
-    phase : array of str, shape (stations,)
-        In sweep order.
-
-    Returns
-    -------
-    begin, end : array of int, shape (stretches,)
-        First and last station of each.
-    name : array of str, shape (stretches,)
-        Its phase. Where noise makes phases alternate too often to be seen, the prevailing one.
-    """
+    """Uninterrupted stretches of one phase, as many as a picture can show."""
     begin, end = _runs(phase)
     if len(begin) <= _PARTS:
         return begin, end, phase[begin]

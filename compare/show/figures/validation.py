@@ -13,20 +13,7 @@ _EXPANDED = 2  # standard uncertainties, at one station of one reading
 
 
 def validation_picture(comparison: Comparison, found: Validation) -> Figure:
-    """Draw E = S - D of each reading within its expanded uncertainty.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        What was validated.
-    found : Validation
-        With its table.
-
-    Returns
-    -------
-    Figure
-        A panel for each reading.
-    """
+    """Draw E = S - D of each reading within its expanded uncertainty."""
     figure = Figure(figsize=(PAGE_WIDTH, 7.0), layout="constrained")
     axes = figure.subplots(len(CLAMP_READINGS), 1, sharex=True)
     length = comparison.reference.beam.length

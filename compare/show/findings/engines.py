@@ -45,18 +45,10 @@ class EnginesFile(BaseModel):
 
 @dataclass(frozen=True)
 class EnginesRecord:
-    """One run in many engines.
+    """One run in many engines."""
 
-    Attributes
-    ----------
-    folder : Path
-        Where it is.
-    content : EnginesFile
-        Its ``engines.json``.
-    """
-
-    folder: Path
-    content: EnginesFile
+    folder: Path  # where it is
+    content: EnginesFile  # its ``engines.json``
 
     @property
     def case(self) -> str:
@@ -65,23 +57,7 @@ class EnginesRecord:
 
 
 def read_engines(folder: Path) -> list[EnginesRecord]:
-    """All runs in many engines in the folders of `folder`.
-
-    Parameters
-    ----------
-    folder : Path
-        Each folder in it that holds an ``engines.json`` is one.
-
-    Returns
-    -------
-    list of EnginesRecord
-        The named cases first, in their order.
-
-    Raises
-    ------
-    InputError
-        If one is damaged.
-    """
+    """All runs in many engines in the folders of `folder`."""
     found = [
         EnginesRecord(file.parent, read_left(file, EnginesFile))
         for file in sorted(folder.glob("*/engines.json"))
@@ -91,18 +67,7 @@ def read_engines(folder: Path) -> list[EnginesRecord]:
 
 
 def split_overview(records: list[EnginesRecord]) -> str:
-    """What of the disagreements is implementation, and what is the model, over all cases.
-
-    Parameters
-    ----------
-    records : list of EnginesRecord
-        At least one.
-
-    Returns
-    -------
-    str
-        Plain text; empty if no run has a subject and a twin.
-    """
+    """What of the disagreements is implementation, and what is the model, over all cases."""
     splits = [(one.case, one.content.split) for one in records if one.content.split is not None]
     if not splits:
         return ""

@@ -21,21 +21,11 @@ _MOST = 0.9  # share of the contacts that must have an answer
 
 @dataclass(frozen=True)
 class MethodsRecord:
-    """A table of `vibrissa methods`, and its picture.
+    """A table of `vibrissa methods`, and its picture."""
 
-    Attributes
-    ----------
-    folder : Path
-        Where they are.
-    case : str
-        Whose readings the methods were given.
-    table : pandas.DataFrame
-        As `method_errors` has it, with columns ``case`` and ``readings``.
-    """
-
-    folder: Path
-    case: str
-    table: pd.DataFrame
+    folder: Path  # where they are
+    case: str  # whose readings the methods were given
+    table: pd.DataFrame  # as `method_errors` has it, with columns ``case`` and ``readings``
 
     @property
     def readings(self) -> list[str]:
@@ -53,38 +43,13 @@ class MethodsRecord:
         return sorted(self.table["noise"].unique().tolist())
 
     def needs(self, method: str) -> str:
-        """What a method has to know beside the foot's position.
-
-        Parameters
-        ----------
-        method : str
-            Which.
-
-        Returns
-        -------
-        str
-            In a few words; empty if the table does not say.
-        """
+        """What a method has to know beside the foot's position."""
         if "needs" not in self.table:
             return ""
         return str(self.table.loc[self.table["method"] == method, "needs"].iloc[0])
 
     def cell(self, method: str, readings: str, noise: float) -> str:
-        """Median errors by phase, as the page has them.
-
-        Parameters
-        ----------
-        method, readings : str
-            Which.
-        noise : float
-            Level.
-
-        Returns
-        -------
-        str
-            As ``"A 1.2e-3, B none"``; with the share answered where that is not nearly all, and
-            empty if it was not asked.
-        """
+        """Median errors by phase, as the page has them."""
         said = []
         for row in self._rows(method, readings, noise).to_dict("records"):
             size = "none" if np.isnan(row["median"]) else short(row["median"])
@@ -95,20 +60,7 @@ class MethodsRecord:
         return ", ".join(said)
 
     def survivors(self, readings: str, noise: float) -> list[str]:
-        """Methods that find nearly all contacts of every phase to 1 % of the length.
-
-        Parameters
-        ----------
-        readings : str
-            Of what.
-        noise : float
-            Level.
-
-        Returns
-        -------
-        list of str
-            Names.
-        """
+        """Methods that find nearly all contacts of every phase to 1 % of the length."""
         found = []
         for method in self.methods:
             rows = self._rows(method, readings, noise)
@@ -124,39 +76,12 @@ class MethodsRecord:
 
 
 def read_methods(folder: Path) -> list[MethodsRecord]:
-    """All tables of `vibrissa methods` in the folders of `folder`.
-
-    Parameters
-    ----------
-    folder : Path
-        Each folder in it that holds a ``methods.csv`` has one.
-
-    Returns
-    -------
-    list of MethodsRecord
-        By case.
-
-    Raises
-    ------
-    InputError
-        If one is damaged.
-    """
+    """All tables of `vibrissa methods` in the folders of `folder`."""
     return sorted((_read(file) for file in folder.glob("*/methods.csv")), key=lambda one: one.case)
 
 
 def method_sentences(record: MethodsRecord) -> str:
-    """Which method survives which readings, and what noise does.
-
-    Parameters
-    ----------
-    record : MethodsRecord
-        Of one case.
-
-    Returns
-    -------
-    str
-        Plain text.
-    """
+    """Which method survives which readings, and what noise does."""
     least, *noisy = record.levels
     said = []
     for readings in record.readings:

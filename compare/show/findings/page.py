@@ -33,24 +33,6 @@ def write_findings(folder: Path, out: Path) -> list[Path]:
 
     What an earlier call has written there is replaced, its pictures of runs that are gone are
     removed, and nothing else is touched.
-
-    Parameters
-    ----------
-    folder : Path
-        With the folders of runs in it.
-    out : Path
-        Made if it is not there.
-
-    Returns
-    -------
-    list of Path
-        The page, and the pictures.
-
-    Raises
-    ------
-    InputError
-        If there is no run, what one has left cannot be read, or `out` holds a page or a picture of
-        the same name that is somebody else's.
     """
     own = _written_before(out)
     runs = read_records(folder)
@@ -90,24 +72,7 @@ def page(
     methods: Sequence[MethodsRecord] = (),
     engines: Sequence[EnginesRecord] = (),
 ) -> str:
-    """The findings as a page.
-
-    Parameters
-    ----------
-    runs : list of RunRecord
-        In the order of the page.
-    judged : list of dict
-        Rows of `compare.sense.accuracy.phase_table`; without any the page has no such section.
-    methods : sequence of MethodsRecord
-        Tables of the methods to find the contact; without any the page has no such section.
-    engines : sequence of EnginesRecord
-        Runs in many engines; without any the page has no such section.
-
-    Returns
-    -------
-    str
-        Markdown.
-    """
+    """The findings as a page."""
     return render(
         "compare.show",
         "findings.md.j2",

@@ -147,41 +147,14 @@ class RunRecord:
         return seconds / self.comparison.candidate.stations
 
     def part(self, name: str) -> float | None:
-        """The largest of the three readings' rms of a part of the budget.
-
-        Parameters
-        ----------
-        name : str
-            Of the part.
-
-        Returns
-        -------
-        float or None
-            Relative to the reading's largest magnitude; None without such a part, or a budget.
-        """
+        """The largest of the three readings' rms of a part of the budget."""
         if self.budget is None or name not in self.budget.parts:
             return None
         return max((part.rms for part in self.budget.parts[name].values()), default=None)
 
 
 def read_records(folder: Path) -> list[RunRecord]:
-    """All runs in the folders of `folder`: the named cases first, in their order.
-
-    Parameters
-    ----------
-    folder : Path
-        Each folder in it that holds a ``comparison.json`` is a run.
-
-    Returns
-    -------
-    list of RunRecord
-        None, if there is no run.
-
-    Raises
-    ------
-    InputError
-        If what one has left cannot be read.
-    """
+    """All runs in the folders of `folder`: the named cases first, in their order."""
     runs = [
         RunRecord(
             file.parent,
@@ -196,25 +169,7 @@ def read_records(folder: Path) -> list[RunRecord]:
 
 
 def read_left(file: Path, kind: type[_File]) -> _File:
-    """What a run has left in a file.
-
-    Parameters
-    ----------
-    file : Path
-        JSON.
-    kind : type
-        What it should hold.
-
-    Returns
-    -------
-    BaseModel
-        Of that kind.
-
-    Raises
-    ------
-    InputError
-        If it is damaged or unreadable.
-    """
+    """What a run has left in a file."""
     try:
         return kind.model_validate(json.loads(file.read_text(encoding="utf-8")))
     except ValidationError as error:

@@ -9,18 +9,7 @@ from compare.show.page import short
 
 
 def overview(runs: Sequence[RunRecord]) -> str:
-    """All runs in a paragraph.
-
-    Parameters
-    ----------
-    runs : sequence of RunRecord
-        At least one.
-
-    Returns
-    -------
-    str
-        Plain text.
-    """
+    """All runs in a paragraph."""
     worst = max(runs, key=lambda run: run.error)
     largest = (
         f"No station could be compared in {_case_and_beam(worst)}."
@@ -37,18 +26,7 @@ def overview(runs: Sequence[RunRecord]) -> str:
 
 
 def sentences(runs: Sequence[RunRecord]) -> str:
-    """The runs of one case, in two to four sentences.
-
-    Parameters
-    ----------
-    runs : sequence of RunRecord
-        At least one.
-
-    Returns
-    -------
-    str
-        Plain text.
-    """
+    """The runs of one case, in two to four sentences."""
     said = [f"{_agreeing(runs, _beam)} {_ranking(runs)}"]
     with_budget = [run for run in runs if run.budget is not None]
     if with_budget:

@@ -16,54 +16,26 @@ MOST_RUNS = 1_000_000
 
 
 class Range(Table):
-    """Values from one end to the other.
+    """Values from one end to the other."""
 
-    Parameters
-    ----------
-    low, high : int, float or str
-        First and last value (``from``, ``to``); a text has a unit.
-    count : int, optional
-        Number of values; without it the range is sampled.
-    spacing : {"linear", "log"}
-        Equal differences, or equal ratios.
-    """
-
+    # First and last value (``from``, ``to``); a text has a unit.
     low: int | float | str = Field(alias="from")
+    # First and last value (``from``, ``to``); a text has a unit.
     high: int | float | str = Field(alias="to")
+    # Number of values; without it the range is sampled.
     count: Annotated[int, Field(ge=2, le=MOST_RUNS)] | None = None
-    spacing: Literal["linear", "log"] = "linear"
+    spacing: Literal["linear", "log"] = "linear"  # equal differences, or equal ratios
 
 
 class Sample(Table):
-    """How the ranges without a count are sampled, all together.
+    """How the ranges without a count are sampled, all together."""
 
-    Parameters
-    ----------
-    count : int
-        Number of points.
-    method : {"latin-hypercube", "random"}
-        How they are drawn.
-    seed : int
-        The same seed draws the same points.
-    """
-
-    count: int = Field(ge=1, le=MOST_RUNS)
-    method: Literal["latin-hypercube", "random"] = "latin-hypercube"
-    seed: int = Field(default=0, ge=0)
+    count: int = Field(ge=1, le=MOST_RUNS)  # number of points
+    method: Literal["latin-hypercube", "random"] = "latin-hypercube"  # how they are drawn
+    seed: int = Field(default=0, ge=0)  # the same seed draws the same points
 
     def draw(self, dimensions: int) -> Floats:
-        """Draw the points.
-
-        Parameters
-        ----------
-        dimensions : int
-            How many ranges are sampled together.
-
-        Returns
-        -------
-        ndarray
-            Points in the unit cube, shape (count, dimensions).
-        """
+        """Draw the points."""
         if self.method == "latin-hypercube":
             from scipy.stats import qmc  # slow to load, and few studies draw samples
 
@@ -73,36 +45,15 @@ class Sample(Table):
 
 @dataclass(frozen=True)
 class Interval:
-    """A range whose ends are numbers, in the units that the case ends up in.
+    """A range whose ends are numbers, in the units that the case ends up in."""
 
-    Parameters
-    ----------
-    low, high : float
-        First and last value.
-    log : bool
-        Whether equal ratios follow each other, rather than equal differences.
-    whole : bool
-        Whether its values are whole numbers.
-    """
-
-    low: float
-    high: float
-    log: bool
-    whole: bool
+    low: float  # first and last value
+    high: float  # first and last value
+    log: bool  # whether equal ratios follow each other, rather than equal differences
+    whole: bool  # whether its values are whole numbers
 
     def at(self, fraction: Floats) -> list[Value]:
-        """Take values between the ends.
-
-        Parameters
-        ----------
-        fraction : ndarray
-            Of the way from one end to the other, shape (n,).
-
-        Returns
-        -------
-        list
-            The values, n of them.
-        """
+        """Take values between the ends."""
         if self.log:
             values = self.low * (self.high / self.low) ** fraction
         else:
@@ -115,23 +66,11 @@ class Interval:
 
 @dataclass(frozen=True)
 class Axis:
-    """Parameters that advance together, and every point that they take.
+    """Parameters that advance together, and every point that they take."""
 
-    Parameters
-    ----------
-    keys : tuple of str
-        Dotted keys of the case file; one, or several that are zipped or sampled together.
-    points : tuple of tuple
-        One value for each key; each point once.
-
-    Raises
-    ------
-    ValueError
-        If there is no point, or one that has not as many values as there are keys.
-    """
-
+    # Dotted keys of the case file; one, or several that are zipped or sampled together.
     keys: tuple[str, ...]
-    points: tuple[tuple[Value, ...], ...]
+    points: tuple[tuple[Value, ...], ...]  # one value for each key; each point once
 
     def __post_init__(self) -> None:
         if not self.points or {len(point) for point in self.points} != {len(self.keys)}:
@@ -139,16 +78,5 @@ class Axis:
 
     @classmethod
     def of(cls, columns: Mapping[str, Sequence[Value]]) -> "Axis":
-        """Make the axis that takes the values of several columns row by row.
-
-        Parameters
-        ----------
-        columns : mapping
-            The values by key, equally many for each.
-
-        Returns
-        -------
-        Axis
-            Its points; a repeated row, which rounding to whole numbers makes, counts once.
-        """
+        """Make the axis that takes the values of several columns row by row."""
         return cls(tuple(columns), tuple(dict.fromkeys(zip(*columns.values(), strict=True))))

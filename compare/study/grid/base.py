@@ -34,20 +34,7 @@ _KEYS = {
 
 
 class Base:
-    """The base case of a study file, and a trial of values on it.
-
-    Parameters
-    ----------
-    file : TomlFile
-        The study file.
-    content : StudyFile
-        What it says.
-
-    Raises
-    ------
-    InputError
-        If the base case cannot be used; the line is named.
-    """
+    """The base case of a study file, and a trial of values on it."""
 
     def __init__(self, file: TomlFile, content: StudyFile) -> None:
         self._file = file
@@ -75,20 +62,7 @@ class Base:
                 self.values[mesh] = self._path(self.values[mesh])
 
     def check_key(self, key: str, place: Sequence[str]) -> None:
-        """Check that a key can vary.
-
-        Parameters
-        ----------
-        key : str
-            Dotted key.
-        place : sequence of str
-            Where the file gives it.
-
-        Raises
-        ------
-        InputError
-            If there is no such table, or the key is given elsewhere; the line is named.
-        """
+        """Check that a key can vary."""
         where = self._file.place(place)
         table, *inner = key.split(".")
         component = inner[1:]
@@ -107,27 +81,7 @@ class Base:
             raise InputError(where, "an axis", "given as study.beams", "list the beams there")
 
     def tried(self, key: str, value: object, place: Sequence[str]) -> Value:
-        """Try a value on the base case; combinations of values are not tried.
-
-        Parameters
-        ----------
-        key : str
-            Dotted key.
-        value : object
-            As the file gives it.
-        place : sequence of str
-            Where the file gives it.
-
-        Returns
-        -------
-        bool, int, float or str
-            The number or word that the case holds then.
-
-        Raises
-        ------
-        InputError
-            If there is no such key or it cannot have this value; the line is named.
-        """
+        """Try a value on the base case; combinations of values are not tried."""
         self.check_key(key, place)
         where = self._file.place(place)
         table, inner, *component = key.split(".")

@@ -16,12 +16,7 @@ def _known(name: str) -> str:
 
 
 class Estimator(Table):
-    """The method that ``reconstruction`` is recorded of.
+    """The method that ``reconstruction`` is recorded of."""
 
-    Parameters
-    ----------
-    method : str
-        Name of a method, as `analytic.reconstruct` takes it.
-    """
-
+    # Name of a method, as `analytic.reconstruct` takes it.
     method: Annotated[str, AfterValidator(_known)] = "elastica"

@@ -20,27 +20,7 @@ _RANGE_KEYS = frozenset(Range.model_json_schema()["properties"])
 
 
 def expand(file: TomlFile, content: StudyFile, base: Base) -> tuple[Axis, ...]:
-    """Expand the axes of a study file.
-
-    Parameters
-    ----------
-    file : TomlFile
-        The study file; errors name its lines.
-    content : StudyFile
-        What it says.
-    base : Base
-        On which each listed value, and both ends of each range, are tried.
-
-    Returns
-    -------
-    tuple of Axis
-        In the file's order; keys that are zipped or sampled together are one axis.
-
-    Raises
-    ------
-    InputError
-        If an axis cannot be used; the line is named.
-    """
+    """Expand the axes of a study file."""
     lists: list[dict[str, list[Value]]] = []
     sampled: dict[str, Interval] = {}
     reader = _AxisReader(file, base)

@@ -16,13 +16,7 @@ from compare.study.grid.study import BEAM, RECORDS, Study
 
 
 def shipped_studies() -> dict[str, Path]:
-    """Find the studies that come with the package.
-
-    Returns
-    -------
-    dict of Path
-        Their files by name.
-    """
+    """Find the studies that come with the package."""
     folder = Path(str(files("compare.study") / "shipped"))
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 

@@ -12,32 +12,14 @@ if TYPE_CHECKING:
 
 
 class SensorNoise(Table):
-    """Gaussian noise of the sensor at the clamp.
+    """Gaussian noise of the sensor at the clamp."""
 
-    Parameters
-    ----------
-    relative : float
-        Standard deviation, relative to each reading's largest magnitude.
-    seed : int
-        The same seed draws the same noise, whatever the case.
-    """
-
+    # Standard deviation, relative to each reading's largest magnitude.
     relative: float = Field(default=0.0, ge=0, lt=1)
     seed: int = Field(default=0, ge=0, lt=2**63)  # the row's column has 64 bits
 
     def add_to(self, readings: "Readings") -> "Readings":
-        """Add the noise to a sweep.
-
-        Parameters
-        ----------
-        readings : Readings
-            The sweep, shape (stations,).
-
-        Returns
-        -------
-        Readings
-            What a sensor with this noise gives; the true contact points are kept.
-        """
+        """Add the noise to a sweep."""
         if self.relative == 0:
             return readings
         from compare.sense.noise import with_noise  # pandas is slow to load, a check needs none

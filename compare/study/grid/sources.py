@@ -11,18 +11,7 @@ _WITHOUT_EFFECT = ("commands", "show", "testing", "simulate", "study/keep", "stu
 
 @cache
 def sources_digest(*packages: str) -> str:
-    """Digest of the modules whose code a run's numbers depend on.
-
-    Parameters
-    ----------
-    *packages : str
-        Names of packages.
-
-    Returns
-    -------
-    str
-        Twelve hexadecimal digits; comments and formatting count too.
-    """
+    """Digest of the modules whose code a run's numbers depend on."""
     digest = hashlib.sha256()
     for package in packages:
         root = Path(str(files(package)))

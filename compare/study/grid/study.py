@@ -77,45 +77,14 @@ class Study:
 
 
 def flatten(tables: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    """Turn tables into one with dotted keys.
-
-    Parameters
-    ----------
-    tables : mapping
-        Tables by name.
-
-    Returns
-    -------
-    dict
-        Values by ``"table.key"``.
-    """
+    """Turn tables into one with dotted keys."""
     return {
         f"{name}.{key}": value for name, table in tables.items() for key, value in table.items()
     }
 
 
 def case_file(parameters: Mapping[str, Any]) -> tuple[CaseFile | SpaceFile, SensorNoise, Estimator]:
-    """Read the case, the noise and the method from dotted keys.
-
-    Parameters
-    ----------
-    parameters : mapping
-        Values by dotted key, as `Study.base` with the values of a run over it.
-
-    Returns
-    -------
-    CaseFile or SpaceFile
-        The case.
-    SensorNoise
-        The noise.
-    Estimator
-        The method to find the contact.
-
-    Raises
-    ------
-    InputError
-        If the keys describe no case.
-    """
+    """Read the case, the noise and the method from dotted keys."""
     tables: dict[str, dict[str, Any]] = {}
     for dotted, value in parameters.items():
         name, key, *component = dotted.split(".")
@@ -127,45 +96,12 @@ def case_file(parameters: Mapping[str, Any]) -> tuple[CaseFile | SpaceFile, Sens
 
 
 def checked_case(tables: Mapping[str, Any], place: Place) -> CaseFile | SpaceFile:
-    """The case of some tables, in space if it has a body.
-
-    Parameters
-    ----------
-    tables : mapping
-        As parsed.
-    place : callable
-        What an error calls a key.
-
-    Returns
-    -------
-    CaseFile or SpaceFile
-        The same, checked.
-
-    Raises
-    ------
-    InputError
-        If they are no case.
-    """
+    """The case of some tables, in space if it has a body."""
     return validate_space(tables, place) if "body" in tables else validate(tables, place)
 
 
 def replaced(values: Sequence[Any], component: str, value: object) -> list[Any]:
-    """A place or direction with another component.
-
-    Parameters
-    ----------
-    values : sequence
-        Of the components x, y and z.
-    component : str
-        One of `COMPONENTS_OF`.
-    value : object
-        Of that component.
-
-    Returns
-    -------
-    list
-        The others are as they were.
-    """
+    """A place or direction with another component."""
     found = list(values)
     found[COMPONENTS_OF.index(component)] = value
     return found

@@ -25,13 +25,6 @@ class Journal:
     """A journal of this process; made, and turned into a part, under `locks.lock`.
 
     It is locked as long as its process lives.
-
-    Parameters
-    ----------
-    folder : Path
-        Where it is.
-    columns : mapping
-        Arrow types of the columns that are known, by name.
     """
 
     def __init__(self, folder: Path, columns: Mapping[str, str]) -> None:
@@ -43,18 +36,7 @@ class Journal:
         claim(self._file)
 
     def add(self, row: Mapping[str, Any]) -> None:
-        """Append a row; when this returns, killing the process cannot lose it.
-
-        Parameters
-        ----------
-        row : mapping
-            Numbers and texts by column.
-
-        Raises
-        ------
-        OSError
-            If the disk is full.
-        """
+        """Append a row; when this returns, killing the process cannot lose it."""
         line = json.dumps(row).encode()
         line = b"%08x %b\n" % (zlib.crc32(line), line)
         if self._file.write(line) != len(line):
@@ -65,30 +47,13 @@ class Journal:
             self._synced = time.monotonic()
 
     def close(self, damaged: Damaged) -> None:
-        """Turn it into a part.
-
-        Parameters
-        ----------
-        damaged : callable
-            Is called if lines have been lost.
-        """
+        """Turn it into a part."""
         _make_part(self.path, self._columns, damaged)
         self._file.close()
 
 
 def list_journals(folder: Path) -> list[Path]:
-    """Find the journals in a folder, those of living processes too.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder.
-
-    Returns
-    -------
-    list of Path
-        In the order in which they were begun.
-    """
+    """Find the journals in a folder, those of living processes too."""
     return sorted(folder.glob(".journal-*.jsonl"))
 
 
@@ -96,20 +61,6 @@ def read_journal(path: Path, columns: Mapping[str, str]) -> tuple[pa.Table, int]
     """Read the complete lines of a journal.
 
     What follows the last of them was being written, or cut off by a full disk, and is no damage.
-
-    Parameters
-    ----------
-    path : Path
-        The journal.
-    columns : mapping
-        Arrow types of the columns that are known, by name.
-
-    Returns
-    -------
-    pyarrow.Table
-        A row a run.
-    int
-        How many lines are damaged.
     """
     lines = path.read_bytes().split(b"\n")[:-1]
     rows = [row for line in lines if (row := _row(line)) is not None]
@@ -122,17 +73,7 @@ def read_journal(path: Path, columns: Mapping[str, str]) -> tuple[pa.Table, int]
 
 
 def adopt_journals(folder: Path, columns: Mapping[str, str], damaged: Damaged) -> None:
-    """Turn what dead processes left into parts.
-
-    Parameters
-    ----------
-    folder : Path
-        Where the journals are.
-    columns : mapping
-        Arrow types of the columns that are known, by name.
-    damaged : callable
-        Is called for a journal with damaged lines; the others are kept.
-    """
+    """Turn what dead processes left into parts."""
     for path in list_journals(folder):
         with path.open("rb") as file:
             if claim(file):  # else its process lives

@@ -18,23 +18,7 @@ _PATIENCE = 300.0  # s; tidying up a million rows takes a tenth of that
 
 @contextmanager
 def lock(folder: Path) -> Iterator[None]:
-    """Keep other processes from changing the set of files in a folder.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder.
-
-    Yields
-    ------
-    None
-        While it is locked.
-
-    Raises
-    ------
-    InputError
-        If another process, which may have been stopped, keeps it for minutes.
-    """
+    """Keep other processes from changing the set of files in a folder."""
     check_platform()
     descriptor = os.open(folder, os.O_RDONLY)
     try:
@@ -51,29 +35,12 @@ def lock(folder: Path) -> Iterator[None]:
 
 
 def claim(file: BinaryIO) -> bool:
-    """Lock an open file for as long as it stays open, unless another process has done so.
-
-    Parameters
-    ----------
-    file : file object
-        The file.
-
-    Returns
-    -------
-    bool
-        Whether it is ours now.
-    """
+    """Lock an open file for as long as it stays open, unless another process has done so."""
     return _taken(file.fileno())
 
 
 def check_platform() -> None:
-    """Refuse to store a study where files cannot be locked.
-
-    Raises
-    ------
-    InputError
-        On Windows.
-    """
+    """Refuse to store a study where files cannot be locked."""
     if sys.platform == "win32":
         raise InputError(
             "study", "on Windows", "on Linux or macOS, which lock files by flock",

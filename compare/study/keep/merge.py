@@ -17,53 +17,19 @@ class Choice:
         self._best: dict[str, tuple[bool, int, int]] = {}
 
     def see(self, part: int, table: pa.Table) -> None:
-        """Take a part into account; parts come in order of time.
-
-        Parameters
-        ----------
-        part : int
-            Its number.
-        table : pyarrow.Table
-            Its rows.
-        """
+        """Take a part into account; parts come in order of time."""
         for row, (run, outcome) in enumerate(_keys(table)):
             rank = (outcome == "done", part, row)
             self._best[run] = max(rank, self._best.get(run, rank))
 
     def count(self, wanted: Container[str]) -> int:
-        """Count the runs that were seen.
-
-        Parameters
-        ----------
-        wanted : container of str
-            Ids that count.
-
-        Returns
-        -------
-        int
-            How many of them there are.
-        """
+        """Count the runs that were seen."""
         return sum(run in wanted for run in self._best)
 
     def kept(
         self, part: int, table: pa.Table, wanted: Callable[[str], bool] = lambda run: True
     ) -> pa.Table:
-        """Keep the rows of a part that stand for their runs.
-
-        Parameters
-        ----------
-        part : int
-            Its number.
-        table : pyarrow.Table
-            Its rows.
-        wanted : callable, optional
-            Says of a run's id whether it is asked for; all are by default.
-
-        Returns
-        -------
-        pyarrow.Table
-            Those rows.
-        """
+        """Keep the rows of a part that stand for their runs."""
         best = self._best
         mask = np.array(
             [best[run][1:] == (part, row) and wanted(run)
@@ -74,18 +40,7 @@ class Choice:
 
 
 def merge(tables: Iterable[pa.Table]) -> pa.Table:
-    """Merge tables into one.
-
-    Parameters
-    ----------
-    tables : iterable of pyarrow.Table
-        At least one, in order of time.
-
-    Returns
-    -------
-    pyarrow.Table
-        The rows of all, each run once, with the columns of all.
-    """
+    """Merge tables into one."""
     tables = list(tables)
     choice = Choice()
     for part, table in enumerate(tables):

@@ -19,44 +19,17 @@ _DIGITS = 32  # of a digest in a part's name; names of eight are older and have 
 
 
 def list_parts(folder: Path) -> list[Path]:
-    """Find the part files in a folder.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder.
-
-    Returns
-    -------
-    list of Path
-        In the order in which they were begun.
-    """
+    """Find the part files in a folder."""
     return sorted(folder.glob("part-*.parquet"))
 
 
 def new_name() -> str:
-    """Make a name that sorts by time and that no other process has.
-
-    Returns
-    -------
-    str
-        Nanoseconds and eight random digits.
-    """
+    """Make a name that sorts by time and that no other process has."""
     return f"{time.time_ns():020d}-{uuid.uuid4().hex[:8]}"
 
 
 def write_part(folder: Path, schema: pa.Schema, tables: Iterable[pa.Table]) -> None:
-    """Write tables as one new part, which is on the disk itself before it gets its name.
-
-    Parameters
-    ----------
-    folder : Path
-        Where it goes.
-    schema : pyarrow.Schema
-        Its columns.
-    tables : iterable of pyarrow.Table
-        Its rows.
-    """
+    """Write tables as one new part, which is on the disk itself before it gets its name."""
     name = new_name()
     whole = folder / f".part-{name}.parquet"
     with whole_file(whole) as unfinished, unfinished.open("wb") as file:
@@ -70,23 +43,7 @@ def write_part(folder: Path, schema: pa.Schema, tables: Iterable[pa.Table]) -> N
 
 
 def read_part(path: Path) -> pa.Table:
-    """Read the rows of a part.
-
-    Parameters
-    ----------
-    path : Path
-        The part.
-
-    Returns
-    -------
-    pyarrow.Table
-        A row a run.
-
-    Raises
-    ------
-    pyarrow.ArrowException, OSError, ValueError
-        If it is damaged.
-    """
+    """Read the rows of a part."""
     content = path.read_bytes()
     *_, digest = path.stem.split("-")
     if len(digest) == _DIGITS and digest != _digest(content):
@@ -97,31 +54,14 @@ def read_part(path: Path) -> pa.Table:
 
 
 class Columns:
-    """The columns that parts have, which must fit together.
-
-    Parameters
-    ----------
-    known : mapping
-        Arrow types of the columns that are known beforehand, by name.
-    """
+    """The columns that parts have, which must fit together."""
 
     def __init__(self, known: Mapping[str, str]) -> None:
         self._known = {name: pa.type_for_alias(kind) for name, kind in known.items()}
         self._all = pa.schema(list(self._known.items()))
 
     def take(self, table: pa.Table) -> None:
-        """Take the columns of a table into account.
-
-        Parameters
-        ----------
-        table : pyarrow.Table
-            A row a run.
-
-        Raises
-        ------
-        pyarrow.ArrowException
-            If it has no runs, or columns of other types than are known.
-        """
+        """Take the columns of a table into account."""
         for name in ("run", "outcome"):
             if name not in table.schema.names or table.column(name).null_count:
                 raise pa.ArrowInvalid(f"a column {name} with a text in every row is missing")
@@ -137,22 +77,7 @@ class Columns:
 def sound_parts(
     paths: Iterable[Path], columns: Columns, damaged: Damaged
 ) -> Iterator[tuple[Path, pa.Table]]:
-    """Read parts.
-
-    Parameters
-    ----------
-    paths : iterable of Path
-        The parts.
-    columns : Columns
-        What they have to fit.
-    damaged : callable
-        Is called for each that cannot be read or does not fit.
-
-    Yields
-    ------
-    Path, pyarrow.Table
-        The others and their rows.
-    """
+    """Read parts."""
     for path in paths:
         try:
             table = read_part(path)

@@ -57,23 +57,7 @@ def read_rows(folder: Path, warn: Callable[[str], None]) -> pd.DataFrame:
 
 
 def read_plan(folder: Path) -> Plan:
-    """Read what a study is to do.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the study.
-
-    Returns
-    -------
-    Plan
-        Its runs.
-
-    Raises
-    ------
-    InputError
-        If the folder has no plan, or a damaged one.
-    """
+    """Read what a study is to do."""
     path = folder / PLAN_FILE
     remedy = "start `vibrissa study FILE --out DIR` again: complete runs are kept"
     try:

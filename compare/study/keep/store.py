@@ -33,21 +33,6 @@ class Store:
     """Where a study's results go, and which are there already.
 
     Use it as a context: it is tidied up at its end, also after an error.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the study; made if it is not there.
-    plan : Plan
-        What is to be done; it is kept beside the results. Rows of other plans are moved to
-        ``DIR/earlier``, and taken up again if a later plan asks for them.
-    warn : callable
-        Takes a line about anything that is wrong with what is stored.
-
-    Raises
-    ------
-    InputError
-        If the folder cannot be written to; by the other methods too.
     """
 
     def __init__(self, folder: Path, plan: Plan, warn: Warn) -> None:
@@ -79,14 +64,7 @@ class Store:
             self._tidy()
 
     def done(self) -> set[str]:
-        """Find out what need not be done again.
-
-        Returns
-        -------
-        set of str
-            Ids of runs. Damaged parts are set aside, under a hidden name, so that their runs are
-            done again.
-        """
+        """Find out what need not be done again."""
         runs, found = self._shelves.runs, set[str]()
         with _in_one_line(self._folder), lock(runs):
             parts = sound_parts(list_parts(runs), Columns(self._columns), self._set_aside)
@@ -97,13 +75,7 @@ class Store:
         return found & self._wanted.keys()
 
     def add(self, result: Result) -> None:
-        """Store a result: its readings first, so that a row that is there is complete.
-
-        Parameters
-        ----------
-        result : Result
-            Of a run.
-        """
+        """Store a result: its readings first, so that a row that is there is complete."""
         with _in_one_line(self._folder):
             if result.readings:
                 (self._folder / "readings").mkdir(exist_ok=True)

@@ -20,27 +20,14 @@ from compare.study.keep.parts import (
 
 @dataclass(frozen=True)
 class Shelves:
-    """Where rows are kept.
+    """Where rows are kept."""
 
-    Parameters
-    ----------
-    runs : Path
-        For the rows of the plan.
-    earlier : Path
-        For those of other plans, which are taken up again if the plan becomes theirs again.
-    """
-
-    runs: Path
+    runs: Path  # for the rows of the plan
+    # For those of other plans, which are taken up again if the plan becomes theirs again.
     earlier: Path
 
     def parts(self) -> list[Path]:
-        """Find all parts.
-
-        Returns
-        -------
-        list of Path
-            In the order in which they were begun.
-        """
+        """Find all parts."""
         parts = [*list_parts(self.runs), *list_parts(self.earlier)]
         return sorted(parts, key=lambda path: path.name)
 
@@ -57,24 +44,6 @@ def tidy(
     Any reader of the folder then sees each run of the plan once, and nothing else. One part at a
     time is in memory. The old ones go when the new ones are complete; between the two, `Choice`
     makes sure that nothing counts twice.
-
-    Parameters
-    ----------
-    shelves : Shelves
-        The folders.
-    plan : Plan
-        Whose rows are asked for.
-    wanted : mapping
-        Number of each of its runs in the plan, by id.
-    columns : mapping
-        Arrow types of its columns.
-    damaged : callable
-        Is called for parts that cannot be read.
-
-    Returns
-    -------
-    int
-        How many rows of other plans were moved to `shelves.earlier`.
     """
     schema = pa.schema([(name, pa.type_for_alias(kind)) for name, kind in columns.items()])
     choice = Choice()

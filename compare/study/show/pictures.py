@@ -41,21 +41,7 @@ _MAP_FROM = 4  # values an axis from which a map shows more than lines do
 
 
 def axis_pictures(found: StudyResults, question: Question) -> dict[str, Figure]:
-    """Draw the number that answers a question over each axis by itself.
-
-    Parameters
-    ----------
-    found : StudyResults
-        The study.
-    question : Question
-        Which.
-
-    Returns
-    -------
-    dict of Figure
-        By the axis. A line is one beam with all other axes held; a band holds 80 % of what is
-        repeated or sampled.
-    """
+    """Draw the number that answers a question over each axis by itself."""
     drawn = {}
     for axis in found.plain_axes:
         cut = lines(found, axis, question.metric)
@@ -65,20 +51,7 @@ def axis_pictures(found: StudyResults, question: Question) -> dict[str, Figure]:
 
 
 def maps(found: StudyResults, question: Question) -> dict[str, Figure]:
-    """Draw the number that answers a question over each pair of axes with many values.
-
-    Parameters
-    ----------
-    found : StudyResults
-        The study.
-    question : Question
-        Which.
-
-    Returns
-    -------
-    dict of Figure
-        By ``ACROSS-UP`` and the beam. Where a place has several runs the colour is their median.
-    """
+    """Draw the number that answers a question over each pair of axes with many values."""
     drawn = {}
     for beam, done in found.by_beam(question.metric):
         many = [axis for axis in found.plain_axes if done[axis].nunique() >= _MAP_FROM]
@@ -99,18 +72,7 @@ def maps(found: StudyResults, question: Question) -> dict[str, Figure]:
 
 
 def error_against_time(found: StudyResults) -> Figure | None:
-    """Draw every simulated run by its time and its error, and the front that none of them beats.
-
-    Parameters
-    ----------
-    found : StudyResults
-        The study.
-
-    Returns
-    -------
-    Figure or None
-        None if nothing was simulated and compared.
-    """
+    """Draw every simulated run by its time and its error, and the front that none of them beats."""
     if WORST not in found.done or "seconds_candidate" not in found.done:
         return None
     done = found.done.dropna(subset=["seconds_candidate", WORST])

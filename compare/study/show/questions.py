@@ -7,33 +7,15 @@ from compare.study.show.results import WORST, StudyResults
 
 @dataclass(frozen=True)
 class Question:
-    """A question and the number that answers it.
+    """A question and the number that answers it."""
 
-    Attributes
-    ----------
-    name : str
-        What its pictures' files are called.
-    text : str
-        As a heading.
-    metric : str
-        A column of the runs.
-    number : str
-        What a sentence calls the number.
-    label : str
-        What a picture calls it.
-    limit : float or None
-        A value that means something, which pictures draw.
-    least : float
-        Pictures draw what is less at this: nobody can see the difference.
-    """
-
-    name: str
-    text: str
-    metric: str
-    number: str
-    label: str
-    limit: float | None = None
-    least: float = 0.0
+    name: str  # what its pictures' files are called
+    text: str  # as a heading
+    metric: str  # A column of the runs
+    number: str  # what a sentence calls the number
+    label: str  # what a picture calls it
+    limit: float | None = None  # A value that means something, which pictures draw
+    least: float = 0.0  # pictures draw what is less at this: nobody can see the difference
 
 
 QUESTIONS = (
@@ -65,18 +47,7 @@ QUESTIONS = (
 
 
 def asked(found: StudyResults) -> list[Question]:
-    """Choose the questions that a study has an answer to.
-
-    Parameters
-    ----------
-    found : StudyResults
-        The study.
-
-    Returns
-    -------
-    list of Question
-        Those whose number varies over its runs; the first is the main one.
-    """
+    """Choose the questions that a study has an answer to."""
     chosen = []
     for question in QUESTIONS:
         if question.metric in found.done:

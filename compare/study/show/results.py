@@ -19,42 +19,18 @@ _FEW_POINTS = 12  # parameters that advance together in more points than these a
 
 @dataclass(frozen=True)
 class StudyResults:
-    """The rows of a study.
+    """The rows of a study."""
 
-    Attributes
-    ----------
-    plan : Plan
-        What was to be done.
-    rows : pandas.DataFrame
-        A row a run of the plan, whatever its outcome.
-    done : pandas.DataFrame
-        Those whose numbers count, with a column `WORST`: the largest of the clamp readings' rms
-        disagreements.
-    axes : tuple of str
-        Numeric parameters that take more than one value.
-    """
-
-    plan: Plan
-    rows: pd.DataFrame
+    plan: Plan  # what was to be done
+    rows: pd.DataFrame  # A row a run of the plan, whatever its outcome
+    # Those whose numbers count, with a column `WORST`: the largest of the clamp readings' rms
+    # disagreements.
     done: pd.DataFrame
-    axes: tuple[str, ...]
+    axes: tuple[str, ...]  # numeric parameters that take more than one value
 
     @classmethod
     def of(cls, plan: Plan, rows: pd.DataFrame) -> "StudyResults":
-        """Take those rows that belong to a plan.
-
-        Parameters
-        ----------
-        plan : Plan
-            What was to be done.
-        rows : pandas.DataFrame
-            What is stored.
-
-        Returns
-        -------
-        StudyResults
-            The plan's rows.
-        """
+        """Take those rows that belong to a plan."""
         rows = rows[rows["run"].isin({run.id for run in plan})]
         done = rows[rows["outcome"] == "done"]
         readings = [name for name in done if re.fullmatch(r"disagreement_\w+_rms", str(name))]
@@ -78,19 +54,7 @@ class StudyResults:
         return tuple(key for keys in groups for key in keys if key in self.axes)
 
     def by_beam(self, metric: str) -> Iterator[tuple[str, pd.DataFrame]]:
-        """Split the runs by beam and method: the median of two models is that of neither.
-
-        Parameters
-        ----------
-        metric : str
-            A column.
-
-        Yields
-        ------
-        str, pandas.DataFrame
-            The beam, ``""`` in a study without simulation, and the method to find the contact, if
-            that varies; and their runs that have the metric.
-        """
+        """Split the runs by beam and method: the median of two models is that of neither."""
         done = self.done.dropna(subset=[metric])
         keys = [key for key in (BEAM, METHOD) if key in done]
         if not keys:
@@ -103,18 +67,5 @@ class StudyResults:
 
 
 def together(done: pd.DataFrame, one: str, other: str) -> bool:
-    """Say whether two axes are zipped.
-
-    Parameters
-    ----------
-    done : pandas.DataFrame
-        A row a run.
-    one, other : str
-        The axes.
-
-    Returns
-    -------
-    bool
-        Whether a value of the one goes with one value of the other.
-    """
+    """Say whether two axes are zipped."""
     return int(done.groupby(one)[other].nunique().max()) == 1

@@ -16,18 +16,7 @@ _POWER = 0.98  # of the variance of the logarithms that a power law has to expla
 
 
 def varied(found: StudyResults) -> str:
-    """Say what was varied.
-
-    Parameters
-    ----------
-    found : StudyResults
-        The study.
-
-    Returns
-    -------
-    str
-        Every axis with its number of values and their range.
-    """
+    """Say what was varied."""
     said = []
     for axis in found.plan.study.axes:
         for key, values in zip(axis.keys, zip(*axis.points, strict=True), strict=True):
@@ -42,20 +31,7 @@ def varied(found: StudyResults) -> str:
 
 
 def headline(found: StudyResults, question: Question) -> str:
-    """Say what answers a question, beam by beam.
-
-    Parameters
-    ----------
-    found : StudyResults
-        The study.
-    question : Question
-        Which.
-
-    Returns
-    -------
-    str
-        A sentence a beam.
-    """
+    """Say what answers a question, beam by beam."""
     if question.name == "phase-b":
         return _phase_b(found)
     said = []

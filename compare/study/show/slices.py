@@ -17,43 +17,18 @@ _LINES = {1: 5, 2: 3}  # lines a beam, by the number of beams; more cannot be di
 
 @dataclass(frozen=True)
 class Line:
-    """One number over one axis.
+    """One number over one axis."""
 
-    Attributes
-    ----------
-    beam : str
-        Whose it is; ``""`` in a study without simulation.
-    held : dict
-        Values of the other axes; those that are not here are repeated or sampled.
-    table : pandas.DataFrame
-        Columns ``value`` (of the axis), ``median``, ``low``, ``high`` (the band that holds 80 % of
-        the repetitions and samples) and ``runs``.
-    """
-
-    beam: str
+    beam: str  # whose it is; ``""`` in a study without simulation
+    # Values of the other axes; those that are not here are repeated or sampled.
     held: dict[str, float]
+    # Columns ``value`` (of the axis), ``median``, ``low``, ``high`` (the band that holds 80 % of
+    # the repetitions and samples) and ``runs``.
     table: pd.DataFrame
 
 
 def lines(found: StudyResults, axis: str, metric: str) -> list[Line]:
-    """Cut lines out of a study.
-
-    Parameters
-    ----------
-    found : StudyResults
-        The study.
-    axis : str
-        Over what.
-    metric : str
-        Of what the size is taken.
-
-    Returns
-    -------
-    list of Line
-        For each beam, and for several values of one other axis; all further axes are held, at the
-        finest value if they refine the simulation and else in the middle. The last line of a beam
-        has the largest value of the other axis.
-    """
+    """Cut lines out of a study."""
     cut = []
     groups = [
         (beam, group)
@@ -77,20 +52,7 @@ def lines(found: StudyResults, axis: str, metric: str) -> list[Line]:
 
 
 def curves(found: StudyResults, metrics: Sequence[str]) -> pd.DataFrame:
-    """Put all lines of several numbers into one long table.
-
-    Parameters
-    ----------
-    found : StudyResults
-        The study.
-    metrics : sequence of str
-        Which numbers.
-
-    Returns
-    -------
-    pandas.DataFrame
-        A row a point of a line.
-    """
+    """Put all lines of several numbers into one long table."""
     tables = [
         line.table.assign(axis=axis, metric=metric, beam=line.beam, held=words(line.held))
         for axis in found.plain_axes
@@ -102,44 +64,14 @@ def curves(found: StudyResults, metrics: Sequence[str]) -> pd.DataFrame:
 
 
 def words(held: Mapping[str, float]) -> str:
-    """Name what is held, as ``mujoco.segments = 40``.
-
-    Parameters
-    ----------
-    held : mapping
-        Values by axis.
-
-    Returns
-    -------
-    str
-        All of them.
-    """
+    """Name what is held, as ``mujoco.segments = 40``."""
     return ", ".join(f"{axis} = {value:.4g}" for axis, value in held.items())
 
 
 def plane(
     found: StudyResults, group: pd.DataFrame, axes: Sequence[str], metric: str
 ) -> tuple[dict[str, float], pd.DataFrame]:
-    """Hold all axes but some.
-
-    Parameters
-    ----------
-    found : StudyResults
-        The study.
-    group : pandas.DataFrame
-        Its runs, or some of them.
-    axes : sequence of str
-        Those that are free.
-    metric : str
-        Axes that this number does not depend on are not held.
-
-    Returns
-    -------
-    dict
-        Values of the axes that are held.
-    pandas.DataFrame
-        The runs with these values.
-    """
+    """Hold all axes but some."""
     return _hold(group, _crossed(found, group, axes, metric))
 
 
@@ -211,19 +143,6 @@ def _table(found: StudyResults, group: pd.DataFrame, axis: str, metric: str) -> 
 
 
 def repeated(found: StudyResults, axis: str) -> tuple[str, ...]:
-    """Name what the bands of the lines over an axis range over: repetitions and samples.
-
-    Parameters
-    ----------
-    found : StudyResults
-        The study.
-    axis : str
-        Over what the lines go.
-
-    Returns
-    -------
-    tuple of str
-        Axes.
-    """
+    """Name what the bands of the lines over an axis range over: repetitions and samples."""
     seeds = (SEED,) if SEED in found.axes else ()
     return (*seeds, *(other for other in found.sampled if other != axis))

@@ -20,25 +20,7 @@ _LONGEST_TABLE = 24  # rows on the page; all of them are in a file
 
 
 def write_report(folder: Path, warn: Warn) -> Path:
-    """Write ``report.html``, ``report/*.png`` and ``report/*.csv`` into the folder of a study.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the study, which may be under way.
-    warn : callable
-        Takes a line about anything that is wrong with what is stored.
-
-    Returns
-    -------
-    Path
-        Of ``report.html``.
-
-    Raises
-    ------
-    InputError
-        If there is no study in `folder`, or none of its runs is done.
-    """
+    """Write ``report.html``, ``report/*.png`` and ``report/*.csv`` into the folder of a study."""
     damage: list[str] = []
     rows = read_rows(folder, damage.append)
     found = StudyResults.of(read_plan(folder), rows)

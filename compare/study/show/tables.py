@@ -15,18 +15,7 @@ ONLY_IN_SPACE = tuple(name for name in COMPONENTS if name not in CLAMP_READINGS)
 
 
 def outcomes(found: StudyResults) -> pd.DataFrame:
-    """Count what became of the runs.
-
-    Parameters
-    ----------
-    found : StudyResults
-        The study.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Outcomes, how many runs came to each, and the reason of one of them.
-    """
+    """Count what became of the runs."""
     missing = len(found.plan) - len(found.rows)
     table = found.rows.groupby("outcome").agg(runs=("run", "size"), example=("reason", "first"))
     table = table.reset_index()
@@ -40,17 +29,6 @@ def orders(found: StudyResults) -> pd.DataFrame:
     """Determine how fast the disagreement falls as a number is refined.
 
     The other refined numbers are at their largest, so that their error hides the least of it.
-
-    Parameters
-    ----------
-    found : StudyResults
-        The study.
-
-    Returns
-    -------
-    pandas.DataFrame
-        ``order`` is the slope of the log-log fit, ``last`` that of the last two values alone: much
-        smaller where another error has taken over.
     """
     refined = [axis for axis in REFINED if axis in found.axes]
     groups = [key for key in (*found.plain_axes, BEAM) if key in found.done and key not in refined]
@@ -83,18 +61,7 @@ def orders(found: StudyResults) -> pd.DataFrame:
 
 
 def vanishing(found: StudyResults) -> pd.DataFrame:
-    """Find where Phase B vanishes: where the contact length's minimum (eq. 21) passes 1.
-
-    Parameters
-    ----------
-    found : StudyResults
-        The study.
-
-    Returns
-    -------
-    pandas.DataFrame
-        A row a crossing, interpolated along one axis with the others held.
-    """
+    """Find where Phase B vanishes: where the contact length's minimum (eq. 21) passes 1."""
     rows = []
     if "contact_length_minimum" in found.done:
         for axis in found.plain_axes:
@@ -109,20 +76,7 @@ def vanishing(found: StudyResults) -> pd.DataFrame:
 
 
 def pareto_front(done: pd.DataFrame, cost: str, error: str) -> pd.DataFrame:
-    """Choose the runs that no other run beats in both cost and error.
-
-    Parameters
-    ----------
-    done : pandas.DataFrame
-        A row a run.
-    cost, error : str
-        Columns.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Those runs by ascending cost.
-    """
+    """Choose the runs that no other run beats in both cost and error."""
     ordered = done[[cost, error]].dropna().sort_values([cost, error])
     best = ordered[error].cummin()
     return ordered[(ordered[error] == best) & ~best.duplicated()]

@@ -17,18 +17,7 @@ _CHATTY = ("distributed", "distributed.client", "tornado.application", "asyncio"
 
 
 def local_crew(workers: int) -> Crew:
-    """Hire processes on this machine, each with one thread.
-
-    Parameters
-    ----------
-    workers : int
-        How many.
-
-    Returns
-    -------
-    Crew
-        It hires nobody before the first run.
-    """
+    """Hire processes on this machine, each with one thread."""
     os.environ |= dict.fromkeys(_THREADS, "1")  # read by the libraries when they are imported
     preload = ("compare.study.work.perform",)
     return Crew(
@@ -41,25 +30,7 @@ def local_crew(workers: int) -> Crew:
 
 
 def dask_crew(address: str) -> Crew:
-    """Hire the workers of a Dask cluster.
-
-    Parameters
-    ----------
-    address : str
-        Of its scheduler, as ``"tcp://host:8786"`` or ``"tls://host:8786"``. Whoever reaches the
-        port can run code there unless the cluster uses TLS; the certificates are taken from
-        Dask's own configuration.
-
-    Returns
-    -------
-    Crew
-        The workers that the cluster has now.
-
-    Raises
-    ------
-    InputError
-        If Dask is not installed, there is no scheduler, or it has no workers.
-    """
+    """Hire the workers of a Dask cluster."""
     try:
         from distributed import Client, KilledWorker
     except ImportError as error:

@@ -12,20 +12,7 @@ _BYTES_A_STATION = 100  # of kept readings, in either engine
 
 
 def estimate(plan: Plan, workers: int) -> str:
-    """Estimate a study's time and size; a few runs, spread over the plan, are timed.
-
-    Parameters
-    ----------
-    plan : Plan
-        Its runs.
-    workers : int
-        How many processes will do them.
-
-    Returns
-    -------
-    str
-        Number of runs, time and disk, in a line.
-    """
+    """Estimate a study's time and size; a few runs, spread over the plan, are timed."""
     recipe = Recipe.of(plan.study)
     last = len(plan) - 1
     probes = sorted({round(i * last / (_PROBES - 1)) for i in range(_PROBES)})

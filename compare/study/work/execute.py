@@ -18,57 +18,19 @@ _BATCH = 32  # runs in closed form: a tenth of a second of work, and lost if its
 
 @dataclass(frozen=True)
 class Crew:
-    """Who does the runs.
+    """Who does the runs."""
 
-    Parameters
-    ----------
-    hire : callable
-        Makes an executor; called again if its workers died.
-    perform : callable
-        What a worker does with a run.
-    ahead : int
-        How many runs are handed out at once. Memory is that of so many.
-    failure : callable
-        What to make of an exception that is not the run's own: the row's reason, or it raises.
-    together : callable, optional
-        What a worker does with some runs in closed form at once; one by one if not given.
-    """
-
-    hire: Callable[[], Executor]
-    perform: Perform
-    ahead: int
+    hire: Callable[[], Executor]  # makes an executor; called again if its workers died
+    perform: Perform  # what a worker does with a run
+    ahead: int  # how many runs are handed out at once. Memory is that of so many
+    # What to make of an exception that is not the run's own: the row's reason, or it raises.
     failure: Callable[[BaseException], str]
+    # What a worker does with some runs in closed form at once; one by one if not given.
     together: Together | None = None
 
 
 def carry_out(runs: Iterable[PlannedRun], recipe: Recipe, crew: Crew) -> Generator[Result]:
-    """Do runs.
-
-    Parameters
-    ----------
-    runs : iterable of PlannedRun
-        They are taken as workers become free.
-    recipe : Recipe
-        What they have in common.
-    crew : Crew
-        Who does them.
-
-    Yields
-    ------
-    Result
-        In the order in which they are done. Close the generator to end workers at once.
-
-    Raises
-    ------
-    InputError
-        If no worker can be had.
-
-    Notes
-    -----
-    If a worker dies, the runs that were handed out are done once more, one by one, each in an
-    executor of its own: the one that kills its worker again is known then, and only that one is
-    given up.
-    """
+    """Do runs."""
     waiting = iter(runs)
     executor = crew.hire()
     under_way: dict[Future[list[Result]], tuple[PlannedRun, ...]] = {}

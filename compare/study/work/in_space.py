@@ -46,19 +46,7 @@ COLUMNS: Mapping[Record, Mapping[str, str]] = {
 
 
 def events(found: SpatialReadings) -> dict[str, float | int | None]:
-    """Say where a sweep first touches and first leaves.
-
-    Parameters
-    ----------
-    found : SpatialReadings
-        The closed form's sweep.
-
-    Returns
-    -------
-    dict
-        ``event_*``, ways of the foot [length], None where there is no such event; how many hops
-        over edges there are, and how many stations touch.
-    """
+    """Say where a sweep first touches and first leaves."""
     known = [(event["kind"], float(event["travel"])) for event in found.provenance["events"]]
     return {
         **{
@@ -71,22 +59,7 @@ def events(found: SpatialReadings) -> dict[str, float | int | None]:
 
 
 def with_noise(readings: SpatialReadings, relative: float, seed: int) -> SpatialReadings:
-    """Add a sensor's noise.
-
-    Parameters
-    ----------
-    readings : SpatialReadings
-        A sweep.
-    relative : float
-        Standard deviation of each component, over the largest component of force or of moment.
-    seed : int
-        The same seed draws the same noise.
-
-    Returns
-    -------
-    SpatialReadings
-        The same object if there is no noise.
-    """
+    """Add a sensor's noise."""
     if relative == 0:
         return readings
     random = np.random.default_rng(seed)
@@ -102,19 +75,7 @@ def with_noise(readings: SpatialReadings, relative: float, seed: int) -> Spatial
 def disagreement(
     reference: SpatialReadings, candidate: SpatialReadings
 ) -> dict[str, float | int | bool | None]:
-    """Compare two sweeps.
-
-    Parameters
-    ----------
-    reference, candidate : SpatialReadings
-        The sweeps.
-
-    Returns
-    -------
-    dict
-        What `compare_space` finds: components relative to the largest of their kind, contacts [L],
-        ways to the first touch, slip-off and release [length].
-    """
+    """Compare two sweeps."""
     found = compare_space(reference, candidate)
     row: dict[str, float | int | bool | None] = {}
     for name, one in found.disagreement.items():
@@ -133,19 +94,7 @@ def disagreement(
 
 
 def reconstruction(candidate: SpatialReadings) -> dict[str, float | None]:
-    """Measure how far the contacts that the clamp shows are from the true ones.
-
-    Parameters
-    ----------
-    candidate : SpatialReadings
-        A sweep with its true contact points.
-
-    Returns
-    -------
-    dict
-        Distances [L] over the trusted stations in contact, rms and largest, and the share of them
-        with an answer. None without such stations.
-    """
+    """Measure how far the contacts that the clamp shows are from the true ones."""
     true = candidate.values(*CONTACT_POINT)
     touching = candidate.trusted & np.isfinite(true).all(axis=1)
     found = reconstruct_space(candidate)[list(CONTACT_POINT)].to_numpy(dtype=float)

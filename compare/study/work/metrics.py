@@ -44,20 +44,7 @@ COLUMNS: Mapping[Record, Mapping[str, str]] = {
 
 
 def find(physics: Physics, direction: Direction = "left") -> Events:
-    """Find the events of the sweep in closed form.
-
-    Parameters
-    ----------
-    physics : Physics
-        The vibrissa, how it is held and rubs, and the object.
-    direction : {"left", "right"}
-        Where the foot moves to.
-
-    Returns
-    -------
-    Events
-        Of a sweep to the left; of the mirrored problem if the foot moves to the right.
-    """
+    """Find the events of the sweep in closed form."""
     beam, profile, clamp_stiffness, friction = physics
     if direction == "right":
         beam, profile = beam.mirrored(), profile.mirrored()
@@ -67,26 +54,7 @@ def find(physics: Physics, direction: Direction = "left") -> Events:
 def events(
     found: Events, length: float, direction: Direction = "left"
 ) -> dict[str, float | bool | None]:
-    """Say where the events of a sweep are.
-
-    Parameters
-    ----------
-    found : Events
-        As `find` has them.
-    length : float
-        Of the vibrissa.
-    direction : {"left", "right"}
-        Where the foot moves to.
-
-    Returns
-    -------
-    dict
-        ``contact_length_minimum`` [L] is that of eq. 21 of Behn and others: Phase B exists where
-        it is less than 1 and the sweep gets there before the snap-off; with friction, a natural
-        curvature or an elastic clamp it is NaN where there is no Phase B. ``event_*`` are foot
-        positions [length], None where there is no such event, or the vibrissa would touch in a
-        second place.
-    """
+    """Say where the events of a sweep are."""
     way = -1 if direction == "right" else 1
     places = {name: getattr(found, name) for name in _EVENTS}
     places = {n: x if x is not None and x.status == "ok" else None for n, x in places.items()}
@@ -102,24 +70,7 @@ def events(
 
 
 def disagreement(reference: Readings, candidate: Readings) -> dict[str, float | int | bool | None]:
-    """Compare two sweeps.
-
-    Parameters
-    ----------
-    reference, candidate : Readings
-        The sweeps, shape (stations,) each.
-
-    Returns
-    -------
-    dict
-        What `compare.compare` finds: disagreements relative to each reading's largest magnitude,
-        places [length].
-
-    Raises
-    ------
-    InputError
-        If the two have no station in contact in common.
-    """
+    """Compare two sweeps."""
     found = compare(reference, candidate)
     row: dict[str, float | int | bool | None] = {}
     for name, one in found.disagreement.items():
@@ -139,24 +90,7 @@ def disagreement(reference: Readings, candidate: Readings) -> dict[str, float | 
 def reconstruction(
     candidate: Readings, method: str = "elastica", noise: float = 0.0
 ) -> dict[str, float | None]:
-    """Measure how far the contact points that the clamp shows are from the true ones.
-
-    Parameters
-    ----------
-    candidate : Readings
-        A sweep with its true contact points, shape (stations,).
-    method : str
-        To find the contact.
-    noise : float
-        Of the readings, over their largest magnitude.
-
-    Returns
-    -------
-    dict
-        Distances [L] over the trusted stations in contact, rms and largest;
-        ``reconstruction_share`` is the share of them that the method has an answer to, the
-        others have no contact point. None without such stations.
-    """
+    """Measure how far the contact points that the clamp shows are from the true ones."""
     touching = candidate.trusted & np.isfinite(candidate.values("contact_x"))
     found = contacts_by(candidate, method, noise)
     miss = np.hypot(

@@ -71,18 +71,7 @@ class _TimeIsUp(Exception):  # noqa: N818  # not an error: an outcome
 
 
 def columns(study: Study) -> dict[str, str]:
-    """List the columns of a study's rows.
-
-    Parameters
-    ----------
-    study : Study
-        What varies and what is recorded.
-
-    Returns
-    -------
-    dict
-        Their Arrow types by name, in order.
-    """
+    """List the columns of a study's rows."""
     types = {bool: "bool", int: "int64", float: "double", str: "string"}
     found = dict(_IDENTITY)
     for axis in study.crossed:
@@ -95,20 +84,7 @@ def columns(study: Study) -> dict[str, str]:
 
 
 def perform(recipe: Recipe, run: PlannedRun) -> Result:
-    """Do one run. Whatever goes wrong becomes its outcome; nothing is raised.
-
-    Parameters
-    ----------
-    recipe : Recipe
-        What all runs have in common.
-    run : PlannedRun
-        Which one.
-
-    Returns
-    -------
-    Result
-        Its row, and its readings if they are to be kept.
-    """
+    """Do one run. Whatever goes wrong becomes its outcome; nothing is raised."""
     return _performed(recipe, run, Known())
 
 
@@ -117,18 +93,6 @@ def perform_together(recipe: Recipe, runs: Sequence[PlannedRun]) -> list[Result]
 
     A process that does nothing else is asked for: one that hangs is ended, and all of its runs are
     to be done one by one, by `perform_alone`.
-
-    Parameters
-    ----------
-    recipe : Recipe
-        What all runs have in common; it simulates nothing.
-    runs : sequence of PlannedRun
-        Which ones.
-
-    Returns
-    -------
-    list of Result
-        In their order; the rows are those of `perform`.
     """
     with _end_of_process(1.1 * recipe.timeout + 1):
         begin = time.perf_counter()
@@ -159,40 +123,13 @@ def perform_alone(recipe: Recipe, run: PlannedRun) -> Result:
     """Do one run in a process that does nothing else: a run that hangs ends the process.
 
     `perform` asks the time between stations, which ends a slow run but not a stuck one.
-
-    Parameters
-    ----------
-    recipe : Recipe
-        What all runs have in common.
-    run : PlannedRun
-        Which one.
-
-    Returns
-    -------
-    Result
-        As of `perform`.
     """
     with _end_of_process(1.1 * recipe.timeout + 1):
         return perform(recipe, run)
 
 
 def lost(run: PlannedRun, outcome: Outcome, reason: str) -> Result:
-    """Make the row of a run that left none itself.
-
-    Parameters
-    ----------
-    run : PlannedRun
-        Which one.
-    outcome : str
-        What became of it.
-    reason : str
-        Why.
-
-    Returns
-    -------
-    Result
-        Its row.
-    """
+    """Make the row of a run that left none itself."""
     return Result({"run": run.id, "outcome": outcome, "reason": reason, **run.parameters})
 
 

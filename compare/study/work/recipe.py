@@ -28,16 +28,5 @@ class Recipe:
 
     @classmethod
     def of(cls, study: Study) -> "Recipe":
-        """Take from a study what its runs have in common.
-
-        Parameters
-        ----------
-        study : Study
-            The study.
-
-        Returns
-        -------
-        Recipe
-            Of each of its runs.
-        """
+        """Take from a study what its runs have in common."""
         return cls(study.base, bool(study.beams), study.record, study.keep_readings, study.timeout)

@@ -16,38 +16,16 @@ from compare.study.work.recipe import Recipe
 
 @dataclass(frozen=True)
 class Known:
-    """What is known of a run; what is None, the run finds itself, with its error if there is one.
+    """What is known of a run; what is None, the run finds itself, with its error if any."""
 
-    Attributes
-    ----------
-    file : tuple or None
-        Its case, noise and method, as `case_file` reads them.
-    events : Events or None
-        Of its sweep, of the mirrored one if the foot moves to the right.
-    reference : Readings or None
-        The closed form's sweep.
-    """
-
+    # Its case, noise and method, as `case_file` reads them.
     file: tuple[CaseFile, SensorNoise, Estimator] | None = None
-    events: Events | None = None
-    reference: Readings | None = None
+    events: Events | None = None  # of its sweep, of the mirrored one if the foot moves to the right
+    reference: Readings | None = None  # the closed form's sweep
 
 
 def known_of(recipe: Recipe, parameters: Sequence[dict[str, Value]]) -> list[Known]:
-    """Read the cases of runs, and find the events of all and solve the sweeps of all at once.
-
-    Parameters
-    ----------
-    recipe : Recipe
-        What the runs have in common; it simulates nothing.
-    parameters : sequence of dict
-        Of each run.
-
-    Returns
-    -------
-    list of Known
-        One a run. Where anything goes wrong there is nothing: the run does it again and says why.
-    """
+    """Read the cases of runs, and find the events of all and solve the sweeps of all at once."""
     if recipe.in_space:
         return [Known() for _ in parameters]
     known = [_read(recipe, one) for one in parameters]

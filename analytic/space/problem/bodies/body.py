@@ -100,35 +100,13 @@ class Body(ABC):
 
 
 def grid_patches(x: Floats) -> Floats:
-    """The cells of a grid of points.
-
-    Parameters
-    ----------
-    x : array, shape (n, m, 3)
-        Points of a surface.
-
-    Returns
-    -------
-    array, shape ((n - 1) (m - 1), 4, 3)
-        Quadrilaterals.
-    """
+    """The cells of a grid of points."""
     cells = np.stack([x[:-1, :-1], x[1:, :-1], x[1:, 1:], x[:-1, 1:]], axis=2)
     return cells.reshape(-1, 4, 3)
 
 
 def across(normal: Floats) -> Floats:
-    """Two unit vectors that span the plane normal to a vector.
-
-    Parameters
-    ----------
-    normal : array, shape (..., 3)
-        Of length 1.
-
-    Returns
-    -------
-    array, shape (..., 2, 3)
-        The three are right-handed: second, third, normal.
-    """
+    """Two unit vectors that span the plane normal to a vector."""
     axis = np.eye(3)[np.argmin(np.abs(normal), axis=-1)]
     first = cross(axis, normal)
     first /= np.linalg.norm(first, axis=-1, keepdims=True)
@@ -136,16 +114,5 @@ def across(normal: Floats) -> Floats:
 
 
 def cross(a: Floats, b: Floats) -> Floats:
-    """As `np.cross`, which takes five times as long to find out which axes are meant.
-
-    Parameters
-    ----------
-    a, b : array, shape (..., 3)
-        Vectors.
-
-    Returns
-    -------
-    array, shape (..., 3)
-        Their products.
-    """
+    """As `np.cross`, which takes five times as long to find out which axes are meant."""
     return a[..., _NEXT] * b[..., _LAST] - a[..., _LAST] * b[..., _NEXT]

@@ -12,38 +12,18 @@ _TURNS = 0.5  # of the largest turning: a principal value is that or zero
 
 @dataclass(frozen=True, eq=False)
 class Feature(Body):
-    """A plane, a line or a point.
+    """A plane, a line or a point."""
 
-    Parameters
-    ----------
-    point : array, shape (3,)
-        One of it [length].
-    free : array, shape (k, 3)
-        Directions in which normals turn, of length 1: none of a face, one of an edge, all three of
-        a corner.
-    normal : array, shape (3,)
-        Outward, of a face.
-    """
-
-    point: Floats
+    point: Floats  # shape (3,); One of it [length]
+    # Shape (k, 3); Directions in which normals turn, of length 1: none of a face, one of an edge,
+    # all three of a corner.
     free: Floats
-    normal: Floats
+    normal: Floats  # shape (3,); Outward, of a face
     label: str = "feature"
 
     @classmethod
     def of(cls, spot: Spot) -> "Feature":
-        """The one that a spot of a mesh is on.
-
-        Parameters
-        ----------
-        spot : Spot
-            Of a mesh.
-
-        Returns
-        -------
-        Feature
-            As if the rest of the mesh were not there.
-        """
+        """The one that a spot of a mesh is on."""
         values, ways = np.linalg.eigh(spot.turning)
         turns = values > _TURNS * max(float(values[-1]), 1e-300)
         count = int(turns.sum())
@@ -75,16 +55,5 @@ class Feature(Body):
 
 
 def corner_at(point: Floats) -> Feature:
-    """A point that holds a vibrissa whichever way it pulls.
-
-    Parameters
-    ----------
-    point : array, shape (3,)
-        [length]
-
-    Returns
-    -------
-    Feature
-        A corner.
-    """
+    """A point that holds a vibrissa whichever way it pulls."""
     return Feature(point, np.eye(3), np.array([0.0, 1.0, 0.0]))
