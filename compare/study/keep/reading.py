@@ -1,58 +1,24 @@
 """A study's folder as its reports read it; nothing in it is changed."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pandas as pd
+import pyarrow as pa
 
 from analytic import InputError
 from compare.study.grid.plan import Plan
-from compare.study.keep.journal import list_journals, read_journal
-from compare.study.keep.locks import lock
-from compare.study.keep.merge import merge
-from compare.study.keep.parts import Columns, list_parts, sound_parts
+from compare.study.keep.database import NAME, Warn, read
 from compare.study.keep.store import PLAN_FILE
-from compare.study.work.perform import RECORDED
+from compare.study.keep.table import tables
 
 
-def read_rows(folder: Path, warn: Callable[[str], None]) -> pd.DataFrame:
-    """Read all that is stored of a study, also while it is under way.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the study.
-    warn : callable
-        Takes a line about anything that is wrong with what is stored.
-
-    Returns
-    -------
-    pandas.DataFrame
-        A row a run.
-
-    Raises
-    ------
-    InputError
-        If there is no study in `folder`.
-    """
-    runs = folder / "runs"
-    if not runs.is_dir():
+def read_rows(folder: Path, warn: Warn) -> pd.DataFrame:
+    """Read a row a run of all that is stored of a study, also while it is under way."""
+    if not (folder / NAME).is_file():
         raise InputError("DIR", folder, "the folder of a study", "`vibrissa study` makes one")
-    known = Columns(RECORDED)
-
-    def damaged(path: Path, reason: str) -> None:
-        warn(f"{path} is damaged ({reason}): `vibrissa study` does its runs again")
-
-    with lock(runs):
-        tables = [table for _, table in sound_parts(list_parts(runs), known, damaged)]
-        for path in list_journals(runs):
-            table, lost = read_journal(path, RECORDED)
-            tables.append(table)
-            if lost:
-                damaged(path, f"{lost} of {table.num_rows + lost} lines")
-    if not tables:
-        return pd.DataFrame({"run": [], "outcome": []})
-    frame: pd.DataFrame = merge(tables).to_pandas(use_threads=False)
+    found = pa.concat_tables(tables(read(folder, warn), read_plan(folder)))
+    # Not in Arrow's threads: one that still ends while Python does aborts the whole process.
+    frame: pd.DataFrame = found.to_pandas(use_threads=False)
     return frame.sort_values("run", ignore_index=True)
 
 

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from analytic import InputError
 from analytic.problem.files import write_whole
 from compare.show.page import inline_svg, png, render
+from compare.study.keep.database import Warn
 from compare.study.keep.reading import read_plan, read_rows
-from compare.study.keep.store import Warn
 from compare.study.show import pictures, tables
 from compare.study.show.questions import asked
 from compare.study.show.results import StudyResults

@@ -8,7 +8,8 @@ import pandas as pd
 import pytest
 
 from compare.study.grid.file import shipped_studies
-from compare.study.keep.parts import list_parts
+from compare.study.keep.database import NAME
+from compare.study.keep.store import TABLE_FILE
 from tests.compare.study.studies import EVENTS_ONLY, vibrissa
 
 SIMULATED = """
@@ -37,7 +38,7 @@ def test_the_same_file_twice_does_no_work(folder, study):
     first = study()
     assert (first.returncode, first.stderr) == (0, "")
     assert "40 done" in first.stdout
-    (part,) = list_parts(folder / "out" / "runs")
+    part = folder / "out" / TABLE_FILE
     written = part.stat().st_mtime_ns
     second = study()
     assert "40 of them done already" in second.stdout
@@ -55,18 +56,18 @@ def test_a_longer_axis_does_only_what_is_new(folder, study):
 
 def test_another_base_leaves_only_its_own_rows(folder, study):
     study()
-    before = pd.read_parquet(folder / "out" / "runs")
+    before = pd.read_parquet(folder / "out" / TABLE_FILE)
     (folder / "grid.toml").write_text(EVENTS_ONLY + "[profile]\nc = -0.75\n")
     changed = study()
     assert "40 runs, 0 of them done already" in changed.stdout
     assert "40 runs of another plan are kept" in changed.stderr
-    after = pd.read_parquet(folder / "out" / "runs")
+    after = pd.read_parquet(folder / "out" / TABLE_FILE)
     assert len(after) == 40
     assert not set(after["run"]) & set(before["run"])
     (folder / "grid.toml").write_text(EVENTS_ONLY)
     back = study()
     assert "40 of them done already" in back.stdout
-    again = pd.read_parquet(folder / "out" / "runs")
+    again = pd.read_parquet(folder / "out" / TABLE_FILE)
     assert set(again["run"]) == set(before["run"])
     pd.testing.assert_frame_equal(
         again.sort_values("run", ignore_index=True), before.sort_values("run", ignore_index=True)
@@ -78,7 +79,7 @@ def test_a_further_axis_keeps_what_is_done_and_says_where_it_is(folder, study):
     study()
     (folder / "grid.toml").write_text(EVENTS_ONLY + "profile.c = [-0.8, -0.7]\n")
     assert "80 runs, 40 of them done already" in study().stdout
-    runs = pd.read_parquet(folder / "out" / "runs")
+    runs = pd.read_parquet(folder / "out" / TABLE_FILE)
     assert runs["profile.c"].value_counts().to_dict() == {-0.8: 40, -0.7: 40}
 
 
@@ -140,20 +141,20 @@ def test_a_simulated_study_and_its_report(folder, study, command):
     assert (folder / "out" / "report" / "error-against-time.png").stat().st_size > 10_000
 
 
-def test_a_damaged_part_is_reported_in_one_line(folder, study):
+def test_damage_is_reported_in_one_line(folder, study):
     study()
-    (part,) = list_parts(folder / "out" / "runs")
-    part.write_bytes(part.read_bytes()[:500])
+    file = folder / "out" / NAME
+    file.write_bytes(file.read_bytes()[:500])
     again = study()
     (line,) = again.stderr.splitlines()
-    assert part.name in line
+    assert file.name in line
     assert "40 done" in again.stdout
 
 
-@pytest.mark.parametrize("where", ["out", "out/runs"])
+@pytest.mark.parametrize("where", ["out", "out/runs.sqlite/x"])
 def test_a_folder_that_cannot_be_written_to(folder, study, where):
     path = folder / where
-    path.parent.mkdir(exist_ok=True)
+    path.parent.mkdir(exist_ok=True, parents=True)
     path.write_text("a file")
     done = study()
     assert done.returncode == 2
@@ -164,7 +165,7 @@ def test_a_folder_that_cannot_be_written_to(folder, study, where):
 @pytest.mark.slow
 def test_a_full_disk_loses_nothing(folder, study):
     def small_files():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (8000, 8000))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))
 
     done = vibrissa("study", "grid.toml", "--out", "out", cwd=folder, preexec_fn=small_files)
     assert done.returncode == 2
@@ -204,7 +205,7 @@ def test_shipped_studies_at_small_size(command, tmp_path, name):
     text = shipped_studies()[name].read_text()
     (tmp_path / "small.toml").write_text(re.sub(r"count = \d+", "count = 2", text))
     done = command("study", "small.toml", "--out", "out")
-    runs = pd.read_parquet(tmp_path / "out" / "runs")
+    runs = pd.read_parquet(tmp_path / "out" / TABLE_FILE)
     assert len(runs) >= 4
     allowed = {"done", "unsettled"} if name in ("contact-stiffness", "motion") else {"done"}
     outcomes = set(runs["outcome"])

@@ -178,7 +178,7 @@ def test_the_command_the_rows_and_the_report(tmp_path, command):
     (tmp_path / "grid.toml").write_text(SIMULATED)
     done = command("study", "grid.toml", "--out", "out", "--workers", "1")
     assert done.returncode == 0, done.stdout + done.stderr
-    rows = pd.read_parquet(tmp_path / "out" / "runs")
+    rows = pd.read_parquet(tmp_path / "out" / "runs.parquet")
     assert len(rows) == 4
     worst = rows.set_index(["mujoco.segments", "path.tangent.x"]).disagreement_moment_z_rms
     order = np.log2(worst[8] / worst[16])

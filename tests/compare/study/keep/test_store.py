@@ -1,6 +1,8 @@
 """What is stored: whole or not at all, once, and found again whatever happened."""
 
+import math
 import multiprocessing
+import sqlite3
 import subprocess
 import sys
 from pathlib import Path
@@ -9,10 +11,9 @@ import pandas as pd
 import pytest
 
 from analytic import InputError, named_case, solve_sweep
-from compare.study.keep import journal
-from compare.study.keep.parts import list_parts
+from compare.study.keep.database import NAME, Database
 from compare.study.keep.reading import read_rows
-from compare.study.keep.store import Store
+from compare.study.keep.store import TABLE_FILE, Store
 from compare.study.work.perform import Result, perform
 from compare.study.work.recipe import Recipe
 from tests.compare.study.studies import EVENTS_ONLY
@@ -53,7 +54,7 @@ def test_what_is_stored_is_read(tmp_path, plan, stored, warned):
 def test_any_reader_of_the_folder_sees_each_run_once(tmp_path, plan, stored, warned):
     fill(tmp_path, plan, [Result(stored[0].row | {"outcome": "failed"}), *stored[1:3]], warned)
     fill(tmp_path, plan, [stored[0], *stored[2:]], warned)
-    frame = pd.read_parquet(tmp_path / "runs")
+    frame = pd.read_parquet(tmp_path / TABLE_FILE)
     assert len(frame) == len(stored)
     assert set(frame["outcome"]) == {"done"}
 
@@ -65,11 +66,11 @@ def test_only_what_is_done_is_not_done_again(tmp_path, plan, stored, warned):
         assert store.done() == {stored[1].row["run"]}
 
 
-def test_a_row_is_there_before_its_part_is(tmp_path, plan, stored, warned):
+def test_a_row_is_there_before_its_table_is(tmp_path, plan, stored, warned):
     with Store(tmp_path, plan, warned.append) as store:
         store.add(stored[0])
         assert len(read_rows(tmp_path, warned.append)) == 1
-        assert not list_parts(tmp_path / "runs")
+        assert not (tmp_path / TABLE_FILE).exists()
 
 
 def abandon(folder, plan, results):
@@ -81,20 +82,20 @@ def abandon(folder, plan, results):
     os._exit(9)
 
 
-def test_the_journal_of_a_dead_process_is_adopted(tmp_path, plan, stored, warned):
+def test_what_a_dead_process_wrote_is_there(tmp_path, plan, stored, warned):
     process = multiprocessing.get_context("spawn").Process(
         target=abandon, args=(tmp_path, plan, stored)
     )
     process.start()
     process.join()
-    (left,) = (tmp_path / "runs").glob(".journal-*")
-    left.write_bytes(left.read_bytes() + b'{"run": "cut o')  # as a full disk leaves it
+    left = tmp_path / f"{NAME}-wal"
+    left.write_bytes(left.read_bytes() + b"cut o")  # as a full disk leaves it
     with Store(tmp_path, plan, warned.append) as store:
         assert store.done() == {result.row["run"] for result in stored}
-        assert not left.exists()
+    assert not left.exists()
 
 
-def test_a_living_process_keeps_its_journal(tmp_path, plan, stored, warned):
+def test_two_processes_write_at_once(tmp_path, plan, stored, warned):
     with Store(tmp_path, plan, warned.append) as one:
         one.add(stored[0])
         with Store(tmp_path, plan, warned.append) as other:
@@ -102,33 +103,8 @@ def test_a_living_process_keeps_its_journal(tmp_path, plan, stored, warned):
             other.add(stored[0])
             other.add(stored[1])
         one.add(stored[2])
-    assert len(pd.read_parquet(tmp_path / "runs")) == 3
+    assert len(pd.read_parquet(tmp_path / TABLE_FILE)) == 3
     assert not warned
-
-
-def test_many_parts_become_one(tmp_path, plan, stored, warned, monkeypatch):
-    monkeypatch.setattr("compare.study.keep.store.ROWS_A_PART", 2)
-    fill(tmp_path, plan, stored, warned)
-    assert len(list_parts(tmp_path / "runs")) == 1
-    assert len(pd.read_parquet(tmp_path / "runs")) == len(stored)
-
-
-@pytest.mark.parametrize("damage", ["cut", "flipped", "empty"])
-def test_a_damaged_part_is_reported_and_its_runs_done_again(tmp_path, plan, stored, warned, damage):
-    fill(tmp_path, plan, stored, warned)
-    (part,) = list_parts(tmp_path / "runs")
-    content = bytearray(part.read_bytes())
-    if damage == "flipped":
-        content[200] ^= 0xFF
-    part.write_bytes({"cut": content[:-50], "flipped": content, "empty": b""}[damage])
-    with Store(tmp_path, plan, warned.append) as store:
-        assert store.done() == set()
-        store.add(stored[0])
-    (line,) = warned
-    assert part.name in line
-    assert "damaged" in line
-    assert "\n" not in line
-    assert len(pd.read_parquet(tmp_path / "runs")) == 1
 
 
 def test_a_new_axis_adds_a_column(tmp_path, plan, plan_of, stored, warned):
@@ -136,7 +112,7 @@ def test_a_new_axis_adds_a_column(tmp_path, plan, plan_of, stored, warned):
     wider = plan_of(EVENTS_ONLY + "profile.c = [-0.8, -0.7]\n")
     recipe = Recipe.of(wider.study)
     fill(tmp_path, wider, [perform(recipe, next(iter(wider)))], warned)
-    frame = pd.read_parquet(tmp_path / "runs")
+    frame = pd.read_parquet(tmp_path / TABLE_FILE)
     # The same problem, though it is one of a larger study: one run.
     assert len(frame) == 1
     assert frame["profile.c"].tolist() == [-0.8]
@@ -148,17 +124,32 @@ def test_a_file_where_the_folder_should_be(tmp_path, plan, warned):
         Store(tmp_path / "out", plan, warned.append)
 
 
+def test_rows_come_back_as_they_were(tmp_path, warned):
+    rows = [
+        {"run": "a", "outcome": "done", "x": -1.5e-300, "n": 3, "yes": True, "no": False},
+        {"run": "b", "outcome": "failed", "x": math.inf, "n": -(2**62), "text": 'a"b\n'},
+        {"run": "c", "outcome": "done", "x": 0.1 + 0.2, "a.b": math.nan, "none": None, "z": -0.0},
+    ]
+    database = Database(tmp_path, warned.append)
+    for row in rows:
+        database.add(row)
+    found = [*database.rows()]
+    database.close()
+    assert repr(found) == repr(rows)
+    assert not warned
+
+
 def test_a_full_disk_loses_nothing(tmp_path, plan, stored, warned, monkeypatch):
     def full(self, row):
-        raise OSError(28, "No space left on device")
+        raise sqlite3.OperationalError("database or disk is full")
 
     with (
-        pytest.raises(InputError, match="No space left on device"),
+        pytest.raises(InputError, match="disk is full"),
         Store(tmp_path, plan, warned.append) as store,
     ):
         store.add(stored[0])
         store.add(stored[1])
-        monkeypatch.setattr(journal.Journal, "add", full)
+        monkeypatch.setattr(Database, "add", full)
         store.add(stored[2])
     monkeypatch.undo()
     with Store(tmp_path, plan, warned.append) as store:

@@ -11,6 +11,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from compare.study.keep.database import NAME
+from compare.study.keep.store import TABLE_FILE
 from tests.compare.study.studies import COMMAND, EVENTS_ONLY, results, vibrissa
 
 pytestmark = pytest.mark.slow
@@ -49,13 +51,13 @@ def test_killed_many_times(folder, undisturbed, command, times):
         time.sleep(chance.uniform(1.0, 4.0))
         process.send_signal(signal.SIGKILL)
         process.communicate()
-        if (folder / "out" / "runs").is_dir():
+        if (folder / "out" / NAME).is_file():
             now = set(results(folder / "out")["run"])
             assert seen <= now  # nothing that was complete is lost
             seen = now
     assert command("study", "grid.toml", "--out", "out").returncode == 0
     pd.testing.assert_frame_equal(results(folder / "out"), undisturbed)
-    assert not pd.read_parquet(folder / "out" / "runs")["run"].duplicated().any()
+    assert not pd.read_parquet(folder / "out" / TABLE_FILE)["run"].duplicated().any()
 
 
 def test_two_processes_on_one_study(folder, undisturbed):
@@ -64,7 +66,7 @@ def test_two_processes_on_one_study(folder, undisturbed):
         _, error = process.communicate(timeout=300)
         assert (process.returncode, error) == (0, "")
     pd.testing.assert_frame_equal(results(folder / "out"), undisturbed)
-    assert len(pd.read_parquet(folder / "out" / "runs")) == 400
+    assert len(pd.read_parquet(folder / "out" / TABLE_FILE)) == 400
 
 
 def peak_memory(folder: Path, runs: int) -> int:
@@ -126,15 +128,15 @@ def test_a_cluster_gives_the_same_table(folder, cluster, undisturbed):
     pd.testing.assert_frame_equal(results(folder / "out"), undisturbed)
 
 
-def rows_in_journals(folder: Path) -> int:
-    return sum(len(path.read_bytes().splitlines()) for path in folder.glob(".journal*"))
+def rows_there(folder: Path) -> int:
+    return len(results(folder)) if (folder / NAME).is_file() else 0
 
 
 def test_a_scheduler_that_goes_loses_nothing(folder, cluster, command):
     address, scheduler = cluster
     (folder / "grid.toml").write_text(FEW_HUNDRED.replace("100", "500"))
     process = start(folder, "--scheduler", address)
-    while process.poll() is None and rows_in_journals(folder / "out" / "runs") < 20:
+    while process.poll() is None and rows_there(folder / "out") < 20:
         time.sleep(0.1)
     scheduler.kill()
     _, error = process.communicate(timeout=120)

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 from analytic import CLAMP_READINGS, InputError
+from compare.study.keep.database import NAME, Database
 from compare.study.show.questions import asked
 from compare.study.show.results import WORST, StudyResults
 from compare.study.show.sentences import headline, varied
@@ -129,16 +130,13 @@ def test_outcomes_count_what_is_missing(plan_of):
 
 def test_a_page_of_an_unfinished_study(plan_of, tmp_path):
     plan = plan_of(PHASE_B)
-    (tmp_path / "runs").mkdir()
-    rows = []
+    database = Database(tmp_path, pytest.fail)
     for number, run in enumerate(list(plan)[:5]):
         done = {"outcome": "done", "reason": ""} if number else {
             "outcome": "failed", "reason": "<script>alert(1)</script>"}  # fmt: skip
         numbers = {"contact_length_minimum": 1.2 - 0.1 * number, "phase_b_exists": number > 2}
-        rows.append({"run": run.id, **done, **run.parameters, **numbers})
-    pd.DataFrame(rows).astype({"outcome": object, "run": object}).to_parquet(
-        tmp_path / "runs" / "part-0-old.parquet", index=False
-    )
+        database.add({"run": run.id, **done, **run.parameters, **numbers})
+    database.close()
     (tmp_path / "study.json").write_text(plan.to_json())
     warned = []
     page = write_report(tmp_path, warned.append).read_text()
@@ -151,10 +149,10 @@ def test_a_page_of_an_unfinished_study(plan_of, tmp_path):
 
 def test_nothing_done_says_why(plan_of, tmp_path):
     plan = plan_of(PHASE_B)
-    (tmp_path / "runs").mkdir()
+    Database(tmp_path, pytest.fail).close()
     (tmp_path / "study.json").write_text(json.dumps(json.loads(plan.to_json())))
     with pytest.raises(InputError, match="a run that is done"):
         write_report(tmp_path, pytest.fail)
-    (tmp_path / "runs" / "part-0-damaged.parquet").write_bytes(b"PAR1")
-    with pytest.raises(InputError, match=r"part-0-damaged\.parquet is damaged"):
+    (tmp_path / NAME).write_bytes(b"PAR1")
+    with pytest.raises(InputError, match=r"runs\.sqlite is damaged"):
         write_report(tmp_path, pytest.fail)
