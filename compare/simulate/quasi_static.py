@@ -99,7 +99,8 @@ def _worst(found: Mapping[str, Disagreement], phase: str) -> float:
 def main(path: Path) -> None:
     """Sweep all variants, on all cores, and write them down."""
     with Workers(available_cores()) as pool:
-        rows = [*pool.map(measure, *zip(*variants(), strict=True))]
+        started = [pool.submit(measure, *variant) for variant in variants()]
+        rows = [one.result() for one in started]
     table = pd.DataFrame(rows).astype({"chattering": "Int64"})
     write_whole(path, table.to_csv(index=False, float_format="%.4g"))
 

@@ -1,21 +1,22 @@
 """Worker processes: they start, or an error says why not, and end with their leader."""
 
 import os
-import signal
-from collections.abc import Iterator
-from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
-from contextlib import contextmanager, suppress
-from multiprocessing import current_process, get_all_start_methods, get_context
-from multiprocessing.connection import Connection
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor
+from contextlib import contextmanager
+from multiprocessing import current_process, get_all_start_methods, get_context, parent_process
 from threading import Thread
-from types import TracebackType
-from typing import NoReturn
+from typing import TypeVar
+
+from pebble import ProcessExpired, ProcessFuture, ProcessPool
 
 from analytic import InputError
 
 SWEEPERS = ("mujoco_models.sweep.sweep", "mujoco_models.simulate")
 """What workers that sweep in MuJoCo share."""
 _START = 120.0  # s; a worker is there within one or two, on a crowded machine within ten
+
+T = TypeVar("T")
 
 
 def available_cores() -> int:
@@ -25,11 +26,10 @@ def available_cores() -> int:
     return os.cpu_count() or 1
 
 
-class Workers(ProcessPoolExecutor):
+class Workers:
     """A pool whose processes end as soon as their leader does, however that ends.
 
-    Each holds one end of a pipe whose other end only the leader has: it closes when the leader lets
-    go of it, is killed, or crashes. Ctrl-C is the leader's affair alone.
+    A worker that dies, or is ended since its time is up, costs its own task and no other.
     """
 
     def __init__(self, count: int, preload: tuple[str, ...] = ()) -> None:
@@ -37,16 +37,15 @@ class Workers(ProcessPoolExecutor):
             # A worker reads its leader's script first, and that would start workers without end.
             raise SystemExit(1)
         server = preload and _has_server()
-        context = get_context("forkserver" if server else "spawn")
         if server:
             start_server(preload)
-        self._watched, self._held = context.Pipe(duplex=False)
-        super().__init__(count, context, _begin_work, (self._watched,))
+        context = get_context("forkserver" if server else "spawn")
+        self._pool = ProcessPool(count, initializer=_end_with_leader, context=context)
         try:
             with _nothing_from_here():
-                self.submit(os.getpid).result(timeout=_START)
-        except (BrokenExecutor, OSError, TimeoutError) as error:
-            self.shutdown(wait=False, cancel_futures=True)
+                self.submit(os.getpid).result(_START)
+        except (BrokenExecutor, ProcessExpired, OSError, TimeoutError) as error:
+            self.end()
             reason = " ".join(str(error).split()) or type(error).__name__
             raise InputError(
                 "workers", count, "processes that can be started here",
@@ -54,23 +53,29 @@ class Workers(ProcessPoolExecutor):
                 ' `if __name__ == "__main__":`, or free memory or processes',
             ) from error  # fmt: skip
         except BaseException:
-            self.shutdown(wait=False, cancel_futures=True)
+            self.end()
             raise
 
-    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """End the processes."""
-        if not wait:
-            self._held.close()
-        super().shutdown(wait=wait, cancel_futures=cancel_futures)
-        self._held.close()
+    def submit(
+        self, function: Callable[..., T], *args: object, timeout: float | None = None
+    ) -> ProcessFuture[T]:
+        """Let a worker do something; after the time limit it is ended."""
+        return self._pool.schedule(function, args, timeout=timeout)
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.shutdown(wait=error is None, cancel_futures=error is not None)
+    def end(self) -> None:
+        """End the processes, whatever they are doing."""
+        self._pool.stop()  # type: ignore[no-untyped-call]
+        self._pool.join()
+
+    def __enter__(self) -> "Workers":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if kind is None:
+            self._pool.close()  # type: ignore[no-untyped-call]
+            self._pool.join()
+        else:
+            self.end()
 
 
 def start_server(preload: tuple[str, ...]) -> None:
@@ -107,12 +112,13 @@ def _nothing_from_here() -> Iterator[None]:
             os.environ["PYTHONSAFEPATH"] = before
 
 
-def _begin_work(watched: Connection) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    Thread(target=_end_with_leader, args=(watched,), daemon=True).start()
+def _end_with_leader() -> None:
+    """Watch the leader; what the worker is doing when that ends is not wanted any more."""
+    leader = parent_process()
 
+    def watch() -> None:
+        if leader is not None:
+            leader.join()
+            os._exit(1)
 
-def _end_with_leader(watched: Connection) -> NoReturn:
-    with suppress(EOFError, OSError):
-        watched.recv_bytes()  # nothing is ever sent
-    os._exit(1)
+    Thread(target=watch, daemon=True).start()

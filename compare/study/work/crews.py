@@ -2,12 +2,17 @@
 
 import logging
 import os
+from concurrent.futures import Future
 from typing import Any
+
+from pebble import ProcessExpired
 
 from analytic import InputError
 from compare.simulate.workers import Workers
-from compare.study.work.execute import Crew
-from compare.study.work.perform import perform, perform_alone, perform_together
+from compare.study.grid.plan import PlannedRun
+from compare.study.work.execute import Crew, Task
+from compare.study.work.perform import Outcome, Result, perform, perform_alone, perform_together
+from compare.study.work.recipe import Recipe
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -19,14 +24,21 @@ _CHATTY = ("distributed", "distributed.client", "tornado.application", "asyncio"
 def local_crew(workers: int) -> Crew:
     """Hire processes on this machine, each with one thread."""
     os.environ |= dict.fromkeys(_THREADS, "1")  # read by the libraries when they are imported
-    preload = ("compare.study.work.perform",)
-    return Crew(
-        lambda: Workers(workers, preload),
-        perform_alone,
-        2 * workers + 1,
-        _unexpected,
-        perform_together,
-    )
+    pool = Workers(workers, ("compare.study.work.perform",))
+
+    def submit(task: Task, recipe: Recipe, runs: tuple[PlannedRun, ...]) -> Future[list[Result]]:
+        # The run itself asks the time between stations; a stuck one is ended with its worker.
+        return pool.submit(task, recipe, runs, timeout=1.1 * recipe.timeout + 1)
+
+    return Crew(submit, perform, 2 * workers + 1, _local_ending, pool.end, perform_together)
+
+
+def _local_ending(error: BaseException, recipe: Recipe) -> tuple[Outcome, str]:
+    if isinstance(error, TimeoutError):
+        return "timeout", f"stuck for {recipe.timeout:g} s; its worker was ended"
+    if isinstance(error, ProcessExpired):
+        return "failed", "its worker process died, twice"
+    raise error
 
 
 def dask_crew(address: str) -> Crew:
@@ -51,23 +63,25 @@ def dask_crew(address: str) -> Crew:
             "--scheduler", address, "that of a cluster with workers", "start some: `dask worker`"
         )
 
-    def failure(error: BaseException) -> str:
+    executor = client.get_executor(pure=False)
+
+    def ending(error: BaseException, recipe: Recipe) -> tuple[Outcome, str]:
         if isinstance(error, KilledWorker):
-            return "its workers died, one after the other"
+            return "failed", "its workers died, one after the other"
         raise _gone(address) from error
 
-    single = max(threads.values()) == 1
+    def end() -> None:
+        executor.shutdown(wait=False)
+
+    alone = max(threads.values()) == 1
     return Crew(
-        lambda: client.get_executor(pure=False),
-        perform_alone if single else perform,
+        executor.submit,
+        perform_alone if alone else perform,
         4 * sum(threads.values()),
-        failure,
-        perform_together if single else None,
+        ending,
+        end,
+        perform_together if alone else None,
     )
-
-
-def _unexpected(error: BaseException) -> str:
-    raise error
 
 
 def _gone(address: str) -> InputError:

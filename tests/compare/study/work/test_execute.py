@@ -5,19 +5,24 @@ import signal
 import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from dataclasses import replace
 
 import pytest
 
 from compare.study.work.crews import local_crew
 from compare.study.work.execute import Crew, carry_out
-from compare.study.work.perform import Result, perform, perform_alone
+from compare.study.work.perform import Result, perform
 from compare.study.work.recipe import Recipe
 from tests.compare.study.studies import EVENTS_ONLY
 
 
-def crew(perform, hire=None):
-    local = local_crew(2)
-    return Crew(hire or local.hire, perform, 5, pytest.fail)
+def crew(perform):
+    return replace(local_crew(2), perform=perform, together=None)
+
+
+def in_a_thread(perform, threads=1):
+    executor = ThreadPoolExecutor(threads)
+    return Crew(executor.submit, perform, 5, pytest.fail, executor.shutdown)
 
 
 def quick(recipe, run):
@@ -39,18 +44,12 @@ def deadly(recipe, run):
 
 
 def stuck(recipe, run):
-    """Perform a run that hangs where no Python code is asked any more."""
-    from compare.study.work import perform as running
-
-    def hang(recipe, run):
-        if run.parameters["beam.radius"] == 0.002 and run.parameters["profile.a"] == 0.3:
-            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-            while True:
-                time.sleep(1000)
-        return quick(recipe, run)
-
-    running.perform = hang
-    return perform_alone(recipe, run)
+    """Hang where no Python code is asked any more."""
+    if run.parameters["beam.radius"] == 0.002 and run.parameters["profile.a"] == 0.3:
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+        while True:
+            time.sleep(1000)
+    return quick(recipe, run)
 
 
 @pytest.fixture
@@ -61,8 +60,8 @@ def plan(plan_of):
 def test_any_executor_gives_the_same_rows(plan):
     recipe = Recipe.of(plan.study)
     tables = []
-    for executor in (lambda: ThreadPoolExecutor(3), None):
-        rows = [result.row for result in carry_out(plan, recipe, crew(perform, executor))]
+    for hired in (in_a_thread(perform, 3), crew(perform)):
+        rows = [result.row for result in carry_out(plan, recipe, hired)]
         tables.append(sorted(({**row, "seconds": 0} for row in rows), key=lambda row: row["run"]))
     assert len(tables[0]) == len(plan)
     assert tables[0] == tables[1]
@@ -76,9 +75,7 @@ def test_runs_are_made_as_they_are_needed(plan):
             made.append(run)
             yield run
 
-    results = carry_out(
-        watched(), Recipe.of(plan.study), crew(quick, lambda: ThreadPoolExecutor(1))
-    )
+    results = carry_out(watched(), Recipe.of(plan.study), in_a_thread(quick))
     next(results)
     assert len(made) <= 6
     results.close()
