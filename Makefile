@@ -20,7 +20,7 @@ FOUND = --budget --beam $(BEAM) --out $(@D) $(ARGS) || test $$? -eq 1; test -f $
 
 .NOTPARALLEL:
 .PHONY: help install develop run test test-slow test-all trials coverage lint docs wheel fuzz bench results again studies \
-  size install-mujoco3 test-mujoco3 install-engines test-engines versions clean
+  net size install-mujoco3 test-mujoco3 install-engines test-engines versions clean
 
 help:            ## list the targets
 	@grep -E '^[a-z0-9-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -67,6 +67,11 @@ fuzz: develop    ## bad input to all commands; ARGS="N SEED"
 
 bench: develop   ## speed, side by side on one core; ARGS="ratios limits analytic mujoco space stepping exudyn engines study", or million
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench $(ARGS)
+
+net: develop     ## some 280 sweeps of this checkout, held against those that another one made in OLD
+	rm -rf results/net
+	$(BIN)/python -m tests.net make results/net
+	$(BIN)/python -m tests.net compare $(or $(OLD),$(error OLD=DIR is missing)) results/net
 
 results: $(RUNS) | install ## results/README.md: all named cases, all beams there are; goes on where it stopped
 	$(BIN)/python -m compare.simulate.overview results/overview.png
