@@ -64,7 +64,10 @@ def compare_sets(old: Path, new: Path, tolerance: float) -> int:
     for item in sorted(
         {f"{p.parent.name}/{p.stem}" for a in (old, new) for p in a.glob("*/*.json")}
     ):
-        files = [folder / f"{item}.json" for folder in (old, new)]
+        files, room = [folder / f"{item}.json" for folder in (old, new)], item.partition("/")[0]
+        if not files[1].exists():  # `make --only` makes a part
+            counts[room, "not made"] += 1
+            continue
         one, other = ({"": json.loads(f.read_text())} if f.exists() else {} for f in files)
         beyond = [d for d in differences(item, one, other) if d.size > tolerance]
         beyond.sort(key=lambda d: -d.size)
@@ -76,7 +79,7 @@ def compare_sets(old: Path, new: Path, tolerance: float) -> int:
         for reason in dict.fromkeys(a.reason for a in meant):
             print(f"{item}, on purpose, at most {beyond[0].size:.1e}: {reason}")
         verdict = "differ" if others else "differ on purpose" if meant else "equal"
-        counts[item.partition("/")[0], verdict] += 1
+        counts[room, verdict] += 1
     for (room, verdict), count in counts.items():
         print(f"{room:14} {count:4} {verdict}")
     return int(any(verdict == "differ" for _, verdict in counts))
@@ -127,7 +130,7 @@ def _of_vector(columns: dict[str, Any], key: str) -> float:
     if key[-2:] not in ("_x", "_y", "_z"):
         return 0.0
     components = (_numbers(columns[name]) for name in columns if name[:-1] == key[:-1])
-    return max(_largest(one) for one in components if one is not None)
+    return max((_largest(one) for one in components if one is not None), default=0.0)
 
 
 def _numbers(value: Any) -> Floats | None:
