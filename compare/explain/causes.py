@@ -9,15 +9,9 @@ import pandas as pd
 
 from analytic import CLAMP_READINGS
 from analytic.problem.arrays import Floats
+from analytic.problem.quantities import QUANTITIES
 from compare.align.stations import interpolant
-from compare.explain.signatures import (
-    Fault,
-    Resolved,
-    compliance,
-    natural_curvature,
-    stiffness,
-    tip_radius,
-)
+from compare.explain.signatures import Fault, Resolved, unit_of
 from compare.measure.measurement import Measurement
 
 _STEP = 1e-3  # of a length, and so on: the size that a signature is taken from
@@ -81,7 +75,15 @@ def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cau
     """The faults whose signatures the closed form gives, where it can be solved with them."""
     case, beam, length = exact.case, exact.case.beam, exact.case.beam.length
     held = f"{case.clamp_stiffness:.3g}" if math.isfinite(case.clamp_stiffness) else "rigid"
-    bent, cone = natural_curvature(beam), tip_radius(beam) / (beam.radius or math.nan)
+
+    def stated(fault: Fault) -> float:
+        return QUANTITIES[fault].value(case) / (unit_of(fault, case) or math.nan)
+
+    def clamp_stiffness(softer: float) -> float:
+        by = softer * unit_of("clamp_compliance", case)
+        return QUANTITIES["clamp_compliance"].larger(case, by).clamp_stiffness
+
+    bent, cone = stated("natural_curvature"), -stated("tip_radius")
     said: dict[Fault, tuple[Callable[[float], str], float, float]] = {
         # What is off by more would hardly be the same experiment.
         "length": ("length of the vibrissa {:+.2%} off".format, -0.2, 0.2),
@@ -99,12 +101,12 @@ def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cau
             0.0,
             0.2,
         ),
-        "compliance": (
+        "clamp_compliance": (
             lambda size: (
-                f"clamp stiffness about {stiffness(case, size):.3g}, not {held}:"
+                f"clamp stiffness about {clamp_stiffness(size):.3g}, not {held}:"
                 " the clamp gives way otherwise than stated"
             ),
-            -compliance(case),
+            -stated("clamp_compliance"),
             2.0,
         ),
         "friction": (
@@ -117,13 +119,13 @@ def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cau
         ),
         "natural_curvature": (
             lambda size: (
-                f"natural curvature about {bent + size / length:+.3g}, not {bent:.3g}: the vibrissa"
-                " at rest is bent otherwise than stated"
+                f"natural curvature about {(bent + size) / length:+.3g}, not {bent / length:.3g}:"
+                " the vibrissa at rest is bent otherwise than stated"
             ),
-            -1.5 - bent * length,
-            1.5 - bent * length,
+            -1.5 - bent,
+            1.5 - bent,
         ),
-        "taper": (
+        "tip_radius": (
             lambda size: (
                 f"tip radius about {(cone - size) * beam.radius:.2e}, not"
                 f" {cone * beam.radius:.2e}: the vibrissa is a cone, or another one"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal, TypeAlias
@@ -11,7 +10,6 @@ import numpy as np
 
 from analytic import (
     CLAMP_READINGS,
-    Beam,
     Case,
     InputError,
     Readings,
@@ -21,6 +19,7 @@ from analytic import (
 )
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.contours.contour import Contour
+from analytic.problem.quantities import QUANTITIES
 from analytic.problem.table import says
 
 _STATIONS = 1000  # of the sweeps between which it is interpolated
@@ -31,7 +30,7 @@ _SAME = 1e-3  # of the largest magnitude; the contour must reproduce the referen
 _KEPT = 64  # sweeps, 32 kB each: a reference is often compared with many candidates
 
 Fault: TypeAlias = Literal[
-    "length", "radius", "clamp", "compliance", "friction", "natural_curvature", "taper"
+    "length", "radius", "clamp", "clamp_compliance", "friction", "natural_curvature", "tip_radius"
 ]
 
 
@@ -68,7 +67,7 @@ class Resolved:
         return cls(case, points, foot_x, _at(solved, foot_x)) if same else None
 
     def change(self, fault: Fault, size: float) -> Floats | None:
-        """What a fault adds to the clamp readings."""
+        """What a fault adds to the clamp readings, by its size in the unit of `unit_of`."""
         try:
             there = _at(_sweep(self._changed(fault, size)), self.foot_x)
         except (InputError, ArithmeticError):
@@ -79,50 +78,16 @@ class Resolved:
         return there - self.seen
 
     def _changed(self, fault: Fault, size: float) -> Case:
-        case, beam, length = self.case, self.case.beam, self.case.beam.length
-        match fault:
-            case "length":
-                beam = replace(beam, length=length + size * length)
-            case "radius":
-                beam = replace(beam, radius=beam.radius + size * length)
-            case "clamp":
-                lowered = _smooth(self.points - [0.0, size * length])
-                return replace(
-                    case, beam=replace(beam, length=length - size * length), profile=lowered
-                )
-            case "compliance":
-                return replace(case, clamp_stiffness=stiffness(case, size))
-            case "friction":
-                return replace(case, friction=case.friction + size)
-            case "natural_curvature":
-                beam = replace(beam, natural_curvature=natural_curvature(beam) + size / length)
-            case "taper":
-                beam = replace(beam, tip_radius=tip_radius(beam) - size * beam.radius)
-        return replace(case, beam=beam)
+        if fault != "clamp":
+            return QUANTITIES[fault].larger(self.case, size * unit_of(fault, self.case))
+        by = size * self.case.beam.length
+        shorter = QUANTITIES["length"].larger(self.case, -by)
+        return replace(shorter, profile=_smooth(self.points - [0.0, by]))
 
 
-def compliance(case: Case) -> float:
-    """Rotation of the clamp by its moment."""
-    return case.beam.moment_unit / case.clamp_stiffness
-
-
-def stiffness(case: Case, softer: float) -> float:
-    """The stiffness of a clamp that turns by more."""
-    turns = compliance(case) + softer
-    return case.beam.moment_unit / turns if turns > 0 else math.inf
-
-
-def natural_curvature(beam: Beam) -> float:
-    """The curvature of a vibrissa at rest that is an arc."""
-    given = beam.natural_curvature
-    return given if isinstance(given, float) else math.nan
-
-
-def tip_radius(beam: Beam) -> float:
-    """The radius at the tip."""
-    if not isinstance(beam.flexural_rigidity, float):
-        return math.nan
-    return beam.radius if beam.tip_radius is None else beam.tip_radius
+def unit_of(fault: Fault, case: Case) -> float:
+    """What a fault of size 1 is: a tip that is thinner by the radius at the clamp, for one."""
+    return -case.beam.radius if fault == "tip_radius" else QUANTITIES[fault].unit(case)
 
 
 def _smooth(points: Floats) -> Contour:

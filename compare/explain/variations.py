@@ -5,16 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic import (
-    CLAMP_READINGS,
-    Beam,
-    Case,
-    Readings,
-    polygon,
-    solve_sweep,
-    with_friction,
-)
+from analytic import CLAMP_READINGS, Case, Readings, polygon, solve_sweep, with_friction
 from analytic.problem.arrays import Floats
+from analytic.problem.quantities import QUANTITIES
 
 STEP = 1e-3
 """Relative change of each quantity, from which its signature is taken."""
@@ -30,44 +23,41 @@ def variations(case: Case) -> dict[str, Readings]:
     is more curved towards the object may touch it twice: of those two the sweep is the exact one
     less what the opposite change does.
     """
-    beam, length = case.beam, case.beam.length
     start, stop = (float(x) for x in case.foot_x[[0, -1]])
-    shift = STEP * length
-    same = replace(case.sweep, start=start, stop=stop)
-    cases = {
-        "flexural_rigidity": replace(case, beam=beam.scaled(rigidity=1 + STEP)),
-        "length": replace(case, beam=beam.scaled(length=1 + STEP)),
-        "radius": replace(case, beam=replace(beam, radius=beam.radius * (1 + STEP))),
-        "foot_x": case,
-    }
     # Nearby cases start a little elsewhere by default; all are swept over the same stations.
-    shifted = replace(same, start=start + shift, stop=stop + shift)
-    found = {
-        name: solve_sweep(replace(varied, sweep=shifted if name == "foot_x" else same))
-        for name, varied in cases.items()
+    case = replace(case, sweep=replace(case.sweep, start=start, stop=stop))
+    beam, tip_radius = case.beam, QUANTITIES["tip_radius"].value(case)
+    units = {name: quantity.unit(case) for name, quantity in QUANTITIES.items()}
+    units |= {"radius": beam.radius, "tip_radius": -tip_radius}
+    if case.sweep.direction == "left":
+        units["natural_curvature"] *= -1
+
+    def swept(name: str) -> Readings:
+        # Friction's closed form ends where the vibrissa sticks or lets go; the integration of a
+        # plain one goes on over all stations.
+        if name == "friction" and case.is_plain:
+            return with_friction(case, STEP)
+        return solve_sweep(QUANTITIES[name].larger(case, STEP * units[name]))
+
+    found = {name: swept(name) for name in _VARIED}
+    exact = solve_sweep(case)
+    if beam.radius > 0 and np.isfinite(tip_radius):
+        found["tip_radius"] = swept("tip_radius")
+    return {
+        name: _opposite(exact, varied) if units[name] < 0 else varied
+        for name, varied in found.items()
     }
-    # Friction's closed form ends where the vibrissa sticks or lets go; the integration of a plain
-    # one goes on over all stations.
-    rubs = replace(case, friction=case.friction + STEP, sweep=same)
-    found["friction"] = with_friction(case, STEP) if case.is_plain else solve_sweep(rubs)
-    softer = 1 / case.clamp_stiffness + STEP / beam.moment_unit
-    found["clamp_compliance"] = solve_sweep(replace(case, clamp_stiffness=1 / softer, sweep=same))
-    exact = solve_sweep(replace(case, sweep=same))
-    away = -1 if case.sweep.direction == "left" else 1
-    bent = solve_sweep(replace(case, beam=_bent(beam, away * STEP / length), sweep=same))
-    found["natural_curvature"] = bent if away > 0 else _opposite(exact, bent)
-    if beam.radius > 0 and isinstance(beam.flexural_rigidity, float):
-        tip_radius = (beam.radius if beam.tip_radius is None else beam.tip_radius) * (1 - STEP)
-        thinner = replace(case, beam=replace(beam, tip_radius=tip_radius), sweep=same)
-        found["tip_radius"] = _opposite(exact, solve_sweep(thinner))
-    return found
 
 
-def _bent(beam: Beam, by: float) -> Beam:
-    """The vibrissa with another natural curvature, the same all along it more."""
-    given = beam.natural_curvature
-    bent = given + by if isinstance(given, float) else lambda s: beam.curvature_at(s) + by
-    return replace(beam, natural_curvature=bent)
+_VARIED = (
+    "flexural_rigidity",
+    "length",
+    "radius",
+    "foot_x",
+    "friction",
+    "clamp_compliance",
+    "natural_curvature",
+)
 
 
 def _opposite(exact: Readings, changed: Readings) -> Readings:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 from analytic import Case, InputError, Readings
+from analytic.problem.quantities import QUANTITIES
 
 
 @dataclass(frozen=True)
@@ -14,28 +15,21 @@ class Condition:
     true: Callable[[Case], Case]  # the true case, from the one that the method believes in
 
 
-def _curved(case: Case) -> Case:
-    return replace(case, beam=replace(case.beam, natural_curvature=-0.2 / case.beam.length))
-
-
-def _tapered(case: Case) -> Case:
-    return replace(case, beam=replace(case.beam, tip_radius=0.8 * case.beam.radius))
-
-
-def _soft(case: Case) -> Case:
-    return replace(case, clamp_stiffness=10 * case.beam.moment_unit)
-
-
-def _rubbing(case: Case) -> Case:
-    return replace(case, friction=0.2)
+def _with(name: str, size: float) -> Callable[[Case], Case]:
+    """The case with another value of a quantity, in its unit."""
+    quantity = QUANTITIES[name]
+    return lambda case: quantity.at(case, size * quantity.unit(case))
 
 
 CONDITIONS: dict[str, Condition] = {
     "exact": Condition("the paper's vibrissa", lambda case: case),
-    "curved": Condition("natural curvature -0.2/L", _curved),
-    "tapered": Condition("a cone whose tip has 0.8 of the radius", _tapered),
-    "soft-clamp": Condition("clamp of stiffness 10 EI/L", _soft),
-    "friction": Condition("friction 0.2", _rubbing),
+    "curved": Condition("natural curvature -0.2/L", _with("natural_curvature", -0.2)),
+    "tapered": Condition(
+        "a cone whose tip has 0.8 of the radius",
+        lambda case: QUANTITIES["tip_radius"].at(case, 0.8 * case.beam.radius),
+    ),
+    "soft-clamp": Condition("clamp of stiffness 10 EI/L", _with("clamp_compliance", 0.1)),
+    "friction": Condition("friction 0.2", _with("friction", 0.2)),
 }
 """By name. Sizes are moderate: each bends or turns a vibrissa by less than a contact does."""
 

@@ -8,7 +8,7 @@ from analytic import CLAMP_READINGS, Case, InputError
 from compare.read.complaints import shown
 from compare.read.toml import Place
 from compare.read.units import DIMENSIONS, in_si
-from compare.validate.inputs import GAINS, INPUTS
+from compare.validate.inputs import GAINS, INPUTS, nominal
 from compare.validate.stated import NAMES, Input, Uncertainties
 
 _TABLE = "uncertainty"
@@ -59,15 +59,15 @@ def _input(name: str, said: object, case: Case, here: str) -> Input:
             "say which of the two it is",
         )
     dimension = "" if name in GAINS else INPUTS[name].dimension
-    nominal = 1.0 if name in GAINS else INPUTS[name].nominal(case)
-    if not math.isfinite(nominal):
+    value = 1.0 if name in GAINS else nominal(case, name)
+    if not math.isfinite(value):
         raise InputError(
             here,
             shown(said),
             f"left out: the case has no {name} that is a number",
             "a rigid clamp has no stiffness, a cylinder no radius of its tip",
         )
-    size = _size(said[kinds[0]], dimension, nominal, case, f"{here}.{kinds[0]}")
+    size = _size(said[kinds[0]], dimension, value, case, f"{here}.{kinds[0]}")
     return Input(size) if kinds[0] == "standard" else Input.within(size)
 
 

@@ -94,7 +94,7 @@ def _slope(case: Case, name: str, nominal: Swept) -> tuple[Floats, float]:
     kind = INPUTS[name]
     step = _STEP * kind.unit(case)
     after = swept(case, {name: step})
-    one_sided = kind.positive and kind.nominal(case) < step
+    one_sided = kind.positive and kind.value(case) < step
     before = nominal if one_sided else swept(case, {name: -step})
     way = step if one_sided else 2 * step
     snap = 0.0

@@ -28,8 +28,8 @@ def swept(case: Case, changes: Mapping[str, float] | None = None) -> Swept:
     for name, by in changes.items():
         if name in GAINS:
             gains[GAINS.index(name)] += by
-        elif (change := INPUTS[name].changed) is not None and by != 0:
-            varied = change(varied, by)
+        elif name != "foot_x" and by != 0:
+            varied = INPUTS[name].larger(varied, by)
     # A sweep has to start clear of the object: stations are put before the first one.
     number = case.sweep.stations
     step = (stop - start) / (number - 1)

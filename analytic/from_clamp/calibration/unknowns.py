@@ -1,12 +1,12 @@
 """What of a vibrissa, its clamp and its sweep a calibration can find."""
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from analytic.problem.along import Along
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
+from analytic.problem.quantities import QUANTITIES
 
 _THINNEST = 0.05  # radius of the tip over that at the clamp; thinner ones are hardly determined
 _SOFTEST = 20.0  # L/EI; a clamp so soft holds nothing
@@ -28,105 +28,72 @@ class Sought:
 class Unknown:
     """A fitted quantity, as a dimensionless number on which the readings depend smoothly."""
 
-    now: Callable[[Sought, Case], float]  # the number, of what is tried
-    # What is tried, with another such number; the second argument is the case as it was given,
-    # which has the units.
-    tried: Callable[[Sought, Case, float], Sought]
-    value: Callable[[Sought], float]  # what a user calls the quantity, in the case's units
+    name: str  # of `QUANTITIES`; empty for the offset of the foot's positions
+    unit: Callable[[Case], float]  # of the quantity, in the case as it was given
     lowest: float  # what the number can be
     highest: float  # what the number can be
     # Whether the quantity itself can be as at either end: a clamp can be rigid.
     possible: tuple[bool, bool]
     starts: tuple[float, ...]  # numbers from which a fit starts, beside that of the case
+    said: str = ""  # what a user calls the quantity, if that is another one
 
+    def now(self, sought: Sought, given: Case) -> float:
+        """The number, of what is tried."""
+        return self._of(sought, self.name) / self.unit(given)
 
-def _rigidity(sought: Sought, given: Case, number: float) -> Sought:
-    beam, case = given.beam, sought.case
-    factor = number * beam.base_rigidity / case.beam.base_rigidity
-    return replace(sought, case=replace(case, beam=case.beam.scaled(rigidity=factor)))
+    def tried(self, sought: Sought, given: Case, number: float) -> Sought:
+        """What is tried, with another such number."""
+        value = number * self.unit(given)
+        if not self.name:
+            return replace(sought, offset=value)
+        return replace(sought, case=QUANTITIES[self.name].at(sought.case, value))
 
+    def value(self, sought: Sought) -> float:
+        """The quantity, in the case's units."""
+        return self._of(sought, self.said or self.name)
 
-def _stiffness(sought: Sought, given: Case, number: float) -> Sought:
-    stiffness = given.beam.moment_unit / number if number > 0 else math.inf
-    return replace(sought, case=replace(sought.case, clamp_stiffness=stiffness))
-
-
-def _natural(sought: Sought) -> float:
-    natural = sought.case.beam.natural_curvature
-    return natural if isinstance(natural, float) else math.nan
-
-
-def _bent(sought: Sought, given: Case, number: float) -> Sought:
-    beam = replace(sought.case.beam, natural_curvature=number / given.beam.length)
-    return replace(sought, case=replace(sought.case, beam=beam))
-
-
-def _tip_radius(sought: Sought) -> float:
-    beam = sought.case.beam
-    return beam.radius if beam.tip_radius is None else beam.tip_radius
-
-
-def _tapered(sought: Sought, given: Case, number: float) -> Sought:
-    radius = None if number >= 1 else number * given.beam.radius
-    return replace(
-        sought, case=replace(sought.case, beam=replace(sought.case.beam, tip_radius=radius))
-    )
-
-
-def _rubbing(sought: Sought, given: Case, number: float) -> Sought:
-    return replace(sought, case=replace(sought.case, friction=number))
+    def _of(self, sought: Sought, name: str) -> float:
+        return QUANTITIES[name].value(sought.case) if name else sought.offset
 
 
 UNKNOWNS: dict[str, Unknown] = {
     "flexural_rigidity": Unknown(
-        lambda sought, given: sought.case.beam.base_rigidity / given.beam.base_rigidity,
-        _rigidity,
-        lambda sought: sought.case.beam.base_rigidity,
+        "flexural_rigidity",
+        lambda given: given.beam.base_rigidity,
         1 / _MOST_RIGID,
         _MOST_RIGID,
         (False, False),
         (),
     ),
     "clamp_stiffness": Unknown(
-        lambda sought, given: given.beam.moment_unit / sought.case.clamp_stiffness,
-        _stiffness,
-        lambda sought: sought.case.clamp_stiffness,
+        "clamp_compliance",
+        lambda given: 1 / given.beam.moment_unit,
         0.0,
         _SOFTEST,
         (True, False),
         (0.05, 0.2, 0.8),
+        "clamp_stiffness",
     ),
     "natural_curvature": Unknown(
-        lambda sought, given: _natural(sought) * given.beam.length,
-        _bent,
-        _natural,
+        "natural_curvature",
+        lambda given: 1 / given.beam.length,
         -_MOST_BENT,
         _MOST_BENT,
         (False, False),
         (-0.6, -0.2, 0.2, 0.6),
     ),
     "tip_radius": Unknown(
-        lambda sought, given: _tip_radius(sought) / given.beam.radius,
-        _tapered,
-        _tip_radius,
+        "tip_radius",
+        lambda given: given.beam.radius,
         _THINNEST,
         1.0,
         (False, True),
         (0.3, 0.6, 0.9),
     ),
-    "friction": Unknown(
-        lambda sought, given: sought.case.friction,
-        _rubbing,
-        lambda sought: sought.case.friction,
-        0.0,
-        1.0,
-        (True, False),
-        (0.1, 0.4),
-    ),
+    "friction": Unknown("friction", lambda given: 1.0, 0.0, 1.0, (True, False), (0.1, 0.4)),
     "offset": Unknown(
-        lambda sought, given: sought.offset / given.beam.length,
-        lambda sought, given, number: replace(sought, offset=number * given.beam.length),
-        lambda sought: sought.offset,
+        "",
+        lambda given: given.beam.length,
         -_FARTHEST,
         _FARTHEST,
         (False, False),

@@ -45,13 +45,13 @@ BEAM = RESOLVED.beam
     [
         ("length", replace(RESOLVED, beam=replace(BEAM, length=0.05 * (1 + SIZE)))),
         ("radius", replace(RESOLVED, beam=replace(BEAM, radius=BEAM.radius + SIZE * 0.05))),
-        ("compliance", replace(RESOLVED, clamp_stiffness=2e-6 / 0.05 / (1 / 20 + SIZE))),
+        ("clamp_compliance", replace(RESOLVED, clamp_stiffness=2e-6 / 0.05 / (1 / 20 + SIZE))),
         ("friction", replace(RESOLVED, friction=0.1 + SIZE)),
         (
             "natural_curvature",
             replace(RESOLVED, beam=replace(BEAM, natural_curvature=-2.0 + SIZE / 0.05)),
         ),
-        ("taper", replace(RESOLVED, beam=replace(BEAM, tip_radius=2e-4 - SIZE * BEAM.radius))),
+        ("tip_radius", replace(RESOLVED, beam=replace(BEAM, tip_radius=2e-4 - SIZE * BEAM.radius))),
     ],
 )
 def test_each_fault_has_its_sign_and_its_unit(fault, changed):
