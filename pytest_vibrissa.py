@@ -36,12 +36,12 @@ if TYPE_CHECKING:
     from analytic.space import SpatialCase, SpatialReadings
     from compare.align.frames import Frame
     from compare.comparison import Comparison
+    from compare.comparison_in_space import SpatialComparison
     from compare.explain.budget import Budget
     from compare.judge.spatial import SpatialTolerances
     from compare.judge.tolerances import Tolerances
     from compare.read.case import Job
     from compare.read.space import SpaceJob
-    from compare.spatial.comparison import SpatialComparison
     from mujoco_models import Settings
     from mujoco_models.allowed import BeamKind
 
@@ -403,14 +403,13 @@ def _agreement(
     ) -> Comparison | SpatialComparison:
         __tracebackhide__ = True
         nonlocal reported
-        gates = _ours("compare.testing.gates")
         in_space = isinstance(candidate, _ours("analytic.space").SpatialReadings)
         if reference is None:
             reference = closed_form(in_space)
         job = request.node.stash.get(_SPACE_JOB if in_space else _JOB, None)
         if tolerances is None and job is not None:
             tolerances = job.tolerances
-        found: Comparison | SpatialComparison = gates.compared(
+        found: Comparison | SpatialComparison = _ours("compare.comparison").compare(
             reference, candidate, tolerances, offset=offset, noise=noise, frame=frame
         )
         folder = request.config.getoption("--vibrissa-report")
@@ -420,7 +419,7 @@ def _agreement(
             body = job.case.body if in_space and job is not None else None
             row = _ours("compare.testing.summary").report(found, folder, name, body)
             record(_RECORD, json.dumps(row))
-        gates.demand(found, budget)
+        _ours("compare.testing.gates").demand(found, budget)
         return found
 
     return agree

@@ -2,6 +2,9 @@ from .align.offset import Offset as Offset
 from .align.offset import separate_lag as separate_lag
 from .comparison import Comparison as Comparison
 from .comparison import compare as compare
+from .comparison_in_space import SpatialComparison as SpatialComparison
+from .comparison_in_space import compare_space as compare_space
+from .explain.parts import split_space as split_space
 from .judge.spatial import SpatialTolerances as SpatialTolerances
 from .judge.tolerances import Limit as Limit
 from .judge.tolerances import Tolerances as Tolerances
@@ -11,9 +14,6 @@ from .read.space import load_space as load_space
 from .read.space_readings import read_space as read_space
 from .sense.phases import Classification as Classification
 from .sense.phases import classify as classify
-from .spatial.comparison import SpatialComparison as SpatialComparison
-from .spatial.comparison import compare_space as compare_space
-from .spatial.parts import split_space as split_space
 from .testing.gates import assert_agreement as assert_agreement
 from .validate.stated import Input as Input
 from .validate.stated import Uncertainties as Uncertainties

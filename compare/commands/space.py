@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from analytic.problem.arrays import Floats
     from analytic.space import Body, Cloud, SpatialCase, SpatialReadings
     from compare.align.frames import Frame
+    from compare.comparison_in_space import SpatialComparison
+    from compare.explain.parts import Parts
     from compare.read.space import SpaceJob
     from compare.show.report import Film
-    from compare.spatial.comparison import SpatialComparison
-    from compare.spatial.parts import Parts
     from mujoco_models import SpatialSettings
 
 _FRAMES = 48  # of the animation, as in the plane
@@ -149,10 +149,10 @@ def _compared(
 ) -> "SpatialComparison":
     """MuJoCo's sweep, the comparison, its parts if asked for, the animation and the report."""
     from compare.commands import terminal
+    from compare.comparison_in_space import compare_space
+    from compare.explain.parts import split_space
     from compare.show.animation.space import write_space_animation
     from compare.show.report import Film
-    from compare.spatial.comparison import compare_space
-    from compare.spatial.parts import split_space
     from mujoco_models import simulate_space
 
     case, file = job.case, folder / f"mujoco-{job.settings.beam}.parquet"
@@ -199,8 +199,8 @@ def compare_in_space(
             solve_space,
             wrench_complaint,
         )
+        from compare.comparison_in_space import compare_space
         from compare.show.report import Film
-        from compare.spatial.comparison import compare_space
 
         body = None
         if reference.endswith(".toml"):

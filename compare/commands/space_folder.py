@@ -10,7 +10,7 @@ from compare.commands.waiting import waiting
 if TYPE_CHECKING:
     from analytic.problem.arrays import Floats
     from compare.align.frames import Frame
-    from compare.spatial.parts import Parts
+    from compare.explain.parts import Parts
 
 
 def report_in_space(folder: Path, reference: Path, candidate: Path) -> int:
@@ -18,10 +18,10 @@ def report_in_space(folder: Path, reference: Path, candidate: Path) -> int:
     with waiting("comparing"):
         from analytic.space import SpatialReadings
         from compare.commands.space import write_report
+        from compare.comparison_in_space import compare_space
         from compare.judge.spatial import SpatialTolerances
         from compare.read.run_folder import read_limits
         from compare.show.report import Film
-        from compare.spatial.comparison import compare_space
 
         judged = folder / "comparison.json"
         comparison = compare_space(
@@ -52,8 +52,8 @@ def _frame(file: Path) -> "Frame":
 def _parts(file: Path) -> "Parts | None":
     from pydantic import TypeAdapter
 
+    from compare.explain.parts import Parts
     from compare.read.run_folder import damaged, read_json
-    from compare.spatial.parts import Parts
 
     if not file.exists():
         return None

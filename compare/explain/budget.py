@@ -14,8 +14,9 @@ from compare.explain.suspects import Suspect, suspects
 from compare.explain.swing import without_swing
 from compare.explain.variations import shifted_inward, stretched
 from compare.judge.tolerances import Tolerances
-from compare.measure.disagreement import Occurrence, before_snap_off
+from compare.measure.disagreement import before_snap_off
 from compare.sense.noise import scales
+from compare.sense.occurrence import Occurrence
 
 PARTS = (
     "discretisation",

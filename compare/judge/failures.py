@@ -1,31 +1,14 @@
 """What exceeds the limits of agreement, in sentences that say where, by how much and why so."""
 
-import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from analytic import Readings
 from compare.judge.allowance import NoiseAllowance
+from compare.judge.failure import Failure, allowed, excess, plus_minus, where_allowed
 from compare.judge.tolerances import Limit, Tolerances
 from compare.measure.disagreement import Disagreement
 from compare.measure.measurement import Measurement
 from compare.sense.record import direction
-
-
-@dataclass(frozen=True)
-class Failure:
-    """One limit that is exceeded."""
-
-    name: str  # the reading, event or part of the record that it is about
-    found: str  # what was found, with its number
-    # The same as part of a sentence: what is wrong, with its number and what is allowed.
-    clause: str
-    allowed: str  # what is allowed, with the reason
-    excess: float = math.inf  # how many times what is allowed; infinite for what must not be at all
-
-    def __str__(self) -> str:
-        """The whole sentence."""
-        return f"{self.name}: {self.found}; {self.allowed}"
 
 
 def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> Iterator[Failure]:
@@ -105,10 +88,10 @@ def _reading(
             name,
             f"rms {d.rms:.2e} of its largest magnitude, most in phase {worst} "
             f"({d.rms_by_phase[worst]:.2e})",
-            f"{name} is off by {d.rms:.1e} rms{_where(limit, noise.level[name])}, most in phase "
-            f"{worst}",
-            _allowed(limit, noise.level[name]),
-            _ratio(d.rms, widened),
+            f"{name} is off by {d.rms:.1e} rms{where_allowed(limit, noise.level[name])}, "
+            f"most in phase {worst}",
+            allowed(limit, noise.level[name]),
+            excess(d.rms, widened),
         )
     for phase, rms in d.rms_by_phase.items():
         asked = limits.of_phase(name, phase)
@@ -120,9 +103,9 @@ def _reading(
                 name,
                 f"rms {rms:.2e} of its largest magnitude in phase {phase}",
                 f"{name} is off by {rms:.1e} rms in phase {phase}"
-                f"{_where(asked, noise.level[name])}",
-                _allowed(asked, noise.level[name]),
-                _ratio(rms, widened),
+                f"{where_allowed(asked, noise.level[name])}",
+                allowed(asked, noise.level[name]),
+                excess(rms, widened),
             )
     for phase, peak in d.peaks.items():
         limit = limits.of_reading("max", name, phase)
@@ -133,20 +116,20 @@ def _reading(
                 f"off by {peak.size:.2e} of its largest magnitude at foot_x = {peak.at:.6g} in "
                 f"phase {phase}, the contact at arc length {peak.arc_length:.4g}",
                 f"{name} is off by {peak.size:.1e} at foot_x = {peak.at:.6g}"
-                f"{_where(limit, noise.level[name])}",
-                _allowed(limit, noise.level[name]),
-                _ratio(peak.size, widened),
+                f"{where_allowed(limit, noise.level[name])}",
+                allowed(limit, noise.level[name]),
+                excess(peak.size, widened),
             )
 
 
 def _phases(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> Iterator[Failure]:
     limit = limits.limits()["phase_agreement"]
-    for which, share in found.phase_agreement().items():
-        if share < limit * noise.phase_agreement:
+    for which, right in found.phase_agreement().items():
+        if right < limit * noise.phase_agreement:
             yield Failure(
                 f"phases of the {which}",
-                f"{share:.1%} judged rightly from the clamp",
-                f"{share:.1%} of the {which}'s phases follow from its clamp readings where "
+                f"{right:.1%} judged rightly from the clamp",
+                f"{right:.1%} of the {which}'s phases follow from its clamp readings where "
                 f"{float(limit):.1%} must",
                 f"asked {float(limit):.1%} ({limit.reason})",
                 1.0,  # it follows from the readings: the headline only if nothing else fails
@@ -161,7 +144,7 @@ def _events(found: Measurement, tolerances: Tolerances) -> Iterator[Failure]:
     for name, (event, limit) in events.items():
         if event.agrees(limit * length):
             continue
-        allowed = _allowed(Limit(limit * length, limit.reason))
+        most = allowed(Limit(limit * length, limit.reason))
         if event.difference is None:
             which = "candidate" if event.candidate is None else "reference"
             covers = f", beyond the stretch {_stretch(found)}" if name in beyond else ""
@@ -170,17 +153,16 @@ def _events(found: Measurement, tolerances: Tolerances) -> Iterator[Failure]:
                 f"at foot_x = {_position(event.candidate)} instead of {_position(event.reference)}"
                 f"{covers}",
                 f"{name} is missing in the {which}{covers}",
-                allowed,
+                most,
             )
             continue
-        wide = f" +- {event.uncertainty:.1e}" if event.uncertainty else ""
         yield Failure(
             name,
             f"at foot_x = {_position(event.candidate)} instead of {_position(event.reference)}, "
-            f"{event.difference:+.2e}{wide} apart",
-            f"{name} is {event.difference:+.1e} away{_where(Limit(limit * length))}",
-            allowed,
-            _ratio(abs(event.difference), limit * length + event.uncertainty),
+            f"{event.difference:+.2e}{plus_minus(event.uncertainty)} apart",
+            f"{name} is {event.difference:+.1e} away{where_allowed(Limit(limit * length))}",
+            most,
+            excess(abs(event.difference), limit * length + event.uncertainty),
         )
 
 
@@ -207,9 +189,10 @@ def _stations(found: Measurement, limits: Tolerances) -> Iterator[Failure]:
     yield Failure(
         "stations",
         f"{untrusted} of {all_} of the candidate are not to be trusted{why}",
-        f"{untrusted} of its {all_} stations are not to be trusted{why}{_share(limit)}",
+        f"{untrusted} of its {all_} stations are not to be trusted{why} where {float(limit):.1%} "
+        "may be",
         f"allowed {float(limit):.1%} ({limit.reason})",
-        _ratio(untrusted, limit * all_),
+        excess(untrusted, limit * all_),
     )
 
 
@@ -222,24 +205,6 @@ def _statuses(readings: Readings) -> Iterator[str]:
         if status != "ok":
             where = f"{foot_x.iloc[0] / length:.4g} to {foot_x.iloc[-1] / length:.4g} L"
             yield f"{len(foot_x)} {status}, foot_x {where}"
-
-
-def _allowed(limit: Limit, noise: float = 0.0) -> str:
-    beside = f" beside noise of {noise:.1e}" if noise else ""
-    return f"allowed {float(limit):.2e}{beside} ({limit.reason})"
-
-
-def _where(limit: Limit, noise: float = 0.0) -> str:
-    beside = f" beside noise of {noise:.1e}" if noise else ""
-    return f" where {float(limit):.1e} is allowed{beside}"
-
-
-def _share(limit: Limit) -> str:
-    return f" where {float(limit):.1%} may be"
-
-
-def _ratio(found: float, allowed: float) -> float:
-    return float(found / allowed) if allowed > 0 else math.inf
 
 
 def _stretch(found: Measurement) -> str:

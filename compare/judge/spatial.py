@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
 
-from analytic import InputError
 from compare.align.frames import COMPONENTS
-from compare.judge.tolerances import CONVENTION, Limit, as_limit
+from compare.judge.tolerances import KINDS, Limit, Limits, as_limit
 
 if TYPE_CHECKING:  # limits are checked before pandas is needed
     from analytic.space import SpatialReadings
 
-_KINDS = ("rms", "max")
-
 
 @dataclass(frozen=True)
-class SpatialTolerances:
+class SpatialTolerances(Limits):
     """Limits of agreement; the defaults are for a chain of 40 segments against the closed form.
 
     Plain numbers become `Limit` whose reason is that the caller asked for them.
@@ -56,23 +53,9 @@ class SpatialTolerances:
     event: float = Limit(5e-3, "half a station of two hundred on a way of 2 L")
     phase_agreement: float = Limit(0.95, "the stations beside a change of phase")
     untrusted: float = Limit(5e-3, "one station of 200 may fail to settle")
-    special: Mapping[str, float] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        for name in GENERAL_IN_SPACE:
-            object.__setattr__(self, name, as_limit(name, getattr(self, name)))
-        for name in self.special:
-            component, _, kind = name.partition(".")
-            if component not in COMPONENTS or kind not in _KINDS:
-                raise InputError(
-                    f"tolerances.{name}",
-                    "unknown",
-                    f"COMPONENT.KIND, a component of {', '.join(COMPONENTS)}, a kind of "
-                    f"{', '.join(_KINDS)}",
-                    "correct the name",
-                )
-        special = {name: as_limit(name, value) for name, value in self.special.items()}
-        object.__setattr__(self, "special", special)
+    _SPECIAL_NAMES: ClassVar[str] = (
+        f"COMPONENT.KIND, a component of {', '.join(COMPONENTS)}, a kind of {', '.join(KINDS)}"
+    )
 
     def of(self, component: str, kind: str) -> Limit:
         """The limit of a component: its own if there is one.
@@ -91,42 +74,27 @@ class SpatialTolerances:
         """
         return as_limit(kind, self.special.get(f"{component}.{kind}", getattr(self, kind)))
 
-    def limits(self) -> dict[str, Limit]:
-        """All limits by name, the special ones by their dotted names.
-
-        Returns
-        -------
-        dict of Limit
-            Each with its reason.
-        """
-        named = {name: getattr(self, name) for name in GENERAL_IN_SPACE} | dict(self.special)
-        return {name: as_limit(name, value) for name, value in named.items()}
-
-    def remark(self, candidate: SpatialReadings) -> str | None:
-        """What is to be known of these limits for a source.
+    def conventional_for(self, candidate: SpatialReadings) -> bool:
+        """Whether some limit is a default that nothing but convention stands behind.
 
         Parameters
         ----------
         candidate : SpatialReadings
-            Whoever made it.
+            Whoever made it: nothing does for a source that does not record its segments.
 
         Returns
         -------
-        str or None
-            That defaults are a convention, for a source that does not record its segments.
+        bool
+            False if all limits were asked for.
         """
         settings = candidate.provenance.get("settings")
-        if isinstance(settings, Mapping) and "segments" in settings:
-            return None
-        given = self.limits()
-        usual = [name for name in GENERAL_IN_SPACE if given[name].reason == _reason_of(name)]
-        return CONVENTION if usual else None
+        return not (isinstance(settings, Mapping) and "segments" in settings) and bool(self.usual())
+
+    @staticmethod
+    def _is_special(name: str) -> bool:
+        component, _, kind = name.partition(".")
+        return component in COMPONENTS and kind in KINDS
 
 
-GENERAL_IN_SPACE = tuple(f.name for f in fields(SpatialTolerances) if f.name != "special")
+GENERAL_IN_SPACE = SpatialTolerances.general()
 """Names of the limits that hold for every component."""
-
-
-def _reason_of(name: str) -> str:
-    reason: str = getattr(SpatialTolerances, name).reason
-    return reason

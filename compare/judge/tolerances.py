@@ -3,12 +3,13 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypeVar
 
 import numpy as np
 
 from analytic import CLAMP_READINGS, PHASES, InputError
 from compare.judge.rate import Rate, free_share, soft_tip_share
+from compare.sense.given import checked
 
 if TYPE_CHECKING:  # limits are checked before pandas is needed
     from analytic import Readings
@@ -16,7 +17,7 @@ if TYPE_CHECKING:  # limits are checked before pandas is needed
 Kind: TypeAlias = Literal["rms", "max"]
 
 CONTACT_PHASES = PHASES[1:]
-_KINDS = ("rms", "max")
+KINDS = ("rms", "max")
 _PEAK = 10  # times the rms, at the worst station
 _QUASI_STATIC = 1e-2  # rms; flexural rigidity 5 % off is 2.7e-2 or more in all named cases
 _CORNER = 0.2  # rad; what a smooth contour of 181 points turns by at none of them
@@ -46,7 +47,61 @@ class Limit(float):
 
 
 @dataclass(frozen=True)
-class Tolerances:
+class Limits:
+    """Limits by name, and special ones by dotted name; each subclass has fields of its own."""
+
+    special: Mapping[str, float] = field(default_factory=dict, kw_only=True)
+    _SPECIAL_NAMES: ClassVar[str]
+
+    @classmethod
+    def general(cls) -> tuple[str, ...]:
+        """Names of the limits that are not special."""
+        return tuple(f.name for f in fields(cls) if f.name != "special")
+
+    @staticmethod
+    def _is_special(name: str) -> bool:
+        raise NotImplementedError
+
+    def __post_init__(self) -> None:
+        for name in self.general():
+            object.__setattr__(self, name, as_limit(name, getattr(self, name)))
+        for name in self.special:
+            if not self._is_special(name):
+                raise InputError(
+                    f"tolerances.{name}", "unknown", self._SPECIAL_NAMES, "correct the name"
+                )
+        special = {name: as_limit(name, value) for name, value in self.special.items()}
+        object.__setattr__(self, "special", special)
+
+    def limits(self) -> dict[str, Limit]:
+        """All limits by name, the special ones by their dotted names.
+
+        Returns
+        -------
+        dict of Limit
+            Each with its reason.
+        """
+        named = {name: getattr(self, name) for name in self.general()} | dict(self.special)
+        return {name: as_limit(name, value) for name, value in named.items()}
+
+    def usual(self) -> set[str]:
+        """Names of the limits that nobody asked for.
+
+        Returns
+        -------
+        set of str
+            Those with the reasons of the defaults.
+        """
+        return {
+            n for n in self.general() if getattr(self, n).reason == getattr(type(self), n).reason
+        }
+
+
+_Kind = TypeVar("_Kind", bound=Limits)
+
+
+@dataclass(frozen=True)
+class Tolerances(Limits):
     """Limits of agreement; the defaults are for a chain of 40 segments against the closed form.
 
     Past an object with corners, or for another source as a rig, nothing stands behind the defaults
@@ -103,23 +158,10 @@ class Tolerances:
     snap_off: float = Limit(3e-3, "the rms limit times the foot's travel in the last phase")
     lateness: float = Limit(0.0, "at rest nothing lets go late")
     untrusted: float = Limit(5e-3, "one station of 200 may fail to settle")
-    special: Mapping[str, float] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        for name in GENERAL:
-            object.__setattr__(self, name, as_limit(name, getattr(self, name)))
-        for name in self.special:
-            if not _is_special(name):
-                raise InputError(
-                    f"tolerances.{name}",
-                    "unknown",
-                    f"READING.KIND, PHASE.KIND or READING.PHASE.KIND, a reading of "
-                    f"{', '.join(CLAMP_READINGS)}, a phase of {', '.join(CONTACT_PHASES)}, a kind "
-                    f"of {', '.join(_KINDS)}",
-                    "correct the name",
-                )
-        special = {name: as_limit(name, value) for name, value in self.special.items()}
-        object.__setattr__(self, "special", special)
+    _SPECIAL_NAMES: ClassVar[str] = (
+        f"READING.KIND, PHASE.KIND or READING.PHASE.KIND, a reading of {', '.join(CLAMP_READINGS)},"
+        f" a phase of {', '.join(CONTACT_PHASES)}, a kind of {', '.join(KINDS)}"
+    )
 
     def suited_to(self, candidate: "Readings") -> "Tolerances":
         """The same limits, with reasons that hold for the source that they are applied to.
@@ -134,12 +176,7 @@ class Tolerances:
         Tolerances
             Limits that were asked for keep their reasons.
         """
-        defaults = {
-            name
-            for name in GENERAL
-            if getattr(self, name).reason == getattr(Tolerances, name).reason
-        }
-        suited = self
+        defaults, suited = self.usual(), self
         if not is_smooth_model(candidate):
             plain: dict[str, Any] = {
                 name: Limit(getattr(self, name), reason)
@@ -259,16 +296,12 @@ class Tolerances:
                 return as_limit(name, self.special[name])
         return None
 
-    def limits(self) -> dict[str, Limit]:
-        """All limits by name, the special ones by their dotted names.
-
-        Returns
-        -------
-        dict of Limit
-            Each with its reason.
-        """
-        named = {name: getattr(self, name) for name in GENERAL} | dict(self.special)
-        return {name: as_limit(name, value) for name, value in named.items()}
+    @staticmethod
+    def _is_special(name: str) -> bool:
+        *where, kind = name.split(".")
+        allowed = [[r] for r in CLAMP_READINGS] + [[p] for p in CONTACT_PHASES]
+        allowed += [[r, p] for r in CLAMP_READINGS for p in CONTACT_PHASES]
+        return kind in KINDS and where in allowed
 
 
 CONVENTION = (
@@ -300,15 +333,8 @@ def is_smooth_model(readings: "Readings") -> bool:
     return bool(np.abs(np.diff(way)).max() < _CORNER)
 
 
-GENERAL = tuple(f.name for f in fields(Tolerances) if f.name != "special")
+GENERAL = Tolerances.general()
 """Names of the limits that hold for every reading and phase."""
-
-
-def _is_special(name: str) -> bool:
-    *where, kind = name.split(".")
-    allowed = [[r] for r in CLAMP_READINGS] + [[p] for p in CONTACT_PHASES]
-    allowed += [[r, p] for r in CLAMP_READINGS for p in CONTACT_PHASES]
-    return kind in _KINDS and where in allowed
 
 
 def as_limit(name: str, value: float) -> Limit:
@@ -320,6 +346,11 @@ def as_limit(name: str, value: float) -> Limit:
     if not (math.isfinite(value) and value >= 0):
         raise InputError(f"tolerances.{name}", value, "finite, 0 or more", "correct it")
     return Limit(value)
+
+
+def checked_limits(given: object, kind: type[_Kind]) -> _Kind:
+    """What a caller asked for, or the defaults."""
+    return kind() if given is None else checked("tolerances", given, kind, "see its fields")
 
 
 def _reason(limit: float) -> str:

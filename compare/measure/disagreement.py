@@ -1,21 +1,23 @@
-"""How far apart two aligned sweeps are: reading by reading, phase by phase, event by event."""
+"""How far two aligned sweeps are apart: component by component, phase by phase."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
 from analytic import Readings
-from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.arrays import Booleans, Floats, Words
 from compare.sense.noise import scales
+from compare.sense.occurrence import Occurrence
 from compare.sense.record import direction
 
 
 @dataclass(frozen=True)
 class Peak:
-    """The largest difference in one phase, relative to the reading's largest magnitude.
+    """The largest difference in one phase, relative to the component's largest magnitude.
 
-    `at` is its foot position and `arc_length` where on the vibrissa the contact is [length].
+    `at` is where along the sweep it is, and `arc_length` where on the vibrissa the contact is; NaN
+    where that is not known [length].
     """
 
     size: float
@@ -25,19 +27,20 @@ class Peak:
 
 @dataclass(frozen=True)
 class Disagreement:
-    """How far one clamp reading of the candidate is off, relative to its largest magnitude."""
+    """How far one component of the candidate is off, relative to its largest magnitude."""
 
-    # Over the compared stations outside the window before snap-off, as are all the following but
-    # one; NaN if there are none.
+    # Over the compared stations, in the plane those outside the window before the snap-off, as are
+    # all the following but one; NaN if there are none.
     rms: float
     max: float  # the largest difference
-    at: float  # its foot position [length]
-    phase: str  # its phase
-    max_before_snap_off: float  # the largest difference inside the window; NaN if no station is
+    at: float  # where along the sweep it is: the foot's position, or its travel in space [length]
+    phase: str  # its phase; empty where the reference records none
     rms_by_phase: dict[str, float]  # by the reference's phases
-    scale: float  # what the differences are relative to, in the reading's unit
+    scale: float  # what the differences are relative to, in the readings' unit
     stations_by_phase: dict[str, int]  # how many stations there are of each phase
     peaks: dict[str, Peak]  # the largest difference of each phase
+    # The largest difference inside the window before the snap-off; NaN if no station is.
+    max_before_snap_off: float = np.nan
 
     @property
     def stations(self) -> int:
@@ -45,65 +48,41 @@ class Disagreement:
         return sum(self.stations_by_phase.values())
 
 
-@dataclass(frozen=True)
-class Occurrence:
-    """Where something happens in both sweeps [length]; None where it does not."""
-
-    reference: float | None
-    candidate: float | None
-    uncertainty: float = 0.0
-
-    @property
-    def difference(self) -> float | None:
-        """Candidate less reference [length]."""
-        if self.reference is None or self.candidate is None:
-            return None
-        return self.candidate - self.reference
-
-    def agrees(self, tolerance: float) -> bool:
-        """Whether it happens in neither sweep, or at nearly the same foot position in both."""
-        if self.difference is None:
-            return self.reference is None and self.candidate is None
-        return abs(self.difference) <= tolerance + self.uncertainty
-
-    def to_dict(self) -> dict[str, float | None]:
-        """What ``comparison.json`` holds."""
-        return {**asdict(self), "difference": self.difference}
+def disagreement(
+    error: Floats, at: Floats, phase: Words, scale: float, arc_length: Floats | None = None
+) -> Disagreement:
+    """How far a component is off at the stations of a travel, each in a phase."""
+    size = np.abs(error)
+    arc_length = np.full_like(size, np.nan) if arc_length is None else arc_length
+    worst = {str(p): int(np.argmax(np.where(phase == p, size, -1.0))) for p in np.unique(phase)}
+    peaks = {p: Peak(float(size[i]), float(at[i]), float(arc_length[i])) for p, i in worst.items()}
+    highest = max(peaks, key=lambda p: peaks[p].size, default="")
+    peak = peaks.get(highest, Peak(np.nan, np.nan, np.nan))
+    return Disagreement(
+        rms=float(rms(error)),
+        max=peak.size,
+        at=peak.at,
+        phase=highest,
+        rms_by_phase={p: float(rms(error[phase == p])) for p in peaks if p},
+        scale=scale,
+        stations_by_phase={p: int((phase == p).sum()) for p in peaks},
+        peaks=peaks,
+    )
 
 
 def disagreements(
     reference: Readings, table: pd.DataFrame, snap: Occurrence, window: float
 ) -> dict[str, Disagreement]:
-    """How far the readings are apart at the stations that `align` paired."""
+    """How far the clamp readings are apart at the stations that `align` paired."""
     foot_x = table["foot_x"].to_numpy()
     near = before_snap_off(reference, foot_x, snap, window)
-    phase = table["phase"].to_numpy()[~near]
-    arc_length = table["contact_arc_length"].to_numpy()[~near]
+    phase, arc_length = (table[name].to_numpy()[~near] for name in ("phase", "contact_arc_length"))
     found = {}
     for name, scale in scales(reference).items():
         error = (table[f"{name}_candidate"] - table[f"{name}_reference"]).to_numpy() / scale
-        inside, error = error[near], error[~near]
-        worst = {
-            str(p): int(np.argmax(np.where(phase == p, np.abs(error), -1.0)))
-            for p in np.unique(phase)
-        }
-        peaks = {
-            p: Peak(abs(float(error[i])), float(foot_x[~near][i]), float(arc_length[i]))
-            for p, i in worst.items()
-        }
-        highest = max(peaks, key=lambda p: peaks[p].size, default=None)
-        peak = peaks[highest] if highest is not None else Peak(np.nan, np.nan, np.nan)
-        found[name] = Disagreement(
-            rms=_rms(error),
-            max=peak.size,
-            at=peak.at,
-            phase=highest or "",
-            max_before_snap_off=float(np.abs(inside).max()) if near.any() else np.nan,
-            rms_by_phase={p: _rms(error[phase == p]) for p in peaks},
-            scale=scale,
-            stations_by_phase={p: int((phase == p).sum()) for p in peaks},
-            peaks=peaks,
-        )
+        here = disagreement(error[~near], foot_x[~near], phase, scale, arc_length)
+        inside = float(np.abs(error[near]).max()) if near.any() else np.nan
+        found[name] = replace(here, max_before_snap_off=inside)
     return found
 
 
@@ -122,5 +101,8 @@ def before_snap_off(
     return np.asarray(np.abs(ahead) < window * np.ptp(reference.values("foot_x")))
 
 
-def _rms(error: Floats) -> float:
-    return float(np.sqrt(np.mean(error**2))) if error.size else np.nan
+def rms(errors: Floats) -> Floats:
+    """Root mean square over the last axis; NaN of nothing."""
+    if not errors.shape[-1]:
+        return np.full(errors.shape[:-1], np.nan)
+    return np.asarray(np.sqrt(np.mean(errors**2, axis=-1)))

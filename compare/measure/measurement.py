@@ -17,16 +17,18 @@ from compare.align.offset import (
 from compare.align.order import Order, in_order
 from compare.align.stations import Alignment, align
 from compare.align.units import check_unit_of_length, in_units_of
-from compare.measure.disagreement import Disagreement, Occurrence, disagreements
+from compare.measure.disagreement import disagreements
+from compare.measure.measured import Measured
 from compare.sense.noise import scales
+from compare.sense.occurrence import Occurrence
 from compare.sense.phases import Classification, classify, confusion
 from compare.sense.record import Record, inspect_record
 from compare.sense.size import check_size
 from compare.sense.transitions import TRANSITIONS, locate_transitions, snap_off
 
 
-@dataclass(frozen=True, repr=False)
-class Measurement:
+@dataclass(frozen=True, eq=False, repr=False)
+class Measurement(Measured[Readings]):
     """What two sweeps differ by, before anyone judges it.
 
     Attributes
@@ -54,10 +56,7 @@ class Measurement:
         How the candidate's rows follow the motion.
     """
 
-    reference: Readings
-    candidate: Readings
     alignment: Alignment
-    disagreement: dict[str, Disagreement]
     judged: dict[str, Classification]
     confusion: dict[str, pd.DataFrame]
     transitions: dict[str, Occurrence]
@@ -66,8 +65,13 @@ class Measurement:
     records: dict[str, Record]
     order: Order
 
+    @property
+    def events(self) -> dict[str, Occurrence]:
+        """The transitions and the snap-off, by name."""
+        return {**self.transitions, "snap_off": self.snap_off}
+
     def phase_agreement(self) -> dict[str, float]:
-        """Share of stations whose judged phase is the true one.
+        """Fraction of stations whose judged phase is the true one.
 
         Returns
         -------
@@ -81,7 +85,7 @@ class Measurement:
         }
 
     def phases_alike(self) -> float | None:
-        """Share of the candidate's stations whose judged phase is that of the reference there.
+        """Fraction of the candidate's stations whose judged phase is that of the reference there.
 
         Returns
         -------
@@ -105,7 +109,7 @@ class Measurement:
         foot_x = self.candidate.values("foot_x")
         return [
             name
-            for name, event in {**self.transitions, "snap_off": self.snap_off}.items()
+            for name, event in self.events.items()
             if event.reference is not None
             and event.candidate is None
             and not np.min(foot_x) <= event.reference <= np.max(foot_x)
@@ -166,8 +170,8 @@ def measure(
     return Measurement(
         reference,
         candidate,
-        alignment,
         disagreements(reference, alignment.table, snap, window),
+        alignment,
         judged,
         {
             which: confusion(judged[which], sweep)

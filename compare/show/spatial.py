@@ -8,6 +8,8 @@ from analytic.problem.arrays import Floats
 from analytic.problem.files import write_whole
 from analytic.space import Body
 from compare.align.frames import COMPONENTS
+from compare.comparison_in_space import SpatialComparison
+from compare.explain.parts import Parts
 from compare.show.colophon import colophon
 from compare.show.figures.space import (
     both_in_space,
@@ -20,8 +22,6 @@ from compare.show.report import Film
 from compare.show.scene import SweepScene
 from compare.show.solid import solid_ply
 from compare.show.turning import turning
-from compare.spatial.comparison import SpatialComparison
-from compare.spatial.parts import Parts
 
 _BULKY = ("events", "path")
 _SHOWN = {

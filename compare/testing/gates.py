@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Literal, overload
 from analytic import InputError, Readings
 from analytic.space import SpatialReadings
 from compare.comparison import Comparison, compare
+from compare.comparison_in_space import SpatialComparison
 from compare.judge.spatial import SpatialTolerances
 from compare.judge.tolerances import Tolerances
 from compare.show.verdict import why
-from compare.spatial.comparison import SpatialComparison, compare_space
 
 if TYPE_CHECKING:
     from compare.align.frames import Frame
@@ -57,13 +57,11 @@ def assert_agreement(
 
     Parameters
     ----------
-    reference, candidate, tolerances, offset, noise
-        As `compare` takes them; two sweeps in space and their limits as `compare_space` does.
+    reference, candidate, tolerances, offset, noise, frame
+        As `compare` takes them, of two sweeps in the plane or in space.
     budget : Budget, optional
         Of the candidate's disagreement in the plane, measured by controlled changes; the message
         names its largest part in place of the likeness to a known fault.
-    frame : {"world", "clamp"}
-        Of the components in space.
 
     Returns
     -------
@@ -75,40 +73,14 @@ def assert_agreement(
     AssertionError
         If they do not.
     InputError
-        As `compare` and `compare_space`, or if one sweep is in space and the other is not.
+        As `compare`, or if there is a budget of sweeps in space.
     """
     __tracebackhide__ = True  # a failing test shows its own lines, and the message
     if budget is not None and isinstance(reference, SpatialReadings):
         raise InputError("budget", "given", "for sweeps in the plane", "leave it out")
-    comparison = compared(reference, candidate, tolerances, offset=offset, noise=noise, frame=frame)
+    comparison = compare(reference, candidate, tolerances, offset=offset, noise=noise, frame=frame)
     demand(comparison, budget)
     return comparison
-
-
-def compared(
-    reference: Readings | SpatialReadings,
-    candidate: Readings | SpatialReadings,
-    tolerances: Tolerances | SpatialTolerances | None = None,
-    *,
-    offset: float | Literal["auto"] = 0.0,
-    noise: float | Literal["auto"] = 0.0,
-    frame: Frame = "world",
-) -> Comparison | SpatialComparison:
-    """Compare two sweeps, if they are sweeps: a test's simulator may return anything."""
-    if isinstance(reference, SpatialReadings):
-        if offset != 0:
-            raise InputError("offset", offset, "0 in space", "leave it out, or widen the limits")
-        # What is of another kind, compare_space refuses.
-        return compare_space(reference, candidate, tolerances, noise=noise, frame=frame)  # type: ignore[arg-type]
-    for name, given in (("reference", reference), ("candidate", candidate)):
-        if not isinstance(given, Readings):
-            raise InputError(
-                name,
-                "None" if given is None else f"a {type(given).__name__}",
-                "analytic.Readings",
-                "solve_sweep, simulate_sweep, read_measured or Readings(table, beam) make them",
-            )
-    return compare(reference, candidate, tolerances, offset=offset, noise=noise)  # type: ignore[arg-type]
 
 
 def demand(comparison: Comparison | SpatialComparison, budget: Budget | None = None) -> None:
@@ -117,7 +89,7 @@ def demand(comparison: Comparison | SpatialComparison, budget: Budget | None = N
     if comparison.agrees:
         return
     title = f"{comparison.candidate.source} disagrees with {comparison.reference.source}:"
-    causes = [] if isinstance(comparison, SpatialComparison) else [why(comparison, budget)]
+    causes = [why(comparison, budget)] if isinstance(comparison, Comparison) else []
     remark = [] if comparison.remark is None else [comparison.remark]
     lines = [title, *causes, *comparison.failures, *remark]
     raise AssertionError("\n  ".join(lines))

@@ -8,9 +8,9 @@ from typing import Any
 from analytic.problem.files import write_whole
 from analytic.space import Body
 from compare.comparison import Comparison
+from compare.comparison_in_space import SpatialComparison
 from compare.show.report import write_report
 from compare.show.spatial import write_spatial_report
-from compare.spatial.comparison import SpatialComparison
 
 
 def report(
@@ -28,7 +28,7 @@ def report(
         "agrees": found.agrees,
         "rms": {reading: d.rms for reading, d in found.disagreement.items()},
         "failures": list(found.failures),
-        "likely": None if isinstance(found, SpatialComparison) else found.likely,
+        "likely": found.likely,
     }
 
 

@@ -16,6 +16,7 @@ from PIL import Image
 from analytic.problem.arrays import Floats
 from analytic.space import Body, SpatialReadings
 from analytic.space.problem.readings import FORCE, MOMENT
+from compare.align.travel import travel_of
 from compare.show.animation.frames import framed
 from compare.show.animation.gif import save_gif
 from compare.show.animation.moving import pictures
@@ -34,7 +35,6 @@ from compare.show.style import (
     REFERENCE,
     label,
 )
-from compare.spatial.comparison import way
 
 _SIZE, _DPI = (8.0, 6.4), 100  # inches and pixels an inch
 _DOTS = 12  # of a dotted vibrissa
@@ -73,7 +73,7 @@ class _Moving:
         (self._dots,) = view.plot([], [], [], color=CANDIDATE, marker="o", markersize=4, ls="")
         (self._contact,) = view.plot([], [], [], color=INK, marker="o", markersize=5, ls="")
         beam = reference.readings.beam
-        self._travel = way(reference.readings) / beam.length
+        self._travel = travel_of(reference.readings) / beam.length
         self._marks: list[tuple[Any, Floats]] = []
         for i, (names, unit, title) in enumerate(
             (

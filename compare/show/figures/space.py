@@ -11,6 +11,9 @@ from analytic.problem.arrays import Floats
 from analytic.space import SpatialReadings
 from analytic.space.problem.readings import FORCE, MOMENT
 from compare.align.frames import components
+from compare.align.travel import travel_of
+from compare.comparison_in_space import SpatialComparison
+from compare.explain.parts import Parts
 from compare.show.scene import SweepScene
 from compare.show.style import (
     BLUE,
@@ -27,8 +30,6 @@ from compare.show.style import (
     SMALL,
     label,
 )
-from compare.spatial.comparison import SpatialComparison, way
-from compare.spatial.parts import Parts
 
 _SHAPES = 24  # drawn of a sweep
 _DARK = 0.35  # how much darker a face is that looks away from the light
@@ -197,7 +198,7 @@ def upright(points: Floats) -> Floats:
 def _draw_components(
     ax: Axes, readings: SpatialReadings, names: tuple[str, ...], unit: float, title: str
 ) -> None:
-    travel = way(readings) / readings.beam.length
+    travel = travel_of(readings) / readings.beam.length
     values = readings.values(*names) / unit
     values[~readings.trusted] = np.nan
     for name, colour, column in zip(names, _COLOURS, values.T, strict=True):

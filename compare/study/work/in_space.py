@@ -9,7 +9,7 @@ from analytic.problem.arrays import Floats
 from analytic.space import SpatialReadings, reconstruct_space
 from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT
 from compare.align.frames import COMPONENTS
-from compare.spatial.comparison import compare_space
+from compare.comparison_in_space import compare_space
 from compare.study.grid.study import Record
 
 _ENDS = {"touch": "touch", "slip_off": "slip-off", "release": "release"}

@@ -17,10 +17,11 @@ from analytic.space import (
     sphere,
 )
 from analytic.space.problem.readings import FORCE, MOMENT, SENSED_IN_SPACE
-from compare import SpatialTolerances, assert_agreement, compare_space, split_space
+from compare import SpatialTolerances, assert_agreement, compare, compare_space, split_space
 from compare.align.frames import clamp_axes, components, from_frame
 from mujoco_models import SpatialSettings, simulate_space
 from tests.compare.command import vibrissa
+from tests.conftest import exact_sweep
 
 CASE = SpatialCase(
     body=sphere(1.0, (0.0, 1.4, 0.0)), path=FootPath([[1.1, 0.3], [0.2, 0.3]], stations=20)
@@ -137,7 +138,7 @@ def test_noise_neither_touches_nor_fails_what_agrees(passed, share):
     unwidened = compare_space(passed, with_noise(passed, 1e-2, 0))
     assert not unwidened.agrees  # a limit is widened only by noise that is stated or asked for
     auto = compare_space(passed, with_noise(passed, share, 0), noise="auto")
-    assert 0.5 * share < auto.noise.readings.level["force_x"] < 3 * share
+    assert 0.5 * share < auto.noise.level["force_x"] < 3 * share
 
 
 def test_a_touch_that_is_late_is_found_beside_noise(passed):
@@ -352,3 +353,29 @@ def test_the_report_of_a_run_again(tmp_path, request):
         assert done.returncode == 2
         assert name in done.stderr
         assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_compare_takes_either_kind_but_not_both(exact):
+    planar = exact_sweep("catenary")
+    assert compare(exact, exact, SpatialTolerances(), frame="clamp").agrees
+    for one, other in ((exact, planar), (planar, exact)):
+        with pytest.raises(InputError, match=r"candidate = a \w*Readings: must be"):
+            compare(one, other)
+    for options in ({"frame": "clamp"}, {"tolerances": SpatialTolerances()}):
+        with pytest.raises(InputError, match=next(iter(options))):
+            compare(planar, planar, **options)
+    with pytest.raises(InputError, match="offset"):
+        compare(exact, exact, offset=0.1)
+
+
+def test_the_numbers_of_a_comparison_in_a_row(exact):
+    row = compare(exact, exact).metrics()
+    assert row["agrees"] is True
+    assert row["disagreement_force_z_max"] == row["contact_rms"] == 0
+    assert row["touch_difference"] == 0
+    assert row["slip_off_reference"] is None
+    planar = exact_sweep("catenary")
+    row = compare(planar, planar).metrics()
+    assert row["snap_off_reference"] == planar.snap_off
+    assert row["transition_phase_b_start_difference"] == 0
+    assert (row["phase_agreement"], row["stations_compared"]) == (1.0, 193)

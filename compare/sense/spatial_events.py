@@ -6,8 +6,8 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats
 from analytic.space import SpatialReadings
-from compare.measure.disagreement import Occurrence
-from compare.spatial.noise import Touching
+from compare.sense.occurrence import Occurrence
+from compare.sense.touching import Touching
 
 _TOUCH, _LEAVING, _ENDS = "touch", "leaving", ("slip-off", "release")
 _Events = list[tuple[str, float, float]]  # kind, way, by how much that is uncertain

@@ -1,0 +1,47 @@
+"""How far along its path the foot is in space, and whether two sweeps are at the same stations."""
+
+import numpy as np
+
+from analytic import InputError
+from analytic.problem.arrays import Floats
+from analytic.space import SpatialReadings
+from analytic.space.problem.readings import FOOT
+
+_SAME_FOOT = 1e-6  # L
+_SAME_BEAM = 1e-9  # of a length or rigidity: what a file's digits leave
+_SAME_TANGENT = 1e-6
+
+
+def travel_of(readings: SpatialReadings) -> Floats:
+    """How far along its path the foot is at the stations [length]."""
+    recorded = readings.values("travel")
+    if np.isfinite(recorded).all():
+        return recorded
+    steps = np.linalg.norm(np.diff(readings.values(*FOOT), axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def check_same_stations(reference: SpatialReadings, candidate: SpatialReadings) -> None:
+    """Refuse sweeps of two vibrissae, of two clamps, or at other stations."""
+    for name in ("length", "flexural_rigidity"):
+        ours, theirs = getattr(reference.beam, name), getattr(candidate.beam, name)
+        if not abs(ours - theirs) <= _SAME_BEAM * abs(ours):
+            raise InputError(
+                f"beam.{name} of {candidate.source}", theirs,
+                f"{ours:g}, that of {reference.source}", "compare sweeps of one vibrissa",
+            )  # fmt: skip
+    if np.abs(reference.clamp_tangent - candidate.clamp_tangent).max() > _SAME_TANGENT:
+        raise InputError(
+            f"tangent of {candidate.source}", candidate.clamp_tangent.tolist(),
+            f"{reference.clamp_tangent.tolist()}, that of {reference.source}",
+            "compare sweeps of one clamp",
+        )  # fmt: skip
+    feet = reference.values(*FOOT), candidate.values(*FOOT)
+    length = reference.beam.length
+    if feet[0].shape != feet[1].shape or np.abs(feet[0] - feet[1]).max() >= _SAME_FOOT * length:
+        raise InputError(
+            f"stations of {candidate.source}",
+            f"{len(feet[1])}, not the {len(feet[0])} of {reference.source}",
+            f"the same foot positions, to {_SAME_FOOT:g} L",
+            "sweep both along one [path]",
+        )

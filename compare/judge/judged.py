@@ -1,0 +1,159 @@
+"""A measurement that was judged: its verdict, and what is kept of it."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from html import escape
+from typing import Any, TypeAlias
+
+from compare.judge.allowance import Allowance
+from compare.judge.failure import Failure
+from compare.judge.tolerances import CONVENTION, Limits
+from compare.measure.measured import Measured, Sweep
+from compare.sense.occurrence import Occurrence
+
+Number: TypeAlias = float | int | bool | None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Judged(Measured[Sweep]):
+    """A comparison of n components along a travel; the plane and space each add their own.
+
+    Attributes
+    ----------
+    tolerances : Limits
+        For the verdict.
+    noise : Allowance
+        What noise adds to them.
+    """
+
+    tolerances: Limits
+    noise: Allowance
+
+    def _failures(self) -> Iterator[Failure]:
+        raise NotImplementedError
+
+    @property
+    def _conventional(self) -> bool:
+        """Whether nothing but convention stands behind some limit."""
+        raise NotImplementedError
+
+    def _own(self) -> dict[str, Any]:
+        """What ``comparison.json`` holds beside what all comparisons have."""
+        raise NotImplementedError
+
+    def _own_metrics(self) -> dict[str, Number]:
+        raise NotImplementedError
+
+    def _places(self) -> Mapping[str, Occurrence | None]:
+        """The events of the metrics, by name; None for one that is in neither sweep."""
+        raise NotImplementedError
+
+    def lines(self) -> Iterator[str]:
+        """The verdict and what it rests on, for a terminal.
+
+        Yields
+        ------
+        str
+            A line.
+        """
+        raise NotImplementedError
+
+    @cached_property
+    def exceeded(self) -> tuple[Failure, ...]:
+        """Every limit that is exceeded."""
+        return tuple(self._failures())
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """Every limit that is exceeded, in a sentence each."""
+        return tuple(str(failure) for failure in self.exceeded)
+
+    @property
+    def worst(self) -> Failure | None:
+        """The limit that is exceeded most; None if the sweeps agree."""
+        return max(self.exceeded, key=lambda failure: failure.excess, default=None)
+
+    @property
+    def agrees(self) -> bool:
+        """Whether no limit is exceeded."""
+        return not self.exceeded
+
+    @property
+    def likely(self) -> str | None:
+        """What the disagreement looks like; None if it agrees, or matches no known cause."""
+        return None
+
+    @property
+    def remark(self) -> str | None:
+        """What is to be known of the limits that are exceeded; None if there is nothing."""
+        return CONVENTION if self.exceeded and self._conventional else None
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``comparison.json`` holds.
+
+        Returns
+        -------
+        dict
+            Lengths in the beam's unit, contacts in space in L, the rest relative; JSON can hold it.
+        """
+        limits = self.tolerances.limits()
+        found: dict[str, Any] = _plain(
+            {
+                "verdict": "agrees" if self.agrees else "disagrees",
+                "failures": list(self.failures),
+                "noise": asdict(self.noise),
+                **self._own(),
+                "tolerances": {name: float(limit) for name, limit in limits.items()},
+                "tolerance_reasons": {name: limit.reason for name, limit in limits.items()},
+                "reference": _origin(self.reference),
+                "candidate": _origin(self.candidate),
+            }
+        )
+        return found
+
+    def metrics(self) -> dict[str, Number]:
+        """What a row of a table holds: plain numbers by name.
+
+        Returns
+        -------
+        dict
+            ``disagreement_COMPONENT_rms`` and ``_max``, ``agrees``, ``phase_agreement``,
+            ``stations_compared``, and each event's ``_reference``, ``_candidate``, ``_difference``.
+        """
+        row: dict[str, Number] = {}
+        for name, one in self.disagreement.items():
+            row[f"disagreement_{name}_rms"] = one.rms
+            row[f"disagreement_{name}_max"] = one.max
+        row |= {"agrees": self.agrees, **self._own_metrics()}
+        for name, event in self._places().items():
+            for part in ("reference", "candidate", "difference"):
+                row[f"{name}_{part}"] = None if event is None else getattr(event, part)
+        return row
+
+    def __repr__(self) -> str:
+        """The verdict, the events, and what failed."""
+        return "\n".join(self.lines())
+
+    def _repr_html_(self) -> str:
+        """The same for a notebook."""
+        return "<pre>" + "<br>".join(escape(line) for line in self.lines()) + "</pre>"
+
+
+def _plain(value: Any) -> Any:  # noqa: ANN401  # whatever JSON can hold
+    """JSON has neither NaN nor infinity: None stands for both."""
+    if isinstance(value, Mapping):
+        return {key: _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _origin(readings: Sweep) -> dict[str, Any]:
+    return {
+        "source": readings.source,
+        "beam": asdict(readings.beam),
+        "stations": len(readings.table),
+        "provenance": {k: v for k, v in readings.provenance.items() if k != "contour"},
+    }

@@ -1,0 +1,157 @@
+"""Two sweeps in space set side by side: six components, contact points, phases and events."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from analytic.problem.arrays import Booleans, Floats, Words
+from analytic.space import SpatialReadings, reconstruct_space
+from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT
+from compare.align.frames import Frame, components
+from compare.align.travel import travel_of
+from compare.measure.disagreement import Disagreement, disagreement, rms
+from compare.measure.measured import Measured
+from compare.sense.occurrence import Occurrence
+from compare.sense.spatial_events import paired_events
+from compare.sense.touching import Touching, touching
+
+
+@dataclass(frozen=True, eq=False)
+class ContactDisagreement:
+    """How far the contact points are apart [L], at the stations where both are known."""
+
+    rms: float  # NaN if there is no such station
+    max: float  # NaN if there is no such station
+    stations: int  # how many there are
+    asked: int  # at how many both touch with a force that noise cannot hide
+    # The sources that record no contacts: theirs are reconstructed from the clamp.
+    from_clamp: tuple[str, ...]
+    distance: Floats  # shape (stations,); of each station of the sweeps; NaN where it is not known
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``comparison.json`` holds."""
+        return {name: value for name, value in vars(self).items() if name != "distance"}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SpatialMeasurement(Measured[SpatialReadings]):
+    """What two sweeps in space differ by, before anyone judges it.
+
+    Attributes
+    ----------
+    reference, candidate : SpatialReadings
+        The two.
+    frame : {"world", "clamp"}
+        Of the components.
+    travel : array, shape (stations,)
+        Distance of the foot along its path [length].
+    compared : array of bool, shape (stations,)
+        Where both touch and are trusted.
+    disagreement : dict of Disagreement
+        By component, ``"force_x"`` to ``"moment_z"``, relative to the largest of its kind, over
+        `travel`.
+    contact : ContactDisagreement
+        Between the contact points.
+    phase_agreement : float or None
+        Fraction of the compared stations that are in one phase; None where a source records none.
+    events : dict of Occurrence
+        Travel of the foot to each touch, slip-off and release, in both sweeps [length].
+    statuses : dict of dict
+        How many stations have which status, of the ``"reference"`` and of the ``"candidate"``.
+    untrusted : int
+        Stations of the candidate without readings where the reference has them.
+    touching : Touching
+        Stations that touch.
+    """
+
+    frame: Frame
+    travel: Floats
+    compared: Booleans
+    contact: ContactDisagreement
+    phase_agreement: float | None
+    events: dict[str, Occurrence]
+    statuses: dict[str, dict[str, int]]
+    untrusted: int
+    touching: Touching
+
+
+def measure_in_space(
+    reference: SpatialReadings,
+    candidate: SpatialReadings,
+    stated: Mapping[str, float],
+    frame: Frame = "world",
+) -> SpatialMeasurement:
+    """Measure how far a candidate is off at the same stations, by the noise that is stated."""
+    on, travel = touching(reference, candidate, stated), travel_of(reference)
+    compared = on.reference & on.candidate
+    phases = _phases(reference), _phases(candidate)
+    same = None
+    if phases[0] is not None and phases[1] is not None and compared.any():
+        same = float((phases[0] == phases[1])[compared].mean())
+    return SpatialMeasurement(
+        reference,
+        candidate,
+        _disagreements(reference, candidate, frame, compared, travel),
+        frame,
+        travel,
+        compared,
+        _contacts(reference, candidate, on.clear),
+        same,
+        paired_events(reference, candidate, travel, on),
+        {"reference": _counted(reference), "candidate": _counted(candidate)},
+        int((reference.trusted & ~candidate.trusted).sum()),
+        on,
+    )
+
+
+def _disagreements(
+    reference: SpatialReadings,
+    candidate: SpatialReadings,
+    frame: Frame,
+    compared: Booleans,
+    travel: Floats,
+) -> dict[str, Disagreement]:
+    exact, other = components(reference, frame), components(candidate, frame)
+    phases = _phases(reference)
+    phase = np.full(len(compared), "") if phases is None else phases.astype(str)
+    found = {}
+    for names in (FORCE, MOMENT):
+        sizes = [np.abs(exact[name][reference.touching]).max(initial=0.0) for name in names]
+        scale = float(max(sizes)) or math.nan
+        for name in names:
+            error = (other[name] - exact[name])[compared] / scale
+            found[name] = disagreement(error, travel[compared], phase[compared], scale)
+    return found
+
+
+def _contacts(
+    reference: SpatialReadings, candidate: SpatialReadings, compared: Booleans
+) -> ContactDisagreement:
+    from_clamp, points = [], []
+    for readings in (reference, candidate):
+        contact = readings.values(*CONTACT_POINT)
+        if not np.isfinite(contact[compared]).all():
+            contact = reconstruct_space(readings)[list(CONTACT_POINT)].to_numpy(dtype=float)
+            from_clamp.append(readings.source)
+        points.append(contact)
+    distance = np.linalg.norm(points[0] - points[1], axis=1) / reference.beam.length
+    distance[~compared] = np.nan
+    far = distance[np.isfinite(distance)]
+    most = float(far.max()) if far.size else math.nan
+    asked = int(compared.sum())
+    return ContactDisagreement(float(rms(far)), most, far.size, asked, tuple(from_clamp), distance)
+
+
+def _phases(readings: SpatialReadings) -> Words | None:
+    return readings.table["phase"].to_numpy() if "phase" in readings.table else None
+
+
+def _counted(readings: SpatialReadings) -> dict[str, int]:
+    if "status" in readings.table:
+        return {str(k): int(n) for k, n in readings.table["status"].value_counts().items()}
+    fine = int(readings.trusted.sum())
+    missing = len(readings.table) - fine
+    return {"ok": fine} | ({"missing": missing} if missing else {})

@@ -1,0 +1,29 @@
+"""Where something happens in two sweeps."""
+
+from dataclasses import asdict, dataclass
+
+
+@dataclass(frozen=True)
+class Occurrence:
+    """Where something happens in both sweeps [length]; None where it does not."""
+
+    reference: float | None
+    candidate: float | None
+    uncertainty: float = 0.0
+
+    @property
+    def difference(self) -> float | None:
+        """Candidate less reference [length]."""
+        if self.reference is None or self.candidate is None:
+            return None
+        return self.candidate - self.reference
+
+    def agrees(self, tolerance: float) -> bool:
+        """Whether it happens in neither sweep, or at nearly the same foot position in both."""
+        if self.difference is None:
+            return self.reference is None and self.candidate is None
+        return abs(self.difference) <= tolerance + self.uncertainty
+
+    def to_dict(self) -> dict[str, float | None]:
+        """What ``comparison.json`` holds."""
+        return {**asdict(self), "difference": self.difference}

@@ -1,0 +1,72 @@
+"""Where two sweeps in space touch, as far as the noise of their readings lets it be seen."""
+
+import math
+from collections.abc import Mapping
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from analytic.problem.arrays import Booleans
+from analytic.space import SpatialReadings
+from analytic.space.from_clamp.noise import component_noise, felt, least_force
+from analytic.space.problem.readings import FORCE, MOMENT
+from compare.sense.noise import checked_level
+
+_CLEAR = 2.0  # times the least force that is felt: noise hides no such force
+
+
+class Touching(NamedTuple):
+    """Stations that touch, as far as noise lets it be seen; each of shape (stations,)."""
+
+    reference: Booleans
+    candidate: Booleans
+    clear: Booleans
+    """Where both do, with a force that noise cannot hide."""
+
+
+def touching(
+    reference: SpatialReadings, candidate: SpatialReadings, stated: Mapping[str, float]
+) -> Touching:
+    """Which stations touch in either sweep.
+
+    A force counts if it stands out of its noise, stated or seen. Where that leaves in doubt whether
+    a sweep touches, since the force that the other one has there is so small, it does as the other.
+    """
+    sides = reference, candidate
+    known = [component_noise(one, None if "events" in one.provenance else stated) for one in sides]
+    seen = [felt(one, noise) for one, noise in zip(sides, known, strict=True)]
+    least = [least_force(one, noise) for one, noise in zip(sides, known, strict=True)]
+    force = [np.linalg.norm(one.values(*FORCE), axis=1) for one in sides]
+    found = []
+    for mine, other in ((0, 1), (1, 0)):
+        doubtful = seen[other] & (force[other] <= _CLEAR * least[mine])
+        found.append(np.asarray(seen[mine] | (doubtful & sides[mine].trusted)))
+    clear = seen[0] & seen[1] & (force[0] > _CLEAR * max(least))
+    return Touching(found[0], found[1], np.asarray(clear))
+
+
+def component_scales(reference: SpatialReadings) -> dict[str, float]:
+    """The largest component of force and of moment, in stations that touch."""
+    found: dict[str, float] = {}
+    for names in (FORCE, MOMENT):
+        values = np.abs(reference.values(*names)[reference.touching])
+        found |= dict.fromkeys(names, float(values.max(initial=0.0)))
+    return found
+
+
+def component_levels(
+    reference: SpatialReadings,
+    candidate: SpatialReadings,
+    noise: float | Literal["auto"],
+    scales: Mapping[str, float],
+) -> dict[str, float]:
+    """Noise of both sweeps together, relative to `scales`."""
+    if noise != "auto":
+        return checked_level(noise, (*FORCE, *MOMENT))
+    one, other = component_noise(reference), component_noise(candidate)
+    found: dict[str, float] = {}
+    for names in (FORCE, MOMENT):  # a few stations show little: the largest of x, y and z counts
+        sizes = [math.hypot(one[name], other[name]) for name in names]
+        scale = scales[names[0]]
+        found |= dict.fromkeys(names, max(sizes) / scale if scale > 0 else 0.0)
+    return found

@@ -1,1 +1,0 @@
-"""Two sweeps in space set against each other: measured, judged and split into causes."""
