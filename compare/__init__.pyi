@@ -4,7 +4,7 @@ from .comparison import Comparison as Comparison
 from .comparison import compare as compare
 from .comparison_in_space import SpatialComparison as SpatialComparison
 from .comparison_in_space import compare_space as compare_space
-from .explain.parts import split_space as split_space
+from .explain.split_space import split_space as split_space
 from .judge.spatial import SpatialTolerances as SpatialTolerances
 from .judge.tolerances import Limit as Limit
 from .judge.tolerances import Tolerances as Tolerances

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from analytic.space import Body, Cloud, SpatialCase, SpatialReadings
     from compare.align.frames import Frame
     from compare.comparison_in_space import SpatialComparison
-    from compare.explain.parts import Parts
+    from compare.explain.split_space import Parts
     from compare.read.space import SpaceJob
     from compare.show.report import Film
     from mujoco_models import SpatialSettings
@@ -150,7 +150,7 @@ def _compared(
     """MuJoCo's sweep, the comparison, its parts if asked for, the animation and the report."""
     from compare.commands import terminal
     from compare.comparison_in_space import compare_space
-    from compare.explain.parts import split_space
+    from compare.explain.split_space import split_space
     from compare.show.animation.space import write_space_animation
     from compare.show.report import Film
     from mujoco_models import simulate_space

@@ -10,7 +10,7 @@ from compare.commands.waiting import waiting
 if TYPE_CHECKING:
     from analytic.problem.arrays import Floats
     from compare.align.frames import Frame
-    from compare.explain.parts import Parts
+    from compare.explain.split_space import Parts
 
 
 def report_in_space(folder: Path, reference: Path, candidate: Path) -> int:
@@ -52,7 +52,7 @@ def _frame(file: Path) -> "Frame":
 def _parts(file: Path) -> "Parts | None":
     from pydantic import TypeAdapter
 
-    from compare.explain.parts import Parts
+    from compare.explain.split_space import Parts
     from compare.read.run_folder import damaged, read_json
 
     if not file.exists():

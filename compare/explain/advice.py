@@ -8,6 +8,7 @@ import numpy as np
 from analytic import CLAMP_READINGS, InputError, Readings
 from compare.explain.budget import Budget
 from compare.explain.changes import COARSER
+from compare.measure.disagreement import rms
 from mujoco_models.settings import Settings
 
 _SEGMENTS = np.unique(np.geomspace(5, 1000, 120).astype(int))
@@ -83,10 +84,7 @@ def check_target(target: float) -> None:
 def _facets(mesh: Readings, smooth: Readings) -> np.ndarray:
     kept = mesh.trusted & smooth.trusted
     return np.array(
-        [
-            np.sqrt(np.mean((mesh.values(name) - smooth.values(name))[kept] ** 2))
-            for name in CLAMP_READINGS
-        ]
+        [rms((mesh.values(name) - smooth.values(name))[kept]) for name in CLAMP_READINGS]
     )
 
 

@@ -6,17 +6,26 @@ from typing import Any
 
 import numpy as np
 
-from analytic import CLAMP_READINGS, InputError, Readings
-from analytic.problem.arrays import Booleans, Floats
+from analytic import CLAMP_READINGS, Readings
+from analytic.problem.arrays import Floats
 from compare.explain.changes import SHARPER, STIFFER
 from compare.explain.convergence import convergence
+from compare.explain.parts import (
+    SAFETY,
+    Part,
+    Shared,
+    by_reading,
+    common_stations,
+    parts_of,
+    root_of_squares,
+    with_unexplained,
+)
 from compare.explain.suspects import Suspect, suspects
 from compare.explain.swing import without_swing
 from compare.explain.variations import shifted_inward, stretched
 from compare.judge.tolerances import Tolerances
-from compare.measure.disagreement import before_snap_off
+from compare.measure.disagreement import rms
 from compare.sense.noise import scales
-from compare.sense.occurrence import Occurrence
 
 PARTS = (
     "discretisation",
@@ -30,22 +39,11 @@ PARTS = (
 )
 REFINED = ("stiff", "two", "four")
 """The sweeps that differ in their segments alone, each with twice those of the one before."""
-# Roache's, for a convergence index from three or more grids: how far the limit is from the finest
-# grid, and from what the two finest alone would make of it.
-_SAFETY = 1.25
-_ORDERS = (1.0, 2.0)  # what a chain can have: of a naive clamp, and of one at mid-cell
 UNRESOLVED = 5e-5
 """What may stay unexplained in any case, of a reading's largest magnitude."""
+_ORDERS = (1.0, 2.0)  # what a chain can have: of a naive clamp, and of one at mid-cell
 _LEFT, _UNSURE = 0.1, 1 / 3
 """What may stay unexplained of a disagreement that counts as explained, and how uncertain it is."""
-
-
-@dataclass(frozen=True)
-class Part:
-    """One part of the disagreement of one reading, relative to its largest magnitude."""
-
-    rms: float
-    uncertainty: float
 
 
 @dataclass(frozen=True)
@@ -90,22 +88,12 @@ def budget(
     """Split the disagreement of ``runs["base"]`` with `exact` into its parts."""
     tolerances = Tolerances() if tolerances is None else tolerances
     kept = common_stations(exact, [*runs.values()], tolerances.snap_off_window)
-    for (
-        varied
-    ) in variations.values():  # one may touch again, or stick, where the reference does not
+    # One that is varied may touch again, or stick, where the reference does not.
+    for varied in variations.values():
         kept &= np.isfinite([varied.values(name) for name in CLAMP_READINGS]).all(axis=0)
-    if not kept.any():
-        raise InputError(
-            "stations common to all sweeps of the budget", 0, "some", "see their status"
-        )
-    scale = scales(exact)
-
-    def signal(readings: Readings) -> Floats:
-        return np.stack([readings.values(name)[kept] / scale[name] for name in CLAMP_READINGS])
-
-    truth = signal(exact)
-    run = {name: signal(readings) for name, readings in runs.items()}
-    signatures = {name: signal(varied) - truth for name, varied in variations.items()}
+    shared = Shared(exact, kept)
+    run = {name: shared.signal(readings) for name, readings in runs.items()}
+    signatures = {name: shared.off(varied) for name, varied in variations.items()}
     base, beam = runs["base"], exact.beam
     order = _order(run["stiff"] - run["two"], run["two"] - run["four"])
     contact = exact.values("contact_arc_length")[kept] / beam.length
@@ -124,32 +112,30 @@ def budget(
         "softness": (run[hard] - run["stiff"]) * STIFFER / (STIFFER - 1),
         "unrest": run["base"] - run["calm"],
         # What is out of balance shows in the sensors, too: that is unrest, and counted there.
-        "sensor": _sensor(runs["calm"], kept, scale),
+        "sensor": _sensor(runs["calm"], shared),
         "extension": stretched(signatures, base.values("extension")[kept]),
     }
     if "sharp" in run:  # linear in the edges' radius
         signals["corner"] = (run["smooth"] - run["sharp"]) * SHARPER / (SHARPER - 1)
-    total = run["base"] - truth
-    signals["unexplained"] = total - np.sum(list(signals.values()), axis=0)
-    rms = {name: _rms(part) for name, part in signals.items()}
+    total = shared.off(base)
+    signals = with_unexplained(total, signals)
+    sizes = {name: rms(part) for name, part in signals.items()}
     uncertainty = {
-        "discretisation": np.hypot(
-            _SAFETY * (_rms(finest - limit) + _rms(limit - from_two)), doubt
-        ),
-        "facets": rms["unrest"],
-        "softness": _SAFETY * rms["softness"] / (STIFFER - 1),
-        "unrest": rms["unrest"],
-        "sensor": rms["sensor"],
-        "extension": rms["extension"],
+        "discretisation": np.hypot(SAFETY * (rms(finest - limit) + rms(limit - from_two)), doubt),
+        "facets": sizes["unrest"],
+        "softness": SAFETY * sizes["softness"] / (STIFFER - 1),
+        "unrest": sizes["unrest"],
+        "sensor": sizes["sensor"],
+        "extension": sizes["extension"],
     }
-    if "corner" in rms:
-        uncertainty["corner"] = _SAFETY * rms["corner"] / (SHARPER - 1)
-    uncertainty["unexplained"] = np.sqrt(np.sum([u**2 for u in uncertainty.values()], axis=0))
+    if "corner" in sizes:
+        uncertainty["corner"] = SAFETY * sizes["corner"] / (SHARPER - 1)
+    uncertainty["unexplained"] = root_of_squares(uncertainty.values())
     unresolved = np.hypot(uncertainty["unexplained"], UNRESOLVED)
-    within = bool((rms["unexplained"] <= unresolved).all())
-    whole = _rms(total)
+    within = bool((sizes["unexplained"] <= unresolved).all())
+    whole = rms(total)
     resolved = bool(
-        (rms["unexplained"] <= np.hypot(UNRESOLVED, _LEFT * whole)).all()
+        (sizes["unexplained"] <= np.hypot(UNRESOLVED, _LEFT * whole)).all()
         and (uncertainty["unexplained"] <= np.hypot(UNRESOLVED, _UNSURE * whole)).all()
     )
     phase = exact.table["phase"].to_numpy()[kept]
@@ -162,30 +148,24 @@ def budget(
         # A vibrissa curved towards the object touches a straight facet twice, with no readings.
         solved = common_stations(exact, [faceted], tolerances.snap_off_window)[kept]
         if solved.any():
-            checks["facets"] = (signal(faceted) - truth)[:, solved]
+            checks["facets"] = shared.off(faceted)[:, solved]
     return Budget(
+        parts_of(names, sizes, uncertainty),
+        by_reading(total),
         {
             name: {
-                reading: Part(float(rms[name][i]), float(uncertainty[name][i]))
-                for i, reading in enumerate(CLAMP_READINGS)
-            }
-            for name in names
-        },
-        _by_reading(total),
-        {
-            name: {
-                reading: {str(p): float(_rms(part[i, phase == p])) for p in np.unique(phase)}
+                reading: {str(p): float(rms(part[i, phase == p])) for p in np.unique(phase)}
                 for i, reading in enumerate(CLAMP_READINGS)
             }
             for name, part in signals.items()
         },
         order,
         within and resolved,
-        max(names, key=lambda name: float(np.linalg.norm(rms[name]))),
+        max(names, key=lambda name: float(np.linalg.norm(sizes[name]))),
         suspects(signals["unexplained"], signatures, float(np.linalg.norm(unresolved))),
         int(kept.sum()),
         convergence(exact, [runs[name] for name in REFINED], kept),
-        {name: _by_reading(check) for name, check in checks.items()},
+        {name: by_reading(check) for name, check in checks.items()},
         within and not resolved,
     )
 
@@ -196,19 +176,7 @@ def largest_rms(
     """The largest of the three readings' disagreements, as a budget counts it."""
     window = (Tolerances() if tolerances is None else tolerances).snap_off_window
     kept = common_stations(exact, [candidate], window)
-    (errors,) = convergence(exact, [candidate], kept).values()
-    return max(errors.values())
-
-
-def common_stations(exact: Readings, runs: list[Readings], window: float) -> Booleans:
-    """Stations in contact and trusted in every sweep, outside the window before the snap-off."""
-    foot_x = exact.values("foot_x")
-    kept = np.ones(len(foot_x), dtype=bool)
-    for readings in (exact, *runs):
-        kept &= readings.trusted & (readings.table["phase"] != "free").to_numpy()
-    if exact.snap_off is not None:
-        kept &= ~before_snap_off(exact, foot_x, Occurrence(exact.snap_off, None), window)
-    return kept
+    return float(rms(Shared(exact, kept).off(candidate)).max())
 
 
 def _order(coarse: Floats, fine: Floats) -> float:
@@ -237,25 +205,14 @@ def _limit(refined: list[Floats], power: Floats) -> tuple[Floats, Floats]:
     weights = np.linalg.pinv(design)[0] / power
     apart = np.cross(np.ones(3), power)
     stacked = np.stack(refined)
-    errors = _rms(np.tensordot(apart, stacked, axes=1)) / np.linalg.norm(apart * power)
+    errors = rms(np.tensordot(apart, stacked, axes=1)) / np.linalg.norm(apart * power)
     limit = np.tensordot(weights, stacked, axes=1)
     return np.asarray(limit), np.asarray(errors * np.linalg.norm(weights * power))
 
 
-def _sensor(run: Readings, kept: Booleans, scale: Mapping[str, float]) -> Floats:
+def _sensor(run: Readings, shared: Shared) -> Floats:
     """The sensors' discrepancy from the sum of the contacts, the worst of the three readings."""
-    discrepancy = run.values("discrepancy")[kept]
     beam = run.beam
-    units = (beam.force_unit, beam.force_unit, beam.moment_unit)
-    return np.stack(
-        [discrepancy * u / scale[name] for name, u in zip(CLAMP_READINGS, units, strict=True)]
-    )
-
-
-def _by_reading(signals: Floats) -> dict[str, float]:
-    return dict(zip(CLAMP_READINGS, _rms(signals).tolist(), strict=True))
-
-
-def _rms(signals: Floats) -> Floats:
-    """Over the stations, the last axis."""
-    return np.asarray(np.sqrt(np.mean(signals**2, axis=-1)))
+    units = np.array([beam.force_unit, beam.force_unit, beam.moment_unit])
+    sizes = np.array([*scales(shared.exact).values()])
+    return np.asarray((units / sizes)[:, None] * run.values("discrepancy")[shared.kept])

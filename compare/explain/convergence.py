@@ -6,7 +6,7 @@ import numpy as np
 
 from analytic import CLAMP_READINGS, Readings
 from analytic.problem.arrays import Booleans
-from compare.sense.noise import scales
+from compare.explain.parts import Shared, by_reading
 
 
 def convergence(
@@ -14,16 +14,10 @@ def convergence(
 ) -> dict[int, dict[str, float]]:
     """Disagreement with `exact` at each number of segments, which the sources record."""
     found = {}
-    scale = scales(exact)
     for readings in runs:
         segments = readings.provenance.get("settings", {}).get("segments")
-        if segments is None:
-            continue
-        errors = {}
-        for name in CLAMP_READINGS:
-            error = (readings.values(name) - exact.values(name))[kept] / scale[name]
-            errors[name] = float(np.sqrt(np.mean(error**2)))
-        found[int(segments)] = errors
+        if segments is not None:
+            found[int(segments)] = by_reading(Shared(exact, kept).off(readings))
     return found
 
 

@@ -6,11 +6,21 @@ from typing import Any
 
 import numpy as np
 
-from analytic import CLAMP_READINGS, InputError, Readings
+from analytic import Readings
 from analytic.problem.arrays import Floats
-from compare.explain.budget import UNRESOLVED, Part, common_stations
+from compare.explain.budget import UNRESOLVED
+from compare.explain.parts import (
+    SAFETY,
+    Part,
+    Shared,
+    by_reading,
+    common_stations,
+    parts_of,
+    root_of_squares,
+    with_unexplained,
+)
 from compare.judge.tolerances import Tolerances
-from compare.sense.noise import scales
+from compare.measure.disagreement import rms
 from mujoco_models.motion import Motion
 from mujoco_models.own.names import OwnModel
 
@@ -29,7 +39,6 @@ PARTS = (
 )
 THREE_SPEEDS = ("quarter", "half", "base", "double", "fourfold")
 """The three sweeps of a budget that differ in speed are next to each other here, slowest first."""
-_SAFETY = 1.25  # Roache's, of an extrapolation from three
 _ORDERS = (0.5, 2.0)  # in the speed: of the dampers' moment one, of inertia two, of bounces less
 _SLOW = 0.02  # L/T1; a quarter of it takes minutes, and says no more of the limit
 _STIFFER = 4  # times the contact stiffness, which half a time step stands as well
@@ -113,15 +122,8 @@ def motion_budget(
     """Split the disagreement of ``runs["base"]`` with `exact` into its parts."""
     window = (tolerances or Tolerances()).snap_off_window
     kept = common_stations(exact, [*runs.values()], window)
-    if not kept.any():
-        raise InputError("stations common to all sweeps of the budget", 0, "some",
-                         "see their status: a sweep that chatters has none")  # fmt: skip
-    scale = scales(exact)
-
-    def signal(readings: Readings) -> Floats:
-        return np.stack([readings.values(name)[kept] / scale[name] for name in CLAMP_READINGS])
-
-    truth, run = signal(exact), {name: signal(readings) for name, readings in runs.items()}
+    shared = Shared(exact, kept)
+    run = {name: shared.signal(readings) for name, readings in runs.items()}
     slow, middle, fast = (run[name] for name in THREE_SPEEDS if name in run)
     last = run["quarter" if "quarter" in run else "fourfold"]
     coarse, fine = fast - middle, middle - slow
@@ -130,12 +132,12 @@ def motion_budget(
     order = float(np.clip(np.nan_to_num(observed, nan=1.0), *_ORDERS))
     limit = slow - fine / (2**order - 1)
     signals = {"rate": run["base"] - limit}
-    unsure = {"rate": _SAFETY * _rms(slow - limit)}
+    unsure = {"rate": SAFETY * rms(slow - limit)}
     if "undamped" in run:
         # As much again as was measured is extrapolated, and as uncertain.
         signals["damping"] = 2 * (run["base"] - run["undamped"])
         signals["rate"] -= signals["damping"]
-        unsure["damping"] = _rms(run["base"] - run["undamped"])
+        unsure["damping"] = rms(run["base"] - run["undamped"])
     signals["time step"] = 2 * (last - run["fine"])  # of first order, as its contacts are
     for name, other in (("contact model", "ours"), ("solver", "newton")):
         if other in run:
@@ -143,43 +145,32 @@ def motion_budget(
     if "stiff" in run:  # less what half the time step does
         softer = run.get("ours", last) - (last - run["fine"])
         signals["softness"] = (softer - run["stiff"]) * _STIFFER / (_STIFFER - 1)
-        unsure["softness"] = _SAFETY * _rms(signals["softness"]) / (_STIFFER - 1)
+        unsure["softness"] = SAFETY * rms(signals["softness"]) / (_STIFFER - 1)
     if "beam" in run:
-        signals["beam"] = run["beam"] - truth
-    signals["at rest"] = run["rest"] - truth
-    total = run["base"] - truth
-    signals["unexplained"] = total - np.sum(list(signals.values()), axis=0)
-    rms = {name: _rms(part) for name, part in signals.items()}
+        signals["beam"] = shared.off(runs["beam"])
+    signals["at rest"] = shared.off(runs["rest"])
+    total = shared.off(runs["base"])
+    signals = with_unexplained(total, signals)
+    sizes = {name: rms(part) for name, part in signals.items()}
     uncertainty = {name: unsure.get(name, np.zeros(3)) for name in signals}
-    uncertainty["time step"] = rms["time step"]
+    uncertainty["time step"] = sizes["time step"]
     if of_our_chain:
-        uncertainty["at rest"] = rms["at rest"]
+        uncertainty["at rest"] = sizes["at rest"]
     # What is rate and what damping does not matter to what is left.
-    left = [u**2 for name, u in uncertainty.items() if name != "damping"]
-    uncertainty["unexplained"] = np.sqrt(np.sum(left, axis=0))
+    left = (u for name, u in uncertainty.items() if name != "damping")
+    uncertainty["unexplained"] = root_of_squares(left)
     if "damping" in uncertainty:
         uncertainty["rate"] = np.hypot(uncertainty["rate"], uncertainty["damping"])
-    allowed = np.hypot(UNRESOLVED, np.maximum(uncertainty["unexplained"], _LEFT * _rms(total)))
+    allowed = np.hypot(UNRESOLVED, np.maximum(uncertainty["unexplained"], _LEFT * rms(total)))
     return MotionBudget(
-        {
-            name: {
-                reading: Part(float(rms[name][i]), float(uncertainty[name][i]))
-                for i, reading in enumerate(CLAMP_READINGS)
-            }
-            for name in PARTS
-            if name in rms
-        },
-        dict(zip(CLAMP_READINGS, _rms(total).tolist(), strict=True)),
+        parts_of((name for name in PARTS if name in sizes), sizes, uncertainty),
+        by_reading(total),
         order,
-        bool((rms["unexplained"] <= allowed).all()),
-        max(rms, key=lambda name: float(np.linalg.norm(_sure(rms[name], uncertainty[name])))),
+        bool((sizes["unexplained"] <= allowed).all()),
+        max(sizes, key=lambda name: float(np.linalg.norm(_sure(sizes[name], uncertainty[name])))),
         int(kept.sum()),
     )
 
 
-def _sure(rms: Floats, uncertainty: Floats) -> Floats:
-    return np.maximum(rms - uncertainty, 0.0)
-
-
-def _rms(signals: Floats) -> Floats:
-    return np.asarray(np.sqrt(np.mean(signals**2, axis=-1)))
+def _sure(size: Floats, uncertainty: Floats) -> Floats:
+    return np.maximum(size - uncertainty, 0.0)

@@ -1,102 +1,90 @@
-"""What the disagreement of a sweep in space is made of, by changing one thing at a time."""
+"""What every budget has: sweeps over the stations that all share, and the parts of a whole."""
 
-from collections.abc import Callable
-from dataclasses import replace
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
-from analytic.space import SpatialReadings
-from analytic.space.problem.readings import FORCE, MOMENT
-from mujoco_models.allowed import CONTACT_STIFFNESSES
-from mujoco_models.space.settings import SpatialSettings
+from analytic import CLAMP_READINGS, InputError, Readings
+from analytic.problem.arrays import Booleans, Floats
+from compare.measure.disagreement import before_snap_off, rms
+from compare.sense.noise import scales
+from compare.sense.occurrence import Occurrence
 
-_ORDER = 2  # of the chain in 1/N
-_MOST = 400  # segments
-_STIFFER = 10.0
+SAFETY = 1.25
+"""Roache's, for a convergence index from three or more grids: how far an extrapolated limit is from
+what the finest grid says, and from what the two finest alone would make of it."""
 
 
-class Parts(NamedTuple):
-    """The parts of a disagreement; each a root mean square over the stations that all sweeps share.
+@dataclass(frozen=True)
+class Part:
+    """One part of the disagreement of one reading, relative to its largest magnitude."""
 
-    Relative to the largest component of force and of moment; of the two the larger one.
-    """
+    rms: float
+    uncertainty: float
 
-    whole: float
-    """Of the disagreement itself."""
-    discretisation: float
-    """What the limit of many segments does not have, by another number and order two."""
-    softness: float
-    """What a rigid contact does not have, by another stiffness."""
-    unexplained: float
-    """What is left when these are subtracted, station by station."""
-    stations: int
-    """How many all sweeps share."""
 
-    def line(self) -> str:
-        """All parts, for a terminal."""
-        return (
-            f"of {self.whole:.1e} rms: discretisation {self.discretisation:.1e}, softness "
-            f"{self.softness:.1e}, unexplained {self.unexplained:.1e} ({self.stations} stations)"
+@dataclass(frozen=True)
+class Shared:
+    """The stations that the sweeps of a budget share, seen from the exact one."""
+
+    exact: Readings
+    kept: Booleans  # shape (stations of the sweep,)
+
+    def __post_init__(self) -> None:
+        if not self.kept.any():
+            raise InputError(
+                "stations common to all sweeps of the budget",
+                0,
+                "some",
+                "see their status: a sweep that chatters has none",
+            )
+
+    def signal(self, readings: Readings) -> Floats:
+        """The clamp readings there, over their largest magnitudes, shape (3, stations)."""
+        return np.stack(
+            [readings.values(name)[self.kept] / size for name, size in scales(self.exact).items()]
         )
 
-    def to_dict(self) -> dict[str, Any]:
-        """What ``budget.json`` holds."""
-        return self._asdict()
+    def off(self, readings: Readings) -> Floats:
+        """What they are off by."""
+        return self.signal(readings) - self.signal(self.exact)
 
 
-def split_space(
-    exact: SpatialReadings,
-    base: SpatialReadings,
-    settings: SpatialSettings,
-    sweep: Callable[[SpatialSettings], SpatialReadings],
-) -> Parts:
-    """Split the disagreement of a MuJoCo sweep in space, by two more sweeps.
+def common_stations(exact: Readings, runs: Iterable[Readings], window: float) -> Booleans:
+    """Stations in contact and trusted in every sweep, outside the window before the snap-off."""
+    foot_x = exact.values("foot_x")
+    kept = np.ones(len(foot_x), dtype=bool)
+    for readings in (exact, *runs):
+        kept &= readings.trusted & (readings.table["phase"] != "free").to_numpy()
+    if exact.snap_off is not None:
+        kept &= ~before_snap_off(exact, foot_x, Occurrence(exact.snap_off, None), window)
+    return kept
 
-    Parameters
-    ----------
-    exact, base : SpatialReadings
-        The closed form's, and MuJoCo's with `settings`.
-    settings : SpatialSettings
-        Of the sweep.
-    sweep : callable
-        Maps settings to readings.
 
-    Returns
-    -------
-    Parts
-        Root mean squares.
-    """
-    other = 2 * settings.segments  # where there cannot be so many, half as many show the same
-    if other > _MOST:
-        other = settings.segments // 2
-    finer = sweep(replace(settings, segments=other))
-    stiffness = _STIFFER * settings.contact_stiffness
-    if stiffness > CONTACT_STIFFNESSES[1]:
-        stiffness = settings.contact_stiffness / _STIFFER
-    stiffer = sweep(replace(settings, contact_stiffness=stiffness))
-    shared = np.logical_and.reduce([r.touching for r in (exact, base, finer, stiffer)])
-    values = {
-        name: _scaled(exact, readings, shared)
-        for name, readings in (("exact", exact), ("base", base), ("n", finer), ("k", stiffer))
+def with_unexplained(whole: Floats, signals: Mapping[str, Floats]) -> dict[str, Floats]:
+    """The parts of a whole, and what they leave of it."""
+    return {**signals, "unexplained": whole - np.sum(list(signals.values()), axis=0)}
+
+
+def root_of_squares(uncertainties: Iterable[Floats]) -> Floats:
+    """The uncertainty of a sum."""
+    return np.asarray(np.sqrt(np.sum([u**2 for u in uncertainties], axis=0)))
+
+
+def parts_of(
+    names: Iterable[str], sizes: Mapping[str, Floats], uncertainties: Mapping[str, Floats]
+) -> dict[str, dict[str, Part]]:
+    """The parts by name and reading."""
+    return {
+        name: {
+            reading: Part(float(sizes[name][i]), float(uncertainties[name][i]))
+            for i, reading in enumerate(CLAMP_READINGS)
+        }
+        for name in names
     }
-    whole = values["base"] - values["exact"]
-    coarse = (values["base"] - values["n"]) / (1 - (settings.segments / other) ** _ORDER)
-    soft = (values["base"] - values["k"]) / (1 - settings.contact_stiffness / stiffness)
-    rest = whole - coarse - soft
-    return Parts(_worst(whole), _worst(coarse), _worst(soft), _worst(rest), int(shared.sum()))
 
 
-def _scaled(exact: SpatialReadings, readings: SpatialReadings, shared: Floats) -> Floats:
-    columns = []
-    for names in (FORCE, MOMENT):
-        scale = np.abs(exact.values(*names)[exact.touching]).max(initial=1e-300)
-        columns.append(readings.values(*names)[shared] / scale)
-    return np.hstack(columns)
-
-
-def _worst(signal: Floats) -> float:
-    if not len(signal):
-        return float("nan")
-    return float(np.sqrt((signal**2).mean(axis=0)).max())
+def by_reading(signals: Floats) -> dict[str, float]:
+    """The root mean square of each reading."""
+    return dict(zip(CLAMP_READINGS, rms(signals).tolist(), strict=True))

@@ -9,7 +9,7 @@ from analytic.problem.files import write_whole
 from analytic.space import Body
 from compare.align.frames import COMPONENTS
 from compare.comparison_in_space import SpatialComparison
-from compare.explain.parts import Parts
+from compare.explain.split_space import Parts
 from compare.show.colophon import colophon
 from compare.show.figures.space import (
     both_in_space,

@@ -5,13 +5,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-import numpy as np
-
 from analytic import InputError, Readings
-from compare.explain.budget import common_stations
+from compare.explain.budget import largest_rms
 from compare.explain.motion import THREE_SPEEDS
-from compare.judge.tolerances import Tolerances
-from compare.sense.noise import scales
 from mujoco_models.errors import DivergedError
 
 _TRIES = 8
@@ -95,12 +91,10 @@ def _error(exact: Readings, moved: Readings) -> float:
 
 
 def _rms(exact: Readings, candidate: Readings) -> float:
-    kept = common_stations(exact, [candidate], Tolerances().snap_off_window)
-    off = [
-        (candidate.values(name) - exact.values(name))[kept] / scale
-        for name, scale in scales(exact).items()
-    ]
-    return float(np.sqrt(np.mean(np.square(off), axis=1)).max()) if kept.any() else math.inf
+    try:
+        return largest_rms(exact, candidate)
+    except InputError:  # no station in common
+        return math.inf
 
 
 def _speed(readings: Readings) -> float:

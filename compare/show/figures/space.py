@@ -13,7 +13,7 @@ from analytic.space.problem.readings import FORCE, MOMENT
 from compare.align.frames import components
 from compare.align.travel import travel_of
 from compare.comparison_in_space import SpatialComparison
-from compare.explain.parts import Parts
+from compare.explain.split_space import Parts
 from compare.show.scene import SweepScene
 from compare.show.style import (
     BLUE,
