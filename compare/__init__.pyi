@@ -14,6 +14,7 @@ from .read.space import load_space as load_space
 from .read.space_readings import read_space as read_space
 from .sense.phases import Classification as Classification
 from .sense.phases import classify as classify
+from .simulate.budgets import measure_budget as measure_budget
 from .testing.gates import assert_agreement as assert_agreement
 from .validate.stated import Input as Input
 from .validate.stated import Uncertainties as Uncertainties

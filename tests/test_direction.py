@@ -25,7 +25,7 @@ from analytic import (
 from compare import classify, compare
 from compare.explain.budget import budget
 from compare.explain.variations import variations
-from compare.simulate.controlled import measure_budget
+from compare.simulate.budgets import measure_budget
 from mujoco_models import Settings, simulate_sweep
 from tests.conftest import simulated_sweep
 

@@ -14,10 +14,10 @@ from mujoco_models import simulate_sweep
 from mujoco_models.settings import Settings
 
 
-def measure_budget(
+def budget_at_rest(
     case: Case, settings: Settings, advance: Callable[[], None] = lambda: None
 ) -> tuple[Budget, dict[str, Readings]]:
-    """Measure what the disagreement of MuJoCo's sweep of `case` with the exact one is made of."""
+    """The budget of a sweep at rest in the plane, and its sweeps."""
     smooth = has_primitive(case)
     changes = controlled_changes(settings, smooth, has_corners(case, settings))
     with _sweeping(case, changes, advance) as await_all:

@@ -13,6 +13,7 @@ from compare.explain.motion import (
     slower_and_finer,
     slower_and_finer_of_model,
 )
+from compare.simulate.dispatch import simulate
 from compare.simulate.means import sweep_as_means
 from compare.simulate.rigidity import by_its_clamp
 from compare.simulate.workers import Workers, available_cores
@@ -25,22 +26,22 @@ from mujoco_models.settings import Settings
 _TRUSTED = 0.75  # of the stations; a sweep with fewer would cost the budget most of them
 
 
-def measure_motion_budget(
+def budget_in_motion(
     case: Case,
     motion: Motion,
     settings: Settings,
     at_rest: Settings,
     advance: Callable[[], None] = lambda: None,
 ) -> tuple[MotionBudget, Mapping[str, Readings]]:
-    """Measure what the disagreement of a sweep in motion with the closed form is made of."""
+    """The budget of a sweep in motion, and its sweeps."""
     motions = slower_and_finer(motion)
-    sweeps = {name: (move_alone, case, one, settings) for name, one in motions.items()}
+    sweeps = {name: (simulate, case, settings, one) for name, one in motions.items()}
     runs = _swept({**sweeps, "rest": (sweep_as_means, case, at_rest, motion.average)}, advance)
     left_out = tuple(name for name in motions if name not in runs)
     return replace(motion_budget(solve_sweep(case), runs), left_out=left_out), runs
 
 
-def measure_model_budget(
+def budget_of_model(
     case: Case,
     model: OwnModel,
     motion: Motion,
@@ -65,7 +66,10 @@ def measure_model_budget(
     # What is soft about the model's contacts is a part of its own.
     at_rest = replace(settings, segments=max(len(found.joints), 2))
     of_model = slower_and_finer_of_model(model, motion)
-    sweeps = {name: (move_model_alone, case, *one, settings) for name, one in of_model.items()}
+    sweeps = {
+        name: (simulate, case, settings, moved, changed)
+        for name, (changed, moved) in of_model.items()
+    }
     runs = _swept({**sweeps, "rest": (sweep_as_means, case, at_rest, motion.average)}, advance)
     no_ours = "ours" in sweeps and "ours" not in runs
     if "stiff" in runs and (no_ours or runs["stiff"].trusted.mean() < _TRUSTED):
@@ -105,17 +109,3 @@ def _swept(
             return {n: sweep.result() for n, sweep in running.items() if n not in diverged}
         except BrokenExecutor as error:
             raise MemoryError("the system ended a worker process") from error
-
-
-def move_alone(case: Case, motion: Motion, settings: Settings) -> Readings:
-    """One sweep in motion, in a process of its own."""
-    from mujoco_models import simulate_motion  # MuJoCo is imported only where it is used
-
-    return simulate_motion(case, motion, settings)
-
-
-def move_model_alone(case: Case, model: OwnModel, motion: Motion, settings: Settings) -> Readings:
-    """One sweep of a user's own model, in a process of its own."""
-    from mujoco_models import simulate_model  # MuJoCo is imported only where it is used
-
-    return simulate_model(case, model, motion, settings)

@@ -22,7 +22,7 @@ from analytic import (
 )
 from analytic.solver.integrals import elliptic_integrals
 from compare.explain.changes import controlled_changes
-from compare.simulate.controlled import measure_budget
+from compare.simulate.budgets import measure_budget
 from mujoco_models import Settings, simulate_sweep
 from mujoco_models.sweep.sweep import set_out
 from tests.bench.ratios import command, process

@@ -6,7 +6,7 @@ import pytest
 
 from analytic import CASE_NAMES, named_case
 from compare.explain.budget import UNRESOLVED
-from compare.simulate.controlled import measure_budget
+from compare.simulate.budgets import measure_budget
 from mujoco_models import Settings
 
 pytestmark = pytest.mark.usefixtures("in_turn")
