@@ -74,9 +74,9 @@ net: develop     ## some 280 sweeps of this checkout, held against those that an
 	$(BIN)/python -m tests.net compare $(or $(OLD),$(error OLD=DIR is missing)) results/net
 
 results: $(RUNS) | install ## results/README.md: all named cases, all beams there are; goes on where it stopped
-	$(BIN)/python -m compare.simulate.overview results/overview.png
+	$(BIN)/python -m docs.figures.overview results/overview.png
 	$(BIN)/python -m compare.show.figures.hysteresis results/hysteresis.png
-	$(BIN)/python -m compare.simulate.quasi_static results/quasi-static.csv
+	$(BIN)/python -m docs.figures.quasi_static results/quasi-static.csv
 	$(BIN)/python -m compare.show.figures.quasi_static results/quasi-static.csv results/quasi-static.png
 	$(BIN)/vibrissa analytic catenary --figures --out results/pictures
 	$(BIN)/vibrissa methods catenary --out results/pictures

@@ -1,7 +1,7 @@
 """How slow is quasi-static, and what do MuJoCo's settings cost?
 
 ``python -m compare.show.figures.quasi_static FILE.csv FILE.png`` draws what
-`compare.simulate.quasi_static` measured.
+`docs.figures.quasi_static` measured.
 """
 
 import sys

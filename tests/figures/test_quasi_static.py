@@ -6,9 +6,9 @@ import pandas as pd
 import pytest
 
 from compare.show.figures.quasi_static import quasi_static
-from compare.simulate.quasi_static import measure, variants
+from docs.figures.quasi_static import measure, variants
 
-TABLE = pd.read_csv(Path(__file__).parents[3] / "results" / "quasi-static.csv")
+TABLE = pd.read_csv(Path(__file__).parents[2] / "results" / "quasi-static.csv")
 
 
 def test_every_variant_stands_in_the_table_once():

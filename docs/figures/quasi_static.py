@@ -1,6 +1,6 @@
 """How slow is quasi-static, and what do MuJoCo's settings cost? One setting at a time.
 
-``python -m compare.simulate.quasi_static FILE.csv`` sweeps the catenary in motion, in about four
+``python -m docs.figures.quasi_static FILE.csv`` sweeps the catenary in motion, in about four
 minutes of CPU time, and writes a row a sweep; `compare.show.figures.quasi_static` draws them.
 """
 

@@ -1,7 +1,6 @@
 """The README's picture: the sweep, the signs, and both models' readings.
 
-Run as ``python -m compare.simulate.overview FILE``. It is drawn here and not in `compare.show`,
-since it calls MuJoCo, and whatever shows readings does without a simulator.
+Run as ``python -m docs.figures.overview FILE``.
 """
 
 import sys
