@@ -9,7 +9,6 @@ from analytic.problem.arrays import Floats
 from analytic.space import SpatialReadings, reconstruct_space
 from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT
 from compare.align.frames import COMPONENTS
-from compare.comparison_in_space import compare_space
 from compare.study.grid.study import Record
 
 _ENDS = {"touch": "touch", "slip_off": "slip-off", "release": "release"}
@@ -42,7 +41,8 @@ COLUMNS: Mapping[Record, Mapping[str, str]] = {
         "reconstruction_share": "double",
     },
 }
-"""Columns of a row by what is recorded, with their Arrow types; see `events` and the others."""
+"""Columns of a row by what is recorded, with their Arrow types; those of a
+disagreement are `Judged.metrics`."""
 
 
 def events(found: SpatialReadings) -> dict[str, float | int | None]:
@@ -70,27 +70,6 @@ def with_noise(readings: SpatialReadings, relative: float, seed: int) -> Spatial
         drawn = values + size * random.normal(size=values.shape)
         noisy |= dict(zip(names, drawn.T, strict=True))
     return replace(readings, table=readings.table.assign(**noisy))
-
-
-def disagreement(
-    reference: SpatialReadings, candidate: SpatialReadings
-) -> dict[str, float | int | bool | None]:
-    """Compare two sweeps."""
-    found = compare_space(reference, candidate)
-    row: dict[str, float | int | bool | None] = {}
-    for name, one in found.disagreement.items():
-        row[f"disagreement_{name}_rms"] = one.rms
-        row[f"disagreement_{name}_max"] = one.max
-    row["agrees"] = found.agrees
-    row["phase_agreement"] = found.phase_agreement
-    row["stations_compared"] = int(found.compared.sum())
-    row["contact_rms"] = found.contact.rms
-    for name, word in _ENDS.items():
-        pair = found.events.get(word)
-        row[f"{name}_reference"] = None if pair is None else pair.reference
-        row[f"{name}_candidate"] = None if pair is None else pair.candidate
-        row[f"{name}_difference"] = None if pair is None else pair.difference
-    return row
 
 
 def reconstruction(candidate: SpatialReadings) -> dict[str, float | None]:

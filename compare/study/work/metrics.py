@@ -5,7 +5,6 @@ from collections.abc import Mapping
 import numpy as np
 
 from analytic import CLAMP_READINGS, Direction, Events, Readings, find_events
-from compare.comparison import compare
 from compare.measure.methods import contacts_by
 from compare.read.tables import Physics
 from compare.sense.transitions import TRANSITIONS
@@ -40,7 +39,8 @@ COLUMNS: Mapping[Record, Mapping[str, str]] = {
         "reconstruction_share": "double",
     },
 }
-"""Columns of a row by what is recorded, with their Arrow types; see `events` and the others."""
+"""Columns of a row by what is recorded, with their Arrow types; those of a
+disagreement are `Judged.metrics`."""
 
 
 def find(physics: Physics, direction: Direction = "left") -> Events:
@@ -67,24 +67,6 @@ def events(
             for name, event in places.items()
         },
     }
-
-
-def disagreement(reference: Readings, candidate: Readings) -> dict[str, float | int | bool | None]:
-    """Compare two sweeps."""
-    found = compare(reference, candidate)
-    row: dict[str, float | int | bool | None] = {}
-    for name, one in found.disagreement.items():
-        row[f"disagreement_{name}_rms"] = one.rms
-        row[f"disagreement_{name}_max"] = one.max
-    row["agrees"] = found.agrees
-    row["phase_agreement"] = min(found.phase_agreement().values(), default=None)
-    row["stations_compared"] = found.alignment.counts["compared"]
-    places = {f"transition_{name}": place for name, place in found.transitions.items()}
-    for name, place in {**places, "snap_off": found.snap_off}.items():
-        row[f"{name}_reference"] = place.reference
-        row[f"{name}_candidate"] = place.candidate
-        row[f"{name}_difference"] = place.difference
-    return row
 
 
 def reconstruction(

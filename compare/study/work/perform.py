@@ -16,8 +16,10 @@ import numpy as np
 
 from analytic import InputError, Readings, solve_sweep
 from analytic.space import SpatialReadings, solve_space
+from compare.comparison import compare
 from compare.judge.tolerances import Tolerances
 from compare.read.space import SpaceFile
+from compare.simulate.dispatch import simulate
 from compare.study.grid.axes import Value
 from compare.study.grid.estimator import Estimator
 from compare.study.grid.plan import PlannedRun
@@ -26,7 +28,6 @@ from compare.study.grid.study import RECORDS, Study, case_file
 from compare.study.work import in_space, metrics
 from compare.study.work.recipe import Recipe
 from compare.study.work.together import Known, known_of
-from engines.apart import checked
 from mujoco_models import DivergedError
 
 Outcome: TypeAlias = Literal["done", "diverged", "unsettled", "timeout", "failed", "bad-input"]
@@ -153,20 +154,10 @@ def _measure(
     reference = known.reference or solve_sweep(case)
     simulated = reference
     if recipe.simulate:
-        from engines import find_engine  # engines are imported only where they are used
-        from mujoco_models import simulate_motion
-
         begin = time.perf_counter()
         deadline = _deadline(begin + recipe.timeout)
-        if file.motion is None:
-            engine = find_engine(file.engine.name)
-            simulated = checked(engine.sweep(case, file.mujoco, deadline), case)
-        elif file.engine.name != "mujoco":
-            raise InputError(
-                "engine.name", file.engine.name, "mujoco in motion", "leave [motion] out"
-            )
-        else:
-            simulated = simulate_motion(case, file.motion.build(case.beam), file.mujoco, deadline)
+        motion = None if file.motion is None else file.motion.build(case.beam)
+        simulated = simulate(case, file.mujoco, motion, None, file.engine.name, deadline)
         row["seconds_candidate"] = time.perf_counter() - begin
         row |= _trust(simulated)
     candidate = noise.add_to(simulated)
@@ -176,7 +167,7 @@ def _measure(
     if row.get("outcome") == "diverged":
         return row
     if "disagreement" in recipe.record:
-        row |= metrics.disagreement(reference, candidate)
+        row |= compare(reference, candidate).metrics()
     if "reconstruction" in recipe.record:
         row |= metrics.reconstruction(candidate, estimator.method, noise.relative)
     return row
@@ -197,10 +188,8 @@ def _measure_in_space(
     if recipe.events_only:
         return row
     if recipe.simulate:
-        from mujoco_models import simulate_space
-
         begin = time.perf_counter()
-        simulated = simulate_space(case, file.mujoco, _deadline(begin + recipe.timeout))
+        simulated = simulate(case, file.mujoco, advance=_deadline(begin + recipe.timeout))
         row["seconds_candidate"] = time.perf_counter() - begin
         row |= _trust(simulated)
     candidate = in_space.with_noise(simulated, noise.relative, noise.seed)
@@ -210,7 +199,7 @@ def _measure_in_space(
     if row.get("outcome") == "diverged":
         return row
     if "disagreement" in recipe.record:
-        row |= in_space.disagreement(reference, candidate)
+        row |= compare(reference, candidate).metrics()
     if "reconstruction" in recipe.record:
         if estimator.method != "elastica":
             raise InputError(

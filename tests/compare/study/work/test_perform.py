@@ -100,23 +100,23 @@ def test_whatever_else_goes_wrong_is_an_outcome(plan_of, monkeypatch):
 
 @pytest.mark.parametrize("status", ["unsettled", "diverged"])
 def test_a_simulation_that_does_not_trust_itself(plan_of, monkeypatch, status):
-    def doubtful(case, settings, advance):
+    def doubtful(case, settings, advance, keep):
         readings = simulate_sweep(case, settings, advance)
         readings.table.loc[:9, "status"] = status
         return readings
 
-    monkeypatch.setattr("engines.mujoco.simulate_sweep", doubtful)
+    monkeypatch.setattr("compare.simulate.dispatch.simulate_sweep", doubtful)
     row = perform(*only(plan_of(ONE_SIMULATION))).row
     assert (row["outcome"], row["reason"]) == (status, f"10 of 40 stations {status}")
 
 
 def test_a_slow_run_is_ended_between_stations(plan_of, monkeypatch):
-    def slow(case, settings, advance):
+    def slow(case, settings, advance, keep):
         while True:
             time.sleep(0.01)
             advance()
 
-    monkeypatch.setattr("engines.mujoco.simulate_sweep", slow)
+    monkeypatch.setattr("compare.simulate.dispatch.simulate_sweep", slow)
     row = perform(*only(plan_of(ONE_SIMULATION.replace("30", "0.1")))).row
     assert row["outcome"] == "timeout"
     assert row["seconds"] < 2
