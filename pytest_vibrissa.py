@@ -25,9 +25,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from importlib import import_module
 from importlib.util import find_spec
-from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import pytest
 
@@ -55,30 +54,63 @@ _JOB = pytest.StashKey["Job"]()
 _SPACE_JOB = pytest.StashKey["SpaceJob"]()
 
 
+class _Choice(NamedTuple):
+    """What a fixture is run for, once each."""
+
+    fixture: str
+    marker: str
+    option: str
+    metavar: str
+    what: str
+    default: str
+    load: tuple[str, str]  # a module of ours, and what reads a name there
+
+    def read(self, name: str) -> Any:  # noqa: ANN401
+        module, function = self.load
+        return getattr(_ours(module), function)(name)
+
+
+_CASE = _Choice(
+    "vibrissa_case",
+    "vibrissa",
+    "--vibrissa-case",
+    "NAME|FILE",
+    "case, named or a TOML file,",
+    " (default: all named)",
+    ("compare.read.case", "load_job"),
+)
+_ENGINE = _Choice(
+    "vibrissa_engine",
+    "vibrissa_engine",
+    "--vibrissa-engine",
+    "NAME",
+    "engine",
+    " (default: all that are known)",
+    ("engines.known", "named_engines"),
+)
+_SPACE_CASE = _Choice(
+    "vibrissa_space_case",
+    "vibrissa_space",
+    "--vibrissa-space",
+    "FILE",
+    "case in space",
+    "",
+    ("compare.read.space", "load_space_job"),
+)
+_CHOICES = (_CASE, _ENGINE, _SPACE_CASE)
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     """The plugin's options."""
     group = parser.getgroup("vibrissa", "sweeps of a vibrissa")
-    group.addoption(
-        "--vibrissa-case",
-        action="append",
-        metavar="NAME|FILE",
-        help="case of tests that use `vibrissa_case` and have no marker `vibrissa`, named or a "
-        "TOML file; repeat it (default: all named)",
-    )
-    group.addoption(
-        "--vibrissa-engine",
-        action="append",
-        metavar="NAME",
-        help="engine of tests that use `vibrissa_engine_sweep` and have no marker "
-        "`vibrissa_engine`; repeat it (default: all that are known)",
-    )
-    group.addoption(
-        "--vibrissa-space",
-        action="append",
-        metavar="FILE",
-        help="case in space of tests that use `vibrissa_space_case` and have no marker "
-        "`vibrissa_space`; repeat it",
-    )
+    for one in _CHOICES:
+        group.addoption(
+            one.option,
+            action="append",
+            metavar=one.metavar,
+            help=f"{one.what} of tests that use `{one.fixture}` and have no marker `{one.marker}`; "
+            f"repeat it{one.default}",
+        )
     group.addoption(
         "--vibrissa-report",
         type=Path,
@@ -88,34 +120,17 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """The plugin's marker; its options, checked; its summary, if asked for."""
-    config.addinivalue_line(
-        "markers",
-        "vibrissa(case, ...): the cases, named or TOML files, of the `vibrissa_case` fixture",
-    )
-    config.addinivalue_line(
-        "markers",
-        "vibrissa_engine(name, ...): the engines of the `vibrissa_engine_sweep` fixture",
-    )
-    config.addinivalue_line(
-        "markers",
-        "vibrissa_space(file, ...): the cases of the `vibrissa_space_case` fixture",
-    )
-    for name in config.getoption("--vibrissa-engine") or ():
-        try:
-            _ours("engines.known").named_engines(name)
-        except (ValueError, pytest.fail.Exception) as error:
-            raise pytest.UsageError(f"--vibrissa-engine: {error}") from None
-    for name in config.getoption("--vibrissa-case") or ():
-        try:
-            _ours("compare.read.case").load_job(name)
-        except (ValueError, OSError, pytest.fail.Exception) as error:  # InputError is a ValueError
-            raise pytest.UsageError(f"--vibrissa-case: {error}") from None
-    for name in config.getoption("--vibrissa-space") or ():
-        try:
-            _ours("compare.read.space").load_space_job(name)
-        except (ValueError, OSError, pytest.fail.Exception) as error:
-            raise pytest.UsageError(f"--vibrissa-space: {error}") from None
+    """The plugin's markers; its options, checked; its summary, if asked for."""
+    for one in _CHOICES:
+        config.addinivalue_line(
+            "markers",
+            f"{one.marker}({one.metavar}, ...): each {one.what} of the `{one.fixture}` fixture",
+        )
+        for name in config.getoption(one.option) or ():
+            try:
+                one.read(name)
+            except (ValueError, OSError, pytest.fail.Exception) as error:  # InputError is the first
+                raise pytest.UsageError(f"{one.option}: {error}") from None
     folder = config.getoption("--vibrissa-report")
     if folder is not None and not hasattr(config, "workerinput"):  # xdist's workers have that
         config.pluginmanager.register(_Summary(folder))
@@ -124,45 +139,23 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.hookimpl(trylast=True)
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """One test a case and an engine, unless the user's own hook has chosen them."""
-    _choose_engines(metafunc)
-    _choose_in_space(metafunc)
-    if "vibrissa_case" not in metafunc.fixturenames:
-        return
-    # Without a public way to ask what is parametrized already, a user's `case` would be crossed
-    # with all named cases.
+    # There is no public way to ask what is parametrized already.
     chosen = {name for call in metafunc._calls for name in call.params}
-    asked = {"vibrissa_sweep", "vibrissa_job"}.intersection(metafunc.fixturenames)
-    if "vibrissa_case" in signature(metafunc.function).parameters:
-        asked.add("vibrissa_case")
-    if "vibrissa_case" in chosen or ("case" in chosen and not asked):
-        return
-    marker = metafunc.definition.get_closest_marker("vibrissa")
-    names = (marker.args if marker else ()) or metafunc.config.getoption("--vibrissa-case")
-    names = [str(name) for name in names or _ours("analytic").CASE_NAMES]
-    metafunc.parametrize("vibrissa_case", names, ids=[Path(n).stem for n in names], indirect=True)
+    for one in _CHOICES:
+        if one.fixture not in metafunc.fixturenames or one.fixture in chosen:
+            continue
+        marker = metafunc.definition.get_closest_marker(one.marker)
+        asked = (marker.args if marker else ()) or metafunc.config.getoption(one.option)
+        names = [str(name) for name in asked or _every(one)]
+        if names:  # there are no named cases in space: the fixture says how to choose
+            ids = [Path(name).stem for name in names]
+            metafunc.parametrize(one.fixture, names, ids=ids, indirect=True)
 
 
-def _choose_engines(metafunc: pytest.Metafunc) -> None:
-    chosen = {name for call in metafunc._calls for name in call.params}
-    if "vibrissa_engine" not in metafunc.fixturenames or "vibrissa_engine" in chosen:
-        return
-    marker = metafunc.definition.get_closest_marker("vibrissa_engine")
-    names = (marker.args if marker else ()) or metafunc.config.getoption("--vibrissa-engine")
-    names = list(names or [one.name for one in _ours("engines").list_engines()])
-    metafunc.parametrize("vibrissa_engine", names, indirect=True)
-
-
-def _choose_in_space(metafunc: pytest.Metafunc) -> None:
-    chosen = {name for call in metafunc._calls for name in call.params}
-    if "vibrissa_space_case" not in metafunc.fixturenames or "vibrissa_space_case" in chosen:
-        return
-    marker = metafunc.definition.get_closest_marker("vibrissa_space")
-    names = (marker.args if marker else ()) or metafunc.config.getoption("--vibrissa-space")
-    if names:  # there are no named ones: the fixture says how to choose
-        names = [str(name) for name in names]
-        metafunc.parametrize(
-            "vibrissa_space_case", names, ids=[Path(name).stem for name in names], indirect=True
-        )
+def _every(one: _Choice) -> list[str]:
+    if one is _ENGINE:
+        return [found.name for found in _ours("engines").list_engines()]
+    return list(_ours("analytic").CASE_NAMES) if one is _CASE else []
 
 
 @pytest.fixture
@@ -170,7 +163,7 @@ def vibrissa_case(request: pytest.FixtureRequest) -> Case:
     """The problem: an `analytic.Case`, one test for each that marker or option names."""
     if not hasattr(request, "param"):
         pytest.fail("vibrissa_case: no case is chosen; let the test itself use it", pytrace=False)
-    job: Job = _stated(_ours("compare.read.case").load_job, request.param)
+    job: Job = _stated(_CASE, request.param)
     request.node.stash[_JOB] = job
     return job.case
 
@@ -251,7 +244,7 @@ def vibrissa_space_case(request: pytest.FixtureRequest) -> SpatialCase:
             "@pytest.mark.vibrissa_space(FILE), and let the test itself use it",
             pytrace=False,
         )
-    job: SpaceJob = _stated(_ours("compare.read.space").load_space_job, request.param)
+    job: SpaceJob = _stated(_SPACE_CASE, request.param)
     request.node.stash[_SPACE_JOB] = job
     return job.case
 
@@ -289,54 +282,53 @@ def vibrissa_agreement(
     hold. Readings in space are compared in the same way, with ``vibrissa_space_case``, and with
     ``frame=`` for the components. The comparison is reported either way.
     """
-    return _agreement("vibrissa_case", request, record_property)
+    reported = 0
 
+    def closed_form(in_space: bool) -> Readings | SpatialReadings:
+        asked = "vibrissa_space_case" if in_space else "vibrissa_case"
+        if asked not in request.fixturenames:
+            pytest.fail(
+                f"vibrissa_agreement: give a reference, or let the test use `{asked}`",
+                pytrace=False,
+            )
+        case = request.getfixturevalue(asked)
+        if in_space:
+            return _space_sweep_of(request, request.getfixturevalue("vibrissa_space_sweeps"))()
+        sweeps = request.getfixturevalue("vibrissa_sweeps")
+        return _sweep_of(case, sweeps)()
 
-@pytest.fixture
-def case(request: pytest.FixtureRequest, vibrissa_case: Case) -> Case:
-    """The old name of `vibrissa_case`."""
-    _warn(request, "case")
-    return vibrissa_case
-
-
-@pytest.fixture
-def sweep(
-    request: pytest.FixtureRequest, case: Case, vibrissa_sweeps: Sweeps
-) -> Callable[..., Readings]:
-    """The old name of `vibrissa_sweep`."""
-    _warn(request, "sweep")
-    return _sweep_of(_checked("sweep", case), vibrissa_sweeps)
-
-
-@pytest.fixture
-def agreement(
-    request: pytest.FixtureRequest, record_property: Callable[[str, object], None]
-) -> Callable[..., Comparison | SpatialComparison]:
-    """The old name of `vibrissa_agreement`."""
-    _warn(request, "agreement")
-    return _agreement("case", request, record_property)
-
-
-def _warn(request: pytest.FixtureRequest, name: str) -> None:
-    request.node.warn(
-        DeprecationWarning(
-            f"fixture `{name}` of vibrissa-testbed is called `vibrissa_{name}` now; the old name "
-            "will go, since it may be one of your own"
+    def agree(
+        candidate: Readings | SpatialReadings,
+        reference: Readings | SpatialReadings | None = None,
+        tolerances: Tolerances | SpatialTolerances | None = None,
+        *,
+        offset: float | Literal["auto"] = 0.0,
+        noise: float | Literal["auto"] = 0.0,
+        budget: Budget | None = None,
+        frame: Frame = "world",
+    ) -> Comparison | SpatialComparison:
+        __tracebackhide__ = True
+        nonlocal reported
+        in_space = isinstance(candidate, _ours("analytic.space").SpatialReadings)
+        if reference is None:
+            reference = closed_form(in_space)
+        job = request.node.stash.get(_SPACE_JOB if in_space else _JOB, None)
+        if tolerances is None and job is not None:
+            tolerances = job.tolerances
+        found: Comparison | SpatialComparison = _ours("compare.comparison").compare(
+            reference, candidate, tolerances, offset=offset, noise=noise, frame=frame
         )
-    )
+        folder = request.config.getoption("--vibrissa-report")
+        if folder is not None:
+            reported += 1
+            name = re.sub(r"[^\w.-]+", "-", f"{request.node.nodeid}-{reported}")
+            body = job.case.body if in_space and job is not None else None
+            row = _ours("compare.testing.summary").report(found, folder, name, body)
+            record_property(_RECORD, json.dumps(row))
+        _ours("compare.testing.gates").demand(found, budget)
+        return found
 
-
-def _checked(fixture: str, case: object) -> Case:
-    """The case, if it is one: the user may have a fixture `case` for something else."""
-    checked: type[Case] = _ours("analytic").Case
-    if not isinstance(case, checked):
-        pytest.fail(
-            f"{fixture}: the fixture `case` in use here is your own and gives a "
-            f"{type(case).__name__}, no analytic.Case; use `vibrissa_case` and "
-            f"`vibrissa_{fixture}`",
-            pytrace=False,
-        )
-    return case
+    return agree
 
 
 def _sweep_of(case: Case, sweeps: Sweeps) -> Callable[..., Readings]:
@@ -374,61 +366,10 @@ def _space_sweep_of(
     return made
 
 
-def _agreement(
-    named: str, request: pytest.FixtureRequest, record: Callable[[str, object], None]
-) -> Callable[..., Comparison | SpatialComparison]:
-    reported = 0
-
-    def closed_form(in_space: bool) -> Readings | SpatialReadings:
-        asked = "vibrissa_space_case" if in_space else named
-        if asked not in request.fixturenames:
-            pytest.fail(
-                f"agreement: give a reference, or let the test use `{asked}`", pytrace=False
-            )
-        case = request.getfixturevalue(asked)
-        if in_space:
-            return _space_sweep_of(request, request.getfixturevalue("vibrissa_space_sweeps"))()
-        sweeps = request.getfixturevalue("vibrissa_sweeps")
-        return _sweep_of(_checked("agreement", case), sweeps)()
-
-    def agree(
-        candidate: Readings | SpatialReadings,
-        reference: Readings | SpatialReadings | None = None,
-        tolerances: Tolerances | SpatialTolerances | None = None,
-        *,
-        offset: float | Literal["auto"] = 0.0,
-        noise: float | Literal["auto"] = 0.0,
-        budget: Budget | None = None,
-        frame: Frame = "world",
-    ) -> Comparison | SpatialComparison:
-        __tracebackhide__ = True
-        nonlocal reported
-        in_space = isinstance(candidate, _ours("analytic.space").SpatialReadings)
-        if reference is None:
-            reference = closed_form(in_space)
-        job = request.node.stash.get(_SPACE_JOB if in_space else _JOB, None)
-        if tolerances is None and job is not None:
-            tolerances = job.tolerances
-        found: Comparison | SpatialComparison = _ours("compare.comparison").compare(
-            reference, candidate, tolerances, offset=offset, noise=noise, frame=frame
-        )
-        folder = request.config.getoption("--vibrissa-report")
-        if folder is not None:
-            reported += 1
-            name = re.sub(r"[^\w.-]+", "-", f"{request.node.nodeid}-{reported}")
-            body = job.case.body if in_space and job is not None else None
-            row = _ours("compare.testing.summary").report(found, folder, name, body)
-            record(_RECORD, json.dumps(row))
-        _ours("compare.testing.gates").demand(found, budget)
-        return found
-
-    return agree
-
-
-def _stated(load: Callable[[str], Any], file: str) -> Any:  # noqa: ANN401
+def _stated(one: _Choice, name: str) -> Any:  # noqa: ANN401
     """What a marker names; what is wrong with it fails the test in a line."""
     try:
-        return load(file)
+        return one.read(name)
     except _ours("analytic").InputError as error:
         pytest.fail(str(error), pytrace=False)
 

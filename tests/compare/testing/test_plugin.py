@@ -97,31 +97,6 @@ def test_the_marker_goes_before_the_option(pytester):
     pytester.runpytest("--vibrissa-case", "parabola").assert_outcomes(passed=2)
 
 
-OLD_NAMES = """
-import pytest
-@pytest.mark.vibrissa("tip-only")
-def test_old(case, sweep, agreement):
-    agreement(sweep())
-"""
-
-
-def test_old_names_work_and_warn(pytester):
-    pytester.makepyfile(OLD_NAMES)
-    result = pytester.runpytest()
-    result.assert_outcomes(passed=1, warnings=3)
-    result.stdout.fnmatch_lines(["*fixture `case` of vibrissa-testbed is called `vibrissa_case`*"])
-
-
-def test_the_users_own_case_goes_first(pytester):
-    pytester.makeconftest(
-        "import pytest, analytic\n"
-        "@pytest.fixture\n"
-        "def case(): return analytic.named_case('tip-only')\n"
-    )
-    pytester.makepyfile("def test_it(case, sweep, agreement): agreement(sweep())")
-    pytester.runpytest().assert_outcomes(passed=1, warnings=2)
-
-
 def test_the_users_own_parameters_are_not_crossed_with_the_named_cases(pytester):
     pytester.makeconftest(
         "def pytest_generate_tests(metafunc):\n"
@@ -132,12 +107,13 @@ def test_the_users_own_parameters_are_not_crossed_with_the_named_cases(pytester)
     pytester.runpytest("-W", "error").assert_outcomes(passed=2)
 
 
-def test_the_users_own_kind_of_case_is_named(pytester):
-    pytester.makeconftest("import pytest\n@pytest.fixture\ndef case(): return {}\n")
-    pytester.makepyfile("def test_it(case, sweep): pass")
-    result = pytester.runpytest()
-    result.assert_outcomes(errors=1, warnings=1)
-    result.stdout.fnmatch_lines(["*`case` in use here is your own and gives a dict*"])
+def test_what_the_users_own_hook_chose_is_not_chosen_again(pytester):
+    pytester.makeconftest(
+        "def pytest_generate_tests(metafunc):\n"
+        "    metafunc.parametrize('vibrissa_case', ['tip-only'], indirect=True)\n"
+    )
+    pytester.makepyfile("def test_it(vibrissa_case): assert vibrissa_case.name == 'tip-only'")
+    pytester.runpytest("-W", "error").assert_outcomes(passed=1)
 
 
 def test_each_sweep_is_made_once(pytester):
