@@ -150,3 +150,29 @@ def test_a_flat_minimum_is_an_error():
     noisy = with_noise(part, dict.fromkeys(CLAMP_READINGS, 0.1), 3)
     with pytest.raises(InputError, match="ambiguous"):
         compare(exact, noisy, offset="auto")
+
+
+def test_an_offset_is_taken_from_all_that_lies_along_x():
+    exact = exact_sweep("parabola")
+    moved = without_offset(exact, 0.25)
+    for name in ("foot_x", "contact_x"):
+        np.testing.assert_allclose(moved.values(name), exact.values(name) - 0.25, atol=1e-15)
+    for name in ("contact_y", "contact_arc_length", *CLAMP_READINGS):
+        np.testing.assert_array_equal(moved.values(name), exact.values(name))
+    assert moved.snap_off == pytest.approx(exact.snap_off - 0.25)
+    (x, y), (x_before, y_before) = moved.provenance["contour"], exact.provenance["contour"]
+    np.testing.assert_allclose(np.array(x), np.array(x_before) - 0.25, atol=1e-15)
+    assert y == y_before
+
+
+def test_a_lag_is_half_the_difference():
+    offset, lag = separate_lag(Offset(0.02, 0.003), Offset(0.05, 0.004))
+    assert (offset.value, lag.value) == pytest.approx((0.035, 0.015))
+    assert (offset.uncertainty, lag.uncertainty) == pytest.approx((0.0025, 0.0025))
+
+
+def test_twice_the_noise_is_twice_the_interval():
+    exact = exact_sweep("parabola")
+    noisy = (with_noise(exact, dict.fromkeys(CLAMP_READINGS, level), 7) for level in (1e-3, 2e-3))
+    one, other = (found(exact, sweep).uncertainty for sweep in noisy)
+    assert other == pytest.approx(2 * one, rel=0.1)
