@@ -165,12 +165,6 @@ def test_an_offset_is_taken_from_all_that_lies_along_x():
     assert y == y_before
 
 
-def test_a_lag_is_half_the_difference():
-    offset, lag = separate_lag(Offset(0.02, 0.003), Offset(0.05, 0.004))
-    assert (offset.value, lag.value) == pytest.approx((0.035, 0.015))
-    assert (offset.uncertainty, lag.uncertainty) == pytest.approx((0.0025, 0.0025))
-
-
 def test_twice_the_noise_is_twice_the_interval():
     exact = exact_sweep("parabola")
     noisy = (with_noise(exact, dict.fromkeys(CLAMP_READINGS, level), 7) for level in (1e-3, 2e-3))

@@ -82,10 +82,3 @@ def test_what_each_kind_of_disorder_is_put_right_to():
         assert [name for name, is_so in seen.items() if is_so] == [kind] * (kind != "none")
         assert not order.opposite
         assert (record.retreats > 0) == (kind == "sorted")
-
-
-def test_the_mirror_image_is_a_sweep_the_other_way():
-    exact = exact_sweep("parabola")
-    candidate, _, order = in_order(exact, exact.mirrored())
-    assert order.opposite
-    np.testing.assert_array_equal(candidate.values("foot_x"), -exact.values("foot_x"))

@@ -83,8 +83,8 @@ def test_each_piece_is_interpolated_by_itself(reference, way):
             found.table[f"{name}_candidate"], candidate.values(name)[found.table["station"]]
         )
     # The gaps between the last station of a piece and the first of the next one belong to none.
-    spans = [X[(X > low) & (X <= high)] for high, low in zip(BORDERS, BORDERS[1:], strict=False)]
-    within = np.any([(s.min() <= BETWEEN) & (s.max() >= BETWEEN) for s in spans], axis=0)
+    before, behind = (np.searchsorted(-np.array(BORDERS), -at) for at in (X[:-1], X[1:]))
+    within = (before == behind) & np.isin(before, (1, 2, 3))
     np.testing.assert_array_equal(np.sort(x), np.sort(BETWEEN[within]))
     assert found.counts["between_phases"] == len(BORDERS)
     assert found.counts["outside"] == 0
@@ -166,5 +166,7 @@ def test_what_is_interpolated_by():
     np.testing.assert_allclose(cubic(at, 1), 3 * at**2, rtol=1e-12)
     np.testing.assert_allclose(interpolant(x[:3], x[:3] ** 2)(np.array([1.5])), [2.5])
     repeated = np.append(x, 2.0)
-    np.testing.assert_allclose(interpolant(repeated, repeated + [0, 0, -1, 0, 0, 1])(at), at)
+    np.testing.assert_allclose(
+        interpolant(repeated, repeated + np.array([0, 0, -1, 0, 0, 1]))(at), at
+    )
     np.testing.assert_array_equal(interpolant(np.ones(2), np.array([1.0, 3.0]))(at), [2.0, 2.0])

@@ -1,4 +1,4 @@
-"""Where a cause begins to be named: slopes phase by phase, spikes, and two causes that fit alike."""
+"""Where a cause begins to be named: slopes by phase, spikes, and two causes that fit alike."""
 
 from dataclasses import replace
 

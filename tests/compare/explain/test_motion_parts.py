@@ -13,7 +13,6 @@ from tests.compare.synthetic import (
     SIZES,
     TOUCHING,
     added,
-    changed,
     in_motion,
     pattern,
 )
@@ -110,11 +109,3 @@ def test_when_a_budget_closes_and_what_it_blames(sizes, closes, blame):
     runs = {name: run if name == "rest" else added(run, more) for name, run in runs.items()}
     found = motion_budget(EXACT, runs)
     assert (found.closes, found.blame) == (closes, blame)
-
-
-def test_only_stations_common_to_all_sweeps_count():
-    runs = in_motion(rate=SIZE)
-    force = runs["fine"].values("force_y").copy()
-    force[40:45] = np.nan
-    runs["fine"] = changed(runs["fine"], force_y=force)
-    assert motion_budget(EXACT, runs).stations == TOUCHING.sum() - 5

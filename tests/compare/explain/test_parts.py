@@ -99,13 +99,6 @@ def test_the_discretisation_is_as_uncertain_as_its_finest_sweep_is_far_off(order
     np.testing.assert_allclose(of(found, "discretisation", "uncertainty"), expected, rtol=1e-6)
 
 
-def test_uncertainties_add_in_quadrature():
-    found = split(discretisation=SIZE, softness=SIZE, corner=SIZE, sensor=SIZE, extension=SIZE)
-    each = [of(found, name, "uncertainty") for name in found.parts if name != "unexplained"]
-    together = np.sqrt(np.sum(np.square(each), axis=0))
-    np.testing.assert_allclose(of(found, "unexplained", "uncertainty"), together, rtol=1e-9)
-
-
 def test_the_limit_is_a_line_in_the_power_of_h_weighed_by_it():
     """By hand, of second order: (24 u_4 - 2 u_2 - u_1)/21, where u_2 alone is c less than it is.
 

@@ -54,10 +54,6 @@ def test_where_most_of_it_is(subject, twin, share, blame):
     assert one.blame == blame
 
 
-def test_without_a_twin_there_is_no_split():
-    assert split(solved(), {"mine": off(1e-3)}, ROLES) is None
-
-
 def test_the_disagreement_by_segments():
     """Relative to the largest magnitudes, over the stations that count alone."""
     runs = at_rest(order=2.0, discretisation=1e-2)
@@ -65,8 +61,10 @@ def test_the_disagreement_by_segments():
     by_segments = convergence(EXACT, [runs[name] for name in ("stiff", "two", "four")], here)
     assert set(by_segments) == {40, 80, 160}
     for segments, errors in by_segments.items():
-        expected = 1e-2 * (40 / segments) ** 2 * np.sqrt(
-            np.mean(pattern("discretisation")[:, here] ** 2, axis=1)
+        expected = (
+            1e-2
+            * (40 / segments) ** 2
+            * np.sqrt(np.mean(pattern("discretisation")[:, here] ** 2, axis=1))
         )
         np.testing.assert_allclose([errors[n] for n in CLAMP_READINGS], expected, rtol=1e-9)
     assert convergence(EXACT, [EXACT], here) == {}  # which says nothing of segments

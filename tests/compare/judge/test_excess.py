@@ -23,7 +23,9 @@ def test_a_reading_by_its_rms_and_by_its_worst_station():
     for kind, size in (("rms", off.rms), ("max", off.max)):
         asked = Tolerances(**{**loose, kind: size / 4})
         assert exceeded(candidate, asked) == {"force_y": pytest.approx(4.0)}
-        assert exceeded(candidate, Tolerances(**{**loose, kind: size * (1 + 1e-9)})) == {}
+        for more, fails in ((1 - 1e-9, True), (1 + 1e-9, False)):
+            just = Tolerances(**{**loose, kind: size * more})
+            assert bool(exceeded(candidate, just)) == fails
     for phase, size in off.rms_by_phase.items():
         special = Tolerances(**loose, special={f"force_y.{phase}.rms": size / 3})
         assert exceeded(candidate, special) == {"force_y": pytest.approx(3.0)}
@@ -39,11 +41,6 @@ def test_an_event_in_lengths_of_the_vibrissa(late):
     other = replace(solved(), provenance={**solved().provenance, "events": events})
     assert exceeded(other, Tolerances(snap_off=0.01)) == {"snap_off": pytest.approx(1.5)}
     assert exceeded(other, Tolerances(snap_off=0.01501)) == {}
-    uncertain = replace(solved(), provenance={})  # by half a step
-    found = compare(solved(), uncertain, Tolerances(snap_off=0.0))
-    apart = abs(found.snap_off.difference)
-    assert apart <= 5 / 256
-    assert "snap_off" not in {f.name for f in found.exceeded}
 
 
 def test_only_late_is_allowed_for_by_lateness():
@@ -77,7 +74,3 @@ def test_what_noise_adds():
     assert noise.max(limit, "force_x", n) == pytest.approx(limit + 4.41717 * s, rel=1e-5)
     calm = NoiseAllowance()
     assert (calm.rms(limit, "force_x", n), calm.max(limit, "force_x", n)) == (limit, limit)
-    rng = np.random.default_rng(1)
-    at_the_limit = limit * np.ones(n) + s * rng.standard_normal((20_000, n))
-    above = np.sqrt(np.mean(at_the_limit**2, axis=1)) > noise.rms(limit, "force_x", n)
-    assert 0.5e-3 < above.mean() < 2e-3

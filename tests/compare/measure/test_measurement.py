@@ -81,9 +81,15 @@ def test_shares_of_phases():
 
 
 def test_what_a_short_sweep_does_not_reach():
+    """Up to foot_x = 0.6; a sweep that goes on touching lacks a snap-off that it does cover."""
     short = replace(changed(solved(), slice(0, 40)), provenance={})
-    assert measure(solved(), short, WINDOW).beyond()[-1] == "snap_off"
-    assert measure(solved(), solved(), WINDOW).beyond() == []
+    found = measure(solved(), short, WINDOW)
+    assert found.beyond() == ["phase_b_start", "phase_b_end", "snap_off"]
+    longer = {name: np.where(solved().values("moment_z") == 0, solved().values(name)[100],
+                             solved().values(name)) for name in CLAMP_READINGS}  # fmt: skip
+    on = measure(solved(), replace(changed(solved(), **longer), provenance={}), WINDOW)
+    assert on.snap_off.candidate is None
+    assert on.beyond() == []
 
 
 def test_a_repeat_differs_by_its_gain_and_its_shift():
