@@ -170,3 +170,14 @@ def test_twice_the_noise_is_twice_the_interval():
     noisy = (with_noise(exact, dict.fromkeys(CLAMP_READINGS, level), 7) for level in (1e-3, 2e-3))
     one, other = (found(exact, sweep).uncertainty for sweep in noisy)
     assert other == pytest.approx(2 * one, rel=0.1)
+
+
+def test_the_last_two_stations_before_the_snap_off_do_not_count():
+    """A third of the readings there changes nothing, but at the third it does."""
+    exact = exact_sweep("parabola")
+    last = np.flatnonzero(exact.table["phase"] != "free")[-1]
+    noisy = displaced(with_noise(exact, dict.fromkeys(CLAMP_READINGS, 1e-3), 5), 0.02)
+    for rows, same in ((slice(last - 1, last), True), (slice(last - 4, last), False)):
+        table = noisy.table.copy()
+        table.loc[rows, list(CLAMP_READINGS)] *= 4 / 3
+        assert (found(exact, replace(noisy, table=table)) == found(exact, noisy)) == same

@@ -63,3 +63,14 @@ def test_of_two_that_fit_alike_none_is_named(other, contour, clear):
     error = np.zeros(len(force))
     error[touching] = 1 + other * np.sqrt(3) * np.linspace(0, 1, len(touching))
     assert (named(force + 0.02 * force.max() * error, contour) is not None) == clear
+
+
+@pytest.mark.parametrize(("jumps", "noise"), [(0.75, True), (0.3, False)])
+def test_half_of_the_square_has_to_jump_to_be_noise(jumps, noise):
+    """Beside a slow wave that is no other cause."""
+    force = solved().values("force_y")
+    touching = (force != 0).astype(float)
+    white = np.random.default_rng(4).standard_normal(len(force))
+    wave = np.sqrt(2) * np.sin(np.arange(len(force)) / 6)
+    error = np.sqrt(jumps) * white + np.sqrt(1 - jumps) * wave
+    assert str(named(force + 0.02 * force.max() * error * touching)).startswith("noise") == noise

@@ -74,3 +74,12 @@ def test_what_noise_adds():
     assert noise.max(limit, "force_x", n) == pytest.approx(limit + 4.41717 * s, rel=1e-5)
     calm = NoiseAllowance()
     assert (calm.rms(limit, "force_x", n), calm.max(limit, "force_x", n)) == (limit, limit)
+
+
+def test_the_most_special_limit_holds():
+    special = {"tip.max": 0.5, "force_x.max": 0.25, "force_x.tip.max": 0.125, "tip.rms": 0.75}
+    limits = Tolerances(max=1.0, rms=2.0, special=special)
+    asked = (("force_x", "tip"), ("force_x", "tangent"), ("force_y", "tip"), ("force_y", "tangent"))
+    assert [limits.of_reading("max", *one) for one in asked] == [0.125, 0.25, 0.5, 1.0]
+    assert [limits.of_phase(*one) for one in asked] == [0.75, None, 0.75, None]
+    assert limits.of_sweep("force_x") == 2.0
