@@ -76,7 +76,7 @@ UNCERTAINTIES = {
     "facets": (0.0, 0.0),
     "softness": (1.25 / 9, 1.25 / 9),
     "corner": (1.25 / 9, 1.25 / 9),
-    "unrest": (1.0, np.sqrt(2)),  # and that of the facets, which are told from it
+    "unrest": (1.0, np.sqrt(2)),  # and that of the facets, which are distinguished from it
     "sensor": (1.0, 1.0),
     "extension": (1.0, 1.0),
 }
