@@ -150,3 +150,34 @@ def test_a_flat_minimum_is_an_error():
     noisy = with_noise(part, dict.fromkeys(CLAMP_READINGS, 0.1), 3)
     with pytest.raises(InputError, match="ambiguous"):
         compare(exact, noisy, offset="auto")
+
+
+def test_an_offset_is_taken_from_all_that_lies_along_x():
+    exact = exact_sweep("parabola")
+    moved = without_offset(exact, 0.25)
+    for name in ("foot_x", "contact_x"):
+        np.testing.assert_allclose(moved.values(name), exact.values(name) - 0.25, atol=1e-15)
+    for name in ("contact_y", "contact_arc_length", *CLAMP_READINGS):
+        np.testing.assert_array_equal(moved.values(name), exact.values(name))
+    assert moved.snap_off == pytest.approx(exact.snap_off - 0.25)
+    (x, y), (x_before, y_before) = moved.provenance["contour"], exact.provenance["contour"]
+    np.testing.assert_allclose(np.array(x), np.array(x_before) - 0.25, atol=1e-15)
+    assert y == y_before
+
+
+def test_twice_the_noise_is_twice_the_interval():
+    exact = exact_sweep("parabola")
+    noisy = (with_noise(exact, dict.fromkeys(CLAMP_READINGS, level), 7) for level in (1e-3, 2e-3))
+    one, other = (found(exact, sweep).uncertainty for sweep in noisy)
+    assert other == pytest.approx(2 * one, rel=0.1)
+
+
+def test_the_last_two_stations_before_the_snap_off_do_not_count():
+    """A third of the readings there changes nothing, but at the third it does."""
+    exact = exact_sweep("parabola")
+    last = np.flatnonzero(exact.table["phase"] != "free")[-1]
+    noisy = displaced(with_noise(exact, dict.fromkeys(CLAMP_READINGS, 1e-3), 5), 0.02)
+    for rows, same in ((slice(last - 1, last), True), (slice(last - 4, last), False)):
+        table = noisy.table.copy()
+        table.loc[rows, list(CLAMP_READINGS)] *= 4 / 3
+        assert (found(exact, replace(noisy, table=table)) == found(exact, noisy)) == same

@@ -61,3 +61,24 @@ def test_what_both_explain_is_taken_for_reversed_rows():
     noisy = with_noise(even, dict.fromkeys(CLAMP_READINGS, 1e-3), 3)
     rows = replace(even, table=noisy.table.iloc[::-1].reset_index(drop=True))
     assert in_order(even, rows)[2].reversed
+
+
+def test_what_each_kind_of_disorder_is_put_right_to():
+    """Whatever the rows went through, the sweep that comes out is the one that went in."""
+    exact = exact_sweep("parabola")
+    table = exact.table
+    shuffled = table.iloc[np.random.default_rng(2).permutation(len(table))]
+    for rows, kind in (
+        (table, "none"),
+        (table.iloc[::-1], "reversed"),
+        (table.assign(foot_x=0.3 - table["foot_x"]), "backwards_from"),
+        (shuffled, "sorted"),
+    ):
+        candidate, record, order = in_order(exact, replace(exact, table=rows))
+        for name in ("foot_x", *CLAMP_READINGS):
+            np.testing.assert_allclose(candidate.values(name), exact.values(name), atol=1e-6)
+        seen = {"reversed": order.reversed, "sorted": order.sorted,
+                "backwards_from": order.backwards_from is not None}  # fmt: skip
+        assert [name for name, is_so in seen.items() if is_so] == [kind] * (kind != "none")
+        assert not order.opposite
+        assert (record.retreats > 0) == (kind == "sorted")

@@ -1,0 +1,172 @@
+"""Which stations are paired with what: never across a border of phases, never without a reading."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.interpolate import CubicSpline
+
+from analytic import CLAMP_READINGS, Beam, InputError, Readings
+from compare.align.stations import Alignment, align, interpolant
+from tests.compare.synthetic import BEAM, classified
+
+TIP, TANGENT = "tip", "tangent"
+# By foot position: free, tip down to 0.6, tangent down to 0.0, tip down to -0.4, free.
+BORDERS = (0.9, 0.6, 0.0, -0.4)
+NAMES = ("free", TIP, TANGENT, TIP, "free")
+
+
+def curve(name: str, x: np.ndarray, piece: np.ndarray) -> np.ndarray:
+    """A function of each piece's own, with jumps in between, which no cubic is."""
+    k = CLAMP_READINGS.index(name) + 1
+    return np.where(np.isin(piece, (0, 4)), 0.0, piece + np.sin(k * x) + np.exp(x * piece / 2))
+
+
+def made(x: np.ndarray, **columns) -> Readings:
+    piece = np.searchsorted(-np.array(BORDERS), -x)
+    phase = np.array(NAMES, dtype=object)[piece]
+    values = {name: curve(name, x, piece) for name in CLAMP_READINGS}
+    arc = BEAM.length * (0.5 + 0.1 * x)
+    table = {"foot_x": x, **values, "phase": phase, "contact_arc_length": arc, "status": "ok"}
+    return Readings(pd.DataFrame({**table, **columns}), BEAM, "made up")
+
+
+X = np.linspace(1.2, -0.8, 41)  # every 0.05
+REFERENCE = made(X)
+BETWEEN = X[:-1] - 0.02
+
+
+def paired(candidate: Readings, reference=REFERENCE, dropped=None) -> Alignment:
+    none = np.zeros(len(candidate.table), dtype=bool)
+    judged = classified(reference), classified(candidate)
+    return align(reference, candidate, *judged, none if dropped is None else dropped)
+
+
+def own_spline(name: str, x: np.ndarray, reference=REFERENCE) -> np.ndarray:
+    """Through all stations of the piece that `x` lies in, and no other one."""
+    x_ref, values = reference.values("foot_x"), reference.values(name)
+    of_ref, of_x = (np.searchsorted(-np.array(BORDERS), -at) for at in (x_ref, x))
+    found = np.full(len(x), np.nan)
+    for piece in np.unique(of_x):
+        here = np.flatnonzero(of_ref == piece)
+        here = here[np.argsort(x_ref[here])]
+        spline = CubicSpline(x_ref[here], values[here])
+        found[of_x == piece] = spline(x[of_x == piece])
+    return found
+
+
+def test_one_and_the_same_stations_are_taken_as_they_are():
+    found = paired(made(X))
+    touching = (REFERENCE.table["phase"] != "free").to_numpy()
+    np.testing.assert_array_equal(found.table["station"], np.flatnonzero(touching))
+    for name in CLAMP_READINGS:
+        for which in ("reference", "candidate"):
+            np.testing.assert_array_equal(
+                found.table[f"{name}_{which}"], REFERENCE.values(name)[touching]
+            )
+    expected = dict.fromkeys(found.counts, 0) | {"compared": touching.sum()}
+    assert found.counts == expected | {"free": 41 - touching.sum()}
+
+
+@pytest.mark.parametrize("way", [1, -1], ids=["alike", "against each other"])
+@pytest.mark.parametrize("reference", [REFERENCE, made(X[::-1])], ids=["left", "right"])
+def test_each_piece_is_interpolated_by_itself(reference, way):
+    """Up to the last station before a border, which counts, and not the first behind it."""
+    candidate = made(BETWEEN[::way])
+    found = paired(candidate, reference)
+    x = found.table["foot_x"].to_numpy()
+    for name in CLAMP_READINGS:
+        there = found.table[f"{name}_reference"]
+        np.testing.assert_allclose(there, own_spline(name, x), rtol=1e-12)
+        np.testing.assert_array_equal(
+            found.table[f"{name}_candidate"], candidate.values(name)[found.table["station"]]
+        )
+    # The gaps between the last station of a piece and the first of the next one belong to none.
+    before, behind = (np.searchsorted(-np.array(BORDERS), -at) for at in (X[:-1], X[1:]))
+    within = (before == behind) & np.isin(before, (1, 2, 3))
+    np.testing.assert_array_equal(np.sort(x), np.sort(BETWEEN[within]))
+    assert found.counts["between_phases"] == len(BORDERS)
+    assert found.counts["outside"] == 0
+    nearest = REFERENCE.table["contact_arc_length"].to_numpy()[
+        np.abs(X[:, None] - x).argmin(axis=0)
+    ]
+    np.testing.assert_allclose(found.table["contact_arc_length"], nearest, rtol=1e-12)
+
+
+@pytest.mark.parametrize("stations", [7, 40, 300])
+def test_other_numbers_of_stations(stations):
+    x = np.linspace(1.19, -0.79, stations)
+    found = paired(made(x))
+    assert sum(found.counts.values()) == stations
+    for name in CLAMP_READINGS:
+        expected = own_spline(name, found.table["foot_x"].to_numpy())
+        np.testing.assert_allclose(found.table[f"{name}_reference"], expected, rtol=1e-12)
+
+
+def test_the_phase_is_the_references_and_contact_in_one_alone_is_not_compared():
+    late = made(X, phase=np.where(X > 0.7, "free", np.where(X < 0.3, TIP, TANGENT)))
+    found = paired(late)
+    assert set(found.table["phase"]) == {TIP, TANGENT}
+    one, other = ((sweep.table["phase"] != "free").to_numpy() for sweep in (REFERENCE, late))
+    assert found.counts["one_free"] == (one ^ other).sum()
+    assert found.counts["compared"] == (one & other).sum()
+    assert found.counts["free"] == (~one & ~other).sum()
+
+
+def test_each_reason_not_to_compare_has_its_own_count():
+    """Unsettled, without a number, filled with zeros, and beyond the reference."""
+    x = np.append(X, [-0.9, -1.0])
+    status = np.full(len(x), "ok", dtype=object)
+    status[[10, 15, 41]] = "unsettled", "diverged", "unsettled"
+    force = made(x).values("force_x").copy()
+    force[20] = np.nan
+    dropped = np.arange(len(x)) == 25
+    phase = made(x).table["phase"].to_numpy(dtype=object)
+    phase[25] = "free"
+    found = paired(made(x, status=status, force_x=force, phase=phase), dropped=dropped)
+    assert {10, 15, 20, 25}.isdisjoint(found.table["station"])
+    assert (found.counts["untrusted"], found.counts["dropped"]) == (4, 1)
+    assert (found.counts["outside"], found.counts["one_free"]) == (1, 0)
+
+
+def test_an_unsettled_station_of_the_reference_parts_its_phase():
+    """It is not compared with, and nothing is interpolated over it."""
+    status = np.where(np.arange(41) == 18, "unsettled", "ok")
+    reference = made(X, status=status)
+    same = paired(made(X), reference)
+    assert same.counts["reference_untrusted"] == 1
+    assert 18 not in same.table["station"].to_numpy()
+    between = paired(made(BETWEEN), reference)
+    assert {17, 18}.isdisjoint(between.table["station"])
+    assert between.counts["between_phases"] == len(BORDERS) + 2
+
+
+def test_the_same_station_is_one_to_a_billionth_of_the_length():
+    """Beyond, it is one between others: at a border it has no phase."""
+    last = np.flatnonzero(X > 0.6)[-1]
+    for apart, compared in ((0.9e-9, True), (1.1e-9, False)):
+        x = X.copy()
+        x[last] -= apart * BEAM.length
+        assert (last in paired(made(x)).table["station"].to_numpy()) == compared
+
+
+def test_sweeps_that_have_nothing_in_common():
+    with pytest.raises(InputError):
+        paired(made(X - 3))
+    with pytest.raises(InputError):
+        paired(replace(made(X), beam=Beam(length=2.0, flexural_rigidity=3.0001, radius=0.01)))
+
+
+def test_what_is_interpolated_by():
+    """A cubic through four places or more, straight lines through fewer, the mean of repeats."""
+    x, at = np.array([3.0, 1.0, 2.0, 0.0, 4.0]), np.array([0.3, 2.7])
+    cubic = interpolant(x, x**3)
+    np.testing.assert_allclose(cubic(at), at**3, rtol=1e-12)
+    np.testing.assert_allclose(cubic(at, 1), 3 * at**2, rtol=1e-12)
+    np.testing.assert_allclose(interpolant(x[:3], x[:3] ** 2)(np.array([1.5])), [2.5])
+    repeated = np.append(x, 2.0)
+    np.testing.assert_allclose(
+        interpolant(repeated, repeated + np.array([0, 0, -1, 0, 0, 1]))(at), at
+    )
+    np.testing.assert_array_equal(interpolant(np.ones(2), np.array([1.0, 3.0]))(at), [2.0, 2.0])

@@ -1,0 +1,142 @@
+"""Two sweeps side by side: gains, events, phases; a pass and its repeat; what is taken for true."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import CLAMP_READINGS, Case, named_case
+from compare.align.offset import without_offset
+from compare.measure.cantilever import tip_of
+from compare.measure.conditions import CONDITIONS, as_believed
+from compare.measure.measurement import measure
+from compare.measure.repeats import repeat
+from tests.compare.synthetic import BEAM, changed, scaled, solved
+
+WINDOW = 0.02
+
+
+def counted() -> np.ndarray:
+    """In contact, and outside of the window."""
+    x = solved().values("foot_x")
+    away = np.abs(x - solved().snap_off) >= WINDOW * np.ptp(x)
+    return (solved().table["phase"] != "free").to_numpy() & away
+
+
+def share(name: str) -> float:
+    """Rms over the stations that count, of the largest magnitude."""
+    values = solved().values(name)
+    return float(np.sqrt(np.mean(values[counted()] ** 2)) / np.abs(values).max())
+
+
+@pytest.mark.parametrize("name", CLAMP_READINGS)
+def test_a_gain_is_off_by_as_much(name):
+    """Swapped, it is relative to what is larger now."""
+    larger = scaled(solved(), **{name: 1.002})
+    found = measure(solved(), larger, WINDOW)
+    other = measure(larger, solved(), WINDOW)
+    for reading in CLAMP_READINGS:
+        expected = 2e-3 * share(reading) * (reading == name)
+        assert found.disagreement[reading].rms == pytest.approx(expected, rel=1e-9, abs=1e-12)
+        swapped = other.disagreement[reading].rms
+        assert swapped == pytest.approx(expected / 1.002, rel=1e-9, abs=1e-12)
+    assert found.disagreement[name].stations == counted().sum()
+
+
+def test_events_move_with_the_foot_and_come_back_with_the_offset():
+    found = measure(solved(), without_offset(solved(), -0.03), WINDOW)
+    again = measure(solved(), without_offset(solved(), -0.03), WINDOW, 0.03)
+    for one, put_back in ((found, 0.03), (again, 0.0)):
+        events = [*one.transitions.values(), one.snap_off]
+        assert [e.difference for e in events] == pytest.approx([put_back] * 4, abs=1e-9)
+    assert again.offset.value == 0.03
+    assert max(d.rms for d in again.disagreement.values()) < 1e-9
+    assert found.disagreement["force_y"].rms > 1e-3
+
+
+def test_a_snap_off_between_stations_is_uncertain_by_half_a_step_in_each():
+    rig = replace(solved(), provenance={})
+    x = solved().values("foot_x")
+    step = abs(x[1] - x[0])
+    last = np.flatnonzero(solved().table["phase"] != "free")[-1]
+    one, both = measure(solved(), rig, WINDOW), measure(rig, rig, WINDOW)
+    assert one.snap_off.candidate == pytest.approx((x[last] + x[last + 1]) / 2)
+    assert one.snap_off.reference == solved().snap_off
+    assert one.snap_off.uncertainty == pytest.approx(step / 2)
+    assert both.snap_off.uncertainty == pytest.approx(step)
+
+
+def test_shares_of_phases():
+    """Of 128 stations the last sixteen in contact read nothing."""
+    inside = np.flatnonzero(solved().table["phase"] != "free")[-16:]
+    idle = {name: solved().values(name).copy() for name in CLAMP_READINGS}
+    for values in idle.values():
+        values[inside] = 0.0
+    found = measure(solved(), changed(solved(), **idle), WINDOW)
+    assert found.phases_alike() == pytest.approx(7 / 8)
+    assert found.phase_agreement() == pytest.approx({"reference": 1.0, "candidate": 7 / 8})
+    assert found.alignment.counts["one_free"] == 16
+    assert measure(solved(), solved(), WINDOW).phases_alike() == 1.0
+
+
+def test_what_a_short_sweep_does_not_reach():
+    """Up to foot_x = 0.6; a sweep that goes on touching lacks a snap-off that it does cover."""
+    short = replace(changed(solved(), slice(0, 40)), provenance={})
+    found = measure(solved(), short, WINDOW)
+    assert found.beyond() == ["phase_b_start", "phase_b_end", "snap_off"]
+    longer = {name: np.where(solved().values("moment_z") == 0, solved().values(name)[100],
+                             solved().values(name)) for name in CLAMP_READINGS}  # fmt: skip
+    on = measure(solved(), replace(changed(solved(), **longer), provenance={}), WINDOW)
+    assert on.snap_off.candidate is None
+    assert on.beyond() == []
+
+
+def test_a_repeat_differs_by_its_gain_and_its_shift():
+    """Means of four stations each; those closer to the snap-off than two do not count."""
+    second = scaled(solved(), **dict.fromkeys(CLAMP_READINGS, 1.001))
+    found = repeat(solved(), second)
+    means = {n: solved().values(n).reshape(-1, 4).mean(axis=1) for n in ("foot_x", *CLAMP_READINGS)}
+    width = 4 * 5 / 128
+    kept = (means["moment_z"] != 0) & (np.abs(means["foot_x"] - solved().snap_off) >= 2 * width)
+    assert found.stations == kept.sum()
+    for name, rms in found.rms.items():
+        expected = 1e-3 * np.sqrt(np.mean(means[name][kept] ** 2)) / np.abs(means[name]).max()
+        assert rms == pytest.approx(expected, rel=1e-9)
+    shifted = repeat(solved(), without_offset(solved(), -0.02))
+    assert shifted.shift == pytest.approx(0.02, abs=1e-3)
+    assert max(shifted.rms_without_shift.values()) < 0.2 * max(shifted.rms.values())
+    assert repeat(solved(), solved()).rms == dict.fromkeys(CLAMP_READINGS, 0.0)
+
+
+def test_each_condition_changes_one_thing_by_its_size():
+    """In the beam's units: L = 2, EI = 3, radius 0.01."""
+    case = Case(BEAM, named_case("parabola").profile.scaled(2.0))
+    expected = {
+        "exact": case,
+        "curved": replace(case, beam=replace(BEAM, natural_curvature=-0.1)),
+        "tapered": replace(case, beam=replace(BEAM, tip_radius=0.008)),
+        "soft-clamp": replace(case, clamp_stiffness=15.0),
+        "friction": replace(case, friction=0.2),
+    }
+    for name, condition in CONDITIONS.items():
+        true = condition.true(case)
+        assert true.beam == expected[name].beam, name
+        assert true.clamp_stiffness == pytest.approx(expected[name].clamp_stiffness), name
+        assert true.friction == expected[name].friction, name
+    soft = replace(solved(), provenance={"support": {"clamp_stiffness": 15.0, "friction": 0.2}})
+    believed = as_believed(soft, replace(case, beam=replace(BEAM, radius=0.02)))
+    assert believed.support == (np.inf, 0.0)
+    assert believed.beam.radius == 0.02
+
+
+def test_the_tip_of_a_cantilever():
+    """Small loads by hand, P/3 and P^2/15; large ones as Mattiasson (1981) tabulates them."""
+    table = pd.DataFrame(
+        {"load": [1.0, 2.0, 5.0, 10.0],
+         "down": [0.30172, 0.49346, 0.71379, 0.81061],
+         "in": [0.05643, 0.16064, 0.38763, 0.55500]}
+    )  # fmt: skip
+    np.testing.assert_allclose(tip_of(table["load"]), table[["down", "in"]], rtol=0, atol=5.1e-6)
+    (small,) = tip_of(np.array([1e-2]))
+    assert small == pytest.approx([1e-2 / 3, 1e-4 / 15], rel=1e-4)
