@@ -109,7 +109,9 @@ def _units(true: Floats, seen: Floats) -> Iterator[Explanation]:
                 continue
             factor = float(np.sum(true[rows] * seen[rows]) / np.sum(true[rows] ** 2))
             units = _MOMENTS if rows == [2] else _FORCES
-            unit = min(units, key=lambda known: abs(np.log(abs(factor) / known)) if factor else 1.0)
+            unit = min(
+                units, key=lambda known: abs(np.log(abs(factor)) - np.log(known)) if factor else 1.0
+            )
             if abs(factor / unit - 1) > _SAME_UNIT:
                 continue
             scaled[rows] *= factor
