@@ -17,3 +17,5 @@ STATUSES = (
 COLUMNS = (*SENSED, "phase", *CONTACT, "status")
 WORDS = {"phase": PHASES, "status": STATUSES}
 """The columns of words, with what may stand in them."""
+PHASE_NUMBER = {word: number for number, word in enumerate(PHASES)}
+STATUS_NUMBER = {word: number for number, word in enumerate(STATUSES)}

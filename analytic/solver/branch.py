@@ -19,6 +19,7 @@ from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.many import Contours
 from analytic.solver.contact_length import surplus_and_rate
 from analytic.solver.equilibria import equilibria
+from analytic.solver.general.path import cells, phase_limits
 from analytic.solver.grid import Grid, Samples, along, folded
 
 _ASIDE = 1e-3  # of a cell: next to a minimum x0 is higher by far more than rounding there
@@ -42,51 +43,26 @@ class Branch:
         """Foot positions at the parameters [L]."""
         return self.samples.foot_x
 
-    @property
-    def first_contact(self) -> float:
-        """Contour parameter of the first contact."""
-        return float(self.t[0])
+    def events(self) -> dict[str, int | None]:
+        """What happens, and at which point; None where it does not.
 
-    @property
-    def snap_off(self) -> float:
-        """Contour parameter at which the vibrissa snaps off."""
-        return float(self.t[-1])
-
-    @property
-    def sideways_limit(self) -> tuple[float, float] | None:
-        """Contour parameter and foot position of the last equilibrium that is stable in space.
-
-        It is at the contour's lowest point, or what a sweep along a polygon visits last before it
-        passes that in a jump; see `analytic.from_clamp.sideways`. None if all are stable.
+        Where the equilibrium is the last one that is stable in space, the vibrissa leaves the
+        plane: at the contour's lowest point, or at what a sweep along a polygon visits last before
+        it passes that in a jump; see `analytic.from_clamp.sideways`.
         """
-        if self.lowest <= self.snap_off:
-            return None
-        last = np.argmin(np.where(self.t >= self.lowest, self.foot_x, np.inf))
-        return float(self.t[last]), float(self.foot_x[last])
-
-    @property
-    def phase_changes(self) -> Floats:
-        """Contour parameters at which Phases A and B take turns, decreasing."""
-        return np.asarray(self.t[1:-1][self.tangent[1:] != self.tangent[:-1]])
-
-    def events(self) -> dict[str, float | None]:
-        """Where what happens along the branch happens."""
-        change = np.append(self.tangent[1:] != self.tangent[:-1], False)
-        at, into_b = self.foot_x[1:][change], self.tangent[1:][change[:-1]]
-        starts, ends = at[into_b], at[~into_b]
-        start = self.foot_x[0] if self.tangent[0] else (starts[0] if starts.size else None)
-        end = None if self.tangent[-1] or not ends.size else ends[-1]
-        limit = self.sideways_limit
-        out = None if limit is None else limit[1]
-        places = (self.foot_x[0], start, end, out, self.foot_x[-1])
-        names = ("first_contact", "phase_b_start", "phase_b_end", "out_of_plane", "snap_off")
-        return {n: None if x is None else float(x) for n, x in zip(names, places, strict=True)}
+        start, end = phase_limits(self.tangent)
+        before = np.where(self.t >= self.lowest, self.foot_x, np.inf)
+        return {
+            "first_contact": 0,
+            "phase_b_start": start,
+            "phase_b_end": end,
+            "out_of_plane": int(np.argmin(before)) if self.lowest > self.t[-1] else None,
+            "snap_off": len(self.t) - 1,
+        }
 
     def cells(self, foot_x: Floats) -> Integers:
         """Cell that holds the state at each foot position on the branch."""
-        least = np.minimum.accumulate(self.foot_x)
-        end = np.searchsorted(-least, -foot_x, side="left")
-        return np.clip(end, 1, len(self.t) - 1) - 1
+        return cells(self.foot_x, foot_x)
 
 
 def trace(many: Contours, reaches: Sequence[tuple[float, float]]) -> list[Branch]:

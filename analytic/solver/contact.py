@@ -11,14 +11,14 @@ from analytic.problem.beam import Beam
 from analytic.problem.columns import COLUMNS, WORDS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError, require
-from analytic.problem.support import check_support, is_plain
-from analytic.problem.table import in_words
-from analytic.solver.equilibria import Units, equilibria, to_columns
+from analytic.problem.support import check_support
+from analytic.problem.table import as_table, in_words
+from analytic.solver.columns import Units, to_columns, without
+from analytic.solver.equilibria import equilibria
 from analytic.solver.general.clearance import is_clear
-from analytic.solver.general.columns import to_columns as general_columns
 from analytic.solver.general.contacts import contacts
-from analytic.solver.general.residuals import without_inexact
 from analytic.solver.general.states import Vibrissa
+from analytic.solver.residuals import without_inexact
 
 _AT_ONCE = 4096  # contacts: their intermediate results stay in the processor's cache
 
@@ -82,23 +82,23 @@ def solve_contact(
         )
     centreline = profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
     t = centreline.parameter(angles)
-    if is_plain(beam, clamp_stiffness, friction):
-        return _plain(centreline, t, Units.of(beam))
-    vibrissa = Vibrissa.of(beam, clamp_stiffness, friction)
+    vibrissa, units = Vibrissa.of(beam, clamp_stiffness, friction), Units.of(beam)
+    if vibrissa.is_plain:
+        return _plain(centreline, t, vibrissa, units)
     found = contacts(centreline, t, vibrissa)
     again = np.isfinite(found.excess) & ~is_clear(centreline, found)
-    columns = general_columns(found, again, beam)
-    return pd.DataFrame(without_inexact(columns, beam, vibrissa))
+    columns = without(to_columns(found, units), again, "touches again")
+    return as_table(without_inexact(columns, vibrissa, units))
 
 
-def _plain(centreline: Contour, t: Floats, units: Units) -> pd.DataFrame:
+def _plain(contour: Contour, t: Floats, vibrissa: Vibrissa, units: Units) -> pd.DataFrame:
     """The paper's vibrissa, some contacts at a time, each column written where it stays."""
     names = [name for name in COLUMNS if name not in WORDS]
     numbers = np.empty((len(names), t.size))
     words = {name: np.empty(t.size, dtype=np.intp) for name in WORDS}
     for first in range(0, t.size, _AT_ONCE):
         part = slice(first, first + _AT_ONCE)
-        found = to_columns(equilibria(centreline, t[part]), units)
+        found = to_columns(equilibria(contour, t[part]).states(vibrissa), units)
         for values, name in zip(numbers, names, strict=True):
             values[part] = found[name]
         for name in WORDS:

@@ -5,13 +5,11 @@ Dimensionless throughout, on the contour that the centreline feels.
 
 from collections.abc import Iterator
 from itertools import chain
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats, Integers, Words
-from analytic.problem.beam import Beam
-from analytic.problem.columns import PHASES, STATUSES
+from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.solver.elastica import (
     Frame,
@@ -23,6 +21,7 @@ from analytic.solver.elastica import (
     span_by_excess,
     tangent_span,
 )
+from analytic.solver.general.states import INSIDE, States, Vibrissa
 from analytic.solver.tip import tip_state
 
 
@@ -64,9 +63,12 @@ class Equilibria(NamedTuple):
     @property
     def arc_length(self) -> Floats:
         """Arc length s1 of the contact."""
+        return np.where(self.tangent, self._tangent_length, 1.0)
+
+    @property
+    def _tangent_length(self) -> Floats:
         with np.errstate(divide="ignore", invalid="ignore"):
-            tangent = np.where(self.root_f == 0, self.point.eta, self.span.q / self.root_f)
-        return np.where(self.tangent, tangent, 1.0)
+            return np.where(self.root_f == 0, self.point.eta, self.span.q / self.root_f)
 
     @property
     def tip_angle(self) -> Floats:
@@ -77,14 +79,26 @@ class Equilibria(NamedTuple):
     @property
     def foot_x(self) -> Floats:
         """Foot position x0 (Will et al., eqs. 13 and 22) [L]."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            reach = np.where(self.root_f == 0, 0.0, self.frame.across / self.root_f)
-        return np.asarray(self.point.xi - reach)  # unloaded, the vibrissa is straight
+        return np.asarray(self.point.xi - self.reach)
 
     @property
-    def foot_x_rate(self) -> Floats:
-        """d(x0)/dt along the contour, in closed form; zero where the vibrissa snaps off."""
-        return np.where(self.tangent, self.tangent_rate(), self.tip_rate().foot_x)
+    def reach(self) -> Floats:
+        """Distance of the contact from the foot along x."""
+        with np.errstate(divide="ignore", invalid="ignore"):  # unloaded, the vibrissa is straight
+            return np.where(self.root_f == 0, 0.0, self.frame.across / self.root_f)
+
+    def states(self, vibrissa: Vibrissa) -> States:
+        """The same as states of any vibrissa, which count the excess in another way."""
+        excess = np.minimum(self._tangent_length - 1, INSIDE)
+        tip = (~self.tangent).nonzero()[0]
+        if tip.size:
+            alpha = self.point.alpha[tip]
+            leant = np.pi / 2 - alpha - least_rotation(alpha) - self.excess[tip]
+            excess[tip] = np.maximum(leant, 0.0)
+        eta = self.point.eta
+        force, moment = self.root_f * self.root_f, self.root_f * self.span.C
+        none = np.broadcast_to(0.0, force.shape)
+        return States(self.point, force, excess, moment, eta, self.reach, none, none, vibrissa)
 
     def tangent_rate(self) -> Floats:
         """d(x0)/dt in Phase B; at its limits too, whichever phase is there."""
@@ -204,43 +218,3 @@ def _fits(tangential: Equilibria) -> Booleans:
     """
     root_f = tangential.root_f
     return np.asarray((root_f > 0) & (tangential.span.q < root_f))
-
-
-Column: TypeAlias = Floats | Words
-Numbers: TypeAlias = Floats | Integers
-
-
-class Units(NamedTuple):
-    """What dimensionless results are multiplied by: of a beam, or of each contact's, shape (n,)."""
-
-    length: float | Floats
-    force: float | Floats
-    moment: float | Floats
-    radius: float | Floats
-    """No unit, but of the same beam: its radius [L]."""
-
-    @classmethod
-    def of(cls, beam: Beam) -> "Units":
-        """Those of a beam."""
-        return cls(beam.length, beam.force_unit, beam.moment_unit, beam.radius / beam.length)
-
-
-def to_columns(states: Equilibria, units: Units) -> dict[str, Numbers]:
-    """The readings of `states`, column by column."""
-    alpha, xi, eta = states.point[:3]
-    sine, cosine = np.sin(alpha), np.cos(alpha)
-    force = states.root_f**2
-    reached = np.isfinite(states.excess)
-    return {
-        "foot_x": states.foot_x * units.length,
-        "force_x": -force * sine * units.force,
-        "force_y": force * cosine * units.force,
-        "moment_z": states.root_f * states.span.C * units.moment,
-        "phase": np.where(states.tangent, PHASES.index("tangent"), PHASES.index("tip")),
-        "contact_angle": alpha,
-        "contact_arc_length": np.where(reached, states.arc_length, np.nan) * units.length,
-        "contact_x": (xi - units.radius * sine) * units.length,
-        "contact_y": (eta + units.radius * cosine) * units.length,
-        "tip_angle": states.tip_angle,
-        "status": np.where(reached, STATUSES.index("ok"), STATUSES.index("unreachable")),
-    }

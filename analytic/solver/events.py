@@ -4,15 +4,14 @@ Will, Steigenberger and Behn, section 4.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
-from analytic.problem.columns import COLUMNS, PHASES, STATUSES
+from analytic.problem.columns import COLUMNS, WORDS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.many import Contours
 from analytic.problem.errors import require
@@ -20,22 +19,16 @@ from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
 from analytic.problem.roots import zeros
 from analytic.problem.support import check_support, is_plain, require_plain
-from analytic.solver.branch import Branch, trace
+from analytic.solver.branch import trace
+from analytic.solver.columns import Columns, Units, to_columns, without
 from analytic.solver.contact_length import surplus_and_rate
-from analytic.solver.equilibria import (
-    Column,
-    Equilibria,
-    Units,
-    equilibria_at,
-    tangent_contact,
-    to_columns,
-)
+from analytic.solver.equilibria import Equilibria, equilibria_at, tangent_contact
 from analytic.solver.general.clearance import is_clear
-from analytic.solver.general.columns import to_columns as general_columns
 from analytic.solver.general.path import follow
-from analytic.solver.general.residuals import without_inexact
-from analytic.solver.general.states import Vibrissa, states
+from analytic.solver.general.states import Vibrissa
+from analytic.solver.general.states import states as states_at
 from analytic.solver.grid import along
+from analytic.solver.residuals import without_inexact
 
 
 @dataclass(frozen=True)
@@ -156,40 +149,39 @@ def find_many_events(profiles: Sequence[Contour], beams: Sequence[Beam]) -> list
     return _plain_events(centrelines, [contact_range(one) for one in centrelines], beams)
 
 
-_PLACES = ("phase_b_start", "phase_b_end", "out_of_plane", "snap_off")
+_AMID = ("phase_b_start", "phase_b_end", "out_of_plane", "snap_off")
+"""What happens under load."""
 
 
 def _plain_events(
-    centrelines: Sequence[Contour], reaches: Sequence[tuple[float, float]], beams: Sequence[Beam]
+    contours: Sequence[Contour], reaches: Sequence[tuple[float, float]], beams: Sequence[Beam]
 ) -> list[Events]:
-    many = Contours(centrelines)
+    many = Contours(contours)
     branches = trace(many, reaches)
     places = [
-        (i, name, t)
+        (i, name, branch.t[at])
         for i, branch in enumerate(branches)
-        for name, t in zip(_PLACES, _contacts(branch), strict=True)
-        if t is not None
+        for name, at in branch.events().items()
+        if name in _AMID and at
     ]
-    owner = np.array([i for i, _, _ in places])
-    at = equilibria_at(many.at(owner, np.array([t for _, _, t in places])))
-    rows = _rows(at, [beams[i] for i in owner])
+    owner, t = np.array([i for i, _, _ in places]), np.array([t for _, _, t in places])
+    rows = _rows(_plain_columns(equilibria_at(many.at(owner, t)), beams, owner))
     found: list[dict[str, Event]] = [{} for _ in branches]
     for (i, name, _), event in zip(places, rows, strict=True):
         found[i][name] = event
     everyone = np.arange(len(many))
-    lowest = many.at(everyone, _contact_length_minima(many, reaches))
-    minima = _rows(tangent_contact(lowest), beams)
-    every = zip(centrelines, branches, beams, found, minima, strict=True)
+    lowest = tangent_contact(many.at(everyone, _contact_length_minima(many, reaches)))
+    minima = _rows(_plain_columns(lowest, beams, everyone))
+    every = zip(contours, branches, beams, found, minima, lowest.arc_length, strict=True)
     events = []
-    for centreline, branch, beam, known, minimum in every:
-        touch = _first_touch(centreline, branch.first_contact, beam)
-        there = minimum.contact_arc_length < beam.length
+    for contour, branch, beam, known, minimum, length in every:
+        touch = _first_touch(contour, float(branch.t[0]), beam)
         events.append(
             Events(
                 touch,
                 touch if branch.tangent[0] else known.get("phase_b_start"),
                 known.get("phase_b_end"),
-                minimum if there else _imaginary(minimum),
+                minimum if length < 1 else _imaginary(minimum, float(length) * beam.length),
                 known.get("out_of_plane"),
                 known["snap_off"],
             )
@@ -197,46 +189,33 @@ def _plain_events(
     return events
 
 
-def _contacts(branch: Branch) -> tuple[float | None, ...]:
-    """Contour parameters of the `_PLACES`, but of the first contact, should Phase B start there."""
-    changes, starts_in_b = branch.phase_changes, bool(branch.tangent[0])
-    into_b, out_of_b = changes[int(starts_in_b) :: 2], changes[int(not starts_in_b) :: 2]
-    start = None if starts_in_b or not into_b.size else float(into_b[0])
-    end = None if branch.tangent[-1] or not out_of_b.size else float(out_of_b[-1])
-    limit = branch.sideways_limit
-    return start, end, None if limit is None else limit[0], branch.snap_off
-
-
 def _general_events(
-    centreline: Contour, reach: tuple[float, float], vibrissa: Vibrissa, beam: Beam
+    contour: Contour, reach: tuple[float, float], vibrissa: Vibrissa, beam: Beam
 ) -> Events:
-    touch = first_touch(centreline, reach, vibrissa.unloaded)
-    path = follow(centreline, vibrissa, touch, reach)
+    touch = first_touch(contour, reach, vibrissa.unloaded)
+    path = follow(contour, vibrissa, touch, reach)
     if not path.complete:
         place = f"beyond foot_x = {path.foot_x[-1] * beam.length:.6g}"
-        raise ArithmeticError(f"the equilibria along {centreline.label} are lost {place}")
-    places = path.events()
-
-    def event(name: str) -> Event | None:
-        i = places[name]
-        if i is None:
-            return None
-        z = path.z[i : i + 1]
-        found = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
-        columns = general_columns(found, np.zeros(1, dtype=bool), beam)
-        if i == 0:  # first contact of two rigid bodies: no force whose direction could be checked
-            return _only(columns)
-        columns = without_inexact(columns, beam, vibrissa)
-        if not is_clear(centreline, found)[0]:
-            columns = general_columns(found, np.ones(1, dtype=bool), beam)
-            columns["foot_x"] = path.foot_x[i : i + 1] * beam.length
-        return _only(columns)
-
-    first, snap_off = event("first_contact"), event("snap_off")
-    assert first is not None and snap_off is not None
-    minimum = event("contact_length_minimum") or _nowhere()
-    start, end = event("phase_b_start"), event("phase_b_end")
-    return Events(first, start, end, minimum, None, snap_off)
+        raise ArithmeticError(f"the equilibria along {contour.label} are lost {place}")
+    places = {name: i for name, i in path.events().items() if i is not None}
+    at = np.array([*places.values()])
+    z, units = path.z[at], Units.of(beam)
+    states = states_at(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
+    columns = to_columns(states, units)
+    clear = is_clear(contour, states)
+    checked = without(without_inexact(columns, vibrissa, units), ~clear, "touches again")
+    checked["foot_x"] = np.where(clear, checked["foot_x"], path.foot_x[at] * beam.length)
+    # First contact is of two rigid bodies: there is no force whose direction could be checked.
+    rows = zip(places, _rows(columns), _rows(checked), strict=True)
+    found = {name: row if places[name] > 0 else first for name, first, row in rows}
+    return Events(
+        found["first_contact"],
+        found.get("phase_b_start"),
+        found.get("phase_b_end"),
+        found.get("contact_length_minimum", _nowhere()),
+        None,
+        found["snap_off"],
+    )
 
 
 def _contact_length_minima(many: Contours, reaches: Sequence[tuple[float, float]]) -> Floats:
@@ -257,22 +236,18 @@ def _contact_length_minima(many: Contours, reaches: Sequence[tuple[float, float]
     return np.asarray(places[order[np.unique(owners[order], return_index=True)[1]]])
 
 
-def _rows(states: Equilibria, beams: Sequence[Beam]) -> list[Event]:
-    """The contacts as rows of the readings' table, each in the units of its beam."""
-    numbers = to_columns(states, Units(*np.array([Units.of(beam) for beam in beams]).T))
-    columns: dict[str, Any] = {
-        **numbers,
-        "phase": np.array(PHASES)[numbers["phase"]],
-        "status": np.array(STATUSES)[numbers["status"]],
-    }
-    rows = zip(*(values.tolist() for values in columns.values()), strict=True)
-    return [Event(**dict(zip(columns, row, strict=True))) for row in rows]
+def _plain_columns(contacts: Equilibria, beams: Sequence[Beam], whose: Integers) -> Columns:
+    """The contacts as columns, each in the units of its beam."""
+    radius = np.array([beam.radius / beam.length for beam in beams])[whose]
+    return to_columns(contacts.states(Vibrissa(radius=radius)), Units.of_each(beams, whose))
 
 
-def _only(columns: Mapping[str, Column]) -> Event:
-    """The one row of a table."""
-    row: dict[str, Any] = {name: column[0].item() for name, column in columns.items()}
-    return Event(**row)
+def _rows(columns: Columns) -> list[Event]:
+    """The rows of the readings' table."""
+    words = {name: np.array(of)[columns[name]] for name, of in WORDS.items()}
+    every = {**columns, **words}
+    rows = zip(*(values.tolist() for values in every.values()), strict=True)
+    return [Event(**dict(zip(every, row, strict=True))) for row in rows]
 
 
 def _first_touch(centreline: Contour, t: float, beam: Beam) -> Event:
@@ -299,7 +274,8 @@ def _nowhere() -> Event:
     return Event(**numbers, phase="free", status="unreachable")
 
 
-def _imaginary(minimum: Event) -> Event:
+def _imaginary(minimum: Event, length: float) -> Event:
     """A minimum of eq. 21 longer than the vibrissa: geometry, with no equilibrium behind it."""
     none = dict.fromkeys(("foot_x", "force_x", "force_y", "moment_z", "tip_angle"), np.nan)
-    return Event(**{**vars(minimum), **none, "status": "unreachable"})
+    longer = {"contact_arc_length": length, "status": "unreachable"}
+    return Event(**{**vars(minimum), **none, **longer})

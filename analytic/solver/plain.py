@@ -1,21 +1,28 @@
-"""Sweeps of the paper's vibrissa, many at once."""
+"""Sweeps of the paper's vibrissa, many at once: the accelerator of `analytic.solver.general`.
+
+A straight, uniform vibrissa in a rigid clamp that does not rub is one of the general ones, and
+`general.sweep.solve` has the same answers. It is solved faster here, as its span depends on two
+numbers alone (`analytic.solver.elastica`): states are known at each point of the contour, so that
+they are followed along that (`grid`, `branch`) and between (`starts`, `stations`), for all sweeps
+in the same arrays. States, columns, residuals, events and readings are those of the general
+vibrissa.
+"""
 
 from collections.abc import Sequence
-from functools import cache, partial
-from importlib.metadata import version
 from itertools import accumulate, pairwise
 
 import numpy as np
 
 from analytic.problem.case import Case
-from analytic.problem.columns import CLAMP_READINGS, COLUMNS, PHASES, STATUSES
+from analytic.problem.columns import COLUMNS, STATUS_NUMBER
 from analytic.problem.contours.many import Contours
 from analytic.problem.readings import Readings
-from analytic.problem.table import as_table, mirrored_columns
 from analytic.solver.branch import trace
-from analytic.solver.equilibria import Numbers, Units, to_columns
-from analytic.solver.general.residuals import SOLVED
-from analytic.solver.residuals import residuals
+from analytic.solver.columns import Units, to_columns, unloaded_columns
+from analytic.solver.general.path import located
+from analytic.solver.general.states import Vibrissa
+from analytic.solver.recorded import are_finite, as_readings
+from analytic.solver.residuals import inexact, residuals
 from analytic.solver.stations import solve_stations
 
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
@@ -31,69 +38,32 @@ def solve_plain(given: Sequence[Case]) -> list[Readings]:
     cases = [case if case.sweep.direction == "left" else case.mirrored() for case in given]
     counts = [case.sweep.stations for case in cases]
     whose = np.repeat(np.arange(len(cases)), counts)
-    units = np.array([Units.of(case.beam) for case in cases]).T[:, whose]
+    units = Units.of_each([case.beam for case in cases], whose)
+    radius = np.array([case.radius for case in cases])[whose]
     foot_x = np.concatenate([case.foot_x for case in cases])
-    centrelines = Contours([case.centreline for case in cases])
-    branches = trace(centrelines, [case.reach for case in cases])
-    places = foot_x / Units(*units).length
+    contours = Contours([case.centreline for case in cases])
+    branches = trace(contours, [case.reach for case in cases])
+    places = foot_x / units.length
     first = np.array([branch.foot_x[0] for branch in branches])
     last = np.array([branch.foot_x[-1] for branch in branches])
     last -= _ROUNDING * np.maximum(1.0, np.abs(last))
     touching = (places < first[whose]) & (places >= last[whose])
-    columns = _free(foot_x)
+    columns = unloaded_columns(foot_x)
+    bounds = [*pairwise([0, *accumulate(counts)])]
     if touching.any():
-        bounds = pairwise([0, *accumulate(counts)])
         held = [places[begin:end][touching[begin:end]] for begin, end in bounds]
-        states = solve_stations(centrelines, branches, held)
-        solved = to_columns(states, Units(*units[:, touching]))
+        found = solve_stations(contours, branches, held).states(Vibrissa(radius=radius[touching]))
+        solved = to_columns(found, units.part(touching))
         for name in COLUMNS[1:]:
             columns[name][touching] = solved[name]
-    checked = residuals(columns, ~touching, Units(*units))
-    wrong = ~(np.maximum(*checked.values()) <= SOLVED)
-    columns["status"][wrong] = STATUSES.index("diverged")
+    checked = residuals(columns, Vibrissa(radius=radius), units)
+    columns["status"][inexact(checked, columns["status"])] = STATUS_NUMBER["diverged"]
     columns |= checked
-    # Beyond the largest number in the case's units: an error says so.
-    finite = not any(np.isinf(x).any() for x in columns.values())
-    found, begin = [], 0
-    for case, count, branch in zip(given, counts, branches, strict=True):
+    finite = are_finite(columns)
+    readings = []
+    for case, (begin, end), branch in zip(given, bounds, branches, strict=True):
         # Copies: readings that are kept do not keep those of all.
-        own = {name: x[begin : begin + count].copy() for name, x in columns.items()}
-        way = 1.0 if case.sweep.direction == "left" else -1.0
-        events = {name: None if x is None else way * x for name, x in branch.events().items()}
-        own = own if way > 0 else mirrored_columns(own)
-        record = partial(provenance, case, events)
-        if finite:
-            snap_off = way * float(branch.foot_x[-1]) * case.beam.length
-            found.append(Readings.solved(own, case.beam, "analytic", record, snap_off))
-        else:
-            found.append(Readings(as_table(own), case.beam, "analytic", record()))
-        begin += count
-    return found
-
-
-def provenance(case: Case, events: dict[str, float | None]) -> dict[str, object]:
-    """What the closed form records of a sweep."""
-    length = case.beam.length
-    return {
-        **case.provenance(),
-        "engine": _engine(),
-        "events": {name: None if x is None else x * length for name, x in events.items()},
-    }
-
-
-@cache
-def _engine() -> str:
-    return f"vibrissa-testbed {version('vibrissa-testbed')}"
-
-
-def _free(foot_x: Numbers) -> dict[str, Numbers]:
-    """The readings of vibrissae that touch nothing."""
-    empty = np.full((len(COLUMNS), foot_x.size), np.nan)
-    columns: dict[str, Numbers] = dict(zip(COLUMNS, empty, strict=True))
-    columns["foot_x"] = foot_x
-    for name in CLAMP_READINGS:
-        columns[name].fill(0.0)
-    columns["phase"] = np.full(foot_x.size, PHASES.index("free"))
-    columns["tip_angle"] = np.full(foot_x.size, np.pi / 2)
-    columns["status"] = np.full(foot_x.size, STATUSES.index("ok"))
-    return columns
+        own = {name: x[begin:end].copy() for name, x in columns.items()}
+        events = located(branch.events(), branch.foot_x)
+        readings.append(as_readings(case, own, events, finite))
+    return readings

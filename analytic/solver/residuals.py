@@ -1,55 +1,117 @@
-"""How well the readings of a station satisfy their conditions, from the readings alone."""
+"""How well readings satisfy their conditions, by way from the clamp to the contact.
+
+The solver goes from the contact to the clamp; this is the way back, from the clamp's readings
+alone. Where rigidity or natural curvature vary it is the solver's way on panels of half the length,
+so that it shows the error of collocation: clamp readings of double precision do not determine the
+slope of a tip that is sharp.
+"""
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats
-from analytic.solver.elastica import frame, span_of_moment
-from analytic.solver.equilibria import Column, Numbers, Units
+from analytic.problem.columns import PHASE_NUMBER, STATUS_NUMBER
+from analytic.solver.columns import Columns, Numbers, Units, without
+from analytic.solver.elastica import span_of_moment
+from analytic.solver.general.march import march
+from analytic.solver.general.span import back_to_clamp
+from analytic.solver.general.states import Vibrissa
+
+_SOLVED = 1e-11  # of what a state misses: hundreds of roundings at the sharpest bends
 
 
-def residuals(
-    columns: Mapping[str, Column | Numbers], free: Booleans, units: Units
-) -> dict[str, Floats]:
-    """What the stations of a table of readings miss, by the closed form of their clamp readings.
+def inexact(checked: Mapping[str, Floats], status: Numbers) -> Booleans:
+    """Which stations of a sweep are not solved, but for those that are known to be none."""
+    solved = np.maximum(*checked.values()) <= _SOLVED
+    return np.asarray(~solved & (status != STATUS_NUMBER["touches again"]))
 
-    The elastica that has the clamp's force and moment, up to where its curvature vanishes, is
-    compared with the contact that the table states. That is another route than the solver's, which
-    goes from the contact to the clamp; elliptic integrals are common to both (`certify` uses none).
-    """
 
-    def column(name: str, unit: float | Floats) -> Floats:
+def without_inexact(columns: Columns, vibrissa: Vibrissa, units: Units) -> Columns:
+    """The readings of states at rest, but for those that collocation has not solved well enough."""
+    if vibrissa.form is None:
+        return columns
+    ok = columns["status"] == STATUS_NUMBER["ok"]
+    wrong = ok & inexact(residuals(columns, vibrissa, units), columns["status"])
+    return without(columns, wrong, "diverged")
+
+
+@np.errstate(divide="ignore", invalid="ignore")  # free stations: no force, no contact
+def residuals(columns: Columns, vibrissa: Vibrissa, units: Units) -> dict[str, Floats]:
+    """What the stations of a table of readings miss; nothing where they are free."""
+
+    def column(name: str, unit: float | Floats = 1.0) -> Floats:
         return np.asarray(columns[name], dtype=float) / unit
 
+    mu = vibrissa.friction
     force_x, force_y = (column(name, units.force) for name in ("force_x", "force_y"))
     moment = column("moment_z", units.moment)
-    foot_x, xi, eta, arc_length = (
+    foot_x, xi, eta, length = (
         column(name, units.length)
         for name in ("foot_x", "contact_x", "contact_y", "contact_arc_length")
     )
-    alpha, tip_angle = column("contact_angle", 1.0), column("tip_angle", 1.0)
-    x, y = xi + units.radius * np.sin(alpha) - foot_x, eta - units.radius * np.cos(alpha)
+    alpha = column("contact_angle")
+    slope = column("tip_angle") - vibrissa.turn_after(length)
+    radius = vibrissa.radius_at(length)
+    x, y = xi + radius * np.sin(alpha) - foot_x, eta - radius * np.cos(alpha)
+    force, lean = np.hypot(force_x, force_y), np.arctan(mu)
+    # Of no force, as where a tip leaves the object, any direction is right.
+    direction = np.where(force > 0, np.arctan2(-force_x, force_y), alpha + lean)
+    couple = mu * radius * force / np.sqrt(1 + mu**2)
+    span = _span(vibrissa, moment, slope - direction, couple, force, direction, length)
+    sin, cos = np.sin(direction), np.cos(direction)
+    along = alpha + vibrissa.lean
+    missed = [
+        span.along * cos - span.across * sin - x,
+        span.along * sin + span.across * cos - y,
+        span.first,
+        span.second,
+        direction - lean - alpha,
+        np.maximum(0.0, length - 1),
+        np.maximum(0.0, along - slope),
+        np.where(columns["phase"] == PHASE_NUMBER["tangent"], slope - along, 0.0),
+    ]
     extent = np.maximum(1.0, np.abs(xi))
-    with np.errstate(divide="ignore", invalid="ignore"):  # free stations: no force, no contact
-        force = np.hypot(force_x, force_y)
-        root_f = np.sqrt(force)
-        direction = np.arctan2(-force_x, force_y)
-        loaded = span_of_moment(moment / root_f, direction)
-        up, across = frame(loaded, direction)
-        # The first integral between clamp and contact: sin(phi1 - alpha) = cos(alpha) - M^2/(2 f).
-        missed = [
-            across / root_f - x,
-            up / root_f - y,
-            loaded.q / root_f - arc_length,
-            np.cos(direction) - moment**2 / (2 * force) - np.sin(tip_angle - alpha),
-            direction - alpha,
-            np.maximum(0.0, arc_length - 1),
-            np.maximum(0.0, alpha - tip_angle),
-        ]
-        boundary = np.abs(missed).max(axis=0) / extent
-        balance = np.abs(moment - (force_y * x - force_x * y)) / np.maximum(extent, moment)
+    balance = np.abs(moment - (force_y * x - force_x * y) - couple)
+    free = np.isnan(length) & (moment == 0)
     return {
-        "residual_boundary": np.where(free, 0.0, boundary),
-        "residual_moment": np.where(free, np.abs(moment), balance),
+        "residual_boundary": np.where(free, 0.0, np.abs(missed).max(axis=0) / extent),
+        "residual_moment": np.where(free, 0.0, balance / np.maximum(extent, np.abs(moment))),
     }
+
+
+class _Span(NamedTuple):
+    """A span along and across the force, and what it misses at the end to which it is marched."""
+
+    along: Floats
+    across: Floats
+    first: Floats
+    second: Floats
+
+
+def _span(
+    vibrissa: Vibrissa,
+    moment: Floats,
+    slope: Floats,
+    couple: Floats,
+    force: Floats,
+    direction: Floats,
+    length: Floats,
+) -> _Span:
+    """The span from the moment at the clamp to slope, from the force's, and couple at its end."""
+    if vibrissa.is_plain:
+        # Up to where the curvature vanishes, by the first integral sin(slope) there.
+        root_f = np.sqrt(force)
+        q, C, S = (values / root_f for values in span_of_moment(moment / root_f, direction))
+        sine = np.cos(direction) - moment**2 / (2 * force)
+        return _Span(C, S, q - length, sine - np.sin(slope))
+    clamp = np.pi / 2 - vibrissa.compliance * moment - direction
+    if vibrissa.form is not None:
+        end = march(vibrissa.form, slope, -couple, force, length, finer=2)
+        return _Span(end.along, end.across, end.theta - clamp, end.m + moment)
+    # A span run through from its other end has the opposite curvature.
+    natural = vibrissa.natural_curvature
+    start = back_to_clamp(clamp, moment - natural, force, length)
+    reached = np.pi / 2 - 2 * np.arctan2(start.p, start.g)
+    return _Span(start.along, start.across, reached - slope, couple - start.kappa - natural)

@@ -7,17 +7,17 @@ import pandas as pd
 
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.case import Case
-from analytic.problem.columns import CLAMP_READINGS, COLUMNS
+from analytic.problem.columns import CLAMP_READINGS, COLUMNS, CONTACT, STATUS_NUMBER
 from analytic.problem.errors import InputError, require
 from analytic.problem.numbers import is_finite_number
 from analytic.problem.rest import first_touch
-from analytic.problem.table import mirrored_table
-from analytic.solver.general.columns import to_columns
+from analytic.problem.table import as_table, mirrored_table
+from analytic.solver.columns import Columns, Units, to_columns, unloaded_columns
 from analytic.solver.general.path import Path, follow
-from analytic.solver.general.residuals import without_inexact
 from analytic.solver.general.states import Vibrissa, states
 from analytic.solver.general.stations import solve_places
 from analytic.solver.general.sticking import between, stick
+from analytic.solver.residuals import without_inexact
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Branch:
     @classmethod
     def of(cls, case: Case, sense: float) -> "Branch":
         """Follow the states that slide on (1), or back (-1)."""
-        vibrissa = Vibrissa.of(case.beam, case.clamp_stiffness, sense * case.friction)
+        vibrissa = Vibrissa.of_case(case)._replace(friction=sense * case.friction)
         touch = first_touch(case.centreline, case.reach, vibrissa.unloaded)
         path = follow(case.centreline, vibrissa, touch, case.reach)
         if not path.complete:
@@ -86,12 +86,12 @@ def stiction_limits(case: Case) -> tuple[pd.DataFrame, pd.DataFrame]:
     tables = []
     for sense in (1.0, -1.0):
         branch = Branch.of(case, sense)
-        table = _free(case, case.foot_x)
+        columns = _unloaded(case, case.foot_x)
         held = branch.holds(foot_x)
         if held.any():
             angle = np.full(int(held.sum()), sense * np.arctan(case.friction))
-            _fill(table, held, case, branch.at(case, foot_x[held]), angle)
-        tables.append(table)
+            _fill(columns, held, case, branch.at(case, foot_x[held]), angle)
+        tables.append(_table(columns))
     return tables[0], tables[1]
 
 
@@ -149,23 +149,25 @@ def turn_back(case: Case, turn_at: float, stations: int = 100) -> pd.DataFrame:
     foot_x = foot / length
     turning = onward.at(case, foot_x[:1])
     way = stick(case.centreline, onward.vibrissa, turning[0], float(foot_x[-1]))
-    table = _free(case, foot)
-    table["sliding"] = "free"
+    columns = _unloaded(case, foot)
+    sliding = np.full(stations, "free", dtype="<U8")
     sticks = (foot_x > foot_x[0]) & (foot_x < way.foot_x[-1])
     slides = (foot_x >= way.foot_x[-1]) & back.holds(foot_x) & (way.then == "slides back")
     unsolved = (foot_x >= way.foot_x[-1]) & (way.then == "unsolved")
     limit = np.arctan(case.friction)
     on = np.arange(stations) == 0
-    _fill(table, on, case, turning, np.array([limit]), "on")
+    _fill(columns, on, case, turning, np.array([limit]))
     if sticks.any():
         z = between(case.centreline, onward.vibrissa, way, foot_x[sticks])
-        _fill(table, sticks, case, z[:, :3], z[:, 3], "sticks")
+        _fill(columns, sticks, case, z[:, :3], z[:, 3])
     if slides.any():
         angle = np.full(int(slides.sum()), -limit)
-        _fill(table, slides, case, back.at(case, foot_x[slides]), angle, "back")
-    table.loc[unsolved, [*COLUMNS[1:4], *COLUMNS[5:-1]]] = np.nan
-    table.loc[unsolved, "sliding"] = "unsolved"
-    return table
+        _fill(columns, slides, case, back.at(case, foot_x[slides]), angle)
+    for name in (*CLAMP_READINGS, *CONTACT):
+        columns[name][unsolved] = np.nan
+    for word, which in (("on", on), ("sticks", sticks), ("back", slides), ("unsolved", unsolved)):
+        sliding[which] = word
+    return _table(columns).assign(sliding=sliding)
 
 
 def _check(case: Case) -> None:
@@ -174,40 +176,27 @@ def _check(case: Case) -> None:
         raise InputError("friction", 0.0, "positive", "without friction nothing sticks")
 
 
-def _free(case: Case, foot: Floats) -> pd.DataFrame:
-    """The table of a vibrissa that touches nothing."""
-    columns = {name: np.full(len(foot), np.nan) for name in COLUMNS[:-1]}
-    columns["foot_x"] = foot
-    for name in CLAMP_READINGS:
-        columns[name] = np.zeros(len(foot))
-    columns["phase"] = np.full(len(foot), "free", dtype="<U7")
-    columns["tip_angle"] = np.full(len(foot), case.beam.unloaded.at(np.ones(1))[2][0])
-    return pd.DataFrame({**columns, "friction_angle": np.nan})
+def _unloaded(case: Case, foot: Floats) -> Columns:
+    """The readings of a vibrissa that touches nothing, with no angle of friction."""
+    columns = unloaded_columns(foot, float(case.beam.unloaded.at(np.array(1.0))[2]))
+    return {**columns, "friction_angle": np.full(foot.size, np.nan)}
 
 
-def _fill(
-    table: pd.DataFrame,
-    where: Booleans,
-    case: Case,
-    z: Floats,
-    angle: Floats,
-    sliding: str | None = None,
-) -> None:
+def _table(columns: Columns) -> pd.DataFrame:
+    return as_table(columns).drop(columns="status")
+
+
+def _fill(columns: Columns, where: Booleans, case: Case, z: Floats, angle: Floats) -> None:
     """Write states at rest into the rows of a table."""
-    plain = Vibrissa.of(case.beam, case.clamp_stiffness, 0.0)
-    held = plain._replace(friction=np.tan(angle))
+    units, held = Units.of(case.beam), Vibrissa.of_case(case)._replace(friction=np.tan(angle))
     found = states(case.centreline.at(z[:, 0]), z[:, 1], z[:, 2], held)
-    columns = without_inexact(
-        to_columns(found, np.zeros(len(z), dtype=bool), case.beam), case.beam, held
-    )
-    if (inexact := columns["status"] == "diverged").any():
-        place = table["foot_x"].to_numpy()[where][inexact][0]
+    solved = without_inexact(to_columns(found, units), held, units)
+    if (inexact := solved["status"] == STATUS_NUMBER["diverged"]).any():
+        place = columns["foot_x"][where][inexact][0]
         raise ArithmeticError(f"the state at foot_x = {place:.6g} is not exact")
-    for name in COLUMNS[1:-1]:
-        table.loc[where, name] = columns[name]
-    table.loc[where, "friction_angle"] = angle
-    if sliding is not None:
-        table.loc[where, "sliding"] = sliding
+    for name in COLUMNS[1:]:
+        columns[name][where] = solved[name]
+    columns["friction_angle"][where] = angle
 
 
 def _mirrored(table: pd.DataFrame) -> pd.DataFrame:

@@ -3,19 +3,18 @@
 from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 
 from analytic.checks.certificate import certify
 from analytic.problem.case import Case
-from analytic.problem.columns import CLAMP_READINGS, COLUMNS
+from analytic.problem.columns import STATUS_NUMBER
 from analytic.problem.errors import require
-from analytic.problem.mirror import solve_either_way
 from analytic.problem.readings import Readings
-from analytic.solver.equilibria import Column
+from analytic.solver.columns import Units
 from analytic.solver.general import sweep as general
-from analytic.solver.general.residuals import SOLVED, residuals
 from analytic.solver.general.states import Vibrissa
-from analytic.solver.plain import provenance, solve_plain
+from analytic.solver.plain import solve_plain
+from analytic.solver.recorded import are_finite, as_readings
+from analytic.solver.residuals import inexact, residuals
 
 _CERTIFIED = 1e-9  # L and EI/L; the integration is good to 1e-12
 
@@ -46,23 +45,18 @@ def solve_sweep(case: Case, certified: bool = False) -> Readings:
         is ``"sticks"``, with the readings of one that does: those depend on what was before.
     """
     require("case", case, Case, "named_case('catenary') makes one")
-    plain = case.is_plain
-    readings = solve_plain([case])[0] if plain else solve_either_way(case, _solve_general)
+    readings = solve_plain([case])[0] if case.is_plain else _solve_general(case)
     return _with_certificate(readings) if certified else readings
 
 
 def _solve_general(case: Case) -> Readings:
     """With friction, an elastic clamp, a natural curvature, or what varies along the vibrissa."""
-    columns = _free(case)
-    solved = general.solve(case)
-    for name in COLUMNS[1:]:
-        columns[name][solved.where] = solved.columns[name]
-    vibrissa = Vibrissa.of(case.beam, case.clamp_stiffness, case.friction)
-    checked = residuals(columns, case.beam, vibrissa)
-    inexact = np.maximum(*checked.values()) > SOLVED
-    columns["status"][inexact] = "diverged"
-    table = pd.DataFrame({**columns, **checked})
-    return Readings(table, case.beam, "analytic", provenance(case, solved.events))
+    leftward = case if case.sweep.direction == "left" else case.mirrored()
+    columns, events = general.solve(leftward)[:2]
+    checked = residuals(columns, Vibrissa.of_case(leftward), Units.of(case.beam))
+    columns["status"][inexact(checked, columns["status"])] = STATUS_NUMBER["diverged"]
+    columns |= checked
+    return as_readings(case, columns, events, are_finite(columns))
 
 
 def _with_certificate(readings: Readings) -> Readings:
@@ -73,16 +67,3 @@ def _with_certificate(readings: Readings) -> Readings:
     for name in found:
         table[name] = np.fmax(table[name], found[name])
     return replace(readings, table=table)
-
-
-def _free(case: Case) -> dict[str, Column]:
-    """The readings of a vibrissa that touches nothing."""
-    count = len(case.foot_x)
-    columns: dict[str, Column] = {name: np.full(count, np.nan) for name in COLUMNS}
-    columns["foot_x"] = case.foot_x
-    for name in CLAMP_READINGS:
-        columns[name] = np.zeros(count)
-    columns["phase"] = np.full(count, "free", dtype="<U11")
-    columns["tip_angle"] = np.full(count, case.beam.unloaded.at(np.array(1.0))[2])
-    columns["status"] = np.full(count, "ok", dtype="<U13")
-    return columns

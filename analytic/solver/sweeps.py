@@ -82,13 +82,20 @@ def _solved(cases: Iterable[Case]) -> Iterator[Readings | Unsolved]:
 
 def _batch(cases: list[Case]) -> Iterator[Readings | Unsolved]:
     plain = [i for i, case in enumerate(cases) if isinstance(case, Case) and case.is_plain]
+    found: dict[int, Readings | Unsolved] = {}
     try:
         solved = solve_plain([cases[i] for i in plain]) if plain else []
-        found = dict(zip(plain, solved, strict=True))
+        found |= zip(plain, solved, strict=True)
     except Exception:  # a contour's functions may raise anything; one by one, to see whose do
-        found = {}
+        found |= {i: _alone(cases[i]) for i in plain}
+        if not any(isinstance(one, Unsolved) for one in found.values()):
+            raise  # no case's: the batch's own
     for i, case in enumerate(cases):
-        try:
-            yield found[i] if i in found else solve_sweep(case)
-        except Exception as error:
-            yield Unsolved(case, error)
+        yield found[i] if i in found else _alone(case)
+
+
+def _alone(case: Case) -> Readings | Unsolved:
+    try:
+        return solve_sweep(case)
+    except Exception as error:
+        return Unsolved(case, error)

@@ -7,8 +7,8 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.case import Case
-from analytic.problem.columns import CLAMP_READINGS
-from analytic.solver.general.columns import to_columns
+from analytic.problem.columns import CLAMP_READINGS, STATUS_NUMBER
+from analytic.solver.columns import Units, to_columns
 from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.stations import slopes_at, solve_beside
 from analytic.solver.general.sweep import solve
@@ -32,11 +32,10 @@ class Expected:
         """The readings of nearly the same case, from the states that are known."""
         found = self.readings.copy()
         leftward, stations = _to_the_left(case, foot_x)
-        beam = leftward.beam
-        vibrissa = Vibrissa.of(beam, leftward.clamp_stiffness, leftward.friction)
+        beam, vibrissa = leftward.beam, Vibrissa.of_case(leftward)
         moved = stations[self.loaded] / beam.length
         here = solve_beside(leftward.centreline, vibrissa, moved, self.places, self._slopes)
-        columns = to_columns(here, np.zeros(len(moved), dtype=bool), beam)
+        columns = to_columns(here, Units.of(beam))
         found[:, self.loaded] = [columns[name] for name in CLAMP_READINGS]
         if case.sweep.direction == "right":
             found[:, self.loaded] *= _MIRRORED
@@ -50,26 +49,23 @@ class Expected:
     def _slopes(self) -> Floats:
         """What several cases beside this one start from."""
         case, _ = _to_the_left(self.case, np.empty(0))
-        vibrissa = Vibrissa.of(case.beam, case.clamp_stiffness, case.friction)
-        return slopes_at(case.centreline, vibrissa, self.places)
+        return slopes_at(case.centreline, Vibrissa.of_case(case), self.places)
 
 
 def expected_readings(case: Case, foot_x: Floats) -> Expected:
     """Force and moment at the clamp, as the case's vibrissa has them at the stations of a sweep."""
     leftward, stations = _to_the_left(case, foot_x)
     solved = solve(leftward, stations)
-    ok = solved.columns["status"] == "ok"
-    loaded = solved.where.copy()
-    loaded[solved.where] = ok
-    found = np.zeros((len(CLAMP_READINGS), len(foot_x)))
-    found[:, solved.where] = np.nan
-    found[:, loaded] = [solved.columns[name][ok] for name in CLAMP_READINGS]
+    columns, touching = solved.columns, solved.touching
+    loaded = touching & (columns["status"] == STATUS_NUMBER["ok"])
+    found = np.array([columns[name] for name in CLAMP_READINGS], dtype=float)
     first = solved.events["first_contact"]
     assert first is not None
-    found[:, ~solved.where & (stations < first * case.beam.length)] = np.nan
+    let_go = ~touching & (stations < first * case.beam.length)
+    found[:, (touching & ~loaded) | let_go] = np.nan
     if case.sweep.direction == "right":
         found *= _MIRRORED
-    return Expected(case, found, loaded, solved.places[ok])
+    return Expected(case, found, loaded, solved.places[loaded[touching]])
 
 
 def _to_the_left(case: Case, foot_x: Floats) -> tuple[Case, Floats]:

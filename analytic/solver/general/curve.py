@@ -13,14 +13,13 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour
-from analytic.solver.general.states import Vibrissa, with_rates
+from analytic.solver.general.states import INSIDE, Vibrissa, with_rates
 
 _NEAR = 1e-3  # of a step: what Newton's method leaves after it is of the square of that
 _CLOSE = 1e-14  # where the curve has a kink or a fold: of an event
 _ROUNDING = 1e-12  # of the misses: one that does not fall any more is as small as it can be
 _NEWTON = 10
 _ASIDE = 1e-9  # of a step: a kink nearer than that is the one that the step starts from
-INSIDE = -5e-324  # an excess of nothing, in Phase B
 _LEAST = 1e-8  # of a rate: what is least is then exact to its square
 _SEARCHES = 40
 _T, _F, _W = range(3)

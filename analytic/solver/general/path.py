@@ -5,6 +5,7 @@ that is curved towards the object is straightened first, and its tip climbs. So 
 its own length.
 """
 
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -13,8 +14,8 @@ import numpy as np
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.problem.rest import Touch
-from analytic.solver.general.curve import INSIDE, Curve, Point
-from analytic.solver.general.states import Vibrissa, with_rates
+from analytic.solver.general.curve import Curve, Point
+from analytic.solver.general.states import INSIDE, Vibrissa, with_rates
 
 # By how much the curve may turn between neighbours [rad], and its first step; finer if it is lost.
 _STEPS = ((0.3, 0.02), (0.05, 0.004))
@@ -61,21 +62,18 @@ class Path(NamedTuple):
         """What happens on the way to the snap-off, and at which point; None where it does not."""
         excess = self.z[: self.snap_off + 1, 2]
         inside = excess < 0
-        change = np.flatnonzero(inside[1:] != inside[:-1]) + 1
-        into_b, into_a = change[inside[change]].tolist(), change[~inside[change]].tolist()
+        start, end = phase_limits(inside)
         return {
             "first_contact": 0,
-            "phase_b_start": 0 if inside[0] else next(iter(into_b), None),
-            "phase_b_end": into_a[-1] if into_a and not inside[-1] else None,
+            "phase_b_start": start,
+            "phase_b_end": end,
             "contact_length_minimum": int(np.argmin(excess)) if inside.any() else None,
             "snap_off": self.snap_off if self.complete else None,
         }
 
     def cells(self, foot_x: Floats) -> Integers:
         """The cell that holds the state at each foot position."""
-        least = np.minimum.accumulate(self.foot_x)
-        end = np.searchsorted(-least, -foot_x, side="left")
-        return np.clip(end, 1, len(least) - 1) - 1
+        return cells(self.foot_x, foot_x)
 
     def share(self, cells: Integers, wanted: Floats, coordinate: int | None) -> Floats:
         """How far along its cell something has a wanted value, by Hermite's cubic."""
@@ -114,6 +112,30 @@ class Path(NamedTuple):
         way = self.z[cells + 1] - self.z[cells]
         way[:, 1] /= np.maximum(self.least_force, self.z[cells, 1])
         return np.asarray(np.sqrt(np.einsum("nk,nk->n", way, way)))
+
+
+def cells(points: Floats, foot_x: Floats) -> Integers:
+    """The cell between points in sweep order that holds the state at each foot position.
+
+    It is the first whose end lies left of that.
+    """
+    least = np.minimum.accumulate(points)
+    end = np.searchsorted(-least, -foot_x, side="left")
+    return np.clip(end, 1, len(points) - 1) - 1
+
+
+def phase_limits(tangent: Booleans) -> tuple[int | None, int | None]:
+    """Where among places in sweep order Phase B first starts and last ends."""
+    inside = np.flatnonzero(tangent)
+    if not inside.size:
+        return None, None
+    end = int(inside[-1]) + 1
+    return int(inside[0]), end if end < tangent.size else None
+
+
+def located(events: Mapping[str, int | None], foot_x: Floats) -> dict[str, float | None]:
+    """The foot positions of what happens at points in sweep order."""
+    return {name: None if i is None else float(foot_x[i]) for name, i in events.items()}
 
 
 def _cubic(share: Floats, begin: Floats, rate: Floats, end: Floats, end_rate: Floats) -> Floats:

@@ -17,6 +17,7 @@ import numpy as np
 from analytic.problem.along import Along
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
+from analytic.problem.case import Case
 from analytic.problem.contours.contour import ContourPoint
 from analytic.problem.unloaded import Unloaded
 from analytic.solver.general import march
@@ -27,6 +28,8 @@ from analytic.solver.general.span import Start, back_to_clamp
 _DIFFERENCE = 1e-5  # of a force and an excess of their size: truncation and round-off are alike
 _BY_FORCE = np.array([0.0, 1.0, 2.0, 0.0, 0.0])
 _BY_EXCESS = np.array([0.0, 0.0, 0.0, 1.0, 2.0])
+INSIDE = -5e-324
+"""An excess of nothing, in Phase B."""
 _WEIGHTS = np.array([[-1.5, 2.0, -0.5, 0.0, 0.0], [-1.5, 0.0, 0.0, 2.0, -0.5]])
 
 
@@ -39,8 +42,8 @@ class Vibrissa(NamedTuple):
     """Rotation of the clamp by moment [L/EI]."""
     friction: float | Floats = 0.0
     """Coefficient, or one a state; positive where the object pushes the vibrissa to the right."""
-    radius: float = 0.0
-    """At the tip [L]."""
+    radius: float | Floats = 0.0
+    """At the tip, or one a state [L]."""
     form: Form | None = None
     """What varies along the vibrissa, if anything does; the natural curvature is then its."""
 
@@ -56,12 +59,30 @@ class Vibrissa(NamedTuple):
             Form.of(beam) if beam.varies else None,
         )
 
+    @classmethod
+    def of_case(cls, case: Case) -> "Vibrissa":
+        """That of a case."""
+        return cls.of(case.beam, case.clamp_stiffness, case.friction)
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether it is the paper's: straight, uniform, rigidly clamped, without friction."""
+        held = self.natural_curvature == 0 and self.compliance == 0
+        return self.form is None and held and not np.any(self.friction)
+
     @property
     def unloaded(self) -> Unloaded:
         """Its shape and radius at rest."""
         if self.form is not None:
             return self.form.unloaded
-        return Unloaded(self.natural_curvature, self.radius, self.radius)
+        radius = float(self.radius)
+        return Unloaded(self.natural_curvature, radius, radius)
+
+    def turn_after(self, s: Floats) -> Floats | float:
+        """By how much it turns at rest on the way from a place to its tip [rad]."""
+        if self.form is not None:
+            return self.form.unloaded.turn_between(s, 1.0)
+        return self.natural_curvature * (1 - s) if self.natural_curvature else 0.0
 
     def radius_at(self, s: Floats) -> Floats | float:
         """Radius."""

@@ -12,9 +12,8 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.contour import Contour
-from analytic.solver.general.curve import INSIDE
 from analytic.solver.general.newton import Jacobian, Misses, solve
-from analytic.solver.general.states import States, Vibrissa, states
+from analytic.solver.general.states import INSIDE, States, Vibrissa, states
 
 _FIRST, _LARGEST, _SMALLEST = 1e-3, 0.02, 1e-9  # L; steps of the foot
 _NEAR = 0.1  # by how much a state may differ from what the step before lets expect

@@ -7,7 +7,8 @@ import pandas as pd
 import pytest
 
 from analytic import Beam, catenary, parabola, solve_contact
-from analytic.solver.general.columns import to_columns
+from analytic.problem.table import as_table
+from analytic.solver.columns import Units, to_columns
 from analytic.solver.general.contacts import contacts
 from analytic.solver.general.states import Vibrissa
 
@@ -44,8 +45,7 @@ def test_references(variant, profile):
         PROFILES[profile].offset(radius), alpha, Vibrissa.of(beam, stiffness, friction)
     )
     # The references do not ask what else of the vibrissa touches; only one that is curved may.
-    columns = to_columns(states, np.zeros(len(rows), dtype=bool), beam)
-    found = pd.DataFrame(columns, rows.index)
+    found = as_table(to_columns(states, Units.of(beam))).set_index(rows.index)
     assert (found["status"] == "ok").all()
     public = solve_contact(
         PROFILES[profile], alpha, beam, clamp_stiffness=stiffness, friction=friction

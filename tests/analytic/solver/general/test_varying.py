@@ -29,14 +29,15 @@ from analytic import (
 )
 from analytic.problem.rest import first_touch
 from analytic.problem.unloaded import Unloaded
+from analytic.solver.columns import Units
 from analytic.solver.general.clearance import is_rest_clear
 from analytic.solver.general.form import Form
 from analytic.solver.general.march import march
 from analytic.solver.general.path import follow
-from analytic.solver.general.residuals import residuals
 from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.states import states as states_of
 from analytic.solver.general.stations import solve_places
+from analytic.solver.residuals import residuals
 
 ROWS = pd.read_csv(Path(__file__).parents[3] / "data" / "general_vibrissa.csv")
 PROFILES = {"g1": catenary(0.5, -0.8), "g2": parabola(0.5, 0.5)}
@@ -381,7 +382,8 @@ def test_residuals_find_a_wrong_rigidity():
     table = solve_sweep(case).table
     columns = {name: table[name].to_numpy() for name in table}
     other = Beam(tip_radius=0.00201)
-    missed = residuals(columns, other, Vibrissa.of(other, math.inf, 0.0))["residual_boundary"]
+    vibrissa = Vibrissa.of(other, math.inf, 0.0)
+    missed = residuals(columns, vibrissa, Units.of(other))["residual_boundary"]
     assert 1e-5 < np.nanmax(missed) < 1e-1
 
 

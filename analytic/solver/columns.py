@@ -1,0 +1,85 @@
+"""The readings of vibrissae at rest, column by column; phase and status by their numbers."""
+
+from collections.abc import Sequence
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.beam import Beam
+from analytic.problem.columns import CLAMP_READINGS, COLUMNS, PHASE_NUMBER, STATUS_NUMBER
+from analytic.solver.general.states import States
+
+Numbers: TypeAlias = Floats | Integers
+Columns: TypeAlias = dict[str, Numbers]
+READINGS = (*CLAMP_READINGS, "foot_x", "contact_arc_length", "tip_angle")
+"""What a state that is none does not have."""
+
+
+class Units(NamedTuple):
+    """What dimensionless results are multiplied by: of a beam, or of each contact's, shape (n,)."""
+
+    length: float | Floats
+    force: float | Floats
+    moment: float | Floats
+
+    @classmethod
+    def of(cls, beam: Beam) -> "Units":
+        """Those of a beam."""
+        return cls(beam.length, beam.force_unit, beam.moment_unit)
+
+    @classmethod
+    def of_each(cls, beams: Sequence[Beam], whose: Integers) -> "Units":
+        """Those of the beams of contacts."""
+        return cls(*np.array([cls.of(beam) for beam in beams]).T[:, whose])
+
+    def part(self, chosen: Booleans) -> "Units":
+        """Those of some contacts."""
+        return Units(*(np.broadcast_to(unit, chosen.shape)[chosen] for unit in self))
+
+
+def unloaded_columns(foot_x: Floats, tip_angle: float = np.pi / 2) -> Columns:
+    """The readings of vibrissae that touch nothing."""
+    empty = np.full((len(COLUMNS), foot_x.size), np.nan)
+    columns: Columns = dict(zip(COLUMNS, empty, strict=True))
+    columns["foot_x"] = foot_x
+    for name in CLAMP_READINGS:
+        columns[name].fill(0.0)
+    columns["phase"] = np.full(foot_x.size, PHASE_NUMBER["free"])
+    columns["tip_angle"].fill(tip_angle)
+    columns["status"] = np.full(foot_x.size, STATUS_NUMBER["ok"])
+    return columns
+
+
+def to_columns(found: States, units: Units) -> Columns:
+    """The readings of states at rest; NaN in their excess marks what no vibrissa reaches."""
+    alpha, xi, eta = found.point[:3]
+    sine, cosine = np.sin(alpha), np.cos(alpha)
+    vibrissa, length = found.vibrissa, found.arc_length
+    mu, radius = vibrissa.friction, vibrissa.radius
+    force, into, onward = found.force * units.force, sine, cosine
+    if np.any(mu):
+        into, onward = sine + mu * cosine, cosine - mu * sine
+    return {
+        "foot_x": found.foot_x * units.length,
+        "force_x": -force * into,
+        "force_y": force * onward,
+        "moment_z": found.moment * units.moment,
+        "phase": np.where(found.tangent, PHASE_NUMBER["tangent"], PHASE_NUMBER["tip"]),
+        "contact_angle": alpha,
+        "contact_arc_length": length * units.length,
+        "contact_x": (xi - radius * sine) * units.length,
+        "contact_y": (eta + radius * cosine) * units.length,
+        "tip_angle": found.tip_angle + vibrissa.turn_after(length),
+        "status": np.where(
+            np.isnan(found.excess), STATUS_NUMBER["unreachable"], STATUS_NUMBER["ok"]
+        ),
+    }
+
+
+def without(columns: Columns, which: Booleans, status: str) -> Columns:
+    """The same, but some without readings and with a status that says why."""
+    if not which.any():
+        return columns
+    found = {**columns, "status": np.where(which, STATUS_NUMBER[status], columns["status"])}
+    return found | {name: np.where(which, np.nan, columns[name]) for name in READINGS}

@@ -1,0 +1,40 @@
+"""Solved columns as readings, with what is recorded of the sweep."""
+
+from collections.abc import Mapping
+from functools import cache, partial
+from importlib.metadata import version
+
+import numpy as np
+
+from analytic.problem.case import Case
+from analytic.problem.readings import Readings
+from analytic.problem.table import as_table, mirrored_columns
+from analytic.solver.columns import Columns
+
+Points = Mapping[str, float | None]
+"""Foot positions of what happens, by name [L]."""
+
+
+def are_finite(columns: Columns) -> bool:
+    """Whether no number is beyond the largest one, as it may be in the case's units."""
+    return not any(np.isinf(x).any() for x in columns.values())
+
+
+def as_readings(case: Case, columns: Columns, events: Points, finite: bool) -> Readings:
+    """The readings of a case whose sweep to the left, or its mirror image's, is solved."""
+    way = 1.0 if case.sweep.direction == "left" else -1.0
+    own = columns if way > 0 else mirrored_columns(columns)
+    places = {n: None if x is None else way * x * case.beam.length for n, x in events.items()}
+    record = partial(_provenance, case, places)
+    if finite:
+        return Readings.solved(own, case.beam, "analytic", record, places["snap_off"])
+    return Readings(as_table(own), case.beam, "analytic", record())
+
+
+def _provenance(case: Case, events: Points) -> dict[str, object]:
+    return {**case.provenance(), "engine": _engine(), "events": dict(events)}
+
+
+@cache
+def _engine() -> str:
+    return f"vibrissa-testbed {version('vibrissa-testbed')}"
