@@ -4,8 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.from_clamp.general import Clamped
-from analytic.from_clamp.varying import Marched
+from analytic.from_clamp.clamp_end import ClampEnd
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED
 from analytic.problem.readings import Readings
@@ -64,11 +63,10 @@ class Held(NamedTuple):
         plain = is_plain(beam, *readings.support)
         return cls(Vibrissa.of(beam, *readings.support), plain, -1.0 if rightward else 1.0)
 
-    def clamped(self, sensed: Floats) -> Clamped | Marched:
+    def clamp_end(self, sensed: Floats) -> ClampEnd:
         """The clamp's end of the vibrissa."""
-        vibrissa, way = self.vibrissa, self.way
-        clamped = Clamped.of(way * sensed[1], sensed[2], way * sensed[3], vibrissa)
-        return clamped if vibrissa.form is None else Marched(clamped, vibrissa.form)
+        way = self.way
+        return ClampEnd.of(way * sensed[1], sensed[2], way * sensed[3], self.vibrissa)
 
     def surface(self, contact: Contact) -> tuple[Floats, Floats]:
         """Contacts on the body's surface."""
@@ -81,8 +79,8 @@ class Held(NamedTuple):
             found = contact_bent_right(turned * sensed)
             side = turned[0]
             return Contact(side * found.alpha, found.arc_length, side * found.xi, found.eta)
-        clamped = self.clamped(sensed)
-        place = clamped.place(clamped.contact_arc_length())
+        end = self.clamp_end(sensed)
+        place = end.place(end.contact_arc_length())
         xi = sensed[0] + self.way * place.x
         return Contact(self.way * place.alpha, place.arc_length, xi, place.y)
 
@@ -92,10 +90,9 @@ class Held(NamedTuple):
             _, force_x, force_y, moment = sensed
             criterion = (2 * force_y - moment**2) / (2 * np.hypot(force_x, force_y))
             return self.contact(sensed).arc_length, np.asarray(criterion)
-        clamped = self.clamped(sensed)
-        parallel = self.vibrissa.lean - np.arctan(self.vibrissa.friction)
-        criterion = clamped.sine_at_contact() - np.sin(parallel)
-        return clamped.contact_arc_length(), np.asarray(criterion)
+        end = self.clamp_end(sensed)
+        length = end.contact_arc_length()
+        return length, np.asarray(end.sine_at_contact(length) - np.sin(end.parallel))
 
 
 def located(readings: Readings) -> Contact:

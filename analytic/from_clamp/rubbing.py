@@ -8,7 +8,6 @@ import numpy as np
 from analytic.from_clamp.contact import Held, dimensionless
 from analytic.from_clamp.noise import checked_noise, largest, reading_noise
 from analytic.from_clamp.phases import judge_phases
-from analytic.from_clamp.varying import Marched
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS
 from analytic.problem.errors import InputError, require
@@ -142,9 +141,10 @@ def _beside(variance: Floats) -> Floats:
 
 def _sine(held: Held, sensed: Floats) -> Floats:
     """Sine of the friction angle, if the station is of Phase B."""
-    clamped = held.clamped(sensed)
-    if isinstance(clamped, Marched):
-        return np.asarray(np.sin(held.vibrissa.lean - np.arcsin(clamped.sine_at_contact())))
+    clamped = held.clamp_end(sensed)
+    if held.vibrissa.form is not None:
+        sine = clamped.sine_at_contact(clamped.contact_arc_length())
+        return np.asarray(np.sin(held.vibrissa.lean - np.arcsin(sine)))
     natural, radius = held.vibrissa.natural_curvature, held.vibrissa.radius
     force, moment = clamped.force, clamped.moment
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -6,10 +6,10 @@ vibrissa's centreline feels (`Contour.offset`).
 
 import numpy as np
 
+from analytic.numerics.roots import smooth_zeros
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError
-from analytic.problem.roots import smooth_zeros
 
 FARTHEST = 1e4  # L, from the origin: positions are then good to 2e-12 L
 _LOOKED_AT = 65  # places at a time, between which the least foot position is then sought

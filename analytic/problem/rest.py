@@ -4,13 +4,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.roots import zero, zeros
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.errors import InputError
-from analytic.problem.roots import zero, zeros
 from analytic.problem.unloaded import Unloaded
 
 _SAMPLES = 513  # of the contour, between which its distance from the vibrissa has one minimum
+
+_ROUNDING = 1e-14  # rad, of the slope of an upright side
 
 
 class Touch(NamedTuple):
@@ -53,7 +55,7 @@ def first_touch(centreline: Contour, reach: tuple[float, float], rest: Unloaded)
     grid = np.linspace(top, lowest, _SAMPLES)
     steep = lean(grid)
     at_tip = top < first or at_first >= tip_y * (1 - 1e-15)
-    if not at_tip and steep[0] < 0:
+    if not at_tip and steep[0] < -_ROUNDING:
         raise InputError(
             "beam.natural_curvature",
             f"{float(rest.curvature(np.array(1.0))):.6g}/L at the tip",

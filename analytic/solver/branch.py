@@ -14,6 +14,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from analytic.numerics.batches import take
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.many import Contours
@@ -71,7 +72,7 @@ def trace(many: Contours, reaches: Sequence[tuple[float, float]]) -> list[Branch
     grid, samples, folds = folded(many, along(many, first, last))
     ends = np.searchsorted(grid.owner, np.arange(len(many) + 1))
     parts = [
-        _to_snap_off(grid.t[begin:end], Samples(*(values[begin:end] for values in samples)))
+        _to_snap_off(grid.t[begin:end], take(samples, slice(begin, end)))
         for begin, end in pairwise(ends)
     ]
     _refine(many, parts, folds)
@@ -98,7 +99,7 @@ def _to_snap_off(t: Floats, samples: Samples) -> _Part:
     snap_off = t[np.argmin(samples.foot_x)]
     least = int(np.argmax(t <= snap_off + _ROUNDING * max(1.0, abs(snap_off))))
     which = np.arange(least + 1) if least else np.zeros(2, dtype=int)
-    return t[which], Samples(*(values[which] for values in samples))
+    return t[which], take(samples, which)
 
 
 def _refine(many: Contours, parts: list[_Part], folds: Grid) -> None:

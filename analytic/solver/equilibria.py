@@ -3,13 +3,11 @@
 Dimensionless throughout, on the contour that the centreline feels.
 """
 
-from collections.abc import Iterator
-from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.solver.elastica import (
     Frame,
@@ -38,27 +36,6 @@ class Equilibria(NamedTuple):
     tangent: Booleans
     frame: Frame
     """The contact as seen from the clamp, times sqrt(f)."""
-
-    def part(self, chosen: Booleans | Integers) -> "Equilibria":
-        """Some of them."""
-        point, excess, loaded, root_f, tangent, end = self
-        return Equilibria(
-            ContourPoint(*(values[chosen] for values in point)),
-            excess[chosen],
-            Span(*(values[chosen] for values in loaded)),
-            root_f[chosen],
-            tangent[chosen],
-            Frame(*(values[chosen] for values in end)),
-        )
-
-    def replace(self, where: Integers, new: "Equilibria") -> None:
-        """Put others in the place of some."""
-        for old, values in zip(self._arrays(), new._arrays(), strict=True):
-            old[where] = values
-
-    def _arrays(self) -> Iterator[np.ndarray]:
-        point, excess, loaded, root_f, tangent, end = self
-        return chain(point, (excess,), loaded, (root_f, tangent), end)
 
     @property
     def arc_length(self) -> Floats:

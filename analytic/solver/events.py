@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analytic.numerics.roots import zeros
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.columns import COLUMNS, WORDS
@@ -17,7 +18,6 @@ from analytic.problem.contours.many import Contours
 from analytic.problem.errors import require
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
-from analytic.problem.roots import zeros
 from analytic.problem.support import check_support, is_plain, require_plain
 from analytic.solver.branch import trace
 from analytic.solver.columns import Columns, Units, to_columns, without

@@ -14,10 +14,12 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from analytic.numerics.batches import take
+from analytic.numerics.hermite import least_of_hermite
+from analytic.numerics.roots import Surroundings, smooth_zeros, zeros
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import ContourPoint
 from analytic.problem.contours.many import Contours
-from analytic.problem.roots import Surroundings, smooth_zeros, zeros
 from analytic.solver.contact_length import surplus_and_rate
 from analytic.solver.equilibria import equilibria_at
 from analytic.solver.tip import within_reach
@@ -60,10 +62,6 @@ class Grid(NamedTuple):
     def begins(self) -> Integers:
         """The number of each contour's first point; every contour has one."""
         return self.owner.searchsorted(np.arange(self.owner[-1] + 1))
-
-    def part(self, chosen: Booleans) -> "Grid":
-        """Some of the points."""
-        return Grid(self.owner[chosen], self.t[chosen])
 
     def middles(self, chosen: Booleans) -> "Grid":
         """The middles of the chosen cells, but for those that have none."""
@@ -196,7 +194,7 @@ def folded(centrelines: Contours, grid: Grid) -> tuple[Grid, Samples, Grid]:
         grid, values = _merged(grid, tuple(samples), beside, tuple(found))
         samples = Samples(*values)
     reached = _before_first(grid, np.isnan(samples.foot_x))
-    return grid.part(reached), Samples(*(values[reached] for values in samples)), folds
+    return take(grid, reached), take(samples, reached), folds
 
 
 def _to_end_of_reach(centrelines: Contours, grid: Grid) -> tuple[Grid, ContourPoint]:
@@ -225,7 +223,7 @@ def _to_end_of_reach(centrelines: Contours, grid: Grid) -> tuple[Grid, ContourPo
         end = np.argmax(np.append(passed.reshape(t.shape), np.ones((row.size, 1), bool), 1), axis=1)
         high, low = edges[row, end], edges[row, end + 1]
     reached = _before_first(grid, np.append(False, gone[:-1] & grid.cells))
-    return grid.part(reached), ContourPoint(*(values[reached] for values in point))
+    return take(grid, reached), take(point, reached)
 
 
 def _before_first(grid: Grid, chosen: Booleans) -> Booleans:
@@ -256,7 +254,9 @@ def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> tuple[Grid, G
     def rates(turn: Integers, at: Floats, found: Samples) -> Floats:
         return np.where(at == first[turn], 1.0, np.where(np.isnan(found.rate), -1.0, found.rate))
 
-    likely = _least_of_cubic(low, high, *(x[turns + i] for x in samples[:2] for i in (1, 0)))
+    width, after = high - low, turns + 1
+    ends = (values for i in (after, turns) for values in (foot_x[i], width * rate[i]))
+    likely = low + width * least_of_hermite(*ends)
     about = Surroundings.of(low, high, likely)
     # And one in the cell before, if there is one: near the end of reach cubics are poor.
     previous = np.maximum(turns - 1, 0)
@@ -285,18 +285,6 @@ def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> tuple[Grid, G
     values = np.concatenate([values, sampled[:, :, [0, -1]]], axis=2)
     beside = Grid(np.repeat(owner, every.shape[1]), every.ravel())
     return Grid(owner, t), beside, Samples(*values.reshape(len(values), -1))
-
-
-def _least_of_cubic(
-    low: Floats, high: Floats, at_low: Floats, at_high: Floats, slope: Floats, last: Floats
-) -> Floats:
-    """Where cubics with given values and derivatives at the ends are least between."""
-    width = high - low
-    slope, last, rise = slope * width, last * width, at_high - at_low
-    second, third = 3 * rise - 2 * slope - last, slope + last - 2 * rise
-    with np.errstate(invalid="ignore", divide="ignore"):
-        root = np.sqrt(second * second - 3 * third * slope)
-        return low + width * -slope / (second + root)
 
 
 def _least_so_far(grid: Grid, foot_x: Floats) -> Floats:

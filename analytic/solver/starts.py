@@ -28,11 +28,6 @@ class Stations(NamedTuple):
     low: Floats
     high: Floats
 
-    def part(self, chosen: Booleans | Integers) -> "Stations":
-        """Some of them."""
-        owner, foot_x, low, high = self
-        return Stations(owner[chosen], foot_x[chosen], low[chosen], high[chosen])
-
 
 class Starts(NamedTuple):
     """What is known of stations before any is solved, shape (n,)."""

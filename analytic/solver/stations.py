@@ -5,9 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.batches import put, take
+from analytic.numerics.roots import zeros
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.many import Contours
-from analytic.problem.roots import zeros
 from analytic.solver.branch import Branch
 from analytic.solver.equilibria import Equilibria, contact, contact_beside, equilibria_at, tip_rates
 from analytic.solver.starts import Stations, located
@@ -29,21 +30,6 @@ class _Iterate(NamedTuple):
     missed: Floats
     states: Equilibria
 
-    def part(self, chosen: Booleans | Integers) -> "_Iterate":
-        return _Iterate(self.t[chosen], self.missed[chosen], self.states.part(chosen))
-
-    def replace(self, where: Integers, new: "_Iterate") -> None:
-        """Put others in the place of some."""
-        self.t[where], self.missed[where] = new.t, new.missed
-        self.states.replace(where, new.states)
-
-    def improved(self, where: Integers, new: "_Iterate", better: Booleans) -> "_Iterate":
-        """With others in the place of some where they are better."""
-        if better.all() and where.size == self.t.size:
-            return new
-        self.replace(where[better], new.part(better))
-        return self
-
 
 def solve_stations(
     centrelines: Contours, branches: Sequence[Branch], foot_x: Sequence[Floats]
@@ -58,13 +44,13 @@ def solve_stations(
     found = _newton(centrelines, stations, tangent, (t, excess))
     poor = (~(_admissible(found.states) & (found.missed <= _EXACT))).nonzero()[0]
     if poor.size:
-        few = stations.part(poor)
+        few = take(stations, poor)
         enclosed = _enclose(centrelines, few, behind[poor])
         start = enclosed.t.copy(), enclosed.states.excess
         refined = _newton(centrelines, few, enclosed.states.tangent, start)
         better = _admissible(refined.states) & (refined.missed < enclosed.missed)
-        found.replace(poor, enclosed)
-        found.replace(poor[better], refined.part(better))
+        put(found, poor, enclosed)
+        put(found, poor[better], take(refined, better))
     return found.states
 
 
@@ -90,7 +76,7 @@ def _newton(
         states = contact(centrelines.at(owner, t), excess, tangent)
         now, too_high, too_far = _seen(t, states, foot_x)
         less = now.missed < np.inf if best is None else now.missed <= best.missed[going]
-        best = now if best is None else best.improved(going, now, less)
+        best = now if best is None else _improved(best, going, now, less)
         enough = (now.missed <= _FINEST) | (~less & (now.missed <= _EXACT))
         done = (enough & (step <= _CLOSE)) | (now.missed == 0)
         if done.all():
@@ -108,15 +94,23 @@ def _newton(
         last = small.nonzero()[0]
         if last.size:
             point = centrelines.at(owner[last], t[last])
-            near = contact_beside(states.part(last), point, excess[last])
+            near = contact_beside(take(states, last), point, excess[last])
             beside = _seen(t[last], near, foot_x[last])[0]
-            best = best.improved(going[last], beside, beside.missed <= best.missed[going[last]])
+            best = _improved(best, going[last], beside, beside.missed <= best.missed[going[last]])
         more = (~(done | small)).nonzero()[0]
         if not more.size:
             break
         t, excess, step = t[more], excess[more], np.maximum(moved, turned)[more]
-        going, stations, tangent = going[more], stations.part(more), tangent[more]
+        going, stations, tangent = going[more], take(stations, more), tangent[more]
     assert best is not None
+    return best
+
+
+def _improved(best: _Iterate, where: Integers, new: _Iterate, better: Booleans) -> _Iterate:
+    """The best iterates, with others in the place of some where those are better."""
+    if better.all() and where.size == best.t.size:
+        return new
+    put(best, where[better], take(new, better))
     return best
 
 

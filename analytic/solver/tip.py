@@ -23,12 +23,6 @@ _LEAST = 1e-40  # of the sag: less is rounding, but the square root of this one 
 _ROUNDING = float(np.finfo(float).eps)  # of the height [L]
 
 
-def tip_height(excess: Floats, alpha: Floats) -> Floats:
-    """Height of a loaded tip above the foot line."""
-    loaded = span(excess, alpha)
-    return frame(loaded, alpha).up / loaded.q
-
-
 def greatest_height(alpha: Floats) -> Floats:
     """Height of the tip whose excess rotation is zero: contour points above are out of reach.
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from analytic.from_clamp.earlier.sensed import Answer, Sensed
+from analytic.numerics.vectors import cross
 from analytic.problem.arrays import Floats
 
 _TOLERANCE = 1e-13
@@ -74,22 +75,15 @@ def _in_space(force: Floats, moment: Floats, tangent: Floats) -> Floats:
 
     def rate(state: Floats) -> Floats:
         r, t = state[:3], state[3:]
-        return np.concatenate([t, _cross(t, moment - _cross(r, force))])
+        return np.concatenate([t, cross(t, moment - cross(r, force))])
 
     def left(state: Floats) -> tuple[Floats, Floats]:
         r, t = state[:3], state[3:]
-        m = moment - _cross(r, force)
-        return (m * axis).sum(axis=0), (_cross(force, t) * axis).sum(axis=0)
+        m = moment - cross(r, force)
+        return (m * axis).sum(axis=0), (cross(force, t) * axis).sum(axis=0)
 
     start = np.concatenate([np.zeros_like(force), tangent.T])
     return _up_to_zero(rate, start, left, size)[:3].T
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    """`np.cross` along the first axis, which takes longer to find out which axes are meant."""
-    return np.stack(
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    )
 
 
 def _up_to_zero(

@@ -11,13 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.from_clamp.earlier.sensed import Answer, Sensed
+from analytic.numerics.roots import zeros
 from analytic.problem.arrays import Booleans, Floats, Integers
-from analytic.problem.roots import zeros
-
-_ROUNDING = 1e-9  # of a segment; nearer to a joint the contact is at the joint
 
 
-class _Bent(NamedTuple):
+class Base(NamedTuple):
     """The base as seen from the contact, whose tangent is the x-axis; arrays of shape (n,)."""
 
     x: Floats
@@ -36,28 +34,18 @@ def by_segments(sensed: Sensed, segments: int = 40, half_cell: bool = False) -> 
 
     def beyond(which: Integers, rest: Floats) -> Floats:
         some = at[which]
-        return _bend(force[some], rest, whole[some], segments, half).turned - turn[some]
+        return bent(force[some], rest, whole[some], segments, half).turned - turn[some]
 
     rest = np.zeros_like(force)  # a contact that turns nothing away is at the base
     rest[at] = zeros(beyond, rest[at], np.full(at.size, 1 / segments))
-    across, height = _from_base(_bend(force, rest, whole, segments, half))
+    across, height = from_base(bent(force, rest, whole, segments, half))
     return Answer(sensed.foot_x + across, height).where(found)
 
 
-def contact_under(
-    force: Floats, arc_length: Floats, segments: int = 40, half_cell: bool = False
-) -> Answer:
-    """Where the model has the contact, given the force's size and place: its forward problem."""
-    whole = np.floor(arc_length * segments + _ROUNDING)
-    rest = np.maximum(arc_length - whole / segments, 0.0)
-    half = 0.5 / segments if half_cell else 0.0
-    return Answer(*_from_base(_bend(force, rest, whole, segments, half)))
-
-
-def _from_base(bent: _Bent) -> tuple[Floats, Floats]:
+def from_base(seen: Base) -> tuple[Floats, Floats]:
     """The contact as the base sees it: to the side, and along its tangent."""
-    cos, sin = np.cos(bent.turned), np.sin(bent.turned)
-    return np.abs(cos * bent.y - sin * bent.x), -(cos * bent.x + sin * bent.y)
+    cos, sin = np.cos(seen.turned), np.sin(seen.turned)
+    return np.abs(cos * seen.y - sin * seen.x), -(cos * seen.x + sin * seen.y)
 
 
 def _bracket(force: Floats, turn: Floats, segments: int, half: float) -> tuple[Floats, Booleans]:
@@ -74,7 +62,7 @@ def _bracket(force: Floats, turn: Floats, segments: int, half: float) -> tuple[F
     return whole, found
 
 
-def _bend(force: Floats, rest: Floats, whole: Floats, segments: int, half: float) -> _Bent:
+def bent(force: Floats, rest: Floats, whole: Floats, segments: int, half: float) -> Base:
     """From a contact at `rest` beyond so many whole segments."""
     x, y, turned = -rest, np.zeros_like(force), np.zeros_like(force)
     for number in range(int(whole.max(initial=0))):
@@ -82,7 +70,7 @@ def _bend(force: Floats, rest: Floats, whole: Floats, segments: int, half: float
         nx, ny, nturned = _joint(force, x, y, turned, 1 / segments)
         x, y = np.where(there, nx, x), np.where(there, ny, y)
         turned = np.where(there, nturned, turned)
-    return _Bent(x, y, turned - half * x * force)
+    return Base(x, y, turned - half * x * force)
 
 
 def _joint(

@@ -8,9 +8,10 @@ before it, can fail that: it would touch a second time, and the state is none.
 
 import numpy as np
 
+from analytic.numerics.batches import take
+from analytic.numerics.roots import zeros
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
-from analytic.problem.roots import zeros
 from analytic.solver.general.march import Trail, march
 from analytic.solver.general.states import States, Vibrissa
 
@@ -30,7 +31,7 @@ def is_clear(centreline: Contour, contact: States) -> Booleans:
     left = np.flatnonzero(~clear & np.isfinite(contact.excess))
     if left.size:
         for some in np.array_split(left, 1 + left.size // _CHUNK):
-            clear[some] = _is_outside(centreline, contact.at(some))
+            clear[some] = _is_outside(centreline, take(contact, some))
     return clear & _starts_outside(contact) & _passes_corners(centreline, contact)
 
 
@@ -61,7 +62,7 @@ def _passes_corners(centreline: Contour, contact: States) -> Booleans:
         return clear
     corners = centreline.at(breaks)
     for few in np.array_split(some, 1 + some.size * breaks.size // _AT_ONCE):
-        one, curved = contact.at(few), natural[few, None]
+        one, curved = take(contact, few), natural[few, None]
         felt, taper = one.felt, one.vibrissa.unloaded.taper(s[few])[:, None]
         sin, cos = np.sin(felt.alpha)[:, None], np.cos(felt.alpha)[:, None]
         x = corners.xi + taper * np.sin(corners.alpha) - felt.xi[:, None]

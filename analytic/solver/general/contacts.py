@@ -4,13 +4,14 @@ from itertools import pairwise
 
 import numpy as np
 
+from analytic.numerics.batches import take
+from analytic.numerics.newton import solve
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
 from analytic.solver.equilibria import equilibria
 from analytic.solver.general.dense import between, nodes
-from analytic.solver.general.newton import solve
 from analytic.solver.general.path import Path, follow
 from analytic.solver.general.states import States, Vibrissa, states, with_rates
 
@@ -46,7 +47,7 @@ def _solved(centreline: Contour, vibrissa: Vibrissa, path: Path, t: Floats) -> F
     z, missed = _balanced(point, vibrissa, _on_path(path, t))
     left = np.flatnonzero(~(missed <= _BALANCED))
     if left.size:
-        at = ContourPoint(*(values[left] for values in point))
+        at = take(point, left)
         z[left], missed[left] = _from_plain(centreline, t[left], at, vibrissa)
     z[~(missed <= _BALANCED)] = np.nan
     return z
@@ -75,15 +76,14 @@ def _from_plain(
     What is lost on the way is given up: a search for what is not there takes hundreds of times as
     long as one that ends.
     """
-    plain = equilibria(centreline, t)
-    straight = np.where(plain.tangent, plain.arc_length - 1, plain.tip_angle - point.alpha)
-    z = np.stack([plain.root_f**2, straight], axis=1)
+    plain = equilibria(centreline, t).states(Vibrissa())
+    z = np.stack([plain.force, plain.excess], axis=1)
     missed = np.where(np.isfinite(z).all(axis=1), 0.0, np.inf)
     for share in np.linspace(0, 1, _STEPS + 1)[1:]:
         held = np.flatnonzero(missed <= _BALANCED)
         if held.size == 0:
             break
-        at = ContourPoint(*(values[held] for values in point))
+        at = take(point, held)
         z[held], missed[held] = _balanced(at, vibrissa.scaled(share), z[held])
     return z, missed
 
@@ -91,15 +91,12 @@ def _from_plain(
 def _balanced(point: ContourPoint, vibrissa: Vibrissa, start: Floats) -> tuple[Floats, Floats]:
     """Force and excess at given points, shape (n, 2), and what they miss, shape (n,)."""
 
-    def at(which: Integers) -> ContourPoint:
-        return ContourPoint(*(values[which] for values in point))
-
     def misses(z: Floats, which: Integers) -> Floats:
-        found = states(at(which), z[:, 0], z[:, 1], vibrissa)
+        found = states(take(point, which), z[:, 0], z[:, 1], vibrissa)
         return np.stack([found.twist, found.above], axis=1)
 
     def jacobian(z: Floats, which: Integers) -> Floats:
-        _, rates = with_rates(at(which), z[:, 0], z[:, 1], vibrissa)
+        _, rates = with_rates(take(point, which), z[:, 0], z[:, 1], vibrissa)
         return np.stack([rates.twist, rates.above], axis=1)[:, :, 1:]
 
     return solve(misses, jacobian, start)

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.vectors import cross
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour
 from analytic.solver.general.states import INSIDE, Vibrissa, with_rates
@@ -178,7 +179,7 @@ class Curve(NamedTuple):
             self.centreline.at(z[:1]), z[1:2].copy(), z[2:3].copy(), self.vibrissa
         )
         slopes = np.concatenate(rates)
-        direction = _cross(slopes[0], slopes[1])
+        direction = cross(slopes[0], slopes[1])
         direction = direction / (self._size(direction, z) or math.nan)
         misses = np.array([here.twist[0], here.above[0]])
         rate = float(slopes[2] @ direction)
@@ -198,7 +199,7 @@ class Curve(NamedTuple):
                 return None
             if missed < _CLOSE or (missed < _ROUNDING and missed >= before / 2):
                 return point
-            u, v = _cross(slopes[1], normal), _cross(normal, slopes[0])  # Cramer's rule
+            u, v = cross(slopes[1], normal), cross(normal, slopes[0])  # Cramer's rule
             determinant = float(slopes[0] @ u)
             if determinant == 0:
                 return None
@@ -216,12 +217,6 @@ class Curve(NamedTuple):
         normal = np.zeros(3)
         normal[index] = 1.0
         return self._corrected(z, normal, slice(index, index + 1))
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    """`np.cross` of two short vectors, ten times as fast."""
-    (u, v, w), (x, y, z) = a.tolist(), b.tolist()
-    return np.array([v * z - w * y, w * x - u * z, u * y - v * x])
 
 
 def _along(point: Point, way: Floats) -> Point:

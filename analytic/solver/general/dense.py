@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.hermite import hermite
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.solver.general.states import Vibrissa, states, with_rates
@@ -53,7 +54,10 @@ def _between(
 ) -> tuple[Floats, Booleans]:
     left = np.clip(np.searchsorted(known.t, t, side="right") - 1, 0, len(known.t) - 2)
     with np.errstate(all="ignore"):  # next to a contact that there is not
-        force, excess = _cubic(known, left, t).T
+        width = (known.t[left + 1] - known.t[left])[:, None]
+        share = (t - known.t[left])[:, None] / width
+        ends = (values for i in (left, left + 1) for values in (known.z[i], width * known.rate[i]))
+        force, excess = hermite(share, *ends).T
         inside = known.z[left, 1] < 0
         alike = inside == (known.z[left + 1, 1] < 0)
         smooth = ~_has_break(centreline, known.t[left], known.t[left + 1])
@@ -78,16 +82,6 @@ def _put(values: Floats, where: Integers, new: Floats) -> Floats:
     values = values.copy()
     values[where] = new
     return values
-
-
-def _cubic(known: Nodes, left: Integers, t: Floats) -> Floats:
-    begin, end = known.t[left], known.t[left + 1]
-    width = (end - begin)[:, None]
-    a = ((t - begin) / (end - begin))[:, None]
-    b = 1 - a
-    first = (1 + 2 * a) * known.z[left] + a * width * known.rate[left]
-    last = (1 + 2 * b) * known.z[left + 1] - b * width * known.rate[left + 1]
-    return np.asarray(b * b * first + a * a * last)
 
 
 def _has_break(centreline: Contour, begin: Floats, end: Floats) -> Booleans:

@@ -1,7 +1,8 @@
 """What varies along a vibrissa, dimensionless, and the panels on which polynomials resolve it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -16,6 +17,7 @@ _TAIL = 2  # coefficients
 _EXACT = 1e-8  # of a panel's largest value; of the integral over it then the square
 _HALVINGS = 12
 _PLACES = 257
+_KNOWN = 512  # panels: a sweep of a stiff vibrissa asks for some ten, a calibration for a hundred
 
 
 @dataclass(frozen=True)
@@ -56,17 +58,10 @@ class Form:
         """The form between two places."""
         return Panel.between(begin, end, self.flexibility, self.unloaded.curvature)
 
-    def known_panel(self, begin: float, end: float) -> Panel:
-        """The form between two places that many spans run through, computed once."""
-        key = begin, end
-        if key not in self._known:
-            self._known[key] = self.panel(np.array([begin]), np.array([end]))
-        return self._known[key]
-
     @cached_property
-    def _known(self) -> dict[tuple[float, float], Panel]:
-        """Panels by their ends."""
-        return {}
+    def known_panel(self) -> Callable[[float, float], Panel]:
+        """The form between two places that many spans run through, the last ones computed once."""
+        return lru_cache(_KNOWN)(lambda *ends: self.panel(*np.reshape(ends, (2, 1))))
 
     @cached_property
     def ends(self) -> Floats:

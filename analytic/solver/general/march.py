@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import gammaln
 
+from analytic.numerics.batches import put, take
 from analytic.problem.arrays import Floats, Integers
 from analytic.solver.general.form import Form
 from analytic.solver.general.panel import TO_NODES, WEIGHTS, Panel
@@ -74,7 +75,7 @@ def march(
         if trail is None and not on.any():
             continue
         everywhere = trail is not None or bool(on.all())
-        some = here if everywhere else Place(*(values[on] for values in here))
+        some = here if everywhere else take(here, on)
         end = length if everywhere else length[on]
         if end.min() >= high:
             panel = form.known_panel(*((low, high) if from_clamp else (high, low)))
@@ -86,8 +87,7 @@ def march(
         if everywhere:
             here = new
         else:
-            for values, found in zip(here, new, strict=True):
-                values[on] = found
+            put(here, on, new)
     return here
 
 

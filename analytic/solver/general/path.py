@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.hermite import hermite
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.problem.rest import Touch
@@ -88,14 +89,14 @@ class Path(NamedTuple):
         low, high = np.zeros_like(wanted), np.ones_like(wanted)
         for _ in range(_HALVINGS):
             middle = (low + high) / 2
-            before = (_cubic(middle, begin, rate[0], end, rate[1]) > wanted) == falls
+            before = (hermite(middle, begin, rate[0], end, rate[1]) > wanted) == falls
             low, high = np.where(before, middle, low), np.where(before, high, middle)
         return low
 
     def at(self, cells: Integers, share: Floats) -> Floats:
         """Places in cells, by Hermite's cubic: what Newton's method starts from."""
         length = self.length(cells)[:, None]
-        z = _cubic(
+        z = hermite(
             share[:, None],
             self.z[cells],
             length * self.direction[cells],
@@ -136,13 +137,6 @@ def phase_limits(tangent: Booleans) -> tuple[int | None, int | None]:
 def located(events: Mapping[str, int | None], foot_x: Floats) -> dict[str, float | None]:
     """The foot positions of what happens at points in sweep order."""
     return {name: None if i is None else float(foot_x[i]) for name, i in events.items()}
-
-
-def _cubic(share: Floats, begin: Floats, rate: Floats, end: Floats, end_rate: Floats) -> Floats:
-    """Hermite's cubic of a value and its derivative at both ends."""
-    a, b = share, 1 - share
-    first, last = (1 + 2 * a) * begin + a * rate, (1 + 2 * b) * end - b * end_rate
-    return b * b * first + a * a * last
 
 
 def follow(
@@ -241,7 +235,7 @@ def _skips_phase(begin: Point, end: Point, length: float) -> bool:
     )
     if not (rate < 0 < rate_after and after >= 0):
         return False
-    return bool((_cubic(_WITHIN, excess, rate, after, rate_after) < 0).any())
+    return bool((hermite(_WITHIN, excess, rate, after, rate_after) < 0).any())
 
 
 def _ended(points: list[Point], reach: tuple[float, float], slack: float = 0.0) -> bool:

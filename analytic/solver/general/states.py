@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.problem.along import Along
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.contours.contour import ContourPoint
@@ -146,21 +146,6 @@ class States(NamedTuple):
     swing: Floats
     """Amplitude of the span: from pi on, half a period, it is one that buckles [rad]."""
     vibrissa: Vibrissa
-
-    def at(self, which: Integers) -> "States":
-        """Some of the states."""
-        point = ContourPoint(*(values[which] for values in self.point))
-        return States(
-            point,
-            self.force[which],
-            self.excess[which],
-            self.moment[which],
-            self.up[which],
-            self.reach[which],
-            self.twist[which],
-            self.swing[which],
-            self.vibrissa,
-        )
 
     @property
     def tangent(self) -> Booleans:

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from analytic.numerics.newton import solve
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
-from analytic.solver.general.newton import solve
 from analytic.solver.general.path import Path
 from analytic.solver.general.states import States, Vibrissa, states, with_rates
 

@@ -7,8 +7,7 @@ from scipy.optimize import fsolve
 
 from analytic import Beam, Case, circle, named_case, solve_sweep
 from analytic.from_clamp.earlier import integrated, segments, small_deflection
-from analytic.from_clamp.earlier.sensed import Sensed
-from analytic.from_clamp.earlier.tomography import outline_of_tangents
+from analytic.from_clamp.earlier.sensed import Answer, Sensed
 
 THIN = Beam(radius=0.0)
 
@@ -149,6 +148,14 @@ def test_order_in_the_segments_at_tangential_contacts(half_cell, order):
     assert observed == pytest.approx([order] * 2, abs=0.3)
 
 
+def contact_under(force, arc_length, number, half_cell):
+    """Where the model has the contact, given the force's size and place: its forward problem."""
+    whole = np.floor(arc_length * number + 1e-9)
+    half = 0.5 / number if half_cell else 0.0
+    bent = segments.bent(force, np.maximum(arc_length - whole / number, 0.0), whole, number, half)
+    return Answer(*segments.from_base(bent))
+
+
 @pytest.mark.parametrize(
     ("half_cell", "expected"),
     [(False, (0.056, 0.028, 0.014)), (True, (1.2e-3, 2.8e-4, 7.8e-5))],
@@ -160,9 +167,7 @@ def test_segments_under_the_true_force_at_the_true_place(half_cell, expected):
     table = table.iloc[:: len(table) // 40]
     force = np.hypot(table["force_x"], table["force_y"]).to_numpy()
     for number, median in zip((20, 40, 80), expected, strict=True):
-        found = segments.contact_under(
-            force, table["contact_arc_length"].to_numpy(), number, half_cell
-        )
+        found = contact_under(force, table["contact_arc_length"].to_numpy(), number, half_cell)
         off = np.hypot(
             found.x - (table["contact_x"] - table["foot_x"]), found.y - table["contact_y"]
         )
@@ -175,7 +180,7 @@ def test_at_the_tip_the_model_is_off_by_its_force():
     table = table[table["phase"] == "tip"]
     force = np.hypot(table["force_x"], table["force_y"]).to_numpy()
     for number in (40, 160):
-        found = segments.contact_under(force, np.ones(len(table)), number, half_cell=True)
+        found = contact_under(force, np.ones(len(table)), number, half_cell=True)
         off = np.hypot(
             found.x - (table["contact_x"] - table["foot_x"]), found.y - table["contact_y"]
         )
@@ -191,17 +196,6 @@ def test_segments_do_not_find_the_tip():
     found = errors(segments.by_segments(given, 160, half_cell=True), table[tip])
     assert np.isnan(found).mean() > 0.5
     assert np.nanmin(found) > 0.01
-
-
-@pytest.mark.parametrize("number", [5, 12, 100])
-def test_a_circle_from_its_tangents(number):
-    angle = 0.3 + 2 * np.pi * np.arange(number) / number
-    centre, radius = np.array([0.7, -0.4]), 1.3
-    distance = radius + centre @ [np.cos(angle), np.sin(angle)]
-    x, y = outline_of_tangents(angle, distance).T
-    area = (x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2
-    expected = number / np.pi * np.tan(np.pi / number) - 1
-    assert area / (np.pi * radius**2) - 1 == pytest.approx(expected, rel=1e-10)
 
 
 def test_a_plane_in_space_is_the_plane():

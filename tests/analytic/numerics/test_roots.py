@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
-from analytic.problem.roots import Surroundings, smooth_zeros, zero, zeros
+from analytic.numerics.roots import Surroundings, smooth_zeros, zero, zeros
 
 EPS = float(np.finfo(float).eps)
 
