@@ -34,6 +34,21 @@ def _misses(centreline: Contour, vibrissa: Vibrissa, foot_x: Floats, z: Floats) 
     return np.stack([here.twist, here.above, here.foot_x - foot_x], axis=1)
 
 
+def solve_near(
+    centreline: Contour, vibrissa: Vibrissa, foot_x: Floats, start: Floats
+) -> tuple[Floats, Booleans]:
+    """Contour parameter, force and excess at each foot position, and whether in balance."""
+
+    def misses(z: Floats, which: Integers) -> Floats:
+        return _misses(centreline, vibrissa, foot_x[which], z)
+
+    def jacobian(z: Floats, which: Integers) -> Floats:
+        return slopes_at(centreline, vibrissa, z)
+
+    z, missed = solve(misses, jacobian, start)
+    return z, missed <= _BALANCED * np.maximum(1.0, np.abs(foot_x))
+
+
 def solve_places(
     centreline: Contour, vibrissa: Vibrissa, path: Path, foot_x: Floats
 ) -> tuple[Floats, Booleans]:
@@ -47,16 +62,9 @@ def solve_places(
     scale = np.ones_like(begin)
     scale[:, 1] = np.maximum(vibrissa.least_force, begin[:, 1])
 
-    def misses(z: Floats, which: Integers) -> Floats:
-        return _misses(centreline, vibrissa, foot_x[which], z)
-
-    def jacobian(z: Floats, which: Integers) -> Floats:
-        return slopes_at(centreline, vibrissa, z)
-
-    z, missed = solve(misses, jacobian, guess)
+    z, balanced = solve_near(centreline, vibrissa, foot_x, guess)
     along = np.einsum("nk,nk->n", (z - begin) / scale, way / scale) / length
     strayed = np.linalg.norm((z - guess) / scale, axis=1)
-    found = missed <= _BALANCED * np.maximum(1.0, np.abs(foot_x))
-    found &= ((z[:, 2] < 0) == path.tangent[cells]) & (strayed <= _NEAR * length + _ASIDE)
+    found = balanced & ((z[:, 2] < 0) == path.tangent[cells]) & (strayed <= _NEAR * length + _ASIDE)
     found &= (along >= -_ASIDE) & (along <= length + _ASIDE)  # not beyond a fold
     return z, found

@@ -41,7 +41,7 @@ def random_contour(kind, rng):
         return two_circles(*rng.uniform(0.2, 2.0, 2), (0.0, low))
     angle = np.sort(rng.uniform(-np.pi, 0, 7))
     points = np.column_stack([np.cos(angle), 1 + np.sin(angle)]) * rng.uniform(0.3, 1.5)
-    return polygon(np.vstack([points, [0.0, 3.0]]) + [0.0, low])
+    return polygon(np.vstack([points, [0.0, 3.0]]) + np.array([0.0, low]))
 
 
 def compared(case):

@@ -135,17 +135,32 @@ def test_limit_is_smooth(name):
 
 
 @pytest.mark.parametrize("name", ["catenary", "two-circles"])
-def test_friction_by_integration(name):
-    """The Runge-Kutta method from the contact and Newton's, which share nothing with this one."""
+def test_friction_of_either_sign_by_integration(name):
+    """From the clamp, by a method that shares nothing with the closed form."""
     plain = replace(named_case(name), sweep=Sweep(30))
-    integrated = with_friction(plain, 0.2)
-    closed = solve_sweep(replace(plain, friction=0.2))
-    both = (integrated.table["phase"] != "free") & (integrated.table["status"] == "ok")
-    assert both.sum() > 20
+    for coefficient in (0.2, -0.2):
+        found = with_friction(plain, coefficient)
+        both = (found.table["phase"] != "free") & (found.table["status"] == "ok")
+        assert both.sum() > 20
+        missed = certify(found.with_friction(coefficient))[both]
+        assert missed.max(axis=None) < 1e-12
+
+
+def test_friction_of_the_sweeps_sign_is_the_sweep():
+    plain = replace(named_case("catenary"), sweep=Sweep(30))
+    found, swept = with_friction(plain, 0.2), solve_sweep(replace(plain, friction=0.2))
+    both = (found.table["phase"] != "free") & (swept.table["status"] == "ok")
     for column in READ:
-        difference = integrated.values(column) - closed.values(column)
-        # 1e-7: 200 steps of a fourth-order method, stopped at misses of 1e-9 at the clamp.
-        assert np.abs(difference[both]).max() < 1e-7
+        difference = found.values(column) - swept.values(column)
+        assert np.abs(difference[both]).max() < 1e-12
+
+
+def test_friction_near_the_snap_off_stays_on_the_branch_of_the_sweep():
+    """There is another state, of three times the force."""
+    plain = replace(named_case("parabola"), sweep=Sweep(60))
+    found, swept = with_friction(plain, 0.5), solve_sweep(replace(plain, friction=0.5))
+    last = np.flatnonzero(found.table["phase"] != "free")[-1]
+    assert found.values("force_y")[last] == pytest.approx(swept.values("force_y")[last], abs=1e-11)
 
 
 def test_mirror():
