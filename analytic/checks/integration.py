@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 
-Along: TypeAlias = Callable[[Floats], Floats]
+Quantity: TypeAlias = Callable[[Floats], Floats]
 """A quantity along the vibrissa, dimensionless, element by element."""
 
 _MARKS = np.linspace(0, 1, 17)[1:]  # parts of the span at which its slope is looked at
@@ -37,8 +37,8 @@ def integrate_span(
     length: Floats,
     tolerance: float = 1e-13,
     compliance: float = 0.0,
-    natural: Along = _none,
-    flexibility: Along = np.ones_like,
+    natural: Quantity = _none,
+    flexibility: Quantity = np.ones_like,
     breaks: Sequence[float] | Floats = (),
 ) -> End:
     """March from the clamp along the loaded span (Will et al., eqs. 4 and 15).

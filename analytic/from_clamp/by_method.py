@@ -7,7 +7,7 @@ import pandas as pd
 
 from analytic.from_clamp.contact import LONGEST, dimensionless, sides
 from analytic.from_clamp.earlier.methods import METHODS, NAMES
-from analytic.from_clamp.earlier.sensed import Sensed
+from analytic.from_clamp.earlier.sensed import LoadedStations
 from analytic.from_clamp.phases import judge_phases
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.columns import SENSED
@@ -33,7 +33,7 @@ def reconstruct_earlier(
     foot_x, force_x, force_y, moment = (side * sensed)[:, loaded]
     first = _first_contact(readings, sensed, loaded) if first_contact is None else first_contact
     travel = side[0, loaded] * first / readings.beam.length - foot_x
-    answer = chosen.estimate(Sensed(foot_x, -force_x, force_y, moment, travel))
+    answer = chosen.estimate(LoadedStations(foot_x, -force_x, force_y, moment, travel))
     reach = np.hypot(answer.x - foot_x, answer.y)
     x, y = answer
     if "force" in chosen.needs:

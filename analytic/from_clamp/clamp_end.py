@@ -19,8 +19,8 @@ from scipy.special import elliprf
 
 from analytic.numerics.batches import take
 from analytic.problem.arrays import Booleans, Floats, Integers
-from analytic.solver.general.form import Form
-from analytic.solver.general.march import Place, Trail, march
+from analytic.solver.general.march import SpanEnd, Trail, march
+from analytic.solver.general.rod import RodProperties
 from analytic.solver.general.span import back_to_clamp
 from analytic.solver.general.states import Vibrissa
 
@@ -76,21 +76,23 @@ class ClampEnd(NamedTuple):
         mu = self.vibrissa.friction
         return np.asarray(mu / np.sqrt(1 + mu**2) * self.vibrissa.radius_at(s) * self.force)
 
-    def march(self, s: Floats) -> Place:
+    def march(self, s: Floats) -> SpanEnd:
         """Go up the vibrissa; beyond the tip one that varies goes on straight."""
-        form = self.vibrissa.form
-        if form is None:
+        rod = self.vibrissa.rod
+        if rod is None:
             # From this end the curvature is the opposite one.
             natural = self.vibrissa.natural_curvature
             start = back_to_clamp(self.theta, self.moment - natural, self.force, s)
             theta = np.pi / 2 - 2 * np.arctan2(start.p, start.g)
-            return Place(theta, -start.kappa - natural, start.along, start.across, start.swing)
+            return SpanEnd(
+                theta, -start.kappa - natural, start.along, start.across, start.amplitude
+            )
         given = np.broadcast_arrays(self.theta, -self.moment, self.force, np.minimum(s, 1.0))
         known = np.isfinite(sum(given))
-        found = np.full((len(Place._fields), *known.shape), np.nan)
+        found = np.full((len(SpanEnd._fields), *known.shape), np.nan)
         if known.any():
-            found[:, known] = march(form, *(values[known] for values in given), from_clamp=True)
-        end, beyond = Place(*found), np.maximum(s - 1, 0.0)
+            found[:, known] = march(rod, *(values[known] for values in given), from_clamp=True)
+        end, beyond = SpanEnd(*found), np.maximum(s - 1, 0.0)
         cos, sin = np.cos(end.theta), np.sin(end.theta)
         return end._replace(
             m=end.m + beyond * self.force * cos,
@@ -115,7 +117,7 @@ class ClampEnd(NamedTuple):
         Of constant curvature and rigidity twice the energy, kappa^2 - 2 F sin(phi - phi_F), is the
         same all along.
         """
-        if self.vibrissa.form is not None:
+        if self.vibrissa.rod is not None:
             return np.asarray(np.sin(self.march(arc_length).theta))
         couple, natural = self.couple(arc_length), self.vibrissa.natural_curvature
         lost = (self.moment - couple) / self.force
@@ -137,8 +139,8 @@ class ClampEnd(NamedTuple):
 def _contacts(end: ClampEnd) -> Floats:
     """Arc lengths of the contacts, shape (n,)."""
     best, least = np.full(end.force.size, np.nan), np.full(end.force.size, np.inf)
-    form = end.vibrissa.form
-    for which, length, slope in _in_closed_form(end) if form is None else _marched(end, form):
+    rod = end.vibrissa.rod
+    for which, length, slope in _in_closed_form(end) if rod is None else _marched(end, rod):
         aside = np.where(length < 1, np.abs(slope - end.parallel), np.inf)
         missed = np.fmin(np.abs(length - 1), aside)
         nearer = missed < least[which]
@@ -149,13 +151,13 @@ def _contacts(end: ClampEnd) -> Floats:
 def _is_flat(end: ClampEnd) -> Booleans:
     """Whether the moment says nothing of where the contact is, which then is the tip."""
     vibrissa, tip = end.vibrissa, np.ones_like(end.force)
-    if vibrissa.form is None and vibrissa.natural_curvature == 0 and vibrissa.radius == 0:
+    if vibrissa.rod is None and vibrissa.natural_curvature == 0 and vibrissa.radius == 0:
         return np.zeros(end.force.shape, dtype=bool)  # the moment is nil at one place alone
     there = end.march(tip)
-    if vibrissa.form is None:
+    if vibrissa.rod is None:
         square = np.abs(_square(end))
     else:
-        left, flexibility = there.m + end.couple(tip), vibrissa.form.flexibility(np.ones(1))
+        left, flexibility = there.m + end.couple(tip), vibrissa.rod.flexibility(np.ones(1))
         with np.errstate(divide="ignore", invalid="ignore"):
             square = left**2 * flexibility / 4 / end.force
     return np.asarray((square < _FLAT) & (np.sin(np.pi / 4 - there.theta / 2) ** 2 < _FLAT))
@@ -209,11 +211,11 @@ def _length_between(
     return np.where(known, length, np.nan)
 
 
-def _marched(end: ClampEnd, form: Form) -> Iterator[_Candidate]:
+def _marched(end: ClampEnd, rod: RodProperties) -> Iterator[_Candidate]:
     """Between which nodes the moment passes the couple, and next to the tip."""
     trail: list[Trail] = []
     whole, first = np.ones_like(end.force), np.zeros((1, end.force.size))
-    tip = march(form, end.theta, -end.moment, end.force, whole, from_clamp=True, trail=trail)
+    tip = march(rod, end.theta, -end.moment, end.force, whole, from_clamp=True, trail=trail)
     s = np.concatenate([first, *(piece.s for piece in trail)])
     along = np.concatenate([first, *(piece.along for piece in trail)])
     excess = -end.moment + end.force * along + end.couple(s)

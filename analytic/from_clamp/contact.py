@@ -18,7 +18,7 @@ LONGEST = 1.1
 """Longest arc length of a contact, over L; one at the tip may seem so through noise."""
 
 
-class Contact(NamedTuple):
+class LocatedContact(NamedTuple):
     """Contact points of the centreline, dimensionless; arrays of one shape."""
 
     alpha: Floats
@@ -44,7 +44,7 @@ def sides(sensed: Floats) -> Floats:
     return np.stack([side, side, np.ones_like(side), side])
 
 
-class Held(NamedTuple):
+class SweptVibrissa(NamedTuple):
     """What the readings of a sweep are of, as the clamp's readings need it."""
 
     vibrissa: Vibrissa
@@ -55,7 +55,7 @@ class Held(NamedTuple):
     """-1 if the foot moves to the right, else 1; it determines the sense of friction."""
 
     @classmethod
-    def of(cls, readings: Readings) -> "Held":
+    def of(cls, readings: Readings) -> "SweptVibrissa":
         """What a sweep is of, by its beam and its provenance."""
         foot_x = readings.values("foot_x")
         rightward = foot_x[-1] > foot_x[0]
@@ -68,21 +68,21 @@ class Held(NamedTuple):
         way = self.way
         return ClampEnd.of(way * sensed[1], sensed[2], way * sensed[3], self.vibrissa)
 
-    def surface(self, contact: Contact) -> tuple[Floats, Floats]:
+    def surface(self, contact: LocatedContact) -> tuple[Floats, Floats]:
         """Contacts on the body's surface."""
         return contact.surface(self.vibrissa.radius_at(contact.arc_length))
 
-    def contact(self, sensed: Floats) -> Contact:
+    def contact(self, sensed: Floats) -> LocatedContact:
         """Contacts of stations; the paper's vibrissa is bent to its own side at each."""
         if self.plain:
             turned = sides(sensed)
             found = contact_bent_right(turned * sensed)
             side = turned[0]
-            return Contact(side * found.alpha, found.arc_length, side * found.xi, found.eta)
+            return LocatedContact(side * found.alpha, found.arc_length, side * found.xi, found.eta)
         end = self.clamp_end(sensed)
         place = end.place(end.contact_arc_length())
         xi = sensed[0] + self.way * place.x
-        return Contact(self.way * place.alpha, place.arc_length, xi, place.y)
+        return LocatedContact(self.way * place.alpha, place.arc_length, xi, place.y)
 
     def arc_length_and_criterion(self, sensed: Floats) -> tuple[Floats, Floats]:
         """Where stations touch, and what vanishes in Phase B and is positive in Phase A."""
@@ -95,16 +95,16 @@ class Held(NamedTuple):
         return length, np.asarray(end.sine_at_contact(length) - np.sin(end.parallel))
 
 
-def located(readings: Readings) -> Contact:
+def located(readings: Readings) -> LocatedContact:
     """Contacts of a sweep, station by station, on the vibrissa."""
     sensed = dimensionless(readings)
     felt = np.hypot(sensed[1], sensed[2]) > UNLOADED
-    found = Held.of(readings).contact(np.where(felt, sensed, np.nan))
+    found = SweptVibrissa.of(readings).contact(np.where(felt, sensed, np.nan))
     there = (found.arc_length >= 0) & (found.arc_length <= LONGEST)
-    return Contact(*(np.where(there, values, np.nan) for values in found))
+    return LocatedContact(*(np.where(there, values, np.nan) for values in found))
 
 
-def contact_bent_right(sensed: Floats) -> Contact:
+def contact_bent_right(sensed: Floats) -> LocatedContact:
     """Slope angle, arc length and position of the contact, for moments from 0 up.
 
     The force's direction is the contour's normal, so tan(alpha) = -F_x/F_y; force and moment fix
@@ -116,4 +116,4 @@ def contact_bent_right(sensed: Floats) -> Contact:
     alpha = np.arctan2(-force_x, force_y)
     loaded = span_of_moment(moment / root_f, alpha)
     up, across = frame(loaded, alpha)
-    return Contact(alpha, loaded.q / root_f, foot_x + across / root_f, up / root_f)
+    return LocatedContact(alpha, loaded.q / root_f, foot_x + across / root_f, up / root_f)

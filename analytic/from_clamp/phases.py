@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.from_clamp.contact import LONGEST, UNLOADED, Held, dimensionless
+from analytic.from_clamp.contact import LONGEST, UNLOADED, SweptVibrissa, dimensionless
 from analytic.from_clamp.noise import MEDIAN_OF_NORMAL, checked_noise, largest, reading_noise
 from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.columns import CLAMP_READINGS
@@ -28,7 +28,7 @@ class Judgement(NamedTuple):
 
     phase: Words  # ``"free"``, ``"tip"``, ``"tangent"``
     # (2 F_y - M^2)/(2 f) = sin(phi_1 - alpha) of eq. 26, and what it becomes with friction, an
-    # elastic clamp and a natural curvature (`Held.criterion`): zero in Phase B.
+    # elastic clamp and a natural curvature (`SweptVibrissa`): zero in Phase B.
     criterion: Floats
     criterion_tolerance: Floats  # its standard deviation
     shortfall: Floats  # 1 - s1/L: zero in Phase A
@@ -79,7 +79,7 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
 
     trusted, f = readings.trusted, np.hypot(force_x, force_y)
     felt = f > UNLOADED
-    held = Held.of(readings)
+    held = SweptVibrissa.of(readings)
     # What each reading's noise does, all in one solution: the readings, and each of them moved.
     noises = np.array([noise_x, noise_y, noise_m])
     step = np.where(noises > 0, np.minimum(1.0, _STEP * magnitudes / noises), 1.0)[:, None]

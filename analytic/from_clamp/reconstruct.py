@@ -10,8 +10,8 @@ from analytic.from_clamp.by_method import reconstruct_earlier
 from analytic.from_clamp.contact import (
     LONGEST,
     UNLOADED,
-    Contact,
-    Held,
+    LocatedContact,
+    SweptVibrissa,
     contact_bent_right,
     dimensionless,
     sides,
@@ -102,7 +102,7 @@ def reconstruct(
 def contact_table(readings: Readings, judged: Judgement) -> pd.DataFrame:
     """Contact points of stations whose phases are judged already."""
     loaded = judged.phase != "free"
-    contact = Held.of(readings).contact(np.where(loaded, dimensionless(readings), np.nan))
+    contact = SweptVibrissa.of(readings).contact(np.where(loaded, dimensionless(readings), np.nan))
     return _table(readings, contact, loaded, judged.phase, judged.neither)
 
 
@@ -202,16 +202,16 @@ def reconstruct_by_decision(readings: Readings, tolerance: float = 1e-6) -> pd.D
     if near.any():
         end = integrate_span(force_x[near], force_y[near], moment[near], arc_length[near])
         x[near], y[near] = end.x, end.y
-    contact = Contact(alpha, np.where(loaded, arc_length, np.nan), sensed[0] + x, y)
+    contact = LocatedContact(alpha, np.where(loaded, arc_length, np.nan), sensed[0] + x, y)
     phase = np.where(tangent, "tangent", "tip")
     return _table(readings, contact, loaded, phase, np.zeros_like(loaded))
 
 
 def _table(
-    readings: Readings, contact: Contact, loaded: Booleans, phase: Words, neither: Booleans
+    readings: Readings, contact: LocatedContact, loaded: Booleans, phase: Words, neither: Booleans
 ) -> pd.DataFrame:
     beam = readings.beam
-    x, y = Held.of(readings).surface(contact)
+    x, y = SweptVibrissa.of(readings).surface(contact)
     measured = np.isfinite(dimensionless(readings)).all(axis=0)
     too_long = contact.arc_length > LONGEST
     explained = measured & (contact.arc_length >= 0) & ~too_long & ~neither
@@ -244,7 +244,7 @@ def _uncertainty(
     beam = readings.beam
     units = (beam.length, beam.force_unit, beam.force_unit, beam.moment_unit)
     spread = np.array([noise.get(n, 0.0) / u for n, u in zip(SENSED, units, strict=True)])
-    held = Held.of(readings)
+    held = SweptVibrissa.of(readings)
     sensed = dimensionless(readings)[:, loaded]
     # Noise does not turn the paper's vibrissa to its other side.
     sensed = sides(sensed) * sensed if held.plain else sensed

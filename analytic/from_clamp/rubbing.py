@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.from_clamp.contact import Held, dimensionless
+from analytic.from_clamp.contact import SweptVibrissa, dimensionless
 from analytic.from_clamp.noise import checked_noise, largest, reading_noise
 from analytic.from_clamp.phases import judge_phases
 from analytic.problem.arrays import Floats
@@ -90,7 +90,7 @@ def estimate_friction(
         if number == 0:
             far = judged.shortfall > _CLEARLY * judged.shortfall_tolerance
             tangent = far & readings.trusted
-        found = _mean(Held.of(assumed), dimensionless(readings)[:, tangent], spread)
+        found = _mean(SweptVibrissa.of(assumed), dimensionless(readings)[:, tangent], spread)
         coefficient = found.coefficient
     return found
 
@@ -105,7 +105,7 @@ def _spread(readings: Readings, noise: Mapping[str, float] | None) -> Floats:
     return np.asarray(np.maximum(spread, least), dtype=float)
 
 
-def _mean(held: Held, sensed: Floats, spread: Floats) -> FrictionFound:
+def _mean(held: SweptVibrissa, sensed: Floats, spread: Floats) -> FrictionFound:
     # The readings, and each of them moved by a part of its noise, all in one solution.
     every = np.repeat(sensed[:, None], 4, axis=1)
     every[[1, 2, 3], [1, 2, 3]] += _STEP * spread[:, None]
@@ -139,10 +139,10 @@ def _beside(variance: Floats) -> Floats:
     return np.asarray((windows.sum(axis=1) - variance) / (2 * _BESIDE))
 
 
-def _sine(held: Held, sensed: Floats) -> Floats:
+def _sine(held: SweptVibrissa, sensed: Floats) -> Floats:
     """Sine of the friction angle, if the station is of Phase B."""
     clamped = held.clamp_end(sensed)
-    if held.vibrissa.form is not None:
+    if held.vibrissa.rod is not None:
         sine = clamped.sine_at_contact(clamped.contact_arc_length())
         return np.asarray(np.sin(held.vibrissa.lean - np.arcsin(sine)))
     natural, radius = held.vibrissa.natural_curvature, held.vibrissa.radius

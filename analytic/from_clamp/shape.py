@@ -3,7 +3,7 @@
 import numpy as np
 
 from analytic.checks.integration import march
-from analytic.from_clamp.contact import Held, located
+from analytic.from_clamp.contact import SweptVibrissa, located
 from analytic.problem.along import Along
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import SENSED
@@ -33,7 +33,7 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
 
     """
     beam = readings.beam
-    held = Held.of(readings)
+    held = SweptVibrissa.of(readings)
     natural = held.way * held.vibrissa.natural_curvature
     long = beam.length
     foot_x = readings.values("foot_x") / long

@@ -19,15 +19,15 @@ _BESIDE = np.array([0, -1, 1, -2, 2, -3, 3, -4, 4])  # roundings off a place tha
 _WIDEST = 1e3  # L; a wider object turns by less than 1e-3 rad while the vibrissa passes
 
 
-def contact_range(centreline: Contour) -> tuple[float, float]:
+def contact_range(contour: Contour) -> tuple[float, float]:
     """The contour parameters between which the contour lies within reach, eta <= 1."""
-    low, high = centreline.t_range
-    bottom = float(centreline.parameter(np.array([0.0]))[0])
+    low, high = contour.t_range
+    bottom = float(contour.parameter(np.array([0.0]))[0])
     t = bottom + np.array([[low - bottom], [high - bottom]]) * _SHARES
     t[:, -1] = low, high
-    eta = centreline.place(t.ravel())[1].reshape(t.shape)
+    eta = contour.place(t.ravel())[1].reshape(t.shape)
     lowest = float(eta[0, 0])
-    name = f"height of the lowest point of the object ({centreline.label}), less the beam's radius,"
+    name = f"height of the lowest point of the object ({contour.label}), less the beam's radius,"
     if lowest <= 0:
         raise InputError(name, f"{lowest:.6g} L", "above the foot line, y = 0", "raise the object")
     if lowest >= 1:
@@ -37,18 +37,18 @@ def contact_range(centreline: Contour) -> tuple[float, float]:
             "below 1 L, the tip of the vibrissa",
             "lower the object or lengthen the vibrissa",
         )
-    ends = _height_one(t, eta, centreline)
-    _check_place(centreline, ends)
+    ends = _height_one(t, eta, contour)
+    _check_place(contour, ends)
     return ends
 
 
-def out_of_reach(centreline: Contour, last: float, first: float) -> float:
+def out_of_reach(contour: Contour, last: float, first: float) -> float:
     """The foot position, left of the contour, from which all of it is farther away than 1."""
     low, high = last, first
     close = max(_AS_CLOSE, 8 * float(np.spacing(max(abs(low), abs(high)))))
     while True:
         t = np.linspace(low, high, _LOOKED_AT)
-        xi, eta = centreline.place(t)
+        xi, eta = contour.place(t)
         foot = xi - np.sqrt(np.maximum(0.0, 1 - eta * eta))
         best = int(np.argmin(foot))
         low, high = t[max(best - 1, 0)], t[min(best + 1, _LOOKED_AT - 1)]
@@ -56,25 +56,25 @@ def out_of_reach(centreline: Contour, last: float, first: float) -> float:
             return float(foot[best])
 
 
-def _check_place(centreline: Contour, ends: tuple[float, float]) -> None:
-    left, right = centreline.place(np.array(ends))[0].tolist()
+def _check_place(contour: Contour, ends: tuple[float, float]) -> None:
+    left, right = contour.place(np.array(ends))[0].tolist()
     if right - left > _WIDEST:
         raise InputError(
-            f"width of the object within reach ({centreline.label})",
+            f"width of the object within reach ({contour.label})",
             f"{right - left:.6g} L",
             f"at most {_WIDEST:g} L",
             "the vibrissa feels a straight wall: check the units, or cut a part out",
         )
     if not max(abs(left), abs(right)) <= FARTHEST:
         raise InputError(
-            f"place of the object ({centreline.label})",
+            f"place of the object ({contour.label})",
             f"x from {left:.6g} L to {right:.6g} L",
             f"within {FARTHEST:g} L of the origin",
             "move the origin to the object, or check the units of object and beam",
         )
 
 
-def _height_one(t: Floats, eta: Floats, centreline: Contour) -> tuple[float, float]:
+def _height_one(t: Floats, eta: Floats, contour: Contour) -> tuple[float, float]:
     """Where the contour passes the height 1 on both sides of its lowest point, or its ends.
 
     From its parameters and heights on a grid, shape (2, n): from the lowest point to either end.
@@ -88,13 +88,13 @@ def _height_one(t: Floats, eta: Floats, centreline: Contour) -> tuple[float, flo
         )
         likely = inner + (outer - inner) * ((1 - lower) / (higher - lower))
         found = smooth_zeros(
-            lambda _, at: centreline.place(at)[1] - 1,
+            lambda _, at: contour.place(at)[1] - 1,
             np.minimum(inner, outer),
             np.maximum(inner, outer),
             likely,
         )
         # Of the numbers next to it the one that is nearest to that height, or else it itself.
         near = found[:, None] + np.spacing(found)[:, None] * _BESIDE
-        missed = np.abs(centreline.place(near.ravel())[1] - 1).reshape(near.shape)
+        missed = np.abs(contour.place(near.ravel())[1] - 1).reshape(near.shape)
         ends[sides] = near[np.arange(sides.size), np.argmin(missed, axis=1)]
     return float(ends[0]), float(ends[1])

@@ -15,7 +15,7 @@ _SAMPLES = 513  # of the contour, between which its distance from the vibrissa h
 _ROUNDING = 1e-14  # rad, of the slope of an upright side
 
 
-class Touch(NamedTuple):
+class FirstTouch(NamedTuple):
     """The first contact, unloaded; dimensionless."""
 
     t: float
@@ -25,19 +25,19 @@ class Touch(NamedTuple):
     foot_x: float
 
 
-def first_touch(centreline: Contour, reach: tuple[float, float], rest: Unloaded) -> Touch:
+def first_touch(contour: Contour, reach: tuple[float, float], rest: Unloaded) -> FirstTouch:
     """What the unloaded vibrissa touches first when its foot comes from the right."""
     _, tip_y, tip_angle = (float(v) for v in rest.at(np.array(1.0)))
     first = reach[1]
-    lowest = float(centreline.parameter(np.zeros(1))[0])
+    lowest = float(contour.parameter(np.zeros(1))[0])
 
     def height(t: Floats) -> Floats:
-        return centreline.at(t).eta
+        return contour.at(t).eta
 
     at_lowest, at_first = height(np.array([lowest, first])).tolist()
     if at_lowest >= tip_y:
         raise InputError(
-            f"height of the lowest point of the object ({centreline.label}), less the radius,",
+            f"height of the lowest point of the object ({contour.label}), less the radius,",
             f"{at_lowest:.6g} L",
             f"below {tip_y:.6g} L, the tip of the vibrissa at rest",
             "lower the object or lessen the natural curvature",
@@ -45,11 +45,11 @@ def first_touch(centreline: Contour, reach: tuple[float, float], rest: Unloaded)
     top = first if at_first <= tip_y else zero(lambda t: height(t) - tip_y, lowest, first)
 
     def arc_length(t: Floats) -> Floats:
-        return _arc_length(centreline.at(t), rest)
+        return _arc_length(contour.at(t), rest)
 
     def lean(t: Floats) -> Floats:
         """Positive where the contour is steeper than the vibrissa beside it."""
-        point = centreline.at(t)
+        point = contour.at(t)
         return point.alpha + rest.lean - rest.at(_arc_length(point, rest))[2]
 
     grid = np.linspace(top, lowest, _SAMPLES)
@@ -60,7 +60,7 @@ def first_touch(centreline: Contour, reach: tuple[float, float], rest: Unloaded)
             "beam.natural_curvature",
             f"{float(rest.curvature(np.array(1.0))):.6g}/L at the tip",
             "such that the vibrissa at rest does not lean over the object from its upper side "
-            f"({centreline.label})",
+            f"({contour.label})",
             "lessen it; only the object's lower side can be touched",
         )
     crossings = np.flatnonzero((steep[:-1] > 0) & (steep[1:] <= 0))
@@ -68,7 +68,7 @@ def first_touch(centreline: Contour, reach: tuple[float, float], rest: Unloaded)
     places = np.append(top, tangents)
     lengths = arc_length(places)
     lengths[0] = 1.0 if at_tip else lengths[0]
-    point = centreline.at(places)
+    point = contour.at(places)
     feet = point.xi + rest.taper(lengths) * np.sin(point.alpha) - rest.at(lengths)[0]
     if not at_tip and steep[0] > 0:
         feet[0] = -np.inf  # the contour's end, as far right as the corner that it is, is no tangent
@@ -76,7 +76,7 @@ def first_touch(centreline: Contour, reach: tuple[float, float], rest: Unloaded)
     excess = float(lengths[best] - 1)
     if best == 0 and at_tip:
         excess = max(tip_angle - float(point.alpha[0]) - rest.lean, 0.0)
-    return Touch(float(places[best]), excess, float(feet[best]))
+    return FirstTouch(float(places[best]), excess, float(feet[best]))
 
 
 def _arc_length(point: ContourPoint, rest: Unloaded) -> Floats:

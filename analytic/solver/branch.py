@@ -115,23 +115,21 @@ def _refine(many: Contours, parts: list[_Part], folds: Grid) -> None:
             beside = at + _ASIDE * width * np.array([-1, 1])
             places = equilibria(many.contours[i], beside).foot_x
             if (places < foot_x - _ROUNDING * max(1.0, abs(foot_x))).any():
-                t[-1], samples.foot_x[-1], samples.excess[-1] = _lowest(
+                t[-1], samples.foot_x[-1], samples.tip_rotation[-1] = _lowest(
                     many.contours[i], at, width, foot_x
                 )
 
 
-def _lowest(
-    centreline: Contour, at: float, width: float, foot_x: float
-) -> tuple[float, float, float]:
+def _lowest(contour: Contour, at: float, width: float, foot_x: float) -> tuple[float, float, float]:
     """The snap-off's parameter, foot position and excess rotation, next to what was found."""
     from scipy.optimize import minimize_scalar  # slow to load, and few contours need it
 
     def place(t: float) -> float:
-        value = float(equilibria(centreline, np.array([t])).foot_x[0])
+        value = float(equilibria(contour, np.array([t])).foot_x[0])
         return foot_x + 1 if np.isnan(value) else value  # out of reach
 
     search = minimize_scalar(
         place, bounds=(at - width, at + width), method="bounded", options={"xatol": 1e-9 * width}
     )
-    lowest = equilibria(centreline, np.array([search.x]))
-    return float(search.x), float(lowest.foot_x[0]), float(lowest.excess[0])
+    lowest = equilibria(contour, np.array([search.x]))
+    return float(search.x), float(lowest.foot_x[0]), float(lowest.tip_rotation[0])

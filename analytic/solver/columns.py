@@ -11,7 +11,7 @@ from analytic.problem.columns import CLAMP_READINGS, COLUMNS, PHASE_NUMBER, STAT
 from analytic.solver.general.states import States
 
 Numbers: TypeAlias = Floats | Integers
-Columns: TypeAlias = dict[str, Numbers]
+ReadingColumns: TypeAlias = dict[str, Numbers]
 READINGS = (*CLAMP_READINGS, "foot_x", "contact_arc_length", "tip_angle")
 """What a state that is none does not have."""
 
@@ -38,10 +38,10 @@ class Units(NamedTuple):
         return Units(*(np.broadcast_to(unit, chosen.shape)[chosen] for unit in self))
 
 
-def unloaded_columns(foot_x: Floats, tip_angle: float = np.pi / 2) -> Columns:
+def unloaded_columns(foot_x: Floats, tip_angle: float = np.pi / 2) -> ReadingColumns:
     """The readings of vibrissae that touch nothing."""
     empty = np.full((len(COLUMNS), foot_x.size), np.nan)
-    columns: Columns = dict(zip(COLUMNS, empty, strict=True))
+    columns: ReadingColumns = dict(zip(COLUMNS, empty, strict=True))
     columns["foot_x"] = foot_x
     for name in CLAMP_READINGS:
         columns[name].fill(0.0)
@@ -51,7 +51,7 @@ def unloaded_columns(foot_x: Floats, tip_angle: float = np.pi / 2) -> Columns:
     return columns
 
 
-def to_columns(found: States, units: Units) -> Columns:
+def to_columns(found: States, units: Units) -> ReadingColumns:
     """The readings of states at rest; NaN in their excess marks what no vibrissa reaches."""
     alpha, xi, eta = found.point[:3]
     sine, cosine = np.sin(alpha), np.cos(alpha)
@@ -77,7 +77,7 @@ def to_columns(found: States, units: Units) -> Columns:
     }
 
 
-def without(columns: Columns, which: Booleans, status: str) -> Columns:
+def without(columns: ReadingColumns, which: Booleans, status: str) -> ReadingColumns:
     """The same, but some without readings and with a status that says why."""
     if not which.any():
         return columns

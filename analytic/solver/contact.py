@@ -80,13 +80,13 @@ def solve_contact(
             "between -pi/2 and pi/2 rad, the slope angles of the lower side of a body",
             "angles are in rad",
         )
-    centreline = profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
-    t = centreline.parameter(angles)
+    contour = profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
+    t = contour.parameter(angles)
     vibrissa, units = Vibrissa.of(beam, clamp_stiffness, friction), Units.of(beam)
     if vibrissa.is_plain:
-        return _plain(centreline, t, vibrissa, units)
-    found = contacts(centreline, t, vibrissa)
-    again = np.isfinite(found.excess) & ~is_clear(centreline, found)
+        return _plain(contour, t, vibrissa, units)
+    found = contacts(contour, t, vibrissa)
+    again = np.isfinite(found.excess) & ~is_clear(contour, found)
     columns = without(to_columns(found, units), again, "touches again")
     return as_table(without_inexact(columns, vibrissa, units))
 

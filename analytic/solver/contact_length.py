@@ -7,12 +7,12 @@ from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.solver.equilibria import tangent_contact
 
 
-def surplus(centreline: Contour, t: Floats) -> Floats:
+def surplus(contour: Contour, t: Floats) -> Floats:
     """1 - 1/s1 with s1 of eq. 21 (Will et al.): negative in Phase B, smooth at the pole of s1.
 
     Parameters
     ----------
-    centreline : Contour
+    contour : Contour
         Contour that the centreline feels, in units of the vibrissa's length.
     t : array, shape (n,)
         Contour parameters.
@@ -22,7 +22,7 @@ def surplus(centreline: Contour, t: Floats) -> Floats:
     array, shape (n,)
         Dimensionless.
     """
-    return surplus_and_rate(centreline.at(t))[0]
+    return surplus_and_rate(contour.at(t))[0]
 
 
 def surplus_and_rate(point: ContourPoint) -> tuple[Floats, Floats]:

@@ -30,7 +30,7 @@ class Equilibria(NamedTuple):
     """
 
     point: ContourPoint
-    excess: Floats
+    tip_rotation: Floats
     span: Span
     root_f: Floats
     tangent: Booleans
@@ -50,7 +50,7 @@ class Equilibria(NamedTuple):
     @property
     def tip_angle(self) -> Floats:
         """Slope angle of the vibrissa at the contact [rad]."""
-        tip = np.pi / 2 - (self.excess + least_rotation(self.point.alpha))
+        tip = np.pi / 2 - (self.tip_rotation + least_rotation(self.point.alpha))
         return np.where(self.tangent, self.point.alpha, tip)
 
     @property
@@ -66,16 +66,18 @@ class Equilibria(NamedTuple):
 
     def states(self, vibrissa: Vibrissa) -> States:
         """The same as states of any vibrissa, which count the excess in another way."""
-        excess = np.minimum(self._tangent_length - 1, INSIDE)
+        tip_rotation = np.minimum(self._tangent_length - 1, INSIDE)
         tip = (~self.tangent).nonzero()[0]
         if tip.size:
             alpha = self.point.alpha[tip]
-            leant = np.pi / 2 - alpha - least_rotation(alpha) - self.excess[tip]
-            excess[tip] = np.maximum(leant, 0.0)
+            leant = np.pi / 2 - alpha - least_rotation(alpha) - self.tip_rotation[tip]
+            tip_rotation[tip] = np.maximum(leant, 0.0)
         eta = self.point.eta
         force, moment = self.root_f * self.root_f, self.root_f * self.span.C
         none = np.broadcast_to(0.0, force.shape)
-        return States(self.point, force, excess, moment, eta, self.reach, none, none, vibrissa)
+        return States(
+            self.point, force, tip_rotation, moment, eta, self.reach, none, none, vibrissa
+        )
 
     def tangent_rate(self) -> Floats:
         """d(x0)/dt in Phase B; at its limits too, whichever phase is there."""
@@ -88,10 +90,10 @@ class Equilibria(NamedTuple):
     def tip_rate(self) -> "TipRate":
         """The derivatives in Phase A; at its limits too, whichever phase is there."""
         alpha, _, _, turning, stretch = self.point
-        height, reach = tip_rates(self.excess, self.span, alpha, self.frame)
-        excess_rate = (stretch * np.sin(alpha) - turning * height.by_alpha) / height.by_excess
+        height, reach = tip_rates(self.tip_rotation, self.span, alpha, self.frame)
+        tip_rotation_rate = (stretch * np.sin(alpha) - turning * height.by_alpha) / height.by_excess
         along = stretch * np.cos(alpha) - turning * reach.by_alpha
-        return TipRate(along - reach.by_excess * excess_rate, excess_rate)
+        return TipRate(along - reach.by_excess * tip_rotation_rate, tip_rotation_rate)
 
 
 class TipRate(NamedTuple):
@@ -99,11 +101,11 @@ class TipRate(NamedTuple):
 
     foot_x: Floats
     """[L by the contour's parameter]."""
-    excess: Floats
+    tip_rotation: Floats
     """[rad by the contour's parameter]."""
 
 
-class Rates(NamedTuple):
+class LengthRates(NamedTuple):
     """Partial derivatives of a length of the tip-loaded vibrissa."""
 
     by_alpha: Floats
@@ -111,81 +113,83 @@ class Rates(NamedTuple):
 
 
 def tip_rates(
-    excess: Floats, loaded: Span, alpha: Floats, end: Frame | None = None
-) -> tuple[Rates, Rates]:
+    tip_rotation: Floats, loaded: Span, alpha: Floats, end: Frame | None = None
+) -> tuple[LengthRates, LengthRates]:
     """Derivatives of the tip's height y(1) and reach x(1) - x0 by alpha and excess rotation.
 
     With alpha the lower limit of the integrals moves as with the excess rotation, the other way for
     alpha < 0; of what the upper one adds, the integrands at the clamp, 1/C up is left.
     """
-    by_excess = span_by_excess(loaded, excess, alpha)
+    by_excess = span_by_excess(loaded, tip_rotation, alpha)
     up, across = frame(loaded, alpha) if end is None else end
     up_w, across_w = frame(by_excess, alpha)
     q, C = loaded.q, loaded.C
     y, x = up / q, across / q
     height_w, reach_w = (up_w - y * by_excess.q) / q, (across_w - x * by_excess.q) / q
     side = np.where(alpha < 0, -1.0, 1.0)
-    height = Rates(side * height_w + x + (y - 1) / (C * q), height_w)
-    reach = Rates(side * reach_w - y + x / (C * q), reach_w)
+    height = LengthRates(side * height_w + x + (y - 1) / (C * q), height_w)
+    reach = LengthRates(side * reach_w - y + x / (C * q), reach_w)
     return height, reach
 
 
 def tangent_contact(point: ContourPoint) -> Equilibria:
     """Phase B (Will et al., eqs. 18-22), whether or not its arc length fits on the vibrissa."""
-    excess = np.pi / 2 - np.abs(point.alpha)
+    tip_rotation = np.pi / 2 - np.abs(point.alpha)
     loaded = tangent_span(point.alpha)
     end = frame(loaded, point.alpha)
     every = np.ones(point.alpha.shape, dtype=bool)
-    return Equilibria(point, excess, loaded, end.up / point.eta, every, end)
+    return Equilibria(point, tip_rotation, loaded, end.up / point.eta, every, end)
 
 
-def contact(point: ContourPoint, excess: Floats, tangent: Booleans) -> Equilibria:
+def contact(point: ContourPoint, tip_rotation: Floats, tangent: Booleans) -> Equilibria:
     """Contacts of known phase, and of known rotation if at the tip."""
-    excess = np.where(tangent, np.pi / 2 - np.abs(point.alpha), excess)
-    return _contact(point, excess, span(excess, point.alpha), tangent)
+    tip_rotation = np.where(tangent, np.pi / 2 - np.abs(point.alpha), tip_rotation)
+    return _contact(point, tip_rotation, span(tip_rotation, point.alpha), tangent)
 
 
-def contact_beside(states: Equilibria, point: ContourPoint, excess: Floats) -> Equilibria:
+def contact_beside(states: Equilibria, point: ContourPoint, tip_rotation: Floats) -> Equilibria:
     """Contacts so near to known ones that their integrals follow without being computed."""
     alpha, tangent = states.point.alpha, states.tangent
-    excess = np.where(tangent, np.pi / 2 - np.abs(point.alpha), excess)
+    tip_rotation = np.where(tangent, np.pi / 2 - np.abs(point.alpha), tip_rotation)
     # By the root of the excess they are smooth where the clamp's moment vanishes.
-    before, after = np.sqrt(states.excess), np.sqrt(excess)
+    before, after = np.sqrt(states.tip_rotation), np.sqrt(tip_rotation)
     turned, leant = 2 * before * (after - before), point.alpha - alpha
-    by_excess = span_by_excess(states.span, states.excess, alpha)
+    by_excess = span_by_excess(states.span, states.tip_rotation, alpha)
     by_alpha = span_by_alpha(states.span, by_excess, alpha)
     rates = zip(states.span, by_excess, by_alpha, strict=True)
     loaded = Span(*(x + turned * x_w + leant * x_a for x, x_w, x_a in rates))
-    return _contact(point, excess, loaded, tangent)
+    return _contact(point, tip_rotation, loaded, tangent)
 
 
-def _contact(point: ContourPoint, excess: Floats, loaded: Span, tangent: Booleans) -> Equilibria:
+def _contact(
+    point: ContourPoint, tip_rotation: Floats, loaded: Span, tangent: Booleans
+) -> Equilibria:
     end = frame(loaded, point.alpha)
     with np.errstate(divide="ignore", invalid="ignore"):
         root_f = np.where(tangent, end.up / point.eta, loaded.q)
-    return Equilibria(point, excess, loaded, root_f, tangent, end)
+    return Equilibria(point, tip_rotation, loaded, root_f, tangent, end)
 
 
-def equilibria(centreline: Contour, t: Floats) -> Equilibria:
+def equilibria(contour: Contour, t: Floats) -> Equilibria:
     """The vibrissa against each contour point, as `equilibria_at` has it."""
-    return equilibria_at(centreline.at(t))
+    return equilibria_at(contour.at(t))
 
 
 def equilibria_at(point: ContourPoint) -> Equilibria:
     """The vibrissa against each contour point: tangential if that fits on it, else at the tip."""
     found = tangent_contact(point)
-    excess, loaded, root_f, _, end = found[1:]
+    tip_rotation, loaded, root_f, _, end = found[1:]
     tangent = _fits(found)
     tip = (~tangent).nonzero()[0]
     if tip.size:
         alpha = point.alpha[tip]
         with np.errstate(invalid="ignore"):  # straight, against an upright side: out of reach
             lowest = end.up[tip] / loaded.q[tip]
-        excess[tip], of_tip = tip_state(alpha, point.eta[tip], lowest)
+        tip_rotation[tip], of_tip = tip_state(alpha, point.eta[tip], lowest)
         for values, at_tip in zip((*loaded, *end), (*of_tip, *frame(of_tip, alpha)), strict=True):
             values[tip] = at_tip
         root_f[tip] = of_tip.q
-    return Equilibria(point, excess, loaded, root_f, tangent, end)
+    return Equilibria(point, tip_rotation, loaded, root_f, tangent, end)
 
 
 def _fits(tangential: Equilibria) -> Booleans:

@@ -20,7 +20,7 @@ from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
 from analytic.problem.support import check_support, is_plain, require_plain
 from analytic.solver.branch import trace
-from analytic.solver.columns import Columns, Units, to_columns, without
+from analytic.solver.columns import ReadingColumns, Units, to_columns, without
 from analytic.solver.contact_length import surplus_and_rate
 from analytic.solver.equilibria import Equilibria, equilibria_at, tangent_contact
 from analytic.solver.general.clearance import is_clear
@@ -108,12 +108,12 @@ def find_events(
     require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
     require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
     check_support(clamp_stiffness, friction, beam, signed=False)
-    centreline = profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
-    reach = contact_range(centreline)
+    contour = profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
+    reach = contact_range(contour)
     if not is_plain(beam, clamp_stiffness, friction):
         vibrissa = Vibrissa.of(beam, clamp_stiffness, friction)
-        return _general_events(centreline, reach, vibrissa, beam)
-    return _plain_events([centreline], [reach], [beam])[0]
+        return _general_events(contour, reach, vibrissa, beam)
+    return _plain_events([contour], [reach], [beam])[0]
 
 
 def find_many_events(profiles: Sequence[Contour], beams: Sequence[Beam]) -> list[Events]:
@@ -142,11 +142,11 @@ def find_many_events(profiles: Sequence[Contour], beams: Sequence[Beam]) -> list
         require_plain("the events of many", beam)
     if not beams:
         return []
-    centrelines = [
+    contours = [
         profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
         for profile, beam in zip(profiles, beams, strict=True)
     ]
-    return _plain_events(centrelines, [contact_range(one) for one in centrelines], beams)
+    return _plain_events(contours, [contact_range(one) for one in contours], beams)
 
 
 _AMID = ("phase_b_start", "phase_b_end", "out_of_plane", "snap_off")
@@ -236,13 +236,13 @@ def _contact_length_minima(many: Contours, reaches: Sequence[tuple[float, float]
     return np.asarray(places[order[np.unique(owners[order], return_index=True)[1]]])
 
 
-def _plain_columns(contacts: Equilibria, beams: Sequence[Beam], whose: Integers) -> Columns:
+def _plain_columns(contacts: Equilibria, beams: Sequence[Beam], whose: Integers) -> ReadingColumns:
     """The contacts as columns, each in the units of its beam."""
     radius = np.array([beam.radius / beam.length for beam in beams])[whose]
     return to_columns(contacts.states(Vibrissa(radius=radius)), Units.of_each(beams, whose))
 
 
-def _rows(columns: Columns) -> list[Event]:
+def _rows(columns: ReadingColumns) -> list[Event]:
     """The rows of the readings' table."""
     words = {name: np.array(of)[columns[name]] for name, of in WORDS.items()}
     every = {**columns, **words}
@@ -250,9 +250,9 @@ def _rows(columns: Columns) -> list[Event]:
     return [Event(**dict(zip(every, row, strict=True))) for row in rows]
 
 
-def _first_touch(centreline: Contour, t: float, beam: Beam) -> Event:
+def _first_touch(contour: Contour, t: float, beam: Beam) -> Event:
     """The straight, unloaded vibrissa whose tip, or side, meets the contour."""
-    alpha, xi, eta = (float(x) for (x,) in centreline.at(np.array([t]))[:3])
+    alpha, xi, eta = (float(x) for (x,) in contour.at(np.array([t]))[:3])
     return Event(
         foot_x=xi * beam.length,
         force_x=0.0,

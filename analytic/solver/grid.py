@@ -71,31 +71,31 @@ class Grid(NamedTuple):
         return Grid(self.owner[1:][among], middle[among])
 
 
-def along(centrelines: Contours, first: Floats, last: Floats) -> Grid:
+def along(contours: Contours, first: Floats, last: Floats) -> Grid:
     """Contour parameters, descending from `first` to `last`, that show all changes of phase."""
     coarse = first[:, None] + (last - first)[:, None] * _COARSE
     coarse = np.clip(coarse, last[:, None], first[:, None])
     # Left of the lowest point the excess is counted from another rotation.
-    lowest = centrelines.lowest
+    lowest = contours.lowest
     every = np.column_stack([coarse, lowest, np.nextafter(lowest, -np.inf)])
-    owner = np.repeat(np.arange(len(centrelines)), every.shape[1])
+    owner = np.repeat(np.arange(len(contours)), every.shape[1])
     grid = Grid(owner[:0], first[:0]).with_points(owner, every.ravel())
-    for i, contour in enumerate(centrelines.contours):
+    for i, contour in enumerate(contours.contours):
         breaks = contour.breaks()
         breaks = breaks[(breaks > last[i]) & (breaks < first[i])]
         if breaks.size:
             beside = np.append(np.nextafter(breaks, last[i]), np.nextafter(breaks, first[i]))
             grid = grid.with_points(np.full(beside.size, i), beside)
-    point = centrelines.at(*grid)
+    point = contours.at(*grid)
     for _ in range(_LEVELS):
         turn, rise = np.abs(_steps(point.alpha)), np.abs(_steps(point.eta))
         steep = (turn > _TURN) | (rise > _RISE * np.minimum(point.eta[1:], point.eta[:-1]))
         new = grid.middles(steep)
         if not new.t.size:
             break
-        grid, values = _merged(grid, tuple(point), new, tuple(centrelines.at(*new)))
+        grid, values = _merged(grid, tuple(point), new, tuple(contours.at(*new)))
         point = ContourPoint(*values)
-    return _with_phase_changes(centrelines, grid, point)
+    return _with_phase_changes(contours, grid, point)
 
 
 def doubtful(t: Floats, value: Floats, rate: Floats) -> Booleans:
@@ -110,9 +110,9 @@ def doubtful(t: Floats, value: Floats, rate: Floats) -> Booleans:
     return np.asarray(((mean < low - slack) | (mean > high + slack)) & large)
 
 
-def _with_phase_changes(centrelines: Contours, grid: Grid, point: ContourPoint) -> Grid:
+def _with_phase_changes(contours: Contours, grid: Grid, point: ContourPoint) -> Grid:
     value, rate = surplus_and_rate(point)
-    most = np.bincount(grid.owner, minlength=len(centrelines)) + _MOST
+    most = np.bincount(grid.owner, minlength=len(contours)) + _MOST
     for _ in range(_LEVELS):
         # How near the surplus can come to zero, if it goes on as steeply as at either end.
         steepest = np.fmax(np.abs(rate[1:]), np.abs(rate[:-1])) * -_steps(grid.t)
@@ -120,12 +120,10 @@ def _with_phase_changes(centrelines: Contours, grid: Grid, point: ContourPoint) 
         new = _allowed(grid, grid.middles(doubtful(grid.t, value, rate) & near), most)
         if not new.t.size:
             break
-        grid, (value, rate) = _merged(
-            grid, (value, rate), new, surplus_and_rate(centrelines.at(*new))
-        )
-    new = _extrema(centrelines, grid, value, rate)
+        grid, (value, rate) = _merged(grid, (value, rate), new, surplus_and_rate(contours.at(*new)))
+    new = _extrema(contours, grid, value, rate)
     if new.t.size:
-        found = surplus_and_rate(centrelines.at(*new))[:1]
+        found = surplus_and_rate(contours.at(*new))[:1]
         grid, (value,) = _merged(grid, (value,), new, found)
     below = value < 0
     turns = (grid.cells & (below[1:] != below[:-1])).nonzero()[0]
@@ -133,13 +131,13 @@ def _with_phase_changes(centrelines: Contours, grid: Grid, point: ContourPoint) 
     high, low = grid.t[turns], grid.t[turns + 1]
 
     def surplus(turn: Integers, t: Floats) -> Floats:
-        return surplus_and_rate(centrelines.at(owner[turn], t))[0]
+        return surplus_and_rate(contours.at(owner[turn], t))[0]
 
     likely = low + (high - low) * value[turns + 1] / (value[turns + 1] - value[turns])
     return grid.with_points(owner, smooth_zeros(surplus, low, high, likely))
 
 
-def _extrema(centrelines: Contours, grid: Grid, value: Floats, rate: Floats) -> Grid:
+def _extrema(contours: Contours, grid: Grid, value: Floats, rate: Floats) -> Grid:
     """Where the surplus comes nearest to zero, in cells at whose ends the tangents pass it."""
     side = np.where(value < 0, -1.0, 1.0)
     before, after = side[:-1] * value[:-1], side[:-1] * value[1:]
@@ -153,7 +151,7 @@ def _extrema(centrelines: Contours, grid: Grid, value: Floats, rate: Floats) -> 
     owner = grid.owner[at]
 
     def rates(dip: Integers, t: Floats) -> Floats:
-        return surplus_and_rate(centrelines.at(owner[dip], t))[1]
+        return surplus_and_rate(contours.at(owner[dip], t))[1]
 
     return Grid(owner, zeros(rates, grid.t[at + 1], grid.t[at]))
 
@@ -165,31 +163,31 @@ class Samples(NamedTuple):
     """[L]."""
     rate: Floats
     """Its derivative along the contour."""
-    excess: Floats
+    tip_rotation: Floats
     """Excess rotation of the tip [rad]."""
     tangent_rate: Floats
     """Derivative of the foot position in Phase B."""
     tip_rate: Floats
     """Derivative of the foot position in Phase A."""
-    excess_rate: Floats
+    tip_rotation_rate: Floats
     """Derivative of the excess rotation in Phase A."""
 
 
-def folded(centrelines: Contours, grid: Grid) -> tuple[Grid, Samples, Grid]:
+def folded(contours: Contours, grid: Grid) -> tuple[Grid, Samples, Grid]:
     """Foot positions along the grids, with more points of them where it folds."""
-    grid, point = _to_end_of_reach(centrelines, grid)
+    grid, point = _to_end_of_reach(contours, grid)
     samples = _sampled(point)
-    most = np.bincount(grid.owner, minlength=len(centrelines)) + _MOST
+    most = np.bincount(grid.owner, minlength=len(contours)) + _MOST
     begins = grid.begins  # the first contact, without a load
     samples.foot_x[begins] = point.xi[begins]
-    samples.rate[begins], samples.excess[begins] = np.nan, 0.0
+    samples.rate[begins], samples.tip_rotation[begins] = np.nan, 0.0
     for _ in range(_LEVELS):
         chosen = grid.middles(doubtful(grid.t, samples.foot_x, samples.rate))
         new = _allowed(grid, chosen, most)
         if not new.t.size:
             break
-        grid, samples = _more(centrelines, grid, samples, new)
-    folds, beside, found = _folds(centrelines, grid, samples)
+        grid, samples = _more(contours, grid, samples, new)
+    folds, beside, found = _folds(contours, grid, samples)
     if folds.t.size:
         grid, values = _merged(grid, tuple(samples), beside, tuple(found))
         samples = Samples(*values)
@@ -197,13 +195,13 @@ def folded(centrelines: Contours, grid: Grid) -> tuple[Grid, Samples, Grid]:
     return take(grid, reached), take(samples, reached), folds
 
 
-def _to_end_of_reach(centrelines: Contours, grid: Grid) -> tuple[Grid, ContourPoint]:
+def _to_end_of_reach(contours: Contours, grid: Grid) -> tuple[Grid, ContourPoint]:
     """Up to the first point out of reach of each contour, with more points before that.
 
     Nothing is within reach again behind it. Past a nearly sharp edge x0 may dip a last time before
     it, within a small part of a cell.
     """
-    point = centrelines.at(*grid)
+    point = contours.at(*grid)
     gone = ~within_reach(point.alpha, point.eta)
     gone[grid.begins] = False
     reached = _before_first(grid, gone)
@@ -215,7 +213,7 @@ def _to_end_of_reach(centrelines: Contours, grid: Grid) -> tuple[Grid, ContourPo
     for _ in range(_AT_END):
         t = high[:, None] + (low - high)[:, None] * _INSIDE
         new = Grid(owner, t.ravel())
-        more = centrelines.at(*new)
+        more = contours.at(*new)
         passed = ~within_reach(more.alpha, more.eta)
         point = ContourPoint(*_merged(grid, tuple(point), new, tuple(more))[1])
         grid, (gone,) = _merged(grid, (gone,), new, (passed,))
@@ -234,7 +232,7 @@ def _before_first(grid: Grid, chosen: Booleans) -> Booleans:
     return np.asarray(so_far == before[grid.owner])
 
 
-def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> tuple[Grid, Grid, Samples]:
+def _folds(contours: Contours, grid: Grid, samples: Samples) -> tuple[Grid, Grid, Samples]:
     """Where the foot position is least between neighbours, if it may be less than all before.
 
     The second grid, with the states there, has the points on either side of them, too: if x0 is
@@ -263,14 +261,12 @@ def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> tuple[Grid, G
     middle = (high + np.where(grid.owner[previous] == owner, grid.t[previous], high)) / 2
     places = np.column_stack([about.places, middle])
     turn, at = np.repeat(np.arange(turns.size), places.shape[1]), places.ravel()
-    there = _sample(centrelines, Grid(owner[turn], at))
+    there = _sample(contours, Grid(owner[turn], at))
     sampled = np.stack(there).reshape(len(there), *places.shape)
     t, known = about.zeros(rates(turn, at, there).reshape(places.shape)[:, :-1])
     left = (~known).nonzero()[0]
     t[left] = zeros(
-        lambda which, at: rates(
-            left[which], at, _sample(centrelines, Grid(owner[left[which]], at))
-        ),
+        lambda which, at: rates(left[which], at, _sample(contours, Grid(owner[left[which]], at))),
         low[left],
         high[left],
     )
@@ -279,7 +275,7 @@ def _folds(centrelines: Contours, grid: Grid, samples: Samples) -> tuple[Grid, G
     values = about.between(sampled[:, :, :-1], every)
     left = (~(known & np.isfinite(values[0]).all(axis=1))).nonzero()[0]
     if left.size:
-        exact = _sample(centrelines, Grid(np.repeat(owner[left], 3), every[left].ravel()))
+        exact = _sample(contours, Grid(np.repeat(owner[left], 3), every[left].ravel()))
         values[:, left] = np.stack(exact).reshape(len(exact), *every[left].shape)
     every = np.concatenate([every, places[:, [0, -1]]], axis=1)
     values = np.concatenate([values, sampled[:, :, [0, -1]]], axis=2)
@@ -294,8 +290,8 @@ def _least_so_far(grid: Grid, foot_x: Floats) -> Floats:
     return np.concatenate([np.minimum.accumulate(values[begin:end]) for begin, end in bounds])
 
 
-def _sample(centrelines: Contours, grid: Grid) -> Samples:
-    return _sampled(centrelines.at(*grid))
+def _sample(contours: Contours, grid: Grid) -> Samples:
+    return _sampled(contours.at(*grid))
 
 
 def _sampled(point: ContourPoint) -> Samples:
@@ -303,13 +299,13 @@ def _sampled(point: ContourPoint) -> Samples:
     with np.errstate(divide="ignore", invalid="ignore"):  # where the clamp's moment vanishes
         in_b, in_a = states.tangent_rate(), states.tip_rate()
         rate = np.where(states.tangent, in_b, in_a.foot_x)
-        return Samples(states.foot_x, rate, states.excess, in_b, *in_a)
+        return Samples(states.foot_x, rate, states.tip_rotation, in_b, *in_a)
 
 
-def _more(centrelines: Contours, grid: Grid, samples: Samples, new: Grid) -> tuple[Grid, Samples]:
+def _more(contours: Contours, grid: Grid, samples: Samples, new: Grid) -> tuple[Grid, Samples]:
     if not new.t.size:
         return grid, samples
-    grid, values = _merged(grid, tuple(samples), new, tuple(_sample(centrelines, new)))
+    grid, values = _merged(grid, tuple(samples), new, tuple(_sample(contours, new)))
     return grid, Samples(*values)
 
 

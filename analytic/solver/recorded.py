@@ -9,18 +9,18 @@ import numpy as np
 from analytic.problem.case import Case
 from analytic.problem.readings import Readings
 from analytic.problem.table import as_table, mirrored_columns
-from analytic.solver.columns import Columns
+from analytic.solver.columns import ReadingColumns
 
 Points = Mapping[str, float | None]
 """Foot positions of what happens, by name [L]."""
 
 
-def are_finite(columns: Columns) -> bool:
+def are_finite(columns: ReadingColumns) -> bool:
     """Whether no number is beyond the largest one, as it may be in the case's units."""
     return not any(np.isinf(x).any() for x in columns.values())
 
 
-def as_readings(case: Case, columns: Columns, events: Points, finite: bool) -> Readings:
+def as_readings(case: Case, columns: ReadingColumns, events: Points, finite: bool) -> Readings:
     """The readings of a case whose sweep to the left, or its mirror image's, is solved."""
     way = 1.0 if case.sweep.direction == "left" else -1.0
     own = columns if way > 0 else mirrored_columns(columns)

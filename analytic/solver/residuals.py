@@ -13,7 +13,7 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.columns import PHASE_NUMBER, STATUS_NUMBER
-from analytic.solver.columns import Columns, Numbers, Units, without
+from analytic.solver.columns import Numbers, ReadingColumns, Units, without
 from analytic.solver.elastica import span_of_moment
 from analytic.solver.general.march import march
 from analytic.solver.general.span import back_to_clamp
@@ -28,9 +28,9 @@ def inexact(checked: Mapping[str, Floats], status: Numbers) -> Booleans:
     return np.asarray(~solved & (status != STATUS_NUMBER["touches again"]))
 
 
-def without_inexact(columns: Columns, vibrissa: Vibrissa, units: Units) -> Columns:
+def without_inexact(columns: ReadingColumns, vibrissa: Vibrissa, units: Units) -> ReadingColumns:
     """The readings of states at rest, but for those that collocation has not solved well enough."""
-    if vibrissa.form is None:
+    if vibrissa.rod is None:
         return columns
     ok = columns["status"] == STATUS_NUMBER["ok"]
     wrong = ok & inexact(residuals(columns, vibrissa, units), columns["status"])
@@ -38,7 +38,7 @@ def without_inexact(columns: Columns, vibrissa: Vibrissa, units: Units) -> Colum
 
 
 @np.errstate(divide="ignore", invalid="ignore")  # free stations: no force, no contact
-def residuals(columns: Columns, vibrissa: Vibrissa, units: Units) -> dict[str, Floats]:
+def residuals(columns: ReadingColumns, vibrissa: Vibrissa, units: Units) -> dict[str, Floats]:
     """What the stations of a table of readings miss; nothing where they are free."""
 
     def column(name: str, unit: float | Floats = 1.0) -> Floats:
@@ -107,8 +107,8 @@ def _span(
         sine = np.cos(direction) - moment**2 / (2 * force)
         return _Span(C, S, q - length, sine - np.sin(slope))
     clamp = np.pi / 2 - vibrissa.compliance * moment - direction
-    if vibrissa.form is not None:
-        end = march(vibrissa.form, slope, -couple, force, length, finer=2)
+    if vibrissa.rod is not None:
+        end = march(vibrissa.rod, slope, -couple, force, length, finer=2)
         return _Span(end.along, end.across, end.theta - clamp, end.m + moment)
     # A span run through from its other end has the opposite curvature.
     natural = vibrissa.natural_curvature

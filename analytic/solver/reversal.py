@@ -12,7 +12,7 @@ from analytic.problem.errors import InputError, require
 from analytic.problem.numbers import is_finite_number
 from analytic.problem.rest import first_touch
 from analytic.problem.table import as_table, mirrored_table
-from analytic.solver.columns import Columns, Units, to_columns, unloaded_columns
+from analytic.solver.columns import ReadingColumns, Units, to_columns, unloaded_columns
 from analytic.solver.general.path import Path, follow
 from analytic.solver.general.states import Vibrissa, states
 from analytic.solver.general.stations import solve_places
@@ -21,14 +21,14 @@ from analytic.solver.residuals import without_inexact
 
 
 @dataclass(frozen=True)
-class Branch:
+class SlidingBranch:
     """States that slide one way, in a sweep to the left."""
 
     vibrissa: Vibrissa
     path: Path
 
     @classmethod
-    def of(cls, case: Case, sense: float) -> "Branch":
+    def of(cls, case: Case, sense: float) -> "SlidingBranch":
         """Follow the states that slide on (1), or back (-1)."""
         vibrissa = Vibrissa.of_case(case)._replace(friction=sense * case.friction)
         touch = first_touch(case.centreline, case.reach, vibrissa.unloaded)
@@ -85,7 +85,7 @@ def stiction_limits(case: Case) -> tuple[pd.DataFrame, pd.DataFrame]:
     foot_x = case.foot_x / case.beam.length
     tables = []
     for sense in (1.0, -1.0):
-        branch = Branch.of(case, sense)
+        branch = SlidingBranch.of(case, sense)
         columns = _unloaded(case, case.foot_x)
         held = branch.holds(foot_x)
         if held.any():
@@ -135,7 +135,7 @@ def turn_back(case: Case, turn_at: float, stations: int = 100) -> pd.DataFrame:
     if case.sweep.direction == "right":
         return _mirrored(turn_back(case.mirrored(), -turn_at, stations))
     length = case.beam.length
-    onward, back = Branch.of(case, 1.0), Branch.of(case, -1.0)
+    onward, back = SlidingBranch.of(case, 1.0), SlidingBranch.of(case, -1.0)
     first, last = onward.path.foot_x[0], onward.path.foot_x[onward.path.snap_off]
     if not last <= turn_at / length < first:
         raise InputError(
@@ -176,17 +176,17 @@ def _check(case: Case) -> None:
         raise InputError("friction", 0.0, "positive", "without friction nothing sticks")
 
 
-def _unloaded(case: Case, foot: Floats) -> Columns:
+def _unloaded(case: Case, foot: Floats) -> ReadingColumns:
     """The readings of a vibrissa that touches nothing, with no angle of friction."""
     columns = unloaded_columns(foot, float(case.beam.unloaded.at(np.array(1.0))[2]))
     return {**columns, "friction_angle": np.full(foot.size, np.nan)}
 
 
-def _table(columns: Columns) -> pd.DataFrame:
+def _table(columns: ReadingColumns) -> pd.DataFrame:
     return as_table(columns).drop(columns="status")
 
 
-def _fill(columns: Columns, where: Booleans, case: Case, z: Floats, angle: Floats) -> None:
+def _fill(columns: ReadingColumns, where: Booleans, case: Case, z: Floats, angle: Floats) -> None:
     """Write states at rest into the rows of a table."""
     units, held = Units.of(case.beam), Vibrissa.of_case(case)._replace(friction=np.tan(angle))
     found = states(case.centreline.at(z[:, 0]), z[:, 1], z[:, 2], held)

@@ -36,14 +36,14 @@ class Starts(NamedTuple):
     """Phase B."""
     t: Floats
     """Contour parameter, nearly."""
-    excess: Floats
+    tip_rotation: Floats
     """Excess rotation of the tip [rad], nearly."""
     behind: Floats
     """Excess rotation where the station's cell ends [rad]."""
 
 
 def located(
-    centrelines: Contours, branches: Sequence[Branch], foot_x: Sequence[Floats]
+    contours: Contours, branches: Sequence[Branch], foot_x: Sequence[Floats]
 ) -> tuple[Stations, Starts]:
     """The cells that hold foot positions on branches, and the states there, nearly."""
     sizes = np.array([len(branch.t) for branch in branches])
@@ -61,8 +61,8 @@ def located(
     by_tau = -2 * tau
     with np.errstate(invalid="ignore"):
         in_b, in_a = by_tau * samples.tangent_rate, by_tau * samples.tip_rate
-        turn = by_tau * samples.excess_rate
-    first = centrelines.at(np.arange(len(branches)), t[begins])
+        turn = by_tau * samples.tip_rotation_rate
+    first = contours.at(np.arange(len(branches)), t[begins])
     deflection = np.sqrt(np.maximum(first.stretch * np.sin(first.alpha), 0.0) / _DROP)
     in_b[begins], in_a[begins], turn[begins] = 0.0, -deflection, _TURN * deflection
 
@@ -70,7 +70,7 @@ def located(
     ends = tuple(samples.foot_x[cell + i] for i in (0, 1))
     slopes = tuple(np.where(tangent, in_b[cell + i], in_a[cell + i]) * width for i in (0, 1))
     share = _share(_cubic(ends, slopes), stations.foot_x)
-    low, high = (samples.excess[cell + i] for i in (0, 1))
+    low, high = (samples.tip_rotation[cell + i] for i in (0, 1))
     rotation = _cubic((low, high), tuple(turn[cell + i] * width for i in (0, 1)))
     return stations, Starts(
         tangent,

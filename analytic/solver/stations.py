@@ -32,7 +32,7 @@ class _Iterate(NamedTuple):
 
 
 def solve_stations(
-    centrelines: Contours, branches: Sequence[Branch], foot_x: Sequence[Floats]
+    contours: Contours, branches: Sequence[Branch], foot_x: Sequence[Floats]
 ) -> Equilibria:
     """The states at foot positions on branches.
 
@@ -40,14 +40,14 @@ def solve_stations(
     What it leaves with a miss, or in the wrong phase, is enclosed instead: the foot position of the
     equilibrium at a contour point changes steadily along the cell, whatever its phase.
     """
-    stations, (tangent, t, excess, behind) = located(centrelines, branches, foot_x)
-    found = _newton(centrelines, stations, tangent, (t, excess))
+    stations, (tangent, t, tip_rotation, behind) = located(contours, branches, foot_x)
+    found = _newton(contours, stations, tangent, (t, tip_rotation))
     poor = (~(_admissible(found.states) & (found.missed <= _EXACT))).nonzero()[0]
     if poor.size:
         few = take(stations, poor)
-        enclosed = _enclose(centrelines, few, behind[poor])
-        start = enclosed.t.copy(), enclosed.states.excess
-        refined = _newton(centrelines, few, enclosed.states.tangent, start)
+        enclosed = _enclose(contours, few, behind[poor])
+        start = enclosed.t.copy(), enclosed.states.tip_rotation
+        refined = _newton(contours, few, enclosed.states.tangent, start)
         better = _admissible(refined.states) & (refined.missed < enclosed.missed)
         put(found, poor, enclosed)
         put(found, poor[better], take(refined, better))
@@ -56,7 +56,7 @@ def solve_stations(
 
 @np.errstate(all="ignore")  # folds and first contacts: what is not finite is no step
 def _newton(
-    centrelines: Contours,
+    contours: Contours,
     stations: Stations,
     tangent: Booleans,
     start: tuple[Floats, Floats],
@@ -67,13 +67,13 @@ def _newton(
     alone the rotation would lose its digits at first contact, where the height hardly depends on
     the force.
     """
-    t, excess = start
+    t, tip_rotation = start
     best: _Iterate | None = None
     step = np.full_like(t, np.inf)
     going = np.arange(t.size)
     for _ in range(_ITERATIONS):
         owner, foot_x, low, high = stations
-        states = contact(centrelines.at(owner, t), excess, tangent)
+        states = contact(contours.at(owner, t), tip_rotation, tangent)
         now, too_high, too_far = _seen(t, states, foot_x)
         less = now.missed < np.inf if best is None else now.missed <= best.missed[going]
         best = now if best is None else _improved(best, going, now, less)
@@ -85,22 +85,22 @@ def _newton(
         step_t = np.where(np.isfinite(step_t), step_t, 0.0)
         step_w = np.where(np.isfinite(step_w), step_w, 0.0)
         new_t = np.minimum(np.maximum(t - step_t, low), high)
-        new_excess = np.minimum(np.maximum(excess - step_w, excess / 10), _MOST_TURNED)
+        new_excess = np.minimum(np.maximum(tip_rotation - step_w, tip_rotation / 10), _MOST_TURNED)
         moved = np.abs(new_t - t)
         # As much as the rotation itself, or more, is no last step.
-        turned = np.where(step_w == 0, 0.0, np.abs(step_w) / excess)
-        t, excess = new_t, new_excess
+        turned = np.where(step_w == 0, 0.0, np.abs(step_w) / tip_rotation)
+        t, tip_rotation = new_t, new_excess
         small = (moved <= _LAST) & (turned <= _LAST_TURN) & np.isfinite(step)
         last = small.nonzero()[0]
         if last.size:
-            point = centrelines.at(owner[last], t[last])
-            near = contact_beside(take(states, last), point, excess[last])
+            point = contours.at(owner[last], t[last])
+            near = contact_beside(take(states, last), point, tip_rotation[last])
             beside = _seen(t[last], near, foot_x[last])[0]
             best = _improved(best, going[last], beside, beside.missed <= best.missed[going[last]])
         more = (~(done | small)).nonzero()[0]
         if not more.size:
             break
-        t, excess, step = t[more], excess[more], np.maximum(moved, turned)[more]
+        t, tip_rotation, step = t[more], tip_rotation[more], np.maximum(moved, turned)[more]
         going, stations, tangent = going[more], take(stations, more), tangent[more]
     assert best is not None
     return best
@@ -128,7 +128,7 @@ def _seen(t: Floats, states: Equilibria, foot_x: Floats) -> tuple[_Iterate, Floa
 def _steps(states: Equilibria, too_high: Floats, too_far: Floats) -> tuple[Floats, Floats]:
     """Newton's step of the contour parameter and of the excess rotation."""
     alpha, _, _, turning, stretch = states.point
-    height, reach = tip_rates(states.excess, states.span, alpha, states.frame)
+    height, reach = tip_rates(states.tip_rotation, states.span, alpha, states.frame)
     height_t = turning * height.by_alpha - stretch * np.sin(alpha)
     reach_t = turning * reach.by_alpha - stretch * np.cos(alpha)
     determinant = height_t * reach.by_excess - reach_t * height.by_excess
@@ -143,11 +143,11 @@ def _steps(states: Equilibria, too_high: Floats, too_far: Floats) -> tuple[Float
 def _admissible(states: Equilibria) -> Booleans:
     """Whether contacts are of the phase that they should be of."""
     fits = (states.root_f > 0) & (states.span.q <= states.root_f * (1 + _EXACT))
-    above = states.excess <= np.pi / 2 - np.abs(states.point.alpha) + _EXACT
+    above = states.tip_rotation <= np.pi / 2 - np.abs(states.point.alpha) + _EXACT
     return np.asarray(np.where(states.tangent, fits, above))
 
 
-def _enclose(centrelines: Contours, stations: Stations, behind: Floats) -> _Iterate:
+def _enclose(contours: Contours, stations: Stations, behind: Floats) -> _Iterate:
     """Stations enclosed along the contour, in whichever phase they are.
 
     `behind` is the excess rotation where each one's cell ends.
@@ -155,15 +155,15 @@ def _enclose(centrelines: Contours, stations: Stations, behind: Floats) -> _Iter
     owner, foot_x, low, high = stations
 
     def ahead(station: Integers, t: Floats) -> Floats:
-        found = equilibria_at(centrelines.at(owner[station], t)).foot_x - foot_x[station]
+        found = equilibria_at(contours.at(owner[station], t)).foot_x - foot_x[station]
         return np.where(np.isnan(found), 1.0, found)  # the first contact itself
 
     every = np.arange(owner.size)
     at_low, at_high = ahead(every, low), ahead(every, high)
     t = zeros(ahead, low, high)
     t = np.where(at_low >= 0, low, np.where(at_high <= 0, high, t))
-    states = equilibria_at(centrelines.at(owner, t))
-    first = np.isnan(states.excess)
-    excess = np.where(first, behind * 1e-3, states.excess)
-    states = contact(centrelines.at(owner, t), excess, states.tangent)
+    states = equilibria_at(contours.at(owner, t))
+    first = np.isnan(states.tip_rotation)
+    tip_rotation = np.where(first, behind * 1e-3, states.tip_rotation)
+    states = contact(contours.at(owner, t), tip_rotation, states.tangent)
     return _seen(t, states, foot_x)[0]

@@ -62,18 +62,18 @@ def slip_off(profile: Contour, tilt: float, beam: Beam | None = None) -> float |
     require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
     require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
     require_plain("the slip-off", beam)
-    centreline = profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
-    first = contact_range(centreline)[1]
-    lowest = float(centreline.parameter(np.zeros(1))[0])
+    contour = profile.scaled(1 / beam.length).offset(beam.radius / beam.length)
+    first = contact_range(contour)[1]
+    lowest = float(contour.parameter(np.zeros(1))[0])
     grid = lowest + (first - lowest) * np.linspace(1, 0, _GRID) ** 2  # dense where the fold is
-    foot_x = _foot_x(centreline, grid, tilt)
+    foot_x = _foot_x(contour, grid, tilt)
     least = int(np.nanargmin(foot_x))
     if least == _GRID - 1:
         return None
     from scipy.optimize import minimize_scalar  # slow to load
 
     found = minimize_scalar(
-        lambda t: float(_foot_x(centreline, np.array([t]), tilt)[0]),
+        lambda t: float(_foot_x(contour, np.array([t]), tilt)[0]),
         bounds=(grid[least + 1], grid[least - 1]),
         method="bounded",
         options={"xatol": 1e-9},
@@ -81,9 +81,9 @@ def slip_off(profile: Contour, tilt: float, beam: Beam | None = None) -> float |
     return float(found.fun) * beam.length
 
 
-def _foot_x(centreline: Contour, t: Floats, tilt: float) -> Floats:
+def _foot_x(contour: Contour, t: Floats, tilt: float) -> Floats:
     """Foot position of the leaning vibrissa, shape (n,) [L]; NaN where it does not reach."""
-    alpha, xi, eta = centreline.at(t)[:3]
+    alpha, xi, eta = contour.at(t)[:3]
     lean = np.arccos(np.cos(alpha) * np.cos(tilt))
     sunk = np.cos(alpha) * np.sin(tilt) ** 2 / np.sin(lean)
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.from_clamp.calibration.fit import Fit
+from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import Measured, check_size, measured_under_load
 from analytic.from_clamp.calibration.unknowns import UNKNOWNS, Sought, checked_unknowns
 from analytic.problem.arrays import Floats
@@ -150,10 +150,12 @@ def calibrate(
     )
 
 
-def _fitted(measured: Measured, case: Case, names: tuple[str, ...]) -> tuple[Fit, Floats, float]:
+def _fitted(
+    measured: Measured, case: Case, names: tuple[str, ...]
+) -> tuple[LeastSquaresFit, Floats, float]:
     """The fit, without the stations that are of no such vibrissa; its numbers, its squares."""
     every = len(measured.foot_x)
-    fit = Fit(measured, case, names)
+    fit = LeastSquaresFit(measured, case, names)
     numbers, cost = _best(fit)
     for _ in range(_ROUNDS):
         expected = fit.expected(numbers)
@@ -169,12 +171,12 @@ def _fitted(measured: Measured, case: Case, names: tuple[str, ...]) -> tuple[Fit
             )
         if there.all():
             break
-        fit = Fit(fit.measured.at(there), case, names)
+        fit = LeastSquaresFit(fit.measured.at(there), case, names)
         numbers, cost = fit.best_from(_inside(fit, numbers))
     return fit, numbers, cost
 
 
-def _best(fit: Fit) -> tuple[Floats, float]:
+def _best(fit: LeastSquaresFit) -> tuple[Floats, float]:
     """The best numbers from the case's own, or from elsewhere if those leave too much."""
     starts = [fit.start]
     for i, kind in enumerate(fit.kinds):
@@ -195,11 +197,11 @@ def _best(fit: Fit) -> tuple[Floats, float]:
     return best, least
 
 
-def _inside(fit: Fit, numbers: Floats) -> Floats:
+def _inside(fit: LeastSquaresFit, numbers: Floats) -> Floats:
     return np.clip(numbers, fit.lowest, fit.highest)
 
 
-def _covariance(fit: Fit, numbers: Floats, misfit: float) -> Floats:
+def _covariance(fit: LeastSquaresFit, numbers: Floats, misfit: float) -> Floats:
     """Of the numbers' errors, shape (unknowns, unknowns)."""
     jacobian = fit.jacobian(numbers)
     sizes = np.linalg.norm(jacobian, axis=0)
@@ -248,7 +250,7 @@ def _not_distinguished(names: tuple[str, ...], covariance: Floats, which: int) -
     )
 
 
-def _interval(fit: Fit, numbers: Floats, i: int, half: float) -> Estimate:
+def _interval(fit: LeastSquaresFit, numbers: Floats, i: int, half: float) -> Estimate:
     kind = fit.kinds[i]
     ends = []
     for number in (numbers[i] - half, numbers[i] + half):

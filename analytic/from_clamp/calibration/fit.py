@@ -16,7 +16,7 @@ _AN_END = 1e-9  # a fit that stays inside comes so near to an end that is best
 _MOST_SWEEPS = 40  # of a fit, without those for derivatives
 
 
-class Fit:
+class LeastSquaresFit:
     """The sum of squares over some unknowns, each station weighed by its noise.
 
     Noise of the foot position moves all three readings of its station along their slopes over the

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from analytic.from_clamp.earlier.sensed import Answer, Sensed
+from analytic.from_clamp.earlier.sensed import Answer, LoadedStations
 from analytic.numerics.vectors import cross
 from analytic.problem.arrays import Floats
 
@@ -15,7 +15,7 @@ _BLOCK = 500  # stations that are integrated together
 _AT_TIP = 0.05  # of the clamp's moment may be left at the tip: the errors of good readings
 
 
-def in_plane(sensed: Sensed) -> Answer:
+def in_plane(sensed: LoadedStations) -> Answer:
     """Integrate the elastica up to the first zero of its moment, or to the tip.
 
     phi' = -(M - F_y x + F_x y): G. R. Scholz and C. D. Rahn, Profile sensing with an actuated
@@ -26,7 +26,7 @@ def in_plane(sensed: Sensed) -> Answer:
     return Answer(sensed.foot_x + x, y)
 
 
-def in_space(sensed: Sensed) -> Answer:
+def in_space(sensed: LoadedStations) -> Answer:
     """The same as `spatial_contact`, of readings in a plane."""
     none = np.zeros_like(sensed.foot_x)
     force = np.column_stack([-sensed.across, sensed.along, none])

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from analytic.from_clamp.earlier import integrated, segments, small_deflection
-from analytic.from_clamp.earlier.sensed import Answer, Sensed
+from analytic.from_clamp.earlier.sensed import Answer, LoadedStations
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class Method:
     # ``"slope"`` and ``"length"``.
     needs: tuple[str, ...]
     assumes: str  # what it takes for granted, in a few words
-    estimate: Callable[[Sensed], Answer]  # the contact on the vibrissa's axis from `Sensed`
+    estimate: Callable[[LoadedStations], Answer]  # the contact on the vibrissa's axis
 
 
 METHODS: dict[str, Method] = {

@@ -10,12 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.from_clamp.earlier.sensed import Answer, Sensed
+from analytic.from_clamp.earlier.sensed import Answer, LoadedStations
 from analytic.numerics.roots import zeros
 from analytic.problem.arrays import Booleans, Floats, Integers
 
 
-class Base(NamedTuple):
+class BaseSeen(NamedTuple):
     """The base as seen from the contact, whose tangent is the x-axis; arrays of shape (n,)."""
 
     x: Floats
@@ -23,7 +23,7 @@ class Base(NamedTuple):
     turned: Floats
 
 
-def by_segments(sensed: Sensed, segments: int = 40, half_cell: bool = False) -> Answer:
+def by_segments(sensed: LoadedStations, segments: int = 40, half_cell: bool = False) -> Answer:
     """The contact from which the segments turn the base by as much as the force says."""
     force = np.hypot(sensed.across, sensed.along)
     # Where the force is normal to the vibrissa, at the contact, the base is turned away by so much.
@@ -42,7 +42,7 @@ def by_segments(sensed: Sensed, segments: int = 40, half_cell: bool = False) -> 
     return Answer(sensed.foot_x + across, height).where(found)
 
 
-def from_base(seen: Base) -> tuple[Floats, Floats]:
+def from_base(seen: BaseSeen) -> tuple[Floats, Floats]:
     """The contact as the base sees it: to the side, and along its tangent."""
     cos, sin = np.cos(seen.turned), np.sin(seen.turned)
     return np.abs(cos * seen.y - sin * seen.x), -(cos * seen.x + sin * seen.y)
@@ -62,7 +62,7 @@ def _bracket(force: Floats, turn: Floats, segments: int, half: float) -> tuple[F
     return whole, found
 
 
-def bent(force: Floats, rest: Floats, whole: Floats, segments: int, half: float) -> Base:
+def bent(force: Floats, rest: Floats, whole: Floats, segments: int, half: float) -> BaseSeen:
     """From a contact at `rest` beyond so many whole segments."""
     x, y, turned = -rest, np.zeros_like(force), np.zeros_like(force)
     for number in range(int(whole.max(initial=0))):
@@ -70,7 +70,7 @@ def bent(force: Floats, rest: Floats, whole: Floats, segments: int, half: float)
         nx, ny, nturned = _joint(force, x, y, turned, 1 / segments)
         x, y = np.where(there, nx, x), np.where(there, ny, y)
         turned = np.where(there, nturned, turned)
-    return Base(x, y, turned - half * x * force)
+    return BaseSeen(x, y, turned - half * x * force)
 
 
 def _joint(

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from analytic.problem.arrays import Booleans, Floats
 
 
-class Sensed(NamedTuple):
+class LoadedStations(NamedTuple):
     """Loaded stations of a sweep, arrays of shape (n,)."""
 
     foot_x: Floats

@@ -2,16 +2,16 @@
 
 import numpy as np
 
-from analytic.from_clamp.earlier.sensed import Answer, Sensed
+from analytic.from_clamp.earlier.sensed import Answer, LoadedStations
 from analytic.problem.arrays import Floats
 
 
-def binary(sensed: Sensed) -> Answer:
+def binary(sensed: LoadedStations) -> Answer:
     """The tip of the straight vibrissa, wherever there is a load: contact or no contact."""
     return Answer(sensed.foot_x, np.ones_like(sensed.foot_x))
 
 
-def from_moment_and_travel(sensed: Sensed) -> Answer:
+def from_moment_and_travel(sensed: LoadedStations) -> Answer:
     """The height of a point object that a cantilever is pushed against, from moment and travel.
 
     A cantilever that is displaced by delta at the height eta has the moment 3 delta/eta^2 at its
@@ -23,7 +23,7 @@ def from_moment_and_travel(sensed: Sensed) -> Answer:
     return _at(sensed.foot_x + sensed.travel, height)
 
 
-def from_slope_and_travel(sensed: Sensed, sensor: float = 0.05) -> Answer:
+def from_slope_and_travel(sensed: LoadedStations, sensor: float = 0.05) -> Answer:
     """The same from the slope at a short distance from the clamp; needs no flexural rigidity.
 
     With the slope tau at the distance x of the sensor and the travel delta, the height d solves
@@ -40,7 +40,7 @@ def from_slope_and_travel(sensed: Sensed, sensor: float = 0.05) -> Answer:
     return _at(sensed.foot_x + sensed.travel, height)
 
 
-def from_force_and_moment(sensed: Sensed) -> Answer:
+def from_force_and_moment(sensed: LoadedStations) -> Answer:
     """A cylinder of small deflection: the lever a = M/Q, and the deflection Q a^3/3 there.
 
     After J. A. Birdwell and others, Biomechanical models for radial distance determination by the
@@ -51,7 +51,7 @@ def from_force_and_moment(sensed: Sensed) -> Answer:
         return _at(sensed.foot_x + deflection * lever**3 / 3, lever)
 
 
-def from_force_and_moment_of_cone(sensed: Sensed) -> Answer:
+def from_force_and_moment_of_cone(sensed: LoadedStations) -> Answer:
     """A cone that ends in a point: the lever a = M/Q, the deflection Q a^3/(3 (1 - a)) there.
 
     After Birdwell and others, as `from_force_and_moment`; the flexural rigidity at the base is 1.
@@ -62,7 +62,7 @@ def from_force_and_moment_of_cone(sensed: Sensed) -> Answer:
     return _at(sensed.foot_x + deflection, lever).where(lever < 1)
 
 
-def from_beam_column(sensed: Sensed) -> Answer:
+def from_beam_column(sensed: LoadedStations) -> Answer:
     """Second-order theory: small slopes, but the force along the beam bends it, too.
 
     M = Q tan(k a)/k with k^2 = P gives the height a, and the deflection is (Q/P)(tan(k a)/k - a);
@@ -75,7 +75,7 @@ def from_beam_column(sensed: Sensed) -> Answer:
     return _at(sensed.foot_x + deflection, height)
 
 
-def _lever(sensed: Sensed) -> Floats:
+def _lever(sensed: LoadedStations) -> Floats:
     with np.errstate(divide="ignore", invalid="ignore"):
         return sensed.moment / sensed.across
 

@@ -8,7 +8,7 @@ import numpy as np
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.errors import InputError
 
-Curve: TypeAlias = Callable[[Floats], Floats]
+Coordinate: TypeAlias = Callable[[Floats], Floats]
 
 _COARSE = 129
 _FINE = 1024  # short chords, of functions of which nothing is known
@@ -21,10 +21,10 @@ _LEAST_SIZE = 1e-10  # of the distance from the origin; below, rounding would be
 
 
 def check_convex(
-    xi: Curve,
-    eta: Curve,
+    xi: Coordinate,
+    eta: Coordinate,
     alpha_range: tuple[float, float],
-    radius: Curve | None,
+    radius: Coordinate | None,
     label: str,
     known: bool = False,
 ) -> None:
@@ -63,7 +63,7 @@ def check_convex(
         _check_radius(stated, middle, np.hypot(dx, dy) / (2 * np.sin(turn / 2)), place, turn, label)
 
 
-def _values(curve: Curve, alpha: Floats, name: str, label: str) -> Floats:
+def _values(curve: Coordinate, alpha: Floats, name: str, label: str) -> Floats:
     """What a function makes of all angles at once."""
     try:
         with np.errstate(all="ignore"):  # what is not finite is reported below

@@ -22,7 +22,7 @@ _HASH = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], d
 _MOST_VERTICES = 50_000  # the hull of a round body takes MuJoCo half a second then
 
 
-class Body(NamedTuple):
+class MeshBody(NamedTuple):
     """A convex body in a file's own unit and axes."""
 
     vertices: Floats
@@ -54,7 +54,7 @@ class _Read(NamedTuple):
         return np.sort(2 * edges + (begins < ends))
 
 
-def read_body(file: str | Path, hull: bool, tolerance: float) -> Body:
+def read_body(file: str | Path, hull: bool, tolerance: float) -> MeshBody:
     """The convex body in a mesh file.
 
     Vertices at one place are merged whatever their texture or normals, inside-out meshes are turned
@@ -229,7 +229,7 @@ def _in_ascii(content: bytes, kind: str) -> BytesIO:
     return BytesIO(content[:text].translate(_ASCII) + content[text:])
 
 
-def _hull(points: Floats) -> tuple[Body, float]:
+def _hull(points: Floats) -> tuple[MeshBody, float]:
     """The convex hull of points, and its volume."""
     from scipy.spatial import ConvexHull, QhullError
 
@@ -237,7 +237,7 @@ def _hull(points: Floats) -> tuple[Body, float]:
     if spread[-1] < _FLAT * spread[0]:
         raise QhullError
     found = ConvexHull(points)
-    body = Body(
+    body = MeshBody(
         points[found.vertices],
         np.searchsorted(found.vertices, found.simplices),
         found.equations[:, :3],

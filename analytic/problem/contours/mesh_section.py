@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
-from analytic.problem.contours.mesh_file import Body, read_body
+from analytic.problem.contours.mesh_file import MeshBody, read_body
 from analytic.problem.contours.polygon import Polygon, polygon
 from analytic.problem.contours.solid import ConvexMesh
 from analytic.problem.errors import InputError
@@ -138,7 +138,7 @@ def _handedness(across: list[int]) -> int:
     return round(float(np.linalg.det(np.eye(3)[across])))
 
 
-def _tilt(body: Body, points: Floats, across: list[int]) -> float:
+def _tilt(body: MeshBody, points: Floats, across: list[int]) -> float:
     """Largest component of the normals across the plane, along the lower side of the section.
 
     An edge in the plane has all normals between those of its two faces; the least tilted counts.

@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour, ContourPoint
-from analytic.problem.contours.convexity import Curve, check_convex
+from analytic.problem.contours.convexity import Coordinate, check_convex
 from analytic.problem.contours.parallel import Parallel
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import pair, positive
@@ -48,10 +48,10 @@ class Profile(Contour):
         there.
     """
 
-    xi: Curve
-    eta: Curve
+    xi: Coordinate
+    eta: Coordinate
     alpha_range: tuple[float, float]
-    radius_of_curvature: Curve | None = field(default=None, repr=False)
+    radius_of_curvature: Coordinate | None = field(default=None, repr=False)
     label: str = "custom profile"
     kinks: tuple[float, ...] = field(default=(), repr=False)
 
@@ -78,10 +78,10 @@ class Profile(Contour):
     @classmethod
     def of_family(
         cls,
-        xi: Curve,
-        eta: Curve,
+        xi: Coordinate,
+        eta: Coordinate,
         alpha_range: tuple[float, float],
-        radius_of_curvature: Curve,
+        radius_of_curvature: Coordinate,
         label: str,
         kinks: tuple[float, ...] = (),
     ) -> "Profile":
@@ -195,7 +195,7 @@ class Profile(Contour):
             self.eta, alpha
         )
 
-    def _slope(self, curve: Curve, alpha: Floats) -> Floats:
+    def _slope(self, curve: Coordinate, alpha: Floats) -> Floats:
         """Derivative of `curve`, from polynomials through seven points within the range.
 
         Of several spacings it is the one that agrees best with the next finer one.
@@ -213,13 +213,13 @@ class Profile(Contour):
         return np.asarray(np.take_along_axis(slopes, best[None], axis=0)[0])
 
 
-def _scaled(curve: Curve, factor: float, alpha: Floats) -> Floats:
+def _scaled(curve: Coordinate, factor: float, alpha: Floats) -> Floats:
     return factor * curve(alpha)
 
 
-def _raised(curve: Curve, height: float, alpha: Floats) -> Floats:
+def _raised(curve: Coordinate, height: float, alpha: Floats) -> Floats:
     return curve(alpha) + height
 
 
-def _mirrored(curve: Curve, sign: int, alpha: Floats) -> Floats:
+def _mirrored(curve: Coordinate, sign: int, alpha: Floats) -> Floats:
     return sign * curve(-alpha)

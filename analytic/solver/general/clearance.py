@@ -25,14 +25,14 @@ _AT_ONCE = 2_000_000  # corners beside contacts, so that they find room
 _INSIDE = 1e-9  # L; by how much a point may seem to lie in the object
 
 
-def is_clear(centreline: Contour, contact: States) -> Booleans:
+def is_clear(contour: Contour, contact: States) -> Booleans:
     """Whether states touch the object nowhere else."""
     clear = _bends_one_way(contact)
     left = np.flatnonzero(~clear & np.isfinite(contact.excess))
     if left.size:
         for some in np.array_split(left, 1 + left.size // _CHUNK):
-            clear[some] = _is_outside(centreline, take(contact, some))
-    return clear & _starts_outside(contact) & _passes_corners(centreline, contact)
+            clear[some] = _is_outside(contour, take(contact, some))
+    return clear & _starts_outside(contact) & _passes_corners(contour, contact)
 
 
 def _starts_outside(contact: States) -> Booleans:
@@ -41,13 +41,13 @@ def _starts_outside(contact: States) -> Booleans:
     A tip comes from below the tangent there; a vibrissa that goes along is not curved more than the
     object.
     """
-    point, natural = contact.felt, contact.vibrissa.unloaded.curvature(contact.arc_length)
+    point, natural = contact.offset_point, contact.vibrissa.unloaded.curvature(contact.arc_length)
     below = contact.excess <= np.pi + _INSIDE
     flatter = natural * point.stretch <= point.turning * (1 + _INSIDE)
     return np.asarray(below & (flatter | ~contact.tangent))
 
 
-def _passes_corners(centreline: Contour, contact: States) -> Booleans:
+def _passes_corners(contour: Contour, contact: States) -> Booleans:
     """Whether a vibrissa curved towards the object stays off the corners next to its contact.
 
     These may be closer to each other than the places that are looked at. There the vibrissa is a
@@ -56,22 +56,22 @@ def _passes_corners(centreline: Contour, contact: States) -> Booleans:
     clear = np.ones(len(contact.force), dtype=bool)
     s = contact.arc_length
     natural = contact.vibrissa.unloaded.curvature(s)
-    breaks = centreline.breaks()
+    breaks = contour.breaks()
     some = np.flatnonzero((natural > _STRAIGHT) & np.isfinite(contact.excess))
     if not (breaks.size and some.size):
         return clear
-    corners = centreline.at(breaks)
+    corners = contour.at(breaks)
     for few in np.array_split(some, 1 + some.size * breaks.size // _AT_ONCE):
         one, curved = take(contact, few), natural[few, None]
-        felt, taper = one.felt, one.vibrissa.unloaded.taper(s[few])[:, None]
-        sin, cos = np.sin(felt.alpha)[:, None], np.cos(felt.alpha)[:, None]
-        x = corners.xi + taper * np.sin(corners.alpha) - felt.xi[:, None]
-        y = corners.eta - taper * np.cos(corners.alpha) - felt.eta[:, None]
+        offset_point, taper = one.offset_point, one.vibrissa.unloaded.taper(s[few])[:, None]
+        sin, cos = np.sin(offset_point.alpha)[:, None], np.cos(offset_point.alpha)[:, None]
+        x = corners.xi + taper * np.sin(corners.alpha) - offset_point.xi[:, None]
+        y = corners.eta - taper * np.cos(corners.alpha) - offset_point.eta[:, None]
         along, into = x * cos + y * sin, y * cos - x * sin
         near = (along > -_BESIDE) & (along < np.minimum(_BESIDE, 1 - s[few])[:, None])
         back = np.maximum(-along, 0.0)
-        form, force = one.vibrissa.form, one.force
-        push = force if form is None else force * form.flexibility(s[few])
+        rod, force = one.vibrissa.rod, one.force
+        push = force if rod is None else force * rod.flexibility(s[few])
         bent = curved * along**2 / 2 - push[:, None] * back**3 / 6
         bent -= np.maximum(one.excess, 0.0)[:, None] * back
         clear[few] = ~(near & (bent > into + _INSIDE)).any(axis=1)
@@ -81,37 +81,37 @@ def _passes_corners(centreline: Contour, contact: States) -> Booleans:
 def _bends_one_way(contact: States) -> Booleans:
     """Whether the slope falls all along: the vibrissa is then below the tangent at its contact."""
     vibrissa, natural = contact.vibrissa, contact.vibrissa.natural_curvature
-    if vibrissa.form is not None:
+    if vibrissa.rod is not None:
         # The moment about places on the way to the clamp grows, and then may fall to the clamp's.
-        held = (contact.couple >= 0) & (contact.moment >= 0) & (contact.swing < np.pi)
+        held = (contact.couple >= 0) & (contact.moment >= 0) & (contact.amplitude < np.pi)
         across = contact.tip_angle - contact.point.alpha <= np.pi / 2
-        return np.asarray(held & across & (vibrissa.form.most_curved <= _STRAIGHT))
+        return np.asarray(held & across & (vibrissa.rod.most_curved <= _STRAIGHT))
     at_contact = natural - vibrissa.friction * vibrissa.radius * contact.force
-    bent = (at_contact <= 0) & (natural <= contact.moment) & (contact.swing < np.pi)
+    bent = (at_contact <= 0) & (natural <= contact.moment) & (contact.amplitude < np.pi)
     return np.asarray(bent & (natural <= 0))
 
 
-def _is_outside(centreline: Contour, contact: States) -> Booleans:
+def _is_outside(contour: Contour, contact: States) -> Booleans:
     parts = zip(_loaded(contact), _free(contact), strict=True)
     s, x, y = (np.concatenate(part) for part in parts)
     taper = contact.vibrissa.unloaded.taper(s)
-    return np.asarray(_outside(centreline, x, y, taper).all(axis=0))
+    return np.asarray(_outside(contour, x, y, taper).all(axis=0))
 
 
-def is_rest_clear(centreline: Contour, vibrissa: Vibrissa, foot_x: Floats) -> Booleans:
+def is_rest_clear(contour: Contour, vibrissa: Vibrissa, foot_x: Floats) -> Booleans:
     """Whether the unloaded vibrissa stays outside the object."""
     s = np.broadcast_to(_PLACES[:, None], (_PLACES.size, foot_x.size))
     x, y, _ = vibrissa.unloaded.at(s)
-    outside = _outside(centreline, x + foot_x, y, vibrissa.unloaded.taper(s))
+    outside = _outside(contour, x + foot_x, y, vibrissa.unloaded.taper(s))
     return np.asarray(outside.all(axis=0))
 
 
 def _loaded(contact: States) -> tuple[Floats, Floats, Floats]:
     """Arc length and place of parts of the loaded span, shape (k, n)."""
-    vibrissa, place = contact.vibrissa, contact.felt
+    vibrissa, place = contact.vibrissa, contact.offset_point
     lean = np.arctan(vibrissa.friction)
     slope, push = contact.tip_angle - place.alpha - lean, np.hypot(1, vibrissa.friction)
-    if vibrissa.form is None:
+    if vibrissa.rod is None:
         s = contact.arc_length * (1 - _PLACES[:, None])
         part = vibrissa.back_to_clamp(
             np.broadcast_to(slope, s.shape),
@@ -123,7 +123,7 @@ def _loaded(contact: States) -> tuple[Floats, Floats, Floats]:
     else:
         trail: list[Trail] = []
         march(
-            vibrissa.form,
+            vibrissa.rod,
             slope,
             -contact.couple,
             push * contact.force,
@@ -141,7 +141,7 @@ def _loaded(contact: States) -> tuple[Floats, Floats, Floats]:
 
 def _free(contact: States) -> tuple[Floats, Floats, Floats]:
     """Arc length and place of parts of the free end, unloaded, shape (16, n)."""
-    rest, place, begin = contact.vibrissa.unloaded, contact.felt, contact.arc_length
+    rest, place, begin = contact.vibrissa.unloaded, contact.offset_point, contact.arc_length
     s = begin + (1 - begin) * _PLACES[:, None]
     x, y, _ = rest.at(s)
     first_x, first_y, slope = rest.at(begin)
@@ -150,11 +150,11 @@ def _free(contact: States) -> tuple[Floats, Floats, Floats]:
     return s, place.xi + x * cos - y * sin, place.eta + y * cos + x * sin
 
 
-def _outside(centreline: Contour, x: Floats, y: Floats, taper: Floats) -> Booleans:
+def _outside(contour: Contour, x: Floats, y: Floats, taper: Floats) -> Booleans:
     """Whether the vibrissa, thicker than at its tip by `taper`, is outside; of any shape."""
-    low, high = centreline.t_range
-    t = np.unique(np.concatenate([np.linspace(low, high, _TANGENTS), centreline.breaks()]))
-    alpha, xi, eta = centreline.at(t)[:3]
+    low, high = contour.t_range
+    t = np.unique(np.concatenate([np.linspace(low, high, _TANGENTS), contour.breaks()]))
+    alpha, xi, eta = contour.at(t)[:3]
     ok = np.isfinite(xi) & np.isfinite(eta)
     t, alpha, xi, eta = (values[ok] for values in (t, alpha, xi, eta))
     places = np.column_stack([x.ravel(), y.ravel()])
@@ -170,12 +170,12 @@ def _outside(centreline: Contour, x: Floats, y: Floats, taper: Floats) -> Boolea
 
         def along(which: Integers, at: Floats) -> Floats:
             """Of the place, along the tangent: zero where the tangent is the best."""
-            point = centreline.at(at)
+            point = contour.at(at)
             place = places[left[which]]
             dx, dy = place[:, 0] - point.xi, place[:, 1] - point.eta
             return np.asarray(dx * np.cos(point.alpha) + dy * np.sin(point.alpha))
 
-        point = centreline.at(zeros(along, begin, end))
+        point = contour.at(zeros(along, begin, end))
         dx, dy = places[left, 0] - point.xi, places[left, 1] - point.eta
         outside[left] = dx * np.sin(point.alpha) - dy * np.cos(point.alpha) >= least[left]
     return np.asarray(outside.reshape(x.shape))

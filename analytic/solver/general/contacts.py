@@ -21,34 +21,34 @@ _STEPS = 8  # from the paper's vibrissa
 _BALANCED = 1e-12  # L, rad
 
 
-def contacts(centreline: Contour, t: Floats, vibrissa: Vibrissa) -> States:
+def contacts(contour: Contour, t: Floats, vibrissa: Vibrissa) -> States:
     """The vibrissa against each contour point, tangential or at the tip.
 
     They are those of the sweep along the contour, with what follows after the snap-off; of two at
     the same point the later one. Points that it does not come to are tried from the paper's
     vibrissa there, as it is given its curvature, its elastic clamp and its friction.
     """
-    reach = contact_range(centreline)
-    touch = first_touch(centreline, reach, vibrissa.unloaded)
-    path = follow(centreline, vibrissa, touch, reach)
+    reach = contact_range(contour)
+    touch = first_touch(contour, reach, vibrissa.unloaded)
+    path = follow(contour, vibrissa, touch, reach)
     if len(t) < _MANY:
-        z = _solved(centreline, vibrissa, path, t)
+        z = _solved(contour, vibrissa, path, t)
     else:
         some = np.unique(np.append(np.sort(t)[::_EVERY], t.max()))
-        known = nodes(centreline, vibrissa, some, _solved(centreline, vibrissa, path, some))
-        z, found = between(centreline, vibrissa, known, t)
-        z[~found] = _solved(centreline, vibrissa, path, t[~found])
-    return states(centreline.at(t), z[:, 0], z[:, 1], vibrissa)
+        known = nodes(contour, vibrissa, some, _solved(contour, vibrissa, path, some))
+        z, found = between(contour, vibrissa, known, t)
+        z[~found] = _solved(contour, vibrissa, path, t[~found])
+    return states(contour.at(t), z[:, 0], z[:, 1], vibrissa)
 
 
-def _solved(centreline: Contour, vibrissa: Vibrissa, path: Path, t: Floats) -> Floats:
+def _solved(contour: Contour, vibrissa: Vibrissa, path: Path, t: Floats) -> Floats:
     """Force and excess at each contour parameter, shape (n, 2); NaN where there is no contact."""
-    point = centreline.at(t)
+    point = contour.at(t)
     z, missed = _balanced(point, vibrissa, _on_path(path, t))
     left = np.flatnonzero(~(missed <= _BALANCED))
     if left.size:
         at = take(point, left)
-        z[left], missed[left] = _from_plain(centreline, t[left], at, vibrissa)
+        z[left], missed[left] = _from_plain(contour, t[left], at, vibrissa)
     z[~(missed <= _BALANCED)] = np.nan
     return z
 
@@ -69,14 +69,14 @@ def _on_path(path: Path, t: Floats) -> Floats:
 
 
 def _from_plain(
-    centreline: Contour, t: Floats, point: ContourPoint, vibrissa: Vibrissa
+    contour: Contour, t: Floats, point: ContourPoint, vibrissa: Vibrissa
 ) -> tuple[Floats, Floats]:
     """Force and excess, shape (n, 2), and what they miss, followed from the paper's vibrissa.
 
     What is lost on the way is given up: a search for what is not there takes hundreds of times as
     long as one that ends.
     """
-    plain = equilibria(centreline, t).states(Vibrissa())
+    plain = equilibria(contour, t).states(Vibrissa())
     z = np.stack([plain.force, plain.excess], axis=1)
     missed = np.where(np.isfinite(z).all(axis=1), 0.0, np.inf)
     for share in np.linspace(0, 1, _STEPS + 1)[1:]:
@@ -93,10 +93,10 @@ def _balanced(point: ContourPoint, vibrissa: Vibrissa, start: Floats) -> tuple[F
 
     def misses(z: Floats, which: Integers) -> Floats:
         found = states(take(point, which), z[:, 0], z[:, 1], vibrissa)
-        return np.stack([found.twist, found.above], axis=1)
+        return np.stack([found.slope_residual, found.height_residual], axis=1)
 
     def jacobian(z: Floats, which: Integers) -> Floats:
         _, rates = with_rates(take(point, which), z[:, 0], z[:, 1], vibrissa)
-        return np.stack([rates.twist, rates.above], axis=1)[:, :, 1:]
+        return np.stack([rates.slope_residual, rates.height_residual], axis=1)[:, :, 1:]
 
     return solve(misses, jacobian, start)

@@ -35,7 +35,7 @@ class Point(NamedTuple):
     foot_x: float
     rate: float
     """Foot position [L] and its derivative by the curve's length."""
-    swing: float = 0.0
+    amplitude: float = 0.0
     """Amplitude of the span [rad]; see `States`."""
     sense: int = 1
     """Whether `direction` is that of the cross product of the two conditions' derivatives, or -1.
@@ -45,10 +45,10 @@ class Point(NamedTuple):
     """
 
 
-class Curve(NamedTuple):
+class EquilibriumCurve(NamedTuple):
     """The curve of one vibrissa along one contour, within reach."""
 
-    centreline: Contour
+    contour: Contour
     vibrissa: Vibrissa
     t_range: tuple[float, float]
     breaks: Floats
@@ -176,14 +176,14 @@ class Curve(NamedTuple):
     def _with_direction(self, z: Floats) -> tuple[Point, Floats, Floats]:
         """A point, what it misses, and the derivatives of that and of the foot, shape (3, 3)."""
         here, rates = with_rates(
-            self.centreline.at(z[:1]), z[1:2].copy(), z[2:3].copy(), self.vibrissa
+            self.contour.at(z[:1]), z[1:2].copy(), z[2:3].copy(), self.vibrissa
         )
         slopes = np.concatenate(rates)
         direction = cross(slopes[0], slopes[1])
         direction = direction / (self._size(direction, z) or math.nan)
-        misses = np.array([here.twist[0], here.above[0]])
+        misses = np.array([here.slope_residual[0], here.height_residual[0]])
         rate = float(slopes[2] @ direction)
-        point = Point(z, direction, float(here.foot_x[0]), rate, float(here.swing[0]))
+        point = Point(z, direction, float(here.foot_x[0]), rate, float(here.amplitude[0]))
         return point, misses, slopes
 
     def _corrected(

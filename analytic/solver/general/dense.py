@@ -27,10 +27,10 @@ class Nodes(NamedTuple):
     inverse: Floats
 
 
-def nodes(centreline: Contour, vibrissa: Vibrissa, t: Floats, z: Floats) -> Nodes:
+def nodes(contour: Contour, vibrissa: Vibrissa, t: Floats, z: Floats) -> Nodes:
     """What solved contacts say of those beside them."""
-    _, rates = with_rates(centreline.at(t), z[:, 0], z[:, 1], vibrissa)
-    slopes = np.stack([rates.twist, rates.above], axis=1)
+    _, rates = with_rates(contour.at(t), z[:, 0], z[:, 1], vibrissa)
+    slopes = np.stack([rates.slope_residual, rates.height_residual], axis=1)
     a, b, c, d = slopes[:, 0, 1], slopes[:, 0, 2], slopes[:, 1, 1], slopes[:, 1, 2]
     with np.errstate(all="ignore"):
         inverse = np.moveaxis(np.array([[d, -b], [-c, a]]) / (a * d - b * c), -1, 0)
@@ -39,18 +39,18 @@ def nodes(centreline: Contour, vibrissa: Vibrissa, t: Floats, z: Floats) -> Node
 
 
 def between(
-    centreline: Contour, vibrissa: Vibrissa, known: Nodes, t: Floats
+    contour: Contour, vibrissa: Vibrissa, known: Nodes, t: Floats
 ) -> tuple[Floats, Booleans]:
     """Contacts that start from Hermite's cubic between their neighbours."""
     z, found = np.empty((len(t), 2)), np.zeros(len(t), dtype=bool)
     for begin in range(0, len(t), _CHUNK):
         part = slice(begin, begin + _CHUNK)
-        z[part], found[part] = _between(centreline, vibrissa, known, t[part])
+        z[part], found[part] = _between(contour, vibrissa, known, t[part])
     return z, found
 
 
 def _between(
-    centreline: Contour, vibrissa: Vibrissa, known: Nodes, t: Floats
+    contour: Contour, vibrissa: Vibrissa, known: Nodes, t: Floats
 ) -> tuple[Floats, Booleans]:
     left = np.clip(np.searchsorted(known.t, t, side="right") - 1, 0, len(known.t) - 2)
     with np.errstate(all="ignore"):  # next to a contact that there is not
@@ -60,20 +60,20 @@ def _between(
         force, excess = hermite(share, *ends).T
         inside = known.z[left, 1] < 0
         alike = inside == (known.z[left + 1, 1] < 0)
-        smooth = ~_has_break(centreline, known.t[left], known.t[left + 1])
+        smooth = ~_has_break(contour, known.t[left], known.t[left + 1])
         hopeful = np.flatnonzero(alike & smooth & (force >= 0) & ((excess < 0) == inside))
     found = np.zeros(len(t), dtype=bool)
-    point = centreline.at(t[hopeful])
+    point = contour.at(t[hopeful])
     f, w = force[hopeful], excess[hopeful]
     (a, b), (c, d) = np.moveaxis(known.inverse[left[hopeful]], 0, -1)
     for _ in range(_STEPS):
         here = states(point, np.maximum(f, 0.0), w, vibrissa)
-        twist, above = here.twist, here.above
-        close = np.maximum(np.abs(twist), np.abs(above)) <= _CLOSE
+        slope_residual, height_residual = here.slope_residual, here.height_residual
+        close = np.maximum(np.abs(slope_residual), np.abs(height_residual)) <= _CLOSE
         if close.all():
             break
-        f = np.where(close, f, f - (a * twist + b * above))
-        w = np.where(close, w, w - (c * twist + d * above))
+        f = np.where(close, f, f - (a * slope_residual + b * height_residual))
+        w = np.where(close, w, w - (c * slope_residual + d * height_residual))
     found[hopeful] = close & ((w < 0) == inside[hopeful])
     return np.stack([_put(force, hopeful, f), _put(excess, hopeful, w)], axis=1), found
 
@@ -84,6 +84,6 @@ def _put(values: Floats, where: Integers, new: Floats) -> Floats:
     return values
 
 
-def _has_break(centreline: Contour, begin: Floats, end: Floats) -> Booleans:
-    breaks = centreline.breaks()
+def _has_break(contour: Contour, begin: Floats, end: Floats) -> Booleans:
+    breaks = contour.breaks()
     return np.asarray(np.searchsorted(breaks, begin) != np.searchsorted(breaks, end))

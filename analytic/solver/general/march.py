@@ -19,8 +19,8 @@ from scipy.special import gammaln
 
 from analytic.numerics.batches import put, take
 from analytic.problem.arrays import Floats, Integers
-from analytic.solver.general.form import Form
 from analytic.solver.general.panel import TO_NODES, WEIGHTS, Panel
+from analytic.solver.general.rod import RodProperties
 from analytic.solver.general.span import Start
 
 _ITERATIONS = np.arange(30)
@@ -31,7 +31,7 @@ _WAVE = 0.8  # rad; of the pendulum's phase on a panel
 _MOST = 64  # parts of a panel
 
 
-class Place(NamedTuple):
+class SpanEnd(NamedTuple):
     """Where spans have come to; arrays of shape (n,)."""
 
     theta: Floats
@@ -41,7 +41,7 @@ class Place(NamedTuple):
     along: Floats
     across: Floats
     """Integrals of cos(theta) and sin(theta) on the way."""
-    swing: Floats
+    amplitude: Floats
     """By how much the pendulum's phase has changed [rad]."""
 
 
@@ -54,7 +54,7 @@ class Trail(NamedTuple):
 
 
 def march(
-    form: Form,
+    rod: RodProperties,
     theta: Floats,
     m: Floats,
     force: Floats,
@@ -63,12 +63,12 @@ def march(
     from_clamp: bool = False,
     finer: int = 1,
     trail: list[Trail] | None = None,
-) -> Place:
+) -> SpanEnd:
     """March along spans from the contact to the clamp, or back."""
     nowhere = ~((force >= 0) & (length >= 0))
-    here = Place(np.where(nowhere, np.nan, theta), m, *np.zeros((3, len(theta))))
+    here = SpanEnd(np.where(nowhere, np.nan, theta), m, *np.zeros((3, len(theta))))
     force = np.where(nowhere, 0.0, force)
-    ends = _panels(form, force, length, finer).tolist()
+    ends = _panels(rod, force, length, finer).tolist()
     panels = list(pairwise(ends))
     for low, high in panels if from_clamp else reversed(panels):
         on = length > low
@@ -78,11 +78,11 @@ def march(
         some = here if everywhere else take(here, on)
         end = length if everywhere else length[on]
         if end.min() >= high:
-            panel = form.known_panel(*((low, high) if from_clamp else (high, low)))
+            panel = rod.known_panel(*((low, high) if from_clamp else (high, low)))
         else:
             end = np.minimum(np.maximum(end, low), high)
             begin = np.full_like(end, low)
-            panel = form.panel(*((begin, end) if from_clamp else (end, begin)))
+            panel = rod.panel(*((begin, end) if from_clamp else (end, begin)))
         new = _step(panel, some, force if everywhere else force[on], trail)
         if everywhere:
             here = new
@@ -92,25 +92,25 @@ def march(
 
 
 def back_to_clamp(
-    form: Form, theta: Floats, m: Floats, force: Floats, length: Floats, finer: int = 1
+    rod: RodProperties, theta: Floats, m: Floats, force: Floats, length: Floats, finer: int = 1
 ) -> Start:
     """As `span.back_to_clamp`, of a vibrissa that varies."""
     given = np.broadcast_arrays(theta, m, force, length)
     shape = given[0].shape
-    end = march(form, *(np.array(values, dtype=float).ravel() for values in given), finer=finer)
-    theta, m, along, across, swing = (values.reshape(shape) for values in end)
+    end = march(rod, *(np.array(values, dtype=float).ravel() for values in given), finer=finer)
+    theta, m, along, across, amplitude = (values.reshape(shape) for values in end)
     chi = np.pi / 4 - theta / 2
-    return Start(np.sin(chi), np.cos(chi), m, along, across, np.abs(swing))
+    return Start(np.sin(chi), np.cos(chi), m, along, across, np.abs(amplitude))
 
 
-def _panels(form: Form, force: Floats, length: Floats, finer: int) -> Floats:
+def _panels(rod: RodProperties, force: Floats, length: Floats, finer: int) -> Floats:
     """The form's ends, and parts between as the forces ask for that reach there."""
-    ends = form.ends
+    ends = rod.ends
     # A span is loaded up to its contact: what lies beyond does not ask for shorter panels.
     order = np.argsort(length)
     largest = np.append(np.maximum.accumulate(force[order][::-1])[::-1], 0.0)
     reached = largest[np.searchsorted(length[order], ends[:-1], side="right")]
-    waves = np.ceil(form.phases * np.sqrt(reached) / _WAVE)
+    waves = np.ceil(rod.phases * np.sqrt(reached) / _WAVE)
     counts = finer * np.minimum(np.maximum(waves, 1), _MOST).astype(int)
     if counts.max() == 1:
         return ends
@@ -120,7 +120,7 @@ def _panels(form: Form, force: Floats, length: Floats, finer: int) -> Floats:
     return np.append(inner, ends[-1])
 
 
-def _step(panel: Panel, here: Place, force: Floats, trail: list[Trail] | None) -> Place:
+def _step(panel: Panel, here: SpanEnd, force: Floats, trail: list[Trail] | None) -> SpanEnd:
     """March from one end of a panel to the other."""
     # By the natural curvature and the moment at the beginning; the force turns it further.
     reached = turned = here.theta + (panel.rest + panel.bend * here.m)
@@ -141,12 +141,12 @@ def _step(panel: Panel, here: Place, force: Floats, trail: list[Trail] | None) -
             )
         )
     first, final = _phases(panel, np.array([here.theta, last]), np.array([here.m, moment]), force)
-    return Place(
+    return SpanEnd(
         last,
         moment,
         here.along + size * WEIGHTS.dot(cos),
         here.across + size * WEIGHTS.dot(sin),
-        here.swing + (final - first + np.pi) % (2 * np.pi) - np.pi,
+        here.amplitude + (final - first + np.pi) % (2 * np.pi) - np.pi,
     )
 
 

@@ -14,8 +14,8 @@ import numpy as np
 from analytic.numerics.hermite import hermite
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
-from analytic.problem.rest import Touch
-from analytic.solver.general.curve import Curve, Point
+from analytic.problem.rest import FirstTouch
+from analytic.solver.general.curve import EquilibriumCurve, Point
 from analytic.solver.general.states import INSIDE, Vibrissa, with_rates
 
 # By how much the curve may turn between neighbours [rad], and its first step; finer if it is lost.
@@ -140,12 +140,12 @@ def located(events: Mapping[str, int | None], foot_x: Floats) -> dict[str, float
 
 
 def follow(
-    centreline: Contour, vibrissa: Vibrissa, touch: Touch, reach: tuple[float, float]
+    contour: Contour, vibrissa: Vibrissa, touch: FirstTouch, reach: tuple[float, float]
 ) -> Path:
     """Follow the equilibria from first contact to where force or reach end."""
     # A curved vibrissa comes as far up as its length when it is straightened, and no farther.
-    reach = reach[0], centreline.t_range[1]
-    curve = Curve(centreline, vibrissa, reach, centreline.breaks())
+    reach = reach[0], contour.t_range[1]
+    curve = EquilibriumCurve(contour, vibrissa, reach, contour.breaks())
     for turn, step in _STEPS:
         points = _points(curve, touch, turn, step)
         complete = _ended(points, reach)
@@ -157,7 +157,7 @@ def follow(
     return Path(z, direction, foot_x, rate, complete, vibrissa.least_force)
 
 
-def _exact(curve: Curve, points: list[Point]) -> list[Point]:
+def _exact(curve: EquilibriumCurve, points: list[Point]) -> list[Point]:
     """Points of the curve by Newton's method, across it, all at a time.
 
     One by one they are only good enough to go on from. A point of a sharp cone that misses its
@@ -169,16 +169,16 @@ def _exact(curve: Curve, points: list[Point]) -> list[Point]:
     size[:, 1] = np.maximum(curve.vibrissa.least_force, z[:, 1])
     normal = np.array([point.direction for point in points]) / size**2
     for polishes in range(_POLISHES + 1):
-        here, rates = with_rates(curve.centreline.at(z[:, 0]), z[:, 1], z[:, 2], curve.vibrissa)
-        misses = np.column_stack([here.twist, here.above, np.zeros(len(z))])
+        here, rates = with_rates(curve.contour.at(z[:, 0]), z[:, 1], z[:, 2], curve.vibrissa)
+        misses = np.column_stack([here.slope_residual, here.height_residual, np.zeros(len(z))])
         # One that is exact stays: it may stand on a kink.
         poor = (np.abs(misses).max(axis=1) > _MISSED) & (z[:, 1] > 0)
         if polishes == _POLISHES or not poor.any():
             break
-        slopes = np.stack([rates.twist, rates.above, normal], axis=1)[poor]
+        slopes = np.stack([rates.slope_residual, rates.height_residual, normal], axis=1)[poor]
         z[poor] -= np.linalg.solve(slopes, misses[poor, :, None])[..., 0]
         z[:, 2] = np.where(inside, np.minimum(z[:, 2], INSIDE), np.maximum(z[:, 2], 0.0))
-    way = np.cross(rates.twist, rates.above)
+    way = np.cross(rates.slope_residual, rates.height_residual)
     way *= np.sign(np.einsum("nk,nk->n", way, normal))[:, None]
     direction = way / np.linalg.norm(way / size, axis=1)[:, None]
     rate = np.einsum("nk,nk->n", rates.foot_x, direction)
@@ -186,7 +186,9 @@ def _exact(curve: Curve, points: list[Point]) -> list[Point]:
     return [point._replace(z=z, direction=d, foot_x=x, rate=r) for point, z, d, x, r in exact]
 
 
-def _points(curve: Curve, touch: Touch, largest: float, length: float) -> list[Point]:
+def _points(
+    curve: EquilibriumCurve, touch: FirstTouch, largest: float, length: float
+) -> list[Point]:
     """Points of the curve between which it turns by an angle at most, from a first step on."""
     points, behind = [curve.start(touch.t, touch.excess)], None
     # Past small facets the foot turns back at every corner, and goes on.
@@ -195,14 +197,14 @@ def _points(curve: Curve, touch: Touch, largest: float, length: float) -> list[P
         if length <= _SMALLEST or _ended(points, curve.t_range, slack):
             break
         here = points[-1]
-        if here.swing > _BUCKLES:
+        if here.amplitude > _BUCKLES:
             length = min(length, _NEAR)
         ahead = curve.advance(behind, here, length)
         turn = curve.turning(here, ahead[0]) if ahead else np.inf
         if turn > 2 * largest or (length > _SHORT and _hides(curve, here, ahead[0])):
             length /= 2
             continue
-        if length > _NEAR and ahead[0].swing > _BUCKLES:
+        if length > _NEAR and ahead[0].amplitude > _BUCKLES:
             length = max(length / 2, _NEAR)
             continue
         points.extend(ahead)
@@ -212,7 +214,7 @@ def _points(curve: Curve, touch: Touch, largest: float, length: float) -> list[P
     return points
 
 
-def _hides(curve: Curve, begin: Point, end: Point) -> bool:
+def _hides(curve: EquilibriumCurve, begin: Point, end: Point) -> bool:
     """Whether something may happen between two points that neither shows.
 
     The foot position may turn though its rates do not show it, unless the mean rate lies between
@@ -250,12 +252,12 @@ def _ended(points: list[Point], reach: tuple[float, float], slack: float = 0.0) 
     here = points[-1]
     if here.z[1] == 0 or here.z[0] in reach:
         return True
-    if not (here.swing > np.pi or here.z[2] > np.pi) or here.rate <= 0:
+    if not (here.amplitude > np.pi or here.z[2] > np.pi) or here.rate <= 0:
         return False
     return slack == 0 or here.foot_x > min(point.foot_x for point in points) + slack
 
 
-def _with_turns(curve: Curve, points: list[Point]) -> list[Point]:
+def _with_turns(curve: EquilibriumCurve, points: list[Point]) -> list[Point]:
     """The points, and those between where foot position or contact's arc length are least."""
     for rate in (_foot_rate, _excess_rate):
         found = points[:1]

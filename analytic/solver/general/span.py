@@ -35,7 +35,7 @@ class Start(NamedTuple):
     along: Floats
     across: Floats
     """Integrals of cos(theta) and sin(theta) from the clamp to the contact."""
-    swing: Floats
+    amplitude: Floats
     """Amplitude of the span: pi at half a period [rad]."""
 
 

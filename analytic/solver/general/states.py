@@ -21,7 +21,7 @@ from analytic.problem.case import Case
 from analytic.problem.contours.contour import ContourPoint
 from analytic.problem.unloaded import Unloaded
 from analytic.solver.general import march
-from analytic.solver.general.form import Form
+from analytic.solver.general.rod import RodProperties
 from analytic.solver.general.span import Start, back_to_clamp
 
 # Differences of second order, to one side: a force is not negative, and a phase ends where w = 0.
@@ -44,7 +44,7 @@ class Vibrissa(NamedTuple):
     """Coefficient, or one a state; positive where the object pushes the vibrissa to the right."""
     radius: float | Floats = 0.0
     """At the tip, or one a state [L]."""
-    form: Form | None = None
+    rod: RodProperties | None = None
     """What varies along the vibrissa, if anything does; the natural curvature is then its."""
 
     @classmethod
@@ -56,7 +56,7 @@ class Vibrissa(NamedTuple):
             beam.moment_unit / clamp_stiffness,
             friction,
             rest.tip_radius,
-            Form.of(beam) if beam.varies else None,
+            RodProperties.of(beam) if beam.varies else None,
         )
 
     @classmethod
@@ -68,41 +68,41 @@ class Vibrissa(NamedTuple):
     def is_plain(self) -> bool:
         """Whether it is the paper's: straight, uniform, rigidly clamped, without friction."""
         held = self.natural_curvature == 0 and self.compliance == 0
-        return self.form is None and held and not np.any(self.friction)
+        return self.rod is None and held and not np.any(self.friction)
 
     @property
     def unloaded(self) -> Unloaded:
         """Its shape and radius at rest."""
-        if self.form is not None:
-            return self.form.unloaded
+        if self.rod is not None:
+            return self.rod.unloaded
         radius = float(self.radius)
         return Unloaded(self.natural_curvature, radius, radius)
 
     def turn_after(self, s: Floats) -> Floats | float:
         """By how much it turns at rest on the way from a place to its tip [rad]."""
-        if self.form is not None:
-            return self.form.unloaded.turn_between(s, 1.0)
+        if self.rod is not None:
+            return self.rod.unloaded.turn_between(s, 1.0)
         return self.natural_curvature * (1 - s) if self.natural_curvature else 0.0
 
     def radius_at(self, s: Floats) -> Floats | float:
         """Radius."""
-        return self.radius if self.form is None else self.radius + self.form.unloaded.taper(s)
+        return self.radius if self.rod is None else self.radius + self.rod.unloaded.taper(s)
 
     @property
     def least_force(self) -> float:
         """The force that counts as large: it turns the tip by half a radian, nearly."""
-        return 1.0 if self.form is None else self.form.least_force
+        return 1.0 if self.rod is None else self.rod.least_force
 
     @property
     def lean(self) -> float:
         """Angle from the surface of a cone to its axis [rad]."""
-        return 0.0 if self.form is None else self.form.unloaded.lean
+        return 0.0 if self.rod is None else self.rod.unloaded.lean
 
-    def felt(self, point: ContourPoint, length: Floats) -> ContourPoint:
+    def offset_point(self, point: ContourPoint, length: Floats) -> ContourPoint:
         """The contour that the centreline feels where its radius is not the tip's."""
-        if self.form is None:
+        if self.rod is None:
             return point
-        taper = self.form.unloaded.taper(length)
+        taper = self.rod.unloaded.taper(length)
         return ContourPoint(
             point.alpha,
             point.xi + taper * np.sin(point.alpha),
@@ -113,9 +113,9 @@ class Vibrissa(NamedTuple):
 
     def back_to_clamp(self, slope: Floats, couple: Floats, force: Floats, length: Floats) -> Start:
         """March from the contact back to the clamp."""
-        if self.form is None:
+        if self.rod is None:
             return back_to_clamp(slope, self.natural_curvature - couple, force, length)
-        return march.back_to_clamp(self.form, slope, -couple, force, length)
+        return march.back_to_clamp(self.rod, slope, -couple, force, length)
 
     def scaled(self, share: float) -> "Vibrissa":
         """The vibrissa a part of the way from the paper's to this one, its radius as it is."""
@@ -124,7 +124,7 @@ class Vibrissa(NamedTuple):
             share * self.compliance,
             share * self.friction,
             self.radius,
-            None if self.form is None else self.form.scaled(share),
+            None if self.rod is None else self.rod.scaled(share),
         )
 
 
@@ -141,9 +141,9 @@ class States(NamedTuple):
     up: Floats
     reach: Floats
     """Height of the contact above the foot and its distance from it along x."""
-    twist: Floats
+    slope_residual: Floats
     """What the slope at the clamp misses [rad]; zero in balance."""
-    swing: Floats
+    amplitude: Floats
     """Amplitude of the span: from pi on, half a period, it is one that buckles [rad]."""
     vibrissa: Vibrissa
 
@@ -170,17 +170,17 @@ class States(NamedTuple):
     @property
     def foot_x(self) -> Floats:
         """Foot position."""
-        return self.felt.xi - self.reach
+        return self.offset_point.xi - self.reach
 
     @property
-    def above(self) -> Floats:
+    def height_residual(self) -> Floats:
         """Height of the span's end over the contour; zero in balance."""
-        return self.up - self.felt.eta
+        return self.up - self.offset_point.eta
 
     @property
-    def felt(self) -> ContourPoint:
+    def offset_point(self) -> ContourPoint:
         """The place of the centreline, on the contour that it feels there."""
-        return self.vibrissa.felt(self.point, self.arc_length)
+        return self.vibrissa.offset_point(self.point, self.arc_length)
 
 
 def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibrissa) -> States:
@@ -207,26 +207,26 @@ def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibriss
         start.along * sin + start.across * cos,
         start.along * cos - start.across * sin,
         vibrissa.compliance * moment - 2 * turned,
-        start.swing,
+        start.amplitude,
         vibrissa,
     )
 
 
-class Rates(NamedTuple):
+class StateRates(NamedTuple):
     """Derivatives of what a state misses and where it is, each of shape (n, 3).
 
     By the contour parameter t, the normal force and the excess.
     """
 
-    twist: Floats
-    above: Floats
+    slope_residual: Floats
+    height_residual: Floats
     """Of the height of the span's end over the contour's point."""
     foot_x: Floats
 
 
 def with_rates(
     point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibrissa
-) -> tuple[States, Rates]:
+) -> tuple[States, StateRates]:
     """`states` and their derivatives.
 
     The span as seen from the contact does not depend on alpha, so that the derivative by t is exact
@@ -240,9 +240,9 @@ def with_rates(
         excess + step_w * _BY_EXCESS[:, None],
         vibrissa,
     )
-    moment, up, reach, twist, swing = (values[0] for values in found[3:8])
-    here = States(point, force, excess, moment, up, reach, twist, swing, vibrissa)
-    stretch = here.felt.stretch
+    moment, up, reach, slope_residual, amplitude = (values[0] for values in found[3:8])
+    here = States(point, force, excess, moment, up, reach, slope_residual, amplitude, vibrissa)
+    stretch = here.offset_point.stretch
     sin, cos = np.sin(point.alpha), np.cos(point.alpha)
     by_t = (
         point.turning,
@@ -250,12 +250,12 @@ def with_rates(
         stretch * cos + point.turning * here.up,
     )
     up, reach = found.up, found.reach
-    if vibrissa.form is not None:  # where a cone is touched decides how thick it is
-        felt = found.felt
-        up = up - (felt.eta - point.eta)
-        reach = reach - (felt.xi - point.xi)
+    if vibrissa.rod is not None:  # where a cone is touched decides how thick it is
+        offset_point = found.offset_point
+        up = up - (offset_point.eta - point.eta)
+        reach = reach - (offset_point.xi - point.xi)
     rates = np.empty((3, len(force), 3))
     rates[..., 0] = by_t
-    changes = _WEIGHTS @ np.array([found.twist, up, -reach])
+    changes = _WEIGHTS @ np.array([found.slope_residual, up, -reach])
     rates[..., 1], rates[..., 2] = changes[:, 0] / step_f, changes[:, 1] / step_w
-    return here, Rates(*rates)
+    return here, StateRates(*rates)

@@ -14,43 +14,43 @@ _BALANCED = 1e-11  # L, rad; beyond, no state was found
 
 
 def solve_beside(
-    centreline: Contour, vibrissa: Vibrissa, foot_x: Floats, z: Floats, slopes: Floats
+    contour: Contour, vibrissa: Vibrissa, foot_x: Floats, z: Floats, slopes: Floats
 ) -> States:
     """States next to those of a problem that is solved, by one step of Newton's method."""
-    missed = _misses(centreline, vibrissa, foot_x, z)
+    missed = _misses(contour, vibrissa, foot_x, z)
     t, force, excess = (z - np.linalg.solve(slopes, missed[..., None])[..., 0]).T
-    return states(centreline.at(t), np.maximum(force, 0.0), excess, vibrissa)
+    return states(contour.at(t), np.maximum(force, 0.0), excess, vibrissa)
 
 
-def slopes_at(centreline: Contour, vibrissa: Vibrissa, z: Floats) -> Floats:
+def slopes_at(contour: Contour, vibrissa: Vibrissa, z: Floats) -> Floats:
     """Derivatives of what states miss and of their foot positions."""
-    _, rates = with_rates(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
+    _, rates = with_rates(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
     return np.stack(rates, axis=1)
 
 
-def _misses(centreline: Contour, vibrissa: Vibrissa, foot_x: Floats, z: Floats) -> Floats:
+def _misses(contour: Contour, vibrissa: Vibrissa, foot_x: Floats, z: Floats) -> Floats:
     """What states miss at the clamp's slope, at the contact's height and at the foot."""
-    here = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
-    return np.stack([here.twist, here.above, here.foot_x - foot_x], axis=1)
+    here = states(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
+    return np.stack([here.slope_residual, here.height_residual, here.foot_x - foot_x], axis=1)
 
 
 def solve_near(
-    centreline: Contour, vibrissa: Vibrissa, foot_x: Floats, start: Floats
+    contour: Contour, vibrissa: Vibrissa, foot_x: Floats, start: Floats
 ) -> tuple[Floats, Booleans]:
     """Contour parameter, force and excess at each foot position, and whether in balance."""
 
     def misses(z: Floats, which: Integers) -> Floats:
-        return _misses(centreline, vibrissa, foot_x[which], z)
+        return _misses(contour, vibrissa, foot_x[which], z)
 
     def jacobian(z: Floats, which: Integers) -> Floats:
-        return slopes_at(centreline, vibrissa, z)
+        return slopes_at(contour, vibrissa, z)
 
     z, missed = solve(misses, jacobian, start)
     return z, missed <= _BALANCED * np.maximum(1.0, np.abs(foot_x))
 
 
 def solve_places(
-    centreline: Contour, vibrissa: Vibrissa, path: Path, foot_x: Floats
+    contour: Contour, vibrissa: Vibrissa, path: Path, foot_x: Floats
 ) -> tuple[Floats, Booleans]:
     """Contour parameter, force and excess of the state at each foot position on the path.
 
@@ -62,7 +62,7 @@ def solve_places(
     scale = np.ones_like(begin)
     scale[:, 1] = np.maximum(vibrissa.least_force, begin[:, 1])
 
-    z, balanced = solve_near(centreline, vibrissa, foot_x, guess)
+    z, balanced = solve_near(contour, vibrissa, foot_x, guess)
     along = np.einsum("nk,nk->n", (z - begin) / scale, way / scale) / length
     strayed = np.linalg.norm((z - guess) / scale, axis=1)
     found = balanced & ((z[:, 2] < 0) == path.tangent[cells]) & (strayed <= _NEAR * length + _ASIDE)

@@ -35,16 +35,16 @@ class Sticking(NamedTuple):
     stops; or it would slide on again, or has no state beside the last one, and lets go."""
 
 
-def stick(centreline: Contour, vibrissa: Vibrissa, start: Floats, until: float) -> Sticking:
+def stick(contour: Contour, vibrissa: Vibrissa, start: Floats, until: float) -> Sticking:
     """Let the foot go back, to the right, while nothing slides."""
     limit = float(np.arctan(vibrissa.friction))
     z = [np.append(start, limit)]
-    foot_x = [float(_states(centreline, vibrissa, z[0][None]).foot_x[0])]
+    foot_x = [float(_states(contour, vibrissa, z[0][None]).foot_x[0])]
     step, rate = _FIRST, np.zeros(4)
     while foot_x[-1] < until:
         ahead = min(foot_x[-1] + step, until)
         guess = z[-1] + (ahead - foot_x[-1]) * rate
-        found, missed = _at_foot(centreline, vibrissa, z[0], np.array([ahead]), guess[None])
+        found, missed = _at_foot(contour, vibrissa, z[0], np.array([ahead]), guess[None])
         change = np.abs(found[0] - guess) / np.maximum(1.0, np.abs(z[-1]))
         if not (missed[0] <= _BALANCED and change.max() < _NEAR):
             step /= 2
@@ -54,7 +54,7 @@ def stick(centreline: Contour, vibrissa: Vibrissa, start: Floats, until: float) 
         if found[0, 3] > limit + _NEAR * limit:
             return Sticking(np.array(z), np.array(foot_x), "unsolved")
         if found[0, 3] <= -limit:
-            return _ended(centreline, vibrissa, z, foot_x, found[0])
+            return _ended(contour, vibrissa, z, foot_x, found[0])
         rate = (found[0] - z[-1]) / (ahead - foot_x[-1])
         z.append(found[0])
         foot_x.append(ahead)
@@ -63,7 +63,7 @@ def stick(centreline: Contour, vibrissa: Vibrissa, start: Floats, until: float) 
 
 
 def _ended(
-    centreline: Contour, vibrissa: Vibrissa, z: list[Floats], foot_x: list[float], beyond: Floats
+    contour: Contour, vibrissa: Vibrissa, z: list[Floats], foot_x: list[float], beyond: Floats
 ) -> Sticking:
     """The way to the state that starts to slide back, before one whose angle is beyond it."""
     limit = float(np.arctan(vibrissa.friction))
@@ -71,20 +71,20 @@ def _ended(
     guess = z[-1] + share * (beyond - z[-1])
 
     def misses(at: Floats, _: Integers) -> Floats:
-        return _misses(centreline, vibrissa, z[0], np.column_stack([at, [-limit]]))
+        return _misses(contour, vibrissa, z[0], np.column_stack([at, [-limit]]))
 
     last, missed = solve(misses, _differences(misses), guess[None, :3])
     if not missed[0] <= _BALANCED:
         raise ArithmeticError("the state that starts to slide back is lost")
     end = np.append(_in_phase(last)[0], -limit)
-    place = float(_states(centreline, vibrissa, end[None]).foot_x[0])
+    place = float(_states(contour, vibrissa, end[None]).foot_x[0])
     return Sticking(np.array([*z, end]), np.array([*foot_x, place]), "slides back")
 
 
-def between(centreline: Contour, vibrissa: Vibrissa, known: Sticking, foot_x: Floats) -> Floats:
+def between(contour: Contour, vibrissa: Vibrissa, known: Sticking, foot_x: Floats) -> Floats:
     """The sticking states at given foot positions."""
     guess = np.stack([np.interp(foot_x, known.foot_x, column) for column in known.z.T], axis=1)
-    found, missed = _at_foot(centreline, vibrissa, known.z[0], foot_x, guess)
+    found, missed = _at_foot(contour, vibrissa, known.z[0], foot_x, guess)
     if not (missed <= _BALANCED).all():
         place = foot_x[int(np.argmax(missed))]
         raise ArithmeticError(f"the sticking vibrissa is lost at foot_x = {place:.6g} L")
@@ -92,24 +92,24 @@ def between(centreline: Contour, vibrissa: Vibrissa, known: Sticking, foot_x: Fl
 
 
 def _at_foot(
-    centreline: Contour, vibrissa: Vibrissa, start: Floats, foot_x: Floats, guess: Floats
+    contour: Contour, vibrissa: Vibrissa, start: Floats, foot_x: Floats, guess: Floats
 ) -> tuple[Floats, Floats]:
     """States that stick since `start` at foot positions, shape (n, 4), and what they miss."""
 
     def misses(at: Floats, which: Integers) -> Floats:
-        missed = _misses(centreline, vibrissa, start, at)
-        apart = _states(centreline, vibrissa, at).foot_x - foot_x[which]
+        missed = _misses(contour, vibrissa, start, at)
+        apart = _states(contour, vibrissa, at).foot_x - foot_x[which]
         return np.column_stack([missed, apart])
 
     z, missed = solve(misses, _differences(misses), guess)
     return np.column_stack([_in_phase(z), z[:, 3]]), missed
 
 
-def _misses(centreline: Contour, vibrissa: Vibrissa, start: Floats, z: Floats) -> Floats:
+def _misses(contour: Contour, vibrissa: Vibrissa, start: Floats, z: Floats) -> Floats:
     """What states miss at the clamp's slope, at the contact's height and by sliding."""
-    here = _states(centreline, vibrissa, z)
-    slid = _slid(centreline, vibrissa, start, z)
-    return np.stack([here.twist, here.above, slid], axis=1)
+    here = _states(contour, vibrissa, z)
+    slid = _slid(contour, vibrissa, start, z)
+    return np.stack([here.slope_residual, here.height_residual, slid], axis=1)
 
 
 def _differences(misses: Misses) -> Jacobian:
@@ -127,10 +127,10 @@ def _differences(misses: Misses) -> Jacobian:
     return jacobian
 
 
-def _states(centreline: Contour, vibrissa: Vibrissa, z: Floats) -> States:
+def _states(contour: Contour, vibrissa: Vibrissa, z: Floats) -> States:
     held = vibrissa._replace(friction=np.tan(z[:, 3]))
     t, force, excess = _in_phase(z).T
-    return states(centreline.at(t), force, excess, held)
+    return states(contour.at(t), force, excess, held)
 
 
 def _in_phase(z: Floats) -> Floats:
@@ -140,7 +140,7 @@ def _in_phase(z: Floats) -> Floats:
     return np.column_stack([t, np.maximum(force, 0.0), np.where(excess < 0, inside, excess)])
 
 
-def _slid(centreline: Contour, vibrissa: Vibrissa, start: Floats, z: Floats) -> Floats:
+def _slid(contour: Contour, vibrissa: Vibrissa, start: Floats, z: Floats) -> Floats:
     """By how much vibrissa and object would have slid on each other since `start` [L].
 
     The object's surface passes by what the centreline's contour does less what that turns, the
@@ -153,17 +153,17 @@ def _slid(centreline: Contour, vibrissa: Vibrissa, start: Floats, z: Floats) -> 
         side = rest.side(1 + np.minimum(excess, 0.0))
         return np.asarray(radius * np.maximum(excess, 0.0) - side)
 
-    turned = centreline.at(z[:, 0]).alpha - centreline.at(start[:1]).alpha
-    way = np.array([_way(centreline, float(start[0]), float(t)) for t in z[:, 0]])
+    turned = contour.at(z[:, 0]).alpha - contour.at(start[:1]).alpha
+    way = np.array([_way(contour, float(start[0]), float(t)) for t in z[:, 0]])
     return np.asarray(way - radius * turned - on_vibrissa(z[:, 2]) + on_vibrissa(start[2:3]))
 
 
-def _way(centreline: Contour, begin: float, end: float) -> float:
+def _way(contour: Contour, begin: float, end: float) -> float:
     """Arc length of the contour between two parameters [L]."""
     low, high = min(begin, end), max(begin, end)
-    breaks = centreline.breaks()
+    breaks = contour.breaks()
     ends = np.concatenate([[low], breaks[(breaks > low) & (breaks < high)], [high]])
     middle, half = (ends[1:] + ends[:-1]) / 2, np.diff(ends) / 2
-    rate = centreline.at(middle[:, None] + half[:, None] * _NODES).stretch
+    rate = contour.at(middle[:, None] + half[:, None] * _NODES).stretch
     length = float(half @ (rate @ _WEIGHTS))
     return length if end >= begin else -length

@@ -9,7 +9,7 @@ from analytic.problem.case import Case
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS, CONTACT, STATUS_NUMBER
 from analytic.problem.contours.contour import Contour
 from analytic.problem.rest import first_touch
-from analytic.solver.columns import Columns, Units, to_columns, unloaded_columns, without
+from analytic.solver.columns import ReadingColumns, Units, to_columns, unloaded_columns, without
 from analytic.solver.general.clearance import is_clear, is_rest_clear
 from analytic.solver.general.path import follow, located
 from analytic.solver.general.states import States, Vibrissa, states, with_rates
@@ -22,7 +22,7 @@ _STILL = 1e-8  # of the foot's way: slower, and the other way, the contact does 
 class Solved(NamedTuple):
     """A sweep to the left: its columns, and where what happens happens [L]."""
 
-    columns: Columns
+    columns: ReadingColumns
     events: dict[str, float | None]
     touching: Booleans
     """The stations that are not free."""
@@ -70,9 +70,9 @@ def solve(case: Case, stations: Floats | None = None) -> Solved:
     return Solved(columns, located(points, path.foot_x), held | lost, places[held | lost])
 
 
-def _is_clear_at(centreline: Contour, vibrissa: Vibrissa, z: Floats) -> bool:
-    found = states(centreline.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
-    return bool(is_clear(centreline, found)[0])
+def _is_clear_at(contour: Contour, vibrissa: Vibrissa, z: Floats) -> bool:
+    found = states(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
+    return bool(is_clear(contour, found)[0])
 
 
 def _slides(found: States) -> Booleans:
@@ -84,7 +84,7 @@ def _slides(found: States) -> Booleans:
     if found.vibrissa.friction == 0:
         return np.ones(len(found.force), dtype=bool)
     _, rates = with_rates(found.point, found.force, found.excess, found.vibrissa)
-    way = np.cross(rates.twist, rates.above)
+    way = np.cross(rates.slope_residual, rates.height_residual)
     foot = np.einsum("nk,nk->n", rates.foot_x, way)
-    slip = found.felt.stretch * way[:, 0] - np.where(found.tangent, way[:, 2], 0.0)
+    slip = found.offset_point.stretch * way[:, 0] - np.where(found.tangent, way[:, 2], 0.0)
     return np.asarray(slip / foot >= -_STILL)

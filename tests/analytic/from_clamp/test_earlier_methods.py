@@ -7,7 +7,7 @@ from scipy.optimize import fsolve
 
 from analytic import Beam, Case, circle, named_case, solve_sweep
 from analytic.from_clamp.earlier import integrated, segments, small_deflection
-from analytic.from_clamp.earlier.sensed import Answer, Sensed
+from analytic.from_clamp.earlier.sensed import Answer, LoadedStations
 
 THIN = Beam(radius=0.0)
 
@@ -15,7 +15,7 @@ THIN = Beam(radius=0.0)
 def sensed(table, first_contact):
     """Of exact readings."""
     foot_x, x, y, m = (table[n].to_numpy() for n in ("foot_x", "force_x", "force_y", "moment_z"))
-    return Sensed(foot_x, -x, y, m, first_contact - foot_x)
+    return LoadedStations(foot_x, -x, y, m, first_contact - foot_x)
 
 
 def swept(profile):
@@ -100,7 +100,7 @@ def test_order_in_the_deflection(method, order):
     """A vibrissa that a frictionless point holds aside by delta at the height 0.7."""
     delta = np.array([0.04, 0.02, 0.01])
     across, along, moment = np.array([held(0.7, d) for d in delta]).T
-    answer = method(Sensed(-delta, across, along, moment, delta))
+    answer = method(LoadedStations(-delta, across, along, moment, delta))
     error = np.hypot(answer.x, answer.y - 0.7)
     assert np.log2(error[:-1] / error[1:]) == pytest.approx([order] * 2, abs=0.1)
 
@@ -121,7 +121,7 @@ def test_a_cone_is_deflected_as_its_differential_equation_says(lever):
     found = solve_ivp(rate, (0, lever), [0, 0], "DOP853", rtol=1e-13, atol=1e-16).y[0, -1]
     one = np.ones(1)
     answer = small_deflection.from_force_and_moment_of_cone(
-        Sensed(0 * one, force * one, 0 * one, force * lever * one, 0 * one)
+        LoadedStations(0 * one, force * one, 0 * one, force * lever * one, 0 * one)
     )
     assert answer.x[0] == pytest.approx(found, rel=1e-11)
     assert answer.y[0] == pytest.approx(lever)
@@ -138,7 +138,7 @@ def test_binary_contact_is_exact_at_the_first_contact():
 def test_order_in_the_segments_at_tangential_contacts(half_cell, order):
     table, given = swept(CONTOURS["catenary"])
     tangent = (table["phase"] == "tangent").to_numpy()
-    given, table = Sensed(*(values[tangent] for values in given)), table[tangent]
+    given, table = LoadedStations(*(values[tangent] for values in given)), table[tangent]
     error = []
     for number in (20, 40, 80):
         found = errors(segments.by_segments(given, number, half_cell), table)
@@ -192,7 +192,7 @@ def test_segments_do_not_find_the_tip():
     """Their force is normal to the vibrissa; the tip's is not."""
     table, given = swept(CONTOURS["catenary"])
     tip = (table["phase"] == "tip").to_numpy()
-    given = Sensed(*(values[tip] for values in given))
+    given = LoadedStations(*(values[tip] for values in given))
     found = errors(segments.by_segments(given, 160, half_cell=True), table[tip])
     assert np.isnan(found).mean() > 0.5
     assert np.nanmin(found) > 0.01

@@ -30,6 +30,7 @@ from analytic import (
     through_points,
     two_circles,
 )
+from analytic.solver.plain import solve_plain
 from tests.fuzz.contours import KINDS, any_case
 
 CORNERS = [(-1.5, 1.2), (-0.6, 0.5), (-0.1, 0.35), (0.2, 0.34), (0.8, 0.6), (1.2, 1.3)]
@@ -113,6 +114,20 @@ def test_a_case_that_fails_says_why_and_stops_no_other(error):
     assert failed.reason == "this contour is not known here"
     assert isinstance(other, Unsolved)
     assert isinstance(other.error, InputError)
+
+
+def test_a_bug_of_the_batch_itself_is_seen(monkeypatch):
+    """It is no case's, so that no case can say it."""
+
+    def broken(cases):
+        if len(cases) > 1:
+            raise TypeError("of many")
+        return solve_plain(cases)
+
+    monkeypatch.setattr("analytic.solver.sweeps.solve_plain", broken)
+    assert [*solve_sweeps([named_case("catenary")])][0].source == "analytic"
+    with pytest.raises(TypeError, match="of many"):
+        list(solve_sweeps([named_case("catenary"), named_case("parabola")]))
 
 
 def test_no_cases_and_no_list():

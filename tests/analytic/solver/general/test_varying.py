@@ -31,9 +31,9 @@ from analytic.problem.rest import first_touch
 from analytic.problem.unloaded import Unloaded
 from analytic.solver.columns import Units
 from analytic.solver.general.clearance import is_rest_clear
-from analytic.solver.general.form import Form
 from analytic.solver.general.march import march
 from analytic.solver.general.path import follow
+from analytic.solver.general.rod import RodProperties
 from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.states import states as states_of
 from analytic.solver.general.stations import solve_places
@@ -193,7 +193,7 @@ def test_march_is_the_integral(force, length, theta, m, ratio, wave):
     """Of the pendulum's equation, by the Dormand-Prince method of order 8."""
     beam = Beam(flexural_rigidity=cone(ratio), natural_curvature=lambda s: np.cos(wave * s) / 2)
     given_ = (np.array([x]) for x in (theta, m, force, length))
-    found = march(Form.of(beam), *given_)
+    found = march(RodProperties.of(beam), *given_)
 
     def rate(s, state):
         slope, moment = state[:2]
@@ -208,8 +208,8 @@ def test_march_is_the_integral(force, length, theta, m, ratio, wave):
 @pytest.mark.parametrize("name", ["catenary", "two-circles", "tip-only"])
 def test_collocation_of_a_uniform_vibrissa_is_the_closed_form(name):
     plain, case = solve_sweep(named_case(name)), named_case(name)
-    form = Form(Unloaded(0.0, case.radius, case.radius), 1.0)
-    vibrissa = Vibrissa(radius=case.radius, form=form)
+    rod = RodProperties(Unloaded(0.0, case.radius, case.radius), 1.0)
+    vibrissa = Vibrissa(radius=case.radius, rod=rod)
     touch = first_touch(case.centreline, case.reach, Unloaded())
     path = follow(case.centreline, vibrissa, touch, case.reach)
     for event, i in path.events().items():
@@ -268,7 +268,7 @@ def test_small_deflection_of_a_cone(a, ratio):
     force = 1e-5 * (1 - q * a) ** 2  # turns the contact by 1e-5 rad at most
     slope = force * a**2 * (3 - 2 * q * a) / (6 * (1 - q * a) ** 2)
     given_ = (np.array([x]) for x in (-slope, 0.0, force, a))
-    found = march(Form(Unloaded(), ratio), *given_)
+    found = march(RodProperties(Unloaded(), ratio), *given_)
     # 1e-9: what is left out goes with the square of the slope.
     assert -found.across[0] == pytest.approx(force * a**3 / (3 * (1 - q * a)), rel=1e-9)
     assert found.theta[0] == pytest.approx(0, abs=1e-9 * slope)
@@ -280,7 +280,7 @@ def test_natural_bow_that_a_couple_straightens():
     beam = Beam(flexural_rigidity=cone(0.5), natural_curvature=lambda s: 0.05 / cone(0.5)(s))
     lengths = np.linspace(0.1, 1.0, 7)
     slope, none = np.full(7, 0.4), np.zeros(7)
-    found = march(Form.of(beam), slope, np.full(7, -0.05), none, lengths)
+    found = march(RodProperties.of(beam), slope, np.full(7, -0.05), none, lengths)
     np.testing.assert_allclose(found.along, lengths * np.cos(0.4), rtol=1e-14)
     np.testing.assert_allclose(found.across, lengths * np.sin(0.4), rtol=1e-14)
 
@@ -340,9 +340,9 @@ def test_curve_ends_where_a_flexible_tip_would_wind_up():
     """Past the snap-off the tip of a sharp cone turns on, into the body: thousands of states."""
     beam = Beam(radius=0.003, tip_radius=0.0003, natural_curvature=-0.4)
     case = case_of(beam, PROFILES["g1"], stations=200, friction=0.3, clamp_stiffness=8.0)
-    centreline, vibrissa = case.centreline, Vibrissa.of(beam, 8.0, 0.3)
-    touch = first_touch(centreline, case.reach, vibrissa.unloaded)
-    path = follow(centreline, vibrissa, touch, case.reach)
+    contour, vibrissa = case.centreline, Vibrissa.of(beam, 8.0, 0.3)
+    touch = first_touch(contour, case.reach, vibrissa.unloaded)
+    path = follow(contour, vibrissa, touch, case.reach)
     assert path.complete
     assert len(path.z) < 100
     assert (assert_sound(case).table["status"] == "ok").all()

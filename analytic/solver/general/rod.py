@@ -21,7 +21,7 @@ _KNOWN = 512  # panels: a sweep of a stiff vibrissa asks for some ten, a calibra
 
 
 @dataclass(frozen=True)
-class Form:
+class RodProperties:
     """Rigidity, natural curvature and radius of a vibrissa along its length."""
 
     unloaded: Unloaded  # natural curvature and radius
@@ -31,14 +31,14 @@ class Form:
     share: float = 1.0
 
     @classmethod
-    def of(cls, beam: Beam) -> "Form":
+    def of(cls, beam: Beam) -> "RodProperties":
         """What varies along a beam."""
         rest, rigidity = beam.unloaded, beam.flexural_rigidity
         if isinstance(rigidity, Along):
             return cls(rest, rigidity.times(1 / beam.base_rigidity, 1 / beam.length))
         return cls(rest, rest.tip_radius / rest.base_radius if rest.base_radius else 1.0)
 
-    def scaled(self, share: float) -> "Form":
+    def scaled(self, share: float) -> "RodProperties":
         """The form a part of the way from the uniform, straight vibrissa to this one."""
         rest = self.unloaded
         natural = rest.natural
