@@ -58,7 +58,7 @@ def residuals(columns: ReadingColumns, vibrissa: Vibrissa, units: Units) -> dict
     force, lean = np.hypot(force_x, force_y), np.arctan(mu)
     # Of no force, as where a tip leaves the object, any direction is right.
     direction = np.where(force > 0, np.arctan2(-force_x, force_y), alpha + lean)
-    couple = mu * radius * force / np.sqrt(1 + mu**2)
+    couple = mu / np.sqrt(1 + mu**2) * radius * force
     span = _span(vibrissa, moment, slope - direction, couple, force, direction, length)
     sin, cos = np.sin(direction), np.cos(direction)
     along = alpha + vibrissa.lean

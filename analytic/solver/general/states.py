@@ -160,7 +160,8 @@ class States(NamedTuple):
     @property
     def tip_angle(self) -> Floats:
         """Slope angle of the vibrissa at the contact [rad]."""
-        return self.point.alpha + self.vibrissa.lean + np.maximum(self.excess, 0.0)
+        leant, lean = self.point.alpha + np.maximum(self.excess, 0.0), self.vibrissa.lean
+        return leant + lean if lean else leant
 
     @property
     def couple(self) -> Floats:

@@ -125,7 +125,7 @@ def test_a_bug_of_the_batch_itself_is_seen(monkeypatch):
         return solve_plain(cases)
 
     monkeypatch.setattr("analytic.solver.sweeps.solve_plain", broken)
-    assert [*solve_sweeps([named_case("catenary")])][0].source == "analytic"
+    assert next(iter(solve_sweeps([named_case("catenary")]))).source == "analytic"
     with pytest.raises(TypeError, match="of many"):
         list(solve_sweeps([named_case("catenary"), named_case("parabola")]))
 
