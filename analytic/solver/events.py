@@ -25,8 +25,7 @@ from analytic.solver.contact_length import surplus_and_rate
 from analytic.solver.equilibria import Equilibria, equilibria_at, tangent_contact
 from analytic.solver.general.clearance import is_clear
 from analytic.solver.general.path import follow
-from analytic.solver.general.states import Vibrissa
-from analytic.solver.general.states import states as states_at
+from analytic.solver.general.states import Vibrissa, states_at
 from analytic.solver.grid import along
 from analytic.solver.residuals import without_inexact
 
@@ -200,7 +199,7 @@ def _general_events(
     places = {name: i for name, i in path.events().items() if i is not None}
     at = np.array([*places.values()])
     z, units = path.z[at], Units.of(beam)
-    states = states_at(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
+    states = states_at(contour, z, vibrissa)
     columns = to_columns(states, units)
     clear = is_clear(contour, states)
     checked = without(without_inexact(columns, vibrissa, units), ~clear, "touches again")

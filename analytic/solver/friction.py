@@ -16,7 +16,7 @@ from analytic.problem.mirror import solve_either_way
 from analytic.problem.readings import Readings
 from analytic.problem.table import as_table, says
 from analytic.solver.columns import Units, to_columns, unloaded_columns, without
-from analytic.solver.general.states import INSIDE, Vibrissa, states
+from analytic.solver.general.states import INSIDE, Vibrissa, states_at
 from analytic.solver.general.stations import solve_near
 from analytic.solver.sweep import solve_sweep
 
@@ -67,7 +67,7 @@ def _leftward(case: Case, coefficient: float) -> Readings:
     for part in np.linspace(0, 1, _STEPS + 1)[1:]:
         vibrissa = Vibrissa.of_case(case)._replace(friction=part * coefficient)
         z, found = solve_near(contour, vibrissa, foot_x, z)
-    solved = to_columns(states(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa), Units.of(beam))
+    solved = to_columns(states_at(contour, z, vibrissa), Units.of(beam))
     solved = without(solved, ~found, "diverged")
     columns = unloaded_columns(case.foot_x)
     for name in COLUMNS[1:]:

@@ -14,7 +14,7 @@ from analytic.problem.rest import first_touch
 from analytic.problem.table import as_table, mirrored_table
 from analytic.solver.columns import ReadingColumns, Units, to_columns, unloaded_columns
 from analytic.solver.general.path import Path, follow
-from analytic.solver.general.states import Vibrissa, states
+from analytic.solver.general.states import Vibrissa, states_at
 from analytic.solver.general.stations import solve_places
 from analytic.solver.general.sticking import between, stick
 from analytic.solver.residuals import without_inexact
@@ -189,7 +189,7 @@ def _table(columns: ReadingColumns) -> pd.DataFrame:
 def _fill(columns: ReadingColumns, where: Booleans, case: Case, z: Floats, angle: Floats) -> None:
     """Write states at rest into the rows of a table."""
     units, held = Units.of(case.beam), Vibrissa.of_case(case)._replace(friction=np.tan(angle))
-    found = states(case.centreline.at(z[:, 0]), z[:, 1], z[:, 2], held)
+    found = states_at(case.centreline, z, held)
     solved = without_inexact(to_columns(found, units), held, units)
     if (inexact := solved["status"] == STATUS_NUMBER["diverged"]).any():
         place = columns["foot_x"][where][inexact][0]

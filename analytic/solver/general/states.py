@@ -18,7 +18,7 @@ from analytic.problem.along import Along
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
-from analytic.problem.contours.contour import ContourPoint
+from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.unloaded import Unloaded
 from analytic.solver.general import march
 from analytic.solver.general.rod import RodProperties
@@ -211,6 +211,11 @@ def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibriss
         start.amplitude,
         vibrissa,
     )
+
+
+def states_at(contour: Contour, z: Floats, vibrissa: Vibrissa) -> States:
+    """The states of given contour parameter, normal force and excess, shape (n, 3)."""
+    return states(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
 
 
 class StateRates(NamedTuple):

@@ -6,7 +6,7 @@ from analytic.numerics.newton import solve
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.solver.general.path import Path
-from analytic.solver.general.states import States, Vibrissa, states, with_rates
+from analytic.solver.general.states import States, Vibrissa, states_at, with_rates
 
 _NEAR = 0.5  # of a cell's length: by how much its interpolation may err
 _ASIDE = 1e-6  # a state may lie so far beyond its cell: close to a fold x0 does not distinguish
@@ -18,8 +18,9 @@ def solve_beside(
 ) -> States:
     """States next to those of a problem that is solved, by one step of Newton's method."""
     missed = _misses(contour, vibrissa, foot_x, z)
-    t, force, excess = (z - np.linalg.solve(slopes, missed[..., None])[..., 0]).T
-    return states(contour.at(t), np.maximum(force, 0.0), excess, vibrissa)
+    z = z - np.linalg.solve(slopes, missed[..., None])[..., 0]
+    z[:, 1] = np.maximum(z[:, 1], 0.0)
+    return states_at(contour, z, vibrissa)
 
 
 def slopes_at(contour: Contour, vibrissa: Vibrissa, z: Floats) -> Floats:
@@ -30,7 +31,7 @@ def slopes_at(contour: Contour, vibrissa: Vibrissa, z: Floats) -> Floats:
 
 def _misses(contour: Contour, vibrissa: Vibrissa, foot_x: Floats, z: Floats) -> Floats:
     """What states miss at the clamp's slope, at the contact's height and at the foot."""
-    here = states(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
+    here = states_at(contour, z, vibrissa)
     return np.stack([here.slope_residual, here.height_residual, here.foot_x - foot_x], axis=1)
 
 

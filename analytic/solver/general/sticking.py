@@ -13,13 +13,13 @@ import numpy as np
 from analytic.numerics.newton import Jacobian, Misses, solve
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.contour import Contour
-from analytic.solver.general.states import INSIDE, States, Vibrissa, states
+from analytic.solver.general.panel import POINTS, WEIGHTS
+from analytic.solver.general.states import INSIDE, States, Vibrissa, states_at
 
 _FIRST, _LARGEST, _SMALLEST = 1e-3, 0.02, 1e-9  # L; steps of the foot
 _NEAR = 0.1  # by how much a state may differ from what the step before lets expect
 _STEP = 1e-6  # of differences
 _BALANCED = 1e-11  # L, rad
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
 class Sticking(NamedTuple):
@@ -128,9 +128,7 @@ def _differences(misses: Misses) -> Jacobian:
 
 
 def _states(contour: Contour, vibrissa: Vibrissa, z: Floats) -> States:
-    held = vibrissa._replace(friction=np.tan(z[:, 3]))
-    t, force, excess = _in_phase(z).T
-    return states(contour.at(t), force, excess, held)
+    return states_at(contour, _in_phase(z), vibrissa._replace(friction=np.tan(z[:, 3])))
 
 
 def _in_phase(z: Floats) -> Floats:
@@ -163,7 +161,7 @@ def _way(contour: Contour, begin: float, end: float) -> float:
     low, high = min(begin, end), max(begin, end)
     breaks = contour.breaks()
     ends = np.concatenate([[low], breaks[(breaks > low) & (breaks < high)], [high]])
-    middle, half = (ends[1:] + ends[:-1]) / 2, np.diff(ends) / 2
-    rate = contour.at(middle[:, None] + half[:, None] * _NODES).stretch
-    length = float(half @ (rate @ _WEIGHTS))
+    widths = np.diff(ends)
+    rate = contour.at(ends[:-1, None] + widths[:, None] * POINTS).stretch
+    length = float(widths @ (rate @ WEIGHTS))
     return length if end >= begin else -length

@@ -12,7 +12,7 @@ from analytic.problem.rest import first_touch
 from analytic.solver.columns import ReadingColumns, Units, to_columns, unloaded_columns, without
 from analytic.solver.general.clearance import is_clear, is_rest_clear
 from analytic.solver.general.path import follow, located
-from analytic.solver.general.states import States, Vibrissa, states, with_rates
+from analytic.solver.general.states import States, Vibrissa, states_at, with_rates
 from analytic.solver.general.stations import solve_places
 
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of a foot position that stands on the snap-off
@@ -50,7 +50,7 @@ def solve(case: Case, stations: Floats | None = None) -> Solved:
     places = np.full((len(stations), 3), np.nan)
     if held.any():
         z, found = solve_places(contour, vibrissa, path, foot_x[held])
-        touching = states(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
+        touching = states_at(contour, z, vibrissa)
         places[held] = np.where(found[:, None], z, np.nan)
         solved = to_columns(touching, Units.of(beam))
         sticks = (solved["status"] == STATUS_NUMBER["ok"]) & ~_slides(touching)
@@ -71,7 +71,7 @@ def solve(case: Case, stations: Floats | None = None) -> Solved:
 
 
 def _is_clear_at(contour: Contour, vibrissa: Vibrissa, z: Floats) -> bool:
-    found = states(contour.at(z[:, 0]), z[:, 1], z[:, 2], vibrissa)
+    found = states_at(contour, z, vibrissa)
     return bool(is_clear(contour, found)[0])
 
 

@@ -366,3 +366,14 @@ def test_no_state_has_a_corner_beside_its_contact_in_it(corners):
         points = CubicSpline(place, np.column_stack([x[i], y[i]]))(fine)
         outside = ((points[:, None] - begin) * normal).sum(axis=2).max(axis=1)
         assert outside.min() > -1e-6
+
+
+def test_a_corner_beside_an_upright_vibrissa_is_touched_first():
+    """Its slope angle is upright but for a rounding."""
+    vertices = [(-0.4, 0.5), (-0.1, 0.3), (0.1, 0.3), (0.3, 0.4), (0.4, 0.5), (0.0, 3.3)]
+    case = Case(Beam(), polygon(vertices), Sweep(40), friction=0.2)
+    found = solve_sweep(case)
+    assert found.provenance["events"]["first_contact"] == pytest.approx(0.405, abs=1e-12)
+    touching = (found.table["status"] == "ok") & (found.table["phase"] != "free")
+    assert touching.sum() > 20
+    assert certify(found)[touching].max(axis=None) < 1e-11
