@@ -66,18 +66,15 @@ class Equilibria(NamedTuple):
 
     def states(self, vibrissa: Vibrissa) -> States:
         """The same as states of any vibrissa, which count the excess in another way."""
-        tip_rotation = np.minimum(self._tangent_length - 1, INSIDE)
+        excess = np.minimum(self._tangent_length - 1, INSIDE)
         tip = (~self.tangent).nonzero()[0]
         if tip.size:
             alpha = self.point.alpha[tip]
             leant = np.pi / 2 - alpha - least_rotation(alpha) - self.tip_rotation[tip]
-            tip_rotation[tip] = np.maximum(leant, 0.0)
-        eta = self.point.eta
+            excess[tip] = np.maximum(leant, 0.0)
         force, moment = self.root_f * self.root_f, self.root_f * self.span.C
-        none = np.broadcast_to(0.0, force.shape)
-        return States(
-            self.point, force, tip_rotation, moment, eta, self.reach, none, none, vibrissa
-        )
+        up, none = self.point.eta, np.zeros(force.shape)
+        return States(self.point, force, excess, moment, up, self.reach, none, none, vibrissa)
 
     def tangent_rate(self) -> Floats:
         """d(x0)/dt in Phase B; at its limits too, whichever phase is there."""

@@ -98,19 +98,6 @@ class Vibrissa(NamedTuple):
         """Angle from the surface of a cone to its axis [rad]."""
         return 0.0 if self.rod is None else self.rod.unloaded.lean
 
-    def offset_point(self, point: ContourPoint, length: Floats) -> ContourPoint:
-        """The contour that the centreline feels where its radius is not the tip's."""
-        if self.rod is None:
-            return point
-        taper = self.rod.unloaded.taper(length)
-        return ContourPoint(
-            point.alpha,
-            point.xi + taper * np.sin(point.alpha),
-            point.eta - taper * np.cos(point.alpha),
-            point.turning,
-            point.stretch + taper * point.turning,
-        )
-
     def back_to_clamp(self, slope: Floats, couple: Floats, force: Floats, length: Floats) -> Start:
         """March from the contact back to the clamp."""
         if self.rod is None:
@@ -181,7 +168,16 @@ class States(NamedTuple):
     @property
     def offset_point(self) -> ContourPoint:
         """The place of the centreline, on the contour that it feels there."""
-        return self.vibrissa.offset_point(self.point, self.arc_length)
+        if self.vibrissa.rod is None:
+            return self.point
+        point, taper = self.point, self.vibrissa.rod.unloaded.taper(self.arc_length)
+        return ContourPoint(
+            point.alpha,
+            point.xi + taper * np.sin(point.alpha),
+            point.eta - taper * np.cos(point.alpha),
+            point.turning,
+            point.stretch + taper * point.turning,
+        )
 
 
 def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibrissa) -> States:
