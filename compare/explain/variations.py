@@ -33,8 +33,8 @@ def variations(case: Case) -> dict[str, Readings]:
         units["natural_curvature"] *= -1
 
     def swept(name: str) -> Readings:
-        # Friction's closed form ends where the vibrissa sticks or lets go; the integration of a
-        # plain one goes on over all stations.
+        # A sweep with friction ends where the vibrissa sticks or lets go; of a plain one there are
+        # the states at all stations.
         if name == "friction" and case.is_plain:
             return with_friction(case, STEP)
         return solve_sweep(QUANTITIES[name].larger(case, STEP * units[name]))
