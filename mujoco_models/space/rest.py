@@ -31,6 +31,8 @@ class Settled(NamedTuple):
     """What it touches."""
     stays: bool
     """Whether that is where the body is, and no other link is deeper."""
+    tangents: Floats
+    """Unit vectors along the links, shape (n_links, 3)."""
     bow: Bow | None
     """What a forecast starts from; None past what there is none for."""
 
@@ -116,7 +118,7 @@ class Rest:
         assert isinstance(surface, Feature)
         state, touch = self._bent(bow), surface.touched(self.centre(bow, foot))
         if surface.missed_at(bow.link, touch.centre) > STAYS:
-            return Settled(state, touch, bow.stable, surface, False, bow)
+            return Settled(state, touch, bow.stable, surface, False, self._tangents(bow), bow)
         return self._settled(state, bow, surface, foot)
 
     def _settled(
@@ -147,7 +149,7 @@ class Rest:
             else:
                 stable = bow.stable
                 bow = bow._replace(link=state.link, s=state.s, sliding=state.sliding)
-            return Settled(state, touch, stable, surface, near, bow)
+            return Settled(state, touch, stable, surface, near, model.tangents, bow)
         return None
 
     def softest(self, found: Settled, foot: Floats) -> tuple[float, Floats]:
@@ -174,6 +176,11 @@ class Rest:
             return None
         force = state.force * surface.touch(state.link, state.s).normal
         return forecast.bow(self.model.tangents, state.link, state.s, force, state.sliding)
+
+    def _tangents(self, bow: Bow) -> Floats:
+        """Along the links of a forecast."""
+        along, aside = np.cos(bow.angles), np.sin(bow.angles)
+        return np.outer(along, self.model.tangent) + np.outer(aside, bow.side)
 
     def _bent(self, bow: Bow) -> State:
         """A forecast in MuJoCo's coordinates."""

@@ -27,6 +27,8 @@ _EVENT = 5e-4  # L, to which a change of phase is enclosed
 # Of the contact in a step: more is another branch. Next to its end a branch is steep, so that steps
 # are halved there.
 _LEAP, _LEAST_LEAP = 5.0, 0.02  # of the step; L
+_LONGEST = 0.1  # L of the way in a step, however far apart stations are
+_TURNED = 0.2  # rad, of any link in a step: beyond a slip-off the vibrissa bends another way
 _LEAP_ON_FACE = 0.3  # L; a side that lies on a face touches anywhere along it
 _ASTRAY = 2.0  # of that; Newton's method that leads farther is not on its way there
 _LANDING = 0.12  # L, of the contact: what comes to rest farther away depends on its motion
@@ -158,7 +160,7 @@ class Walk:
 
     def _follow(self, target: float) -> bool:
         """Along the stable branch to the station, or to its end and what comes after it."""
-        stride = np.inf  # how far Newton's method leads
+        stride = _LONGEST  # how far Newton's method leads
         while self._at < target:
             goal = min(target, self._at + stride)
             found = self._neighbour(goal)
@@ -172,7 +174,7 @@ class Walk:
                     return self._fall(held, goal)
             elif found.stays:
                 self._go_on(found, goal)
-                stride = max(_LONGER * step, stride)
+                stride = min(max(_LONGER * step, stride), _LONGEST)
             else:
                 beyond = self._across(held, found, goal)
                 if beyond is None:
@@ -216,7 +218,9 @@ class Walk:
         farthest = _LEAP_ON_FACE if on_face else max(_LEAP * step, _LEAST_LEAP)
         start = start or held
         found = self._rest.follow(start, self._foot(self._at), self._foot(goal), _ASTRAY * farthest)
-        return found if found is not None and _apart(found, held) <= farthest else None
+        if found is None or _apart(found, held) > farthest:
+            return None
+        return found if _turned(found, held) <= _TURNED else None
 
     def _left(self, found: Settled) -> float:
         """At about which share of a step the contact leaves its face, edge or corner."""
@@ -334,6 +338,11 @@ class Walk:
 
 def _apart(one: Settled, other: Settled) -> float:
     return float(np.linalg.norm(one.touch.centre - other.touch.centre))
+
+
+def _turned(one: Settled, other: Settled) -> float:
+    """By how much the link turns that turns most [rad]."""
+    return float(np.linalg.norm(one.tangents - other.tangents, axis=1).max())
 
 
 def _at_tip(found: Settled) -> bool:
