@@ -20,7 +20,7 @@ from scipy.linalg.lapack import dgesv, dpotrf, dpotrs
 
 from analytic.problem.arrays import Floats
 from mujoco_models.space.model import SpaceModel, Touch
-from mujoco_models.space.surface import Feature, Surface
+from mujoco_models.space.surface import Surface
 
 _ITERATIONS, _QUICK = 30, 14  # on one face or edge, which is smooth
 SHARE = 0.3
@@ -98,7 +98,7 @@ class Balance:
     def converge(self, state: State, surface: Surface, foot: Floats) -> tuple[State, Touch] | None:
         """The equilibrium to which Newton's method leads."""
         model = self.model
-        for _ in range(_QUICK if isinstance(surface, Feature) else _ITERATIONS):
+        for _ in range(_ITERATIONS if surface.feature is None else _QUICK):
             state, touch = self.seen(state, surface, foot)
             slope = float(touch.normal @ model.direction(state.link))
             push = self._push(state.link, touch)

@@ -15,10 +15,10 @@ from analytic.problem.arrays import Floats
 from mujoco_models.space.balance import State
 from mujoco_models.space.descent import descend
 from mujoco_models.space.forecast import Bow
-from mujoco_models.space.hop import over_faces
+from mujoco_models.space.hop import features_around, over_faces
 from mujoco_models.space.model import SpaceModel
 from mujoco_models.space.rest import Rest, Settled
-from mujoco_models.space.surface import STAYS, Feature, Surface, features_around, surface_at
+from mujoco_models.space.surface import Surface, surface_at
 
 _TOUCH = 1e-10  # L of the way, to which the first contact is enclosed
 _BEGIN = 1e-6  # L beyond it, where a contact begins
@@ -155,7 +155,7 @@ class Walk:
         model.place(foot, model.straight)
         _, link, s = model.nearest_link()
         start = State(model.straight, link, s, 0.0, False)
-        surface = surface_at(model, link, model.touch(link, s))
+        surface = surface_at(model, model.touch(link, s))
         self._at, self._held = at, self._rest.settle(start, surface, foot, foot)
 
     def _follow(self, target: float) -> bool:
@@ -214,7 +214,8 @@ class Walk:
         """The stable equilibrium on the same branch, of a mesh on the same face, edge or corner."""
         held, step = self._held, goal - self._at
         assert held is not None
-        on_face = isinstance(held.surface, Feature) and held.surface.flat
+        feature = held.surface.feature
+        on_face = feature is not None and feature.flat
         farthest = _LEAP_ON_FACE if on_face else max(_LEAP * step, _LEAST_LEAP)
         start = start or held
         found = self._rest.follow(start, self._foot(self._at), self._foot(goal), _ASTRAY * farthest)
@@ -226,16 +227,14 @@ class Walk:
         """At about which share of a step the contact leaves its face, edge or corner."""
         held = self._held
         assert held is not None
-        if not isinstance(held.surface, Feature):
-            return 0.5
         link = found.state.link
-        if held.surface.missed_at(link, found.touch.centre) < STAYS:
+        if held.surface.feature is None or held.surface.holds(link, found.touch.centre):
             return 0.5  # another link is deeper
         by = found.touch.centre - held.touch.centre
         low, high = 0.0, 1.0
         while high - low > _SHARE:
             middle = (low + high) / 2
-            if held.surface.missed_at(link, held.touch.centre + middle * by) < STAYS:
+            if held.surface.holds(link, held.touch.centre + middle * by):
                 low = middle
             else:
                 high = middle
@@ -246,17 +245,17 @@ class Walk:
         model, foot, state = self._model, self._foot(goal), found.state
         model.place(foot, state.configuration)
         touch = model.touch(state.link, state.s)
-        if isinstance(held.surface, Feature) and held.surface.missed(state.link, state.s) < STAYS:
+        if held.surface.feature is not None and held.surface.holds(state.link, touch.centre):
             _, link, s = model.nearest_link()  # another link is deeper
             state = state._replace(link=link, s=s, sliding=False)
             touch = model.touch(link, s)
-        beyond = self._goes_on(held, state, surface_at(model, state.link, touch), foot)
-        if beyond is not None or not (held.state.sliding and model.shape.faceted):
+        beyond = self._goes_on(held, state, surface_at(model, touch), foot)
+        if beyond is not None or not (held.state.sliding and model.mesh is not None):
             return beyond
         # Next to a corner a side comes over several edges within a step.
         model.place(foot, held.state.configuration)
-        for surface in features_around(model, held.state.link, held.touch.centre):
-            beyond = self._goes_on(held, held.state, surface, foot)
+        for feature in features_around(model, model.contact(held.touch)):
+            beyond = self._goes_on(held, held.state, Surface(model, feature), foot)
             if beyond is not None:
                 return beyond
         return None
@@ -271,7 +270,7 @@ class Walk:
             centre = self._rest.centre(bow, foot)
             if not bow.stable or float(np.linalg.norm(centre - near)) >= _STEADY:
                 return False
-            return isinstance(surface, Feature) and surface.missed_at(bow.link, centre) < STAYS
+            return surface.feature is not None and surface.holds(bow.link, centre)
 
         found = self._rest.settle(state, surface, foot, foot, near, _ASTRAY_BESIDE, sought)
         if found is None or not (found.stays and found.stable):

@@ -74,7 +74,7 @@ def test_the_stiffness_is_the_derivative_of_mujocos_own_moments(beam, joints):
         tip = len(model.ends) - 1
         state = State(configuration, tip, 0.98, force, True)
         touch = model.touch(tip, 0.98)
-        return balance.linearised(state, touch, 0.0, model.turning(tip, touch, 1e-5))
+        return balance.linearised(state, touch, 0.0, model.turning(tip, touch))
 
     step, columns = 1e-5, []
     for i in range(size):
