@@ -13,7 +13,7 @@ from analytic.space.problem.bodies.body import Body
 from analytic.space.problem.bodies.ellipsoid import Ellipsoid
 from analytic.space.problem.bodies.polyhedron import Polyhedron, polyhedron, solid
 from analytic.space.problem.bodies.prism import Cylinder, Prism
-from analytic.space.problem.bodies.support import SmoothBody
+from analytic.space.problem.bodies.support import SmoothBody, spread
 from mujoco_models.model.spec import CCD_TOLERANCE
 from mujoco_models.obstacles.window import prism_faces
 
@@ -77,7 +77,7 @@ def add_body(
     if isinstance(body, Prism):
         return _prism(spec, body, centre, reach, contour_points)
     if isinstance(body, SmoothBody):
-        normals = _spread(contour_points)
+        normals = spread(contour_points)
         points = np.array([body.nearest(centre + 1e3 * n, 1.0).point for n in normals])
         mesh = polyhedron(points, body.label)
         _add_mesh(spec, mesh)
@@ -197,11 +197,3 @@ def _extruded(body: Prism, line: Floats, centre: Floats, reach: float) -> Polyhe
     ends = np.repeat([-body.frame[2], body.frame[2]], len(line) - 2, axis=0)
     normals = np.concatenate([planes, planes, ends])
     return solid(points, prism_faces(len(line)), normals, body.label)
-
-
-def _spread(count: int) -> Floats:
-    """Unit vectors evenly over the sphere, on a spiral."""
-    height = 1 - 2 * (np.arange(count) + 0.5) / count
-    angle = np.pi * (1 + np.sqrt(5)) * np.arange(count)
-    ring = np.sqrt(1 - height**2)
-    return np.stack([ring * np.cos(angle), height, ring * np.sin(angle)], axis=1)

@@ -22,8 +22,8 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
-from scipy.optimize import nnls
 
+from analytic.numerics.descent import barring_forces
 from analytic.problem.arrays import Booleans, Floats
 from mujoco_models.space.balance import Linearised, State, cross
 from mujoco_models.space.model import SpaceModel, Touch
@@ -155,9 +155,7 @@ def _turns(
         turns = dpotrs(factor, pulled, lower=1)[0]
         gaps = distances + rows @ turns
         own = rows @ moved
-        # The forces that keep all links off: least squares with their stiffness' square root.
-        root = np.linalg.cholesky(own + _SINGULAR * np.trace(own) * np.eye(len(near)))
-        forces, _ = nnls(root.T, -np.linalg.solve(root, gaps))
+        forces = barring_forces(own, gaps, _SINGULAR * float(np.trace(own)))
         if (forces[held] > 0).all():
             return turns + moved @ forces, forces, inertia
         held = held & (forces > 0)

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
 
+from analytic.numerics.walk import Event, first_clear, first_touch, first_unlike
 from analytic.problem.arrays import Floats
 from mujoco_models.space.balance import State
 from mujoco_models.space.descent import descend
@@ -43,15 +43,6 @@ _BESIDE = 0.0, -0.45, 0.45, -0.45, 0.45, None
 _SHARE = 1e-3  # of a step, to which that place is found on the line
 _GIVEN_UP = 3  # unsettled stations in a row: from then on all are, until the vibrissa comes clear
 _LOOSE = 1e-3  # EI/L^2; a contact that ends with less has been released
-
-
-class Event(NamedTuple):
-    """What happens on the way, and where."""
-
-    kind: str
-    """``"touch"``, ``"phase"``, ``"hop"``, ``"release"`` or ``"slip-off"``."""
-    travel: float
-    """Along the way [L]."""
 
 
 class Station(NamedTuple):
@@ -111,7 +102,8 @@ class Walk:
                 return True
             self._lost = False
             self._at = self._clear(self._at, target)
-        touch = self._next_touch(self._at, target)
+        corners = self._marks[(self._marks > self._at) & (self._marks < target)]
+        touch = first_touch(self._gap, self._at, [*corners.tolist(), target], _TOUCH)
         if touch is None:
             self._at = target
             return True
@@ -121,32 +113,9 @@ class Walk:
 
     def _clear(self, low: float, high: float) -> float:
         """Where the straight vibrissa comes clear of the body, a little beyond."""
-        if self._gap(low) > 0:
-            return low
-        return min(float(brentq(self._gap, low, high, xtol=_TOUCH)) + 2 * _TOUCH, high)
-
-    def _next_touch(self, low: float, high: float) -> float | None:
-        """Where the straight vibrissa touches.
-
-        Along a straight leg of the way its distance from a convex body is convex, and it changes by
-        no more than the foot moves.
-        """
-        corners = self._marks[(self._marks > low) & (self._marks < high)]
-        for end in (*corners.tolist(), high):
-            gaps = self._gap(low), self._gap(end)
-            if gaps[1] > 0 and sum(gaps) < end - low:
-                least = float(
-                    minimize_scalar(
-                        self._gap, bounds=(low, end), method="bounded", options={"xatol": 1e-9}
-                    ).x
-                )
-                end, gaps = (least, (gaps[0], -1.0)) if self._gap(least) <= 0 else (end, gaps)
-            if gaps[1] <= 0:
-                if gaps[0] <= 0:
-                    return low
-                return float(brentq(self._gap, low, end, xtol=_TOUCH))
-            low = end
-        return None
+        found = first_clear(self._gap, low, [high], _TOUCH)
+        assert found is not None
+        return min(found + 2 * _TOUCH, high)
 
     def _begin(self, touch: float) -> None:
         """The contact of a vibrissa that is hardly bent."""
@@ -279,18 +248,14 @@ class Walk:
 
     def _note_phase(self, held: Settled, goal: float, found: Settled) -> None:
         """Enclose a change between the tip and the side."""
-        low, high = self._at, goal
         if _at_tip(held) == _at_tip(found):
             return
-        while high - low > _EVENT:
-            middle = (low + high) / 2
-            between = self._rest.follow(held, self._foot(low), self._foot(middle))
-            if between is None or not between.stays:
-                break
-            if _at_tip(between) == _at_tip(held):
-                low, held = middle, between
-            else:
-                high = middle
+
+        def followed(held: Settled, low: float, high: float) -> Settled | None:
+            between = self._rest.follow(held, self._foot(low), self._foot(high))
+            return between if between is not None and between.stays else None
+
+        high = first_unlike(held, self._at, goal, followed, _at_tip, _EVENT)
         self.events.append(Event("phase", high))
 
     def _fall(self, held: Settled, goal: float) -> bool:
