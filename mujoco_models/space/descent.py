@@ -25,7 +25,8 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 
 from analytic.numerics.descent import barring_forces
 from analytic.problem.arrays import Booleans, Floats
-from mujoco_models.space.balance import Linearised, State, cross
+from analytic.space.problem.bodies.body import cross
+from mujoco_models.space.balance import Linearised, State
 from mujoco_models.space.model import SpaceModel, Touch
 from mujoco_models.space.rest import Rest, Settled
 from mujoco_models.space.surface import Surface, surface_at

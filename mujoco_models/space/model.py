@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from analytic.space.problem.bodies.body import across, cross
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from mujoco_models.beams.links import link_name
 from mujoco_models.beams.protocol import FOOT
@@ -67,7 +68,6 @@ class SpaceModel:
         self.model = assembled(spec, len(self.ends), tangent, radius)
         self.data = mujoco.MjData(self.model)
         model = self.model
-        self.evaluations = 0
         self._foot, self._body = model.body(FOOT).id, model.geom(GEOM).id
         follows = shape.osculating is not None
         self._outline = model.geom(OUTLINE).id if follows else self._body
@@ -113,7 +113,6 @@ class SpaceModel:
         if model.nflex:
             mujoco.mj_flex(model, data)
         mujoco.mj_passive(model, data)
-        self.evaluations += 1
 
     @property
     def springs(self) -> Floats:
@@ -267,19 +266,6 @@ class SpaceModel:
             contact = self.data.contact[i]
             push = wrench[:3] @ contact.frame.reshape(3, 3)
             push *= 1.0 if contact.geom[1] != self._body else -1.0
-            held += [push, np.cross(contact.pos - foot, push)]
+            held += [push, cross(contact.pos - foot, push)]
         miss = np.abs(np.stack([force, moment]) + held).max()
         return Clamped(force, moment, float(miss))
-
-
-def across(normal: Floats) -> Floats:
-    """Two unit vectors across one and across each other."""
-    x, y, z = normal.tolist()
-    if abs(z) < max(abs(x), abs(y)):
-        size = math.hypot(x, y)
-        one = -y / size, x / size, 0.0
-    else:
-        size = math.hypot(y, z)
-        one = 0.0, -z / size, y / size
-    u, v, w = one
-    return np.array([one, (y * w - z * v, z * u - x * w, x * v - y * u)])

@@ -31,7 +31,9 @@ _LONGEST = 0.1  # L of the way in a step, however far apart stations are
 _TURNED = 0.2  # rad, of any link in a step: beyond a slip-off the vibrissa bends another way
 _LEAP_ON_FACE = 0.3  # L; a side that lies on a face touches anywhere along it
 _ASTRAY = 2.0  # of that; Newton's method that leads farther is not on its way there
-_LANDING = 0.12  # L, of the contact: what comes to rest farther away depends on its motion
+# L, of the contact: what comes to rest farther away depends on its motion. This side's own limit,
+# as is the next line: the closed form has others, which may be moved without these.
+_LANDING = 0.12
 _AHEAD = 0.0, 1e-3, 4e-3  # L, of the foot, for a way down that does not begin
 _CROSSED = 1e-4  # L, to which it is enclosed where a contact leaves a face, an edge or a corner
 _STEADY = 2e-3  # L, of the contact that goes on as it was beyond

@@ -1,5 +1,6 @@
 """A face, an edge or a corner of a mesh that goes on without end: what a contact stays on."""
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -55,9 +56,9 @@ class Feature(Body):
             height = float(away @ self.normal)
             return Spot(x - height * self.normal, self.normal, height, np.zeros((3, 3)))
         across = self._span @ away
-        distance = float(np.linalg.norm(across))
+        distance = math.sqrt(across @ across)
         normal = across / max(distance, 1e-300)
-        turning = (self._span - np.outer(normal, normal)) / apart
+        turning = (self._span - normal[:, None] * normal) / apart
         return Spot(x - across, normal, distance, turning)
 
     def scaled(self, factor: float) -> "Feature":
