@@ -1,5 +1,7 @@
 """MuJoCo's model of a vibrissa and a body: beads that touch, and sensors at the clamp."""
 
+import math
+
 import mujoco
 import numpy as np
 
@@ -40,8 +42,8 @@ def assembled(spec: mujoco.MjSpec, links: int, tangent: Floats, radius: float) -
 
 def _to(tangent: Floats) -> Floats:
     """The shortest turn from y to a direction, as a quaternion."""
-    axis = np.cross([0.0, 1.0, 0.0], tangent)
-    if np.linalg.norm(axis) < 1e-12:
-        return np.array([1.0, 0, 0, 0] if tangent[1] > 0 else [0.0, 1, 0, 0])
-    turn = np.array([1 + tangent[1], *axis])
-    return np.asarray(turn / np.linalg.norm(turn))
+    x, y, z = tangent.tolist()
+    size, found = math.hypot(x, z), np.zeros(4)
+    axis = np.array([z, 0.0, -x]) / size if size > 0 else np.array([1.0, 0.0, 0.0])
+    mujoco.mju_axisAngle2Quat(found, axis, math.atan2(size, y))
+    return found

@@ -7,13 +7,13 @@ from typing import NamedTuple, TypeAlias
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 from analytic.space.problem.bodies.body import Body
 from analytic.space.problem.bodies.ellipsoid import Ellipsoid
-from analytic.space.problem.bodies.polyhedron import Polyhedron
+from analytic.space.problem.bodies.polyhedron import Polyhedron, polyhedron, solid
 from analytic.space.problem.bodies.prism import Cylinder, Prism
-from analytic.space.problem.bodies.support import SmoothBody
+from analytic.space.problem.bodies.support import SmoothBody, spread
 from mujoco_models.model.spec import CCD_TOLERANCE
 from mujoco_models.obstacles.window import prism_faces
 
@@ -45,10 +45,10 @@ class Shape:
     """What MuJoCo has for a body."""
 
     label: str  # what provenance says of it
-    faceted: bool  # whether it consists of flat faces
-    # The displacement by which the turning of MuJoCo's normals is measured [L]: as small as their
-    # precision allows.
-    difference: float
+    mesh: Polyhedron | None = None  # what it is if it consists of flat faces [L]
+    # The displacement by which the turning of a smooth body's normals is measured [L]: as small as
+    # MuJoCo's precision allows.
+    difference: float = 1e-5
     # Error of MuJoCo's normals [rad]: what a force leaves out of balance, and Newton's method
     # cannot remove.
     blur: float = 0.0
@@ -70,17 +70,18 @@ def add_body(
     if isinstance(body, Cylinder):
         middle = body.through + ((centre - body.through) @ body.axis) * body.axis
         _add(spec, mujoco.mjtGeom.mjGEOM_CYLINDER, middle, body.axis, [body.radius, reach, 0])
-        return Shape("MuJoCo's cylinder", False, 1e-4)
+        return Shape("MuJoCo's cylinder", difference=1e-4)
     if isinstance(body, Polyhedron):
-        _add_mesh(spec, body.vertices, body.label)
-        return Shape(f"mesh of {len(body.vertices)} vertices", True, 1e-6)
+        _add_mesh(spec, body)
+        return Shape(f"mesh of {len(body.vertices)} vertices", body)
     if isinstance(body, Prism):
         return _prism(spec, body, centre, reach, contour_points)
     if isinstance(body, SmoothBody):
-        normals = _spread(contour_points)
+        normals = spread(contour_points)
         points = np.array([body.nearest(centre + 1e3 * n, 1.0).point for n in normals])
-        _add_mesh(spec, points, body.label)
-        return Shape(f"mesh of {len(points)} points of its surface", True, 1e-6)
+        mesh = polyhedron(points, body.label)
+        _add_mesh(spec, mesh)
+        return Shape(f"mesh of {len(points)} points of its surface", mesh)
     raise InputError(
         "body",
         type(body).__name__,
@@ -94,14 +95,14 @@ def _prism(
 ) -> Shape:
     """A mesh, and for the contact, if the contour has no corners, a cylinder that follows it."""
     line, alpha = _within_reach(body, centre, reach, contour_points)
-    points = _extruded(body, line, centre, reach)
+    mesh = _extruded(body, line, centre, reach)
     grid = body.contour.at(body.contour.parameter(np.linspace(*alpha, _DENSE)))
     with np.errstate(divide="ignore", invalid="ignore"):
         radius = grid.stretch / grid.turning
     if not ((radius > _SHARPEST) & (radius < _FLATTEST)).all():
-        _add_mesh(spec, points, body.label, faces=prism_faces(len(points) // 2))
-        return Shape(f"prism of a polygon of {len(line)} corners", True, 1e-6)
-    _add_mesh(spec, points, body.label, OUTLINE, prism_faces(len(points) // 2))
+        _add_mesh(spec, mesh)
+        return Shape(f"prism of a polygon of {len(line)} corners", mesh)
+    _add_mesh(spec, mesh, OUTLINE)
     _add(spec, mujoco.mjtGeom.mjGEOM_CYLINDER, centre, body.frame[2], [1.0, _HALF_LENGTH, 0.0])
 
     def osculating(normal: Floats, near: Floats) -> Circle:
@@ -116,20 +117,20 @@ def _prism(
 
     label = "MuJoCo's cylinder, with the contour's circle of curvature where the contact is"
     sagitta = float(np.hypot(*np.diff(line, axis=0).T).max()) ** 2 / (8 * float(radius.min()))
-    return Shape(label, False, 1e-5, osculating=osculating, inscribed=sagitta)
+    return Shape(label, osculating=osculating, inscribed=sagitta)
 
 
 def _ellipsoid(spec: mujoco.MjSpec, body: Ellipsoid) -> Shape:
     if np.ptp(body.semi_axes) == 0:
         _add(spec, mujoco.mjtGeom.mjGEOM_SPHERE, body.centre, None, [body.semi_axes[0], 0, 0])
-        return Shape("MuJoCo's sphere", False, 1e-5)
+        return Shape("MuJoCo's sphere")
     geom = _add(spec, mujoco.mjtGeom.mjGEOM_ELLIPSOID, body.centre, None, body.semi_axes)
     turn = np.zeros(4)
     mujoco.mju_mat2Quat(turn, np.ascontiguousarray(body.frame.T).ravel())
     geom.quat = turn
     sharpest = float(body.semi_axes.max() / body.semi_axes.min() ** 2)
     blur = _TURNED * np.sqrt(CCD_TOLERANCE * sharpest)
-    return Shape("MuJoCo's ellipsoid", False, 1e-3, blur, _OFF * CCD_TOLERANCE)
+    return Shape("MuJoCo's ellipsoid", None, 1e-3, blur, _OFF * CCD_TOLERANCE)
 
 
 def _add(
@@ -149,39 +150,16 @@ def _add(
     return geom
 
 
-def _hull(vertices: Floats) -> Integers:
-    """The triangles of a convex hull, counterclockwise from outside."""
-    from scipy.spatial import ConvexHull
-
-    hull = ConvexHull(vertices)
-    faces = hull.simplices.copy()
-    corners = vertices[faces]
-    inward = (
-        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        * hull.equations[:, :3]
-    ).sum(axis=1) < 0
-    faces[inward] = faces[inward][:, ::-1]
-    return np.asarray(faces)
-
-
-def _add_mesh(
-    spec: mujoco.MjSpec,
-    vertices: Floats,
-    label: str,
-    name: str = GEOM,
-    faces: Integers | None = None,
-) -> None:
-    """With its hull's faces if they are not known: of long polygons that takes seconds."""
-    if len(vertices) > _MOST_VERTICES:
+def _add_mesh(spec: mujoco.MjSpec, body: Polyhedron, name: str = GEOM) -> None:
+    if len(body.vertices) > _MOST_VERTICES:
         raise InputError(
-            f"body ({label})",
-            f"of {len(vertices)} vertices",
+            f"body ({body.label})",
+            f"of {len(body.vertices)} vertices",
             f"of at most {_MOST_VERTICES:,} for MuJoCo",
             "simplify it (tolerance)",
         )
-    faces = _hull(vertices) if faces is None else faces
     mesh = spec.add_mesh(name=name)
-    mesh.uservert, mesh.userface = vertices.ravel(), faces.astype(np.int32).ravel()
+    mesh.uservert, mesh.userface = body.vertices.ravel(), body.faces.astype(np.int32).ravel()
     mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
     spec.worldbody.add_geom(
         name=name,
@@ -206,18 +184,16 @@ def _within_reach(
     return line, (float(there.alpha[first]), float(there.alpha[last]))
 
 
-def _extruded(body: Prism, line: Floats, centre: Floats, reach: float) -> Floats:
+def _extruded(body: Prism, line: Floats, centre: Floats, reach: float) -> Polyhedron:
     """Its sides drawn up from the ends of its contour: a counterclockwise polygon, twice."""
     _, y, along = body.frame @ (centre - body.origin)
     top = np.full(2, max(line[:, 1].max(), y) + reach)
     line = np.concatenate([line, np.column_stack([line[[-1, 0], 0], top])])
     both = [np.column_stack([line, np.full(len(line), along + side)]) for side in (-reach, reach)]
-    return np.asarray(body.origin + np.concatenate(both) @ body.frame)
-
-
-def _spread(count: int) -> Floats:
-    """Unit vectors evenly over the sphere, on a spiral."""
-    height = 1 - 2 * (np.arange(count) + 0.5) / count
-    angle = np.pi * (1 + np.sqrt(5)) * np.arange(count)
-    ring = np.sqrt(1 - height**2)
-    return np.stack([ring * np.cos(angle), height, ring * np.sin(angle)], axis=1)
+    points = body.origin + np.concatenate(both) @ body.frame
+    along = np.roll(line, -1, axis=0) - line
+    outward = np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
+    planes = np.round(outward, 9) @ body.frame[:2]  # alike where corners lie on one line
+    ends = np.repeat([-body.frame[2], body.frame[2]], len(line) - 2, axis=0)
+    normals = np.concatenate([planes, planes, ends])
+    return solid(points, prism_faces(len(line)), normals, body.label)

@@ -22,13 +22,14 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
-from scipy.optimize import nnls
 
+from analytic.numerics.descent import barring_forces
 from analytic.problem.arrays import Booleans, Floats
-from mujoco_models.space.balance import Linearised, State, cross
+from analytic.space.problem.bodies.body import cross
+from mujoco_models.space.balance import Linearised, State
 from mujoco_models.space.model import SpaceModel, Touch
 from mujoco_models.space.rest import Rest, Settled
-from mujoco_models.space.surface import Feature, Surface, surface_at
+from mujoco_models.space.surface import Surface, surface_at
 
 _NUDGE = 1e-4  # rad, of the joint that turns most, where it begins
 _INERTIA = 1.0  # m of the first step
@@ -65,7 +66,7 @@ def descend(rest: Rest, start: Settled, foot: Floats, far: float) -> Settled | N
         touch = model.touch(state.link, state.s)
         if np.linalg.norm(model.contact(touch) - begin) > far:
             return None
-        surface = surface_at(model, state.link, touch)
+        surface = surface_at(model, touch)
         state, system = _look(rest, state, surface, foot)
         landed = _landed(rest, state, system, surface, foot) if number else None
         if landed is not None:
@@ -100,7 +101,7 @@ def _near(model: SpaceModel) -> list[_Near]:
         if distance < _NEAR:
             found.append((distance, link, s))
         link -= max(1, int(distance / model.longest))
-    if not model.shape.faceted:
+    if model.mesh is None:
         found = [min(found)] if found else []
     return [_Near(link, s, model.touch(link, s)) for _, link, s in found]
 
@@ -122,7 +123,8 @@ def _look(rest: Rest, state: State, surface: Surface, foot: Floats) -> tuple[Sta
     """At the contact that presses most; a tip or a joint goes on from face to face."""
     state, touch = rest.balance.seen(state, surface, foot)
     turning = np.zeros((3, 3))
-    if isinstance(surface, Feature) and (surface.flat or not state.sliding):
+    feature = surface.feature
+    if feature is not None and (feature.flat or not state.sliding):
         state = state._replace(sliding=False)
     else:
         turning = surface.turning(state.link, touch)
@@ -154,9 +156,7 @@ def _turns(
         turns = dpotrs(factor, pulled, lower=1)[0]
         gaps = distances + rows @ turns
         own = rows @ moved
-        # The forces that keep all links off: least squares with their stiffness' square root.
-        root = np.linalg.cholesky(own + _SINGULAR * np.trace(own) * np.eye(len(near)))
-        forces, _ = nnls(root.T, -np.linalg.solve(root, gaps))
+        forces = barring_forces(own, gaps, _SINGULAR * float(np.trace(own)))
         if (forces[held] > 0).all():
             return turns + moved @ forces, forces, inertia
         held = held & (forces > 0)

@@ -23,9 +23,9 @@ from scipy.linalg import eigvalsh_tridiagonal
 from scipy.linalg.lapack import dgesv, dgtsv, dpttrf, dsyev
 
 from analytic.problem.arrays import Floats
+from analytic.space.problem.bodies.feature import Feature
 from mujoco_models.beams.layout import Layout
 from mujoco_models.space.beams import Law
-from mujoco_models.space.surface import Feature
 
 _ITERATIONS = 14
 _NOT_HALVED = 5  # steps; from its start or later, Newton's method that leads anywhere halves them
@@ -90,16 +90,16 @@ class Forecast:
     def rest(
         self,
         start: Bow,
-        surface: Feature,
+        feature: Feature,
         foot: Floats,
         near: Floats | None = None,
         far: float = math.inf,
     ) -> Bow | None:
         """The equilibrium to which Newton's method leads."""
         bow, before, apart, not_halved = start, math.inf, math.inf, 0
-        onto = surface.basis @ self._tangent
+        onto = feature.basis @ self._tangent
         clamp = foot + self._begins[0] * self._tangent
-        first = surface.basis @ (clamp - surface.point)
+        first = feature.basis @ (clamp - feature.point)
         for _ in range(_ITERATIONS):
             if bow.force @ bow.force < _LEAST_FORCE**2:
                 return None
@@ -109,7 +109,7 @@ class Forecast:
                 before_that, apart = apart, math.sqrt(away @ away)
                 if apart > max(far, before_that):
                     return None
-            stepped = self._step(bow, bent, surface.basis, first, onto)
+            stepped = self._step(bow, bent, feature.basis, first, onto)
             if stepped is None:
                 return None
             bow, size = stepped

@@ -6,120 +6,113 @@ it goes straight towards the state that would be at rest if the face it comes to
 next edge the next face says where that is.
 """
 
+from collections.abc import Iterable
 from functools import partial
+from itertools import chain
 
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from analytic.space.problem.bodies.feature import Feature
+from analytic.space.problem.bodies.polyhedron import Polyhedron
 from mujoco_models.space.balance import State
 from mujoco_models.space.forecast import Bow
+from mujoco_models.space.model import SpaceModel
 from mujoco_models.space.rest import Rest, Settled
-from mujoco_models.space.surface import (
-    BESIDE,
-    STAYS,
-    Feature,
-    edges_of,
-    features_around,
-    features_at,
-)
+from mujoco_models.space.surface import Surface
 
 _FACES = 40  # over which a vibrissa hops at once
-_EDGE = 1e-4  # L, to which the end of a face is enclosed
+_BESIDE = 2e-4  # L, from an edge or a corner: twice what a walk leaves before it goes over that
+_SINGLE = 1e-7  # L: MuJoCo's vertices are in single precision
 
 
 def over_faces(rest: Rest, held: Settled, foot: Floats, far: float) -> Settled | None:
     """Where it comes to rest."""
-    model = rest.model
-    if not model.shape.faceted:
+    model, mesh = rest.model, rest.model.mesh
+    if mesh is None:
         return None
-    state, centre = held.state, held.touch.centre
+    state, start = held.state, model.contact(held.touch)
+    place = start
     for _ in range(_FACES):
-        here = features_at(model, state.link, centre)
+        place = mesh.snapped(place, _BESIDE)
+        faces, edges = mesh.features(place, _SINGLE)
         if state.sliding:
-            holding = _holding(rest, here, state, centre, foot, far)
+            every = (_at_rest(rest, state, edge, place, foot, far) for edge in edges)
+            holding = [one for one in every if one is not None and one.stays]
             if len(holding) > 1:
                 return None  # the way down says to which of them
             if holding:
-                return _within(rest, far, held, holding[0])
+                return _within(model, far, start, holding[0])
         # Only where nothing that meets here leads on, what is next to it: a face beyond a corner
         # may hold a vibrissa that goes another way.
-        found = _on(rest, here, state, centre, foot, far)
+        found = _on(rest, mesh, chain(faces, edges), state, place, foot, far)
         if found is None:
-            around = features_around(model, state.link, centre, here)
-            found = _on(rest, around, state, centre, foot, far)
+            around = features_around(model, place)
+            found = _on(rest, mesh, around, state, place, foot, far)
         if found is None:
             return None
         if isinstance(found, Settled):
-            return _within(rest, far, held, found)
-        state, centre = found
-        if float(np.linalg.norm(centre - held.touch.centre)) > far:
+            return _within(model, far, start, found)
+        state, place = found
+        if float(np.linalg.norm(place - start)) > far:
             return None
     return None
 
 
-def _within(rest: Rest, far: float, held: Settled, found: Settled) -> Settled | None:
+def features_around(model: SpaceModel, place: Floats) -> list[Feature]:
+    """The faces and the edges of a mesh next to a place, faces first."""
+    mesh = model.mesh
+    assert mesh is not None
+    near = np.linalg.norm(mesh.vertices - place, axis=1) < model.radius
+    places = mesh.vertices[near] if near.any() else [mesh.snapped(place, model.radius)]
+    every = [mesh.features(corner, _SINGLE) for corner in places]
+    return [one for kind in zip(*every, strict=True) for some in kind for one in some]
+
+
+def _within(model: SpaceModel, far: float, start: Floats, found: Settled) -> Settled | None:
     """What is found, if the contact is not too far away."""
-    away = float(np.linalg.norm(rest.model.contact(found.touch) - rest.model.contact(held.touch)))
-    return found if away <= far else None
-
-
-def _holding(
-    rest: Rest, here: list[Feature], state: State, centre: Floats, foot: Floats, far: float
-) -> list[Settled]:
-    """Where a side comes to rest on the edges in which the faces meet."""
-    faces = [one for one in here if one.flat]
-    every = [
-        rest.settle(state, edge, foot, foot, centre, far, partial(_use, rest, edge, foot))
-        for edge in edges_of(rest.model, faces, centre)
-    ]
-    return [one for one in every if one is not None and one.stays and one.stable]
+    return found if float(np.linalg.norm(model.contact(found.touch) - start)) <= far else None
 
 
 def _on(
     rest: Rest,
-    surfaces: list[Feature],
+    mesh: Polyhedron,
+    features: Iterable[Feature],
     state: State,
-    centre: Floats,
+    place: Floats,
     foot: Floats,
     far: float,
 ) -> Settled | tuple[State, Floats] | None:
-    """Where it comes to rest on one of some surfaces, or where a face of them has ended."""
-    model, left = rest.model, None
-    start = model.contact(model.probe(state.link, centre))
-    for surface in surfaces:
-        sought = partial(_use, rest, surface, foot)
-        reach = np.inf if surface.flat else far  # a way on is along a face
-        found = rest.settle(state, surface, foot, foot, centre, reach, sought)
-        if found is None or not found.stable:
+    """Where it comes to rest on one of some features, or where a face of them has ended."""
+    left = None
+    for feature in features:
+        reach = np.inf if feature.flat else far  # a way on is along a face
+        found = _at_rest(rest, state, feature, place, foot, reach)
+        if found is None:
             continue
         if found.stays:
             return found
-        by = model.contact(found.touch) - start
-        share = _room(surface, found.state.link, start, by)
-        if share > 0 and left is None:
-            left = found.state, start + share * by + model.radius * surface.normal
+        by = rest.model.contact(found.touch) - place
+        share = mesh.room(place, by) if feature.flat else 0.0
+        if share * float(np.linalg.norm(by)) > _BESIDE and left is None:
+            left = found.state, place + share * by
     return left
 
 
-def _use(rest: Rest, surface: Feature, foot: Floats, bow: Bow) -> bool:
+def _at_rest(
+    rest: Rest, state: State, feature: Feature, place: Floats, foot: Floats, far: float
+) -> Settled | None:
+    """The stable equilibrium on a feature as if it had no end."""
+    surface = Surface(rest.model, feature)
+    near = place + rest.model.radius * feature.normal
+    sought = partial(_use, rest, surface, foot)
+    found = rest.settle(state, surface, foot, foot, near, far, sought)
+    return found if found is not None and found.stable else None
+
+
+def _use(rest: Rest, surface: Surface, foot: Floats, bow: Bow) -> bool:
     """Whether a vibrissa that will rest there lands, or goes on along a face."""
-    if surface.flat:
+    assert surface.feature is not None
+    if surface.feature.flat:
         return bow.stable
-    return bow.stable and surface.missed_at(bow.link, rest.centre(bow, foot)) < STAYS
-
-
-def _room(surface: Feature, link: int, start: Floats, by: Floats) -> float:
-    """How much of a way of the contact is along a face."""
-    size = float(np.linalg.norm(by))
-    first = min(1.0, 2 * BESIDE / max(size, 1e-300))
-
-    def stays(share: float) -> bool:
-        return surface.missed_at(link, start + share * by + BESIDE * surface.normal) < STAYS
-
-    if not surface.flat or not stays(first):
-        return 0.0
-    low, high = first, 1.0
-    while (high - low) * size > _EDGE:
-        middle = (low + high) / 2
-        low, high = (middle, high) if stays(middle) else (low, middle)
-    return low
+    return bow.stable and surface.holds(bow.link, rest.centre(bow, foot))

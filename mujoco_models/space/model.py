@@ -7,6 +7,8 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
+from analytic.space.problem.bodies.body import across, cross
+from analytic.space.problem.bodies.polyhedron import Polyhedron
 from mujoco_models.beams.links import link_name
 from mujoco_models.beams.protocol import FOOT
 from mujoco_models.errors import DivergedError
@@ -66,7 +68,6 @@ class SpaceModel:
         self.model = assembled(spec, len(self.ends), tangent, radius)
         self.data = mujoco.MjData(self.model)
         model = self.model
-        self.evaluations = 0
         self._foot, self._body = model.body(FOOT).id, model.geom(GEOM).id
         follows = shape.osculating is not None
         self._outline = model.geom(OUTLINE).id if follows else self._body
@@ -76,6 +77,8 @@ class SpaceModel:
         self._beads = np.array([model.geom(f"bead{i}").id for i in numbers])
         self._sides = np.array([model.geom(f"side{i}").id for i in numbers])
         self._ends = np.zeros(6)
+        self.mesh = shape.mesh and self._as_it_is_held(shape.mesh)
+        """The body, if it is a mesh."""
         self._begins: list[float] = self.layout.joints.tolist()
         self._widths: list[float] = model.geom_size[self._sides, 0].tolist()
         self.longest = float(self.layout.lengths.max())
@@ -91,6 +94,15 @@ class SpaceModel:
         model.geom_solimp[self._beads] = [_IMPEDANCE, _IMPEDANCE, 1e-3, 0.5, 2]
         self.straight = model.qpos0.copy()
 
+    def _as_it_is_held(self, mesh: Polyhedron) -> Polyhedron:
+        """With MuJoCo's vertices, which are in single precision; MuJoCo touches these exactly."""
+        model, data, geom = self.model, self.data, self._body
+        mujoco.mj_kinematics(model, data)
+        begin = model.mesh_vertadr[model.geom_dataid[geom]]
+        held = model.mesh_vert[begin : begin + len(mesh.vertices)].astype(float)
+        turn = data.geom_xmat[geom].reshape(3, 3)
+        return mesh.with_vertices(data.geom_xpos[geom] + held @ turn.T)
+
     def place(self, foot: Floats, configuration: Floats) -> None:
         """Put the vibrissa there, and let MuJoCo evaluate links and springs."""
         model, data = self.model, self.data
@@ -101,7 +113,6 @@ class SpaceModel:
         if model.nflex:
             mujoco.mj_flex(model, data)
         mujoco.mj_passive(model, data)
-        self.evaluations += 1
 
     @property
     def springs(self) -> Floats:
@@ -164,27 +175,15 @@ class SpaceModel:
         model.geom_rbound[body] = np.hypot(circle.radius, length)
         model.geom_pos[body] = self.data.geom_xpos[body] = circle.centre
 
-    def curved(self, link: int, touch: Touch, step: float) -> tuple[Floats, Floats]:
-        """How fast and about what MuJoCo's normal turns as the bead moves."""
-        one, other = sides = across(touch.normal)
-        by_one, by_other = (
-            (sides @ (self._nearest(link, ahead)[0] - self._nearest(link, behind)[0])).tolist()
-            for ahead, behind in (
-                (touch.centre + step * one, touch.centre - step * one),
-                (touch.centre + step * other, touch.centre - step * other),
-            )
-        )
-        mixed, half = (by_one[1] + by_other[0]) / 2, (by_one[0] - by_other[1]) / 2
-        mean, apart = (by_one[0] + by_other[1]) / 2, math.hypot(half, mixed)
-        angle = math.atan2(mixed, half) / 2
-        cos, sin = math.cos(angle), math.sin(angle)
-        ways = np.array([[-sin, cos], [cos, sin]]) @ sides
-        return np.array([mean - apart, mean + apart]) / (2 * step), ways
-
-    def turning(self, link: int, touch: Touch, step: float) -> Floats:
-        """How MuJoCo's normal turns as the bead's centre moves."""
-        rates, ways = self.curved(link, touch, step)
-        return np.asarray((ways.T * np.maximum(rates, 0.0)) @ ways)
+    def turning(self, link: int, touch: Touch) -> Floats:
+        """How MuJoCo's normal turns as the bead's centre moves, by differences."""
+        sides, step = across(touch.normal), self.shape.difference
+        by_side = [
+            sides @ (self._nearest(link, ahead)[0] - self._nearest(link, behind)[0])
+            for ahead, behind in ((touch.centre + step * s, touch.centre - step * s) for s in sides)
+        ]
+        rates = np.array(by_side) / (4 * step)
+        return np.asarray(sides.T @ (rates + rates.T) @ sides)
 
     def probe(self, link: int, centre: Floats) -> Touch:
         """The nearest point to a bead wherever it is."""
@@ -267,19 +266,6 @@ class SpaceModel:
             contact = self.data.contact[i]
             push = wrench[:3] @ contact.frame.reshape(3, 3)
             push *= 1.0 if contact.geom[1] != self._body else -1.0
-            held += [push, np.cross(contact.pos - foot, push)]
+            held += [push, cross(contact.pos - foot, push)]
         miss = np.abs(np.stack([force, moment]) + held).max()
         return Clamped(force, moment, float(miss))
-
-
-def across(normal: Floats) -> Floats:
-    """Two unit vectors across one and across each other."""
-    x, y, z = normal.tolist()
-    if abs(z) < max(abs(x), abs(y)):
-        size = math.hypot(x, y)
-        one = -y / size, x / size, 0.0
-    else:
-        size = math.hypot(y, z)
-        one = 0.0, -z / size, y / size
-    u, v, w = one
-    return np.array([one, (y * w - z * v, z * u - x * w, x * v - y * u)])

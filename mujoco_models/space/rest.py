@@ -14,7 +14,7 @@ from analytic.problem.arrays import Floats
 from mujoco_models.space.balance import SHARE, Balance, State
 from mujoco_models.space.forecast import Bow, Forecast
 from mujoco_models.space.model import SpaceModel, Touch
-from mujoco_models.space.surface import STAYS, Feature, Surface, surface_at
+from mujoco_models.space.surface import Surface, surface_at
 
 _OVERLOOKED = 1e-8  # L; as deep as another link may be
 _SWITCHES = 6  # to another link that is deeper
@@ -31,6 +31,8 @@ class Settled(NamedTuple):
     """What it touches."""
     stays: bool
     """Whether that is where the body is, and no other link is deeper."""
+    tangents: Floats
+    """Unit vectors along the links, shape (n_links, 3)."""
     bow: Bow | None
     """What a forecast starts from; None past what there is none for."""
 
@@ -100,8 +102,8 @@ class Rest:
         far: float = np.inf,
     ) -> Bow | None:
         """Where it will rest, as far as is known without MuJoCo."""
-        assert self._forecast is not None and isinstance(surface, Feature)
-        return self._forecast.rest(bow, surface, foot, near, far)
+        assert self._forecast is not None and surface.feature is not None
+        return self._forecast.rest(bow, surface.feature, foot, near, far)
 
     def centre(self, bow: Bow, foot: Floats) -> Floats:
         """Of the bead of what is foreseen."""
@@ -113,10 +115,9 @@ class Rest:
 
         What has left its face, edge or corner is nowhere to rest; it only says where it left.
         """
-        assert isinstance(surface, Feature)
         state, touch = self._bent(bow), surface.touched(self.centre(bow, foot))
-        if surface.missed_at(bow.link, touch.centre) > STAYS:
-            return Settled(state, touch, bow.stable, surface, False, bow)
+        if not surface.holds(bow.link, touch.centre):
+            return Settled(state, touch, bow.stable, surface, False, self._tangents(bow), bow)
         return self._settled(state, bow, surface, foot)
 
     def _settled(
@@ -132,12 +133,12 @@ class Rest:
             deepest = touch.distance - model.shape.inscribed - _OVERLOOKED
             depth, link, s = model.deeper_link(touch, deepest)
             near = depth >= deepest
-            if isinstance(surface, Feature):
-                missed = surface.missed(state.link, state.s)
-                if near and _DRIFT < missed < STAYS:
-                    surface = surface_at(model, state.link, model.touch(state.link, state.s))
+            if surface.feature is not None:
+                stays = surface.holds(state.link, touch.centre)
+                if near and stays and surface.missed(state.link, touch.centre) > _DRIFT:
+                    surface = surface_at(model, model.touch(state.link, state.s))
                     continue  # found anew, here
-                near = near and missed < STAYS
+                near = near and stays
             elif not near:
                 state = state._replace(link=link, s=s, force=0.0, sliding=False)
                 continue
@@ -147,33 +148,40 @@ class Rest:
             else:
                 stable = bow.stable
                 bow = bow._replace(link=state.link, s=state.s, sliding=state.sliding)
-            return Settled(state, touch, stable, surface, near, bow)
+            return Settled(state, touch, stable, surface, near, model.tangents, bow)
         return None
 
     def softest(self, found: Settled, foot: Floats) -> tuple[float, Floats]:
         """How stable an equilibrium is."""
-        self.model.place(foot, found.state.configuration)
-        return self.balance.softest(found.state, found.touch, found.surface)
+        state = found.state
+        self.model.place(foot, state.configuration)
+        touch = found.surface.touch(state.link, state.s)  # which a prism's cylinder follows
+        return self.balance.softest(state, touch, found.surface)
 
     def exactly(self, found: Settled, foot: Floats) -> Settled | None:
         """The same where the mesh has it to rounding: a face's direction is known to less."""
         model, state = self.model, found.state
-        if not isinstance(found.surface, Feature):
+        if found.surface.feature is None:
             return found
         model.place(foot, state.configuration)
-        missed = found.surface.missed(state.link, state.s)
+        missed = found.surface.missed(state.link, found.touch.centre)
         if missed * model.contact_stiffness <= SHARE * self._tolerance:
             return found
-        surface = surface_at(model, state.link, model.touch(state.link, state.s))
+        surface = surface_at(model, model.touch(state.link, state.s))
         return self._settled(state, found.bow, surface, foot)
 
     def _bow(self, state: State, surface: Surface) -> Bow | None:
         """What a forecast needs of a state in which the model is; None where there is none."""
         forecast = self._forecast
-        if forecast is None or not isinstance(surface, Feature) or state.force <= 0:
+        if forecast is None or surface.feature is None or state.force <= 0:
             return None
         force = state.force * surface.touch(state.link, state.s).normal
         return forecast.bow(self.model.tangents, state.link, state.s, force, state.sliding)
+
+    def _tangents(self, bow: Bow) -> Floats:
+        """Along the links of a forecast."""
+        along, aside = np.cos(bow.angles), np.sin(bow.angles)
+        return np.asarray(np.outer(along, self.model.tangent) + np.outer(aside, bow.side))
 
     def _bent(self, bow: Bow) -> State:
         """A forecast in MuJoCo's coordinates."""

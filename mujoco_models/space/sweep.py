@@ -127,7 +127,6 @@ def _row(rest: Rest, station: Station, foot: Floats, tolerance: float) -> dict[s
         row["residual"] = model.rest(None, 1.0)
     else:
         row["stability"], _ = rest.softest(found, foot)
-        model.touch(found.state.link, found.state.s)  # which a prism's cylinder follows
         row["residual"] = _rest(model, found)
         row |= _contact(model, found)
     clamped = model.clamp()

@@ -9,16 +9,16 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
 
+from analytic.numerics.walk import Event, first_clear, first_touch, first_unlike
 from analytic.problem.arrays import Floats
 from mujoco_models.space.balance import State
 from mujoco_models.space.descent import descend
 from mujoco_models.space.forecast import Bow
-from mujoco_models.space.hop import over_faces
+from mujoco_models.space.hop import features_around, over_faces
 from mujoco_models.space.model import SpaceModel
 from mujoco_models.space.rest import Rest, Settled
-from mujoco_models.space.surface import STAYS, Feature, Surface, features_around, surface_at
+from mujoco_models.space.surface import Surface, surface_at
 
 _TOUCH = 1e-10  # L of the way, to which the first contact is enclosed
 _BEGIN = 1e-6  # L beyond it, where a contact begins
@@ -27,9 +27,13 @@ _EVENT = 5e-4  # L, to which a change of phase is enclosed
 # Of the contact in a step: more is another branch. Next to its end a branch is steep, so that steps
 # are halved there.
 _LEAP, _LEAST_LEAP = 5.0, 0.02  # of the step; L
+_LONGEST = 0.1  # L of the way in a step, however far apart stations are
+_TURNED = 0.2  # rad, of any link in a step: beyond a slip-off the vibrissa bends another way
 _LEAP_ON_FACE = 0.3  # L; a side that lies on a face touches anywhere along it
 _ASTRAY = 2.0  # of that; Newton's method that leads farther is not on its way there
-_LANDING = 0.12  # L, of the contact: what comes to rest farther away depends on its motion
+# L, of the contact: what comes to rest farther away depends on its motion. This side's own limit,
+# as is the next line: the closed form has others, which may be moved without these.
+_LANDING = 0.12
 _AHEAD = 0.0, 1e-3, 4e-3  # L, of the foot, for a way down that does not begin
 _CROSSED = 1e-4  # L, to which it is enclosed where a contact leaves a face, an edge or a corner
 _STEADY = 2e-3  # L, of the contact that goes on as it was beyond
@@ -41,15 +45,6 @@ _BESIDE = 0.0, -0.45, 0.45, -0.45, 0.45, None
 _SHARE = 1e-3  # of a step, to which that place is found on the line
 _GIVEN_UP = 3  # unsettled stations in a row: from then on all are, until the vibrissa comes clear
 _LOOSE = 1e-3  # EI/L^2; a contact that ends with less has been released
-
-
-class Event(NamedTuple):
-    """What happens on the way, and where."""
-
-    kind: str
-    """``"touch"``, ``"phase"``, ``"hop"``, ``"release"`` or ``"slip-off"``."""
-    travel: float
-    """Along the way [L]."""
 
 
 class Station(NamedTuple):
@@ -109,7 +104,8 @@ class Walk:
                 return True
             self._lost = False
             self._at = self._clear(self._at, target)
-        touch = self._next_touch(self._at, target)
+        corners = self._marks[(self._marks > self._at) & (self._marks < target)]
+        touch = first_touch(self._gap, self._at, [*corners.tolist(), target], _TOUCH)
         if touch is None:
             self._at = target
             return True
@@ -119,32 +115,9 @@ class Walk:
 
     def _clear(self, low: float, high: float) -> float:
         """Where the straight vibrissa comes clear of the body, a little beyond."""
-        if self._gap(low) > 0:
-            return low
-        return min(float(brentq(self._gap, low, high, xtol=_TOUCH)) + 2 * _TOUCH, high)
-
-    def _next_touch(self, low: float, high: float) -> float | None:
-        """Where the straight vibrissa touches.
-
-        Along a straight leg of the way its distance from a convex body is convex, and it changes by
-        no more than the foot moves.
-        """
-        corners = self._marks[(self._marks > low) & (self._marks < high)]
-        for end in (*corners.tolist(), high):
-            gaps = self._gap(low), self._gap(end)
-            if gaps[1] > 0 and sum(gaps) < end - low:
-                least = float(
-                    minimize_scalar(
-                        self._gap, bounds=(low, end), method="bounded", options={"xatol": 1e-9}
-                    ).x
-                )
-                end, gaps = (least, (gaps[0], -1.0)) if self._gap(least) <= 0 else (end, gaps)
-            if gaps[1] <= 0:
-                if gaps[0] <= 0:
-                    return low
-                return float(brentq(self._gap, low, end, xtol=_TOUCH))
-            low = end
-        return None
+        found = first_clear(self._gap, low, [high], _TOUCH)
+        assert found is not None
+        return min(found + 2 * _TOUCH, high)
 
     def _begin(self, touch: float) -> None:
         """The contact of a vibrissa that is hardly bent."""
@@ -153,12 +126,12 @@ class Walk:
         model.place(foot, model.straight)
         _, link, s = model.nearest_link()
         start = State(model.straight, link, s, 0.0, False)
-        surface = surface_at(model, link, model.touch(link, s))
+        surface = surface_at(model, model.touch(link, s))
         self._at, self._held = at, self._rest.settle(start, surface, foot, foot)
 
     def _follow(self, target: float) -> bool:
         """Along the stable branch to the station, or to its end and what comes after it."""
-        stride = np.inf  # how far Newton's method leads
+        stride = _LONGEST  # how far Newton's method leads
         while self._at < target:
             goal = min(target, self._at + stride)
             found = self._neighbour(goal)
@@ -172,7 +145,7 @@ class Walk:
                     return self._fall(held, goal)
             elif found.stays:
                 self._go_on(found, goal)
-                stride = max(_LONGER * step, stride)
+                stride = min(max(_LONGER * step, stride), _LONGEST)
             else:
                 beyond = self._across(held, found, goal)
                 if beyond is None:
@@ -212,26 +185,27 @@ class Walk:
         """The stable equilibrium on the same branch, of a mesh on the same face, edge or corner."""
         held, step = self._held, goal - self._at
         assert held is not None
-        on_face = isinstance(held.surface, Feature) and held.surface.flat
+        feature = held.surface.feature
+        on_face = feature is not None and feature.flat
         farthest = _LEAP_ON_FACE if on_face else max(_LEAP * step, _LEAST_LEAP)
         start = start or held
         found = self._rest.follow(start, self._foot(self._at), self._foot(goal), _ASTRAY * farthest)
-        return found if found is not None and _apart(found, held) <= farthest else None
+        if found is None or _apart(found, held) > farthest:
+            return None
+        return found if _turned(found, held) <= _TURNED else None
 
     def _left(self, found: Settled) -> float:
         """At about which share of a step the contact leaves its face, edge or corner."""
         held = self._held
         assert held is not None
-        if not isinstance(held.surface, Feature):
-            return 0.5
         link = found.state.link
-        if held.surface.missed_at(link, found.touch.centre) < STAYS:
+        if held.surface.feature is None or held.surface.holds(link, found.touch.centre):
             return 0.5  # another link is deeper
         by = found.touch.centre - held.touch.centre
         low, high = 0.0, 1.0
         while high - low > _SHARE:
             middle = (low + high) / 2
-            if held.surface.missed_at(link, held.touch.centre + middle * by) < STAYS:
+            if held.surface.holds(link, held.touch.centre + middle * by):
                 low = middle
             else:
                 high = middle
@@ -242,17 +216,17 @@ class Walk:
         model, foot, state = self._model, self._foot(goal), found.state
         model.place(foot, state.configuration)
         touch = model.touch(state.link, state.s)
-        if isinstance(held.surface, Feature) and held.surface.missed(state.link, state.s) < STAYS:
+        if held.surface.feature is not None and held.surface.holds(state.link, touch.centre):
             _, link, s = model.nearest_link()  # another link is deeper
             state = state._replace(link=link, s=s, sliding=False)
             touch = model.touch(link, s)
-        beyond = self._goes_on(held, state, surface_at(model, state.link, touch), foot)
-        if beyond is not None or not (held.state.sliding and model.shape.faceted):
+        beyond = self._goes_on(held, state, surface_at(model, touch), foot)
+        if beyond is not None or not (held.state.sliding and model.mesh is not None):
             return beyond
         # Next to a corner a side comes over several edges within a step.
         model.place(foot, held.state.configuration)
-        for surface in features_around(model, held.state.link, held.touch.centre):
-            beyond = self._goes_on(held, held.state, surface, foot)
+        for feature in features_around(model, model.contact(held.touch)):
+            beyond = self._goes_on(held, held.state, Surface(model, feature), foot)
             if beyond is not None:
                 return beyond
         return None
@@ -267,7 +241,7 @@ class Walk:
             centre = self._rest.centre(bow, foot)
             if not bow.stable or float(np.linalg.norm(centre - near)) >= _STEADY:
                 return False
-            return isinstance(surface, Feature) and surface.missed_at(bow.link, centre) < STAYS
+            return surface.feature is not None and surface.holds(bow.link, centre)
 
         found = self._rest.settle(state, surface, foot, foot, near, _ASTRAY_BESIDE, sought)
         if found is None or not (found.stays and found.stable):
@@ -276,18 +250,14 @@ class Walk:
 
     def _note_phase(self, held: Settled, goal: float, found: Settled) -> None:
         """Enclose a change between the tip and the side."""
-        low, high = self._at, goal
         if _at_tip(held) == _at_tip(found):
             return
-        while high - low > _EVENT:
-            middle = (low + high) / 2
-            between = self._rest.follow(held, self._foot(low), self._foot(middle))
-            if between is None or not between.stays:
-                break
-            if _at_tip(between) == _at_tip(held):
-                low, held = middle, between
-            else:
-                high = middle
+
+        def followed(held: Settled, low: float, high: float) -> Settled | None:
+            between = self._rest.follow(held, self._foot(low), self._foot(high))
+            return between if between is not None and between.stays else None
+
+        high = first_unlike(held, self._at, goal, followed, _at_tip, _EVENT)
         self.events.append(Event("phase", high))
 
     def _fall(self, held: Settled, goal: float) -> bool:
@@ -334,6 +304,11 @@ class Walk:
 
 def _apart(one: Settled, other: Settled) -> float:
     return float(np.linalg.norm(one.touch.centre - other.touch.centre))
+
+
+def _turned(one: Settled, other: Settled) -> float:
+    """By how much the link turns that turns most [rad]."""
+    return float(np.linalg.norm(one.tangents - other.tangents, axis=1).max())
 
 
 def _at_tip(found: Settled) -> bool:

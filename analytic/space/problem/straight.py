@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.walk import first_clear, first_touch
 from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.body import Body, Spot
 from analytic.space.problem.path import FootPath
@@ -11,6 +12,7 @@ from analytic.space.problem.path import FootPath
 _ANY = 1.0  # L; the parallel surface does not matter here
 _UPRIGHT = 1e-12  # rad
 _CLOSEST = 1e-13  # L, of the way
+_EXACT = 1e-15  # L, of the way
 
 
 class Gap(NamedTuple):
@@ -85,24 +87,12 @@ class Way:
         return high
 
     def next_touch(self, begin: float) -> float | None:
-        """Where the straight vibrissa touches, from where it is clear.
-
-        Along each straight leg of the way the distance is convex, so it falls to zero once.
-        """
-        for end in self.marks[self.marks > begin]:
-            touch = self._on_leg(begin, float(end))
-            if touch is not None:
-                return touch
-            begin = float(end)
-        return None
+        """Where the straight vibrissa touches, from where it is clear."""
+        return first_touch(self._size, begin, self._corners_after(begin), _EXACT)
 
     def next_clear(self, begin: float) -> float | None:
         """Where the straight vibrissa is clear of the body again."""
-        for end in self.marks[self.marks > begin]:
-            if self._size(float(end)) > 0:
-                return self._crossing(begin, float(end))
-            begin = float(end)
-        return None
+        return first_clear(self._size, begin, self._corners_after(begin), _EXACT)
 
     def nearest(self) -> tuple[float, Gap]:
         """Where the straight vibrissa is nearest to the body, at the way's corners and between."""
@@ -128,26 +118,6 @@ class Way:
     def _size(self, travel: float) -> float:
         return self.gap(travel).size
 
-    def _on_leg(self, low: float, high: float) -> float | None:
-        begin = low
-        way = self.foot(high) - self.foot(low)
-        if self._size(high) <= 0:
-            return self._crossing(low, high)
-        while high - low > _CLOSEST:
-            middle = (low + high) / 2
-            gap = self.gap(middle)
-            if gap.size <= 0:
-                return self._crossing(begin, middle)
-            if gap.spot.normal @ way < 0:
-                low = middle
-            else:
-                high = middle
-        return None
-
-    def _crossing(self, low: float, high: float) -> float:
-        from scipy.optimize import brentq
-
-        at_low, at_high = self._size(low), self._size(high)
-        if at_low == 0 or (at_low > 0) == (at_high > 0):  # at a touch to rounding
-            return low
-        return float(brentq(self._size, low, high, xtol=1e-15, rtol=9e-16))
+    def _corners_after(self, begin: float) -> list[float]:
+        """Up to each of them the way is straight, so that the distance is convex."""
+        return [float(mark) for mark in self.marks if mark > begin]

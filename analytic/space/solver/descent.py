@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
-from scipy.optimize import nnls
 
+from analytic.numerics.descent import barring_forces
 from analytic.problem.arrays import Floats
 from analytic.space.checks.rod import integrate_rod
 from analytic.space.problem.bodies.body import Spot, across
@@ -30,6 +30,7 @@ _GENTLE = 0.015  # rad, of a link in a step
 _STEPS = 150
 _NEAR = 0.02  # L; what is farther off the body does not touch in this step
 _GONE = 10  # steps in a row without a force, and the vibrissa is free
+_SINGULAR = 1e-12  # of constraints: two links that touch in one place
 _HALVINGS = 12  # of a link, to find its place that is nearest to the body
 
 
@@ -66,9 +67,7 @@ def descend(scene: Scene, start: Contact, foot: Floats) -> Iterator[Touching]:
             rows = np.array([_rate(one, sides) for one in near])
             moved = cho_solve(factor, rows.T)
             gaps = np.array([one.gap for one in near]) + rows @ step
-            # The forces that keep all places off: least squares with their square root.
-            root = np.linalg.cholesky(rows @ moved + 1e-12 * np.eye(len(near)))
-            forces, _ = nnls(root.T, -np.linalg.solve(root, gaps))
+            forces = barring_forces(rows @ moved, gaps, _SINGULAR)
             step, force = step + moved @ forces, float(forces.max())
         size = float(np.abs(step).max())
         if force > 0:

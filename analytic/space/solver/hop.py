@@ -10,7 +10,6 @@ of a side that slides over a corner, the whole vibrissa goes down (`descent`).
 """
 
 from collections.abc import Iterator
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -27,7 +26,6 @@ _FARTHEST = 0.12  # L, of the contact: what lands farther away depends on its mo
 _STEPS = 100
 _ABOVE = 1e-9  # L; a point that far outside has its nearest point on the surface
 _SAME = 1e-7  # L, between a face that has no end and the mesh
-_PARALLEL = 1e-9  # rad, between faces that have no edge
 _SLACK = 1e-9  # of the energy: rounding
 _NEAR = 0.02  # L, between a chain's contact and the one of the closed form
 _ASTRAY = 0.05  # L; what Newton's method goes so far to find is another contact (observed: 4e-3)
@@ -73,7 +71,7 @@ def _over_faces(
         spot = body.nearest(point + _ABOVE * normal, APART)
         if _apart(spot.point, start.spot.point) > _FARTHEST:
             return None
-        faces, edges = _features(body.normals_at(spot.point), spot.point)
+        faces, edges = body.features(spot.point)
         if last.tangent:
             ways = _steps(scene, body, edges, last, spot.point, foot, limit)
             on = [_landed(scene, step.target, foot) for step in ways if step.whole]
@@ -151,18 +149,6 @@ def _steps(
         room = body.room(point, by)
         if room * float(np.linalg.norm(by)) > _ABOVE:
             yield _Step(room * by, room == 1.0, target)
-
-
-def _features(normals: Floats, point: Floats) -> tuple[list[Feature], list[Feature]]:
-    """The faces that meet at a point, and what may be edges between them."""
-    faces, edges = [Feature(point, np.zeros((0, 3)), n) for n in normals], []
-    for one, other in combinations(normals, 2):
-        between, apart = one + other, one - other
-        size = float(np.linalg.norm(apart))
-        if size > _PARALLEL:
-            between = between / np.linalg.norm(between)
-            edges.append(Feature(point, np.stack([between, apart / size]), between))
-    return faces, edges
 
 
 def _landed(scene: Scene, target: Contact, foot: Floats) -> Contact | None:

@@ -69,7 +69,11 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
     foot = pd.DataFrame(case.path.at(travel), columns=list(FOOT))
     table = pd.concat([pd.DataFrame({"travel": travel}), foot, table], axis=1)
     events = [
-        {"kind": e.kind, "travel": e.travel * length, "foot": (e.foot * length).tolist()}
+        {
+            "kind": e.kind,
+            "travel": e.travel * length,
+            "foot": (way.foot(e.travel) * length).tolist(),
+        }
         for e in walked.events
     ]
     provenance = {**case.provenance(), "engine": _engine(), "events": events}

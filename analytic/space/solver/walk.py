@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from analytic.numerics.walk import Event, first_unlike
 from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from analytic.space.problem.straight import Way
@@ -23,15 +24,6 @@ _LOOSE = 1e-5  # EI/L^2; a contact that ends with less has been released
 _LEAP = 0.3  # L on the parallel surface between neighbouring states: more is another branch
 _STEADY = 1e-6  # the same across an edge, where the foot moves by 1e-9
 _SAME = 1e-7  # the same between a face that has no end and the mesh
-
-
-class Event(NamedTuple):
-    """What happens on the way, and where; lengths in L."""
-
-    kind: str
-    """``"touch"``, ``"phase"``, ``"hop"``, ``"release"`` or ``"slip-off"``."""
-    travel: float
-    foot: Floats
 
 
 class Walked(NamedTuple):
@@ -111,7 +103,7 @@ class _Walker:
                     failed = goal
                     continue
             if found.tangent != contact.tangent:
-                self._note("phase", self._change_of_phase(contact, at, found, goal))
+                self._note("phase", first_unlike(contact, at, goal, self._on, _phase, _CLOSE))
             at, contact = goal, found
         return at, contact, True
 
@@ -126,6 +118,9 @@ class _Walker:
             if found is None or _apart(found, alone) > _SAME:
                 return None
         return found if is_stable(found, radius) else None
+
+    def _on(self, start: Contact, _: float, travel: float) -> Contact | None:
+        return self._stable_at(start, travel)
 
     def _on_feature(self, start: Contact, foot: Floats) -> Contact | None:
         feature = self._scene.body.feature(start.spot)
@@ -155,18 +150,6 @@ class _Walker:
         free = ahead.arc_length if ahead.tangent else ahead.excess
         return contact_at(self._scene, ahead.on_parallel, free, ahead.tangent)
 
-    def _change_of_phase(self, low: Contact, at: float, high: Contact, to: float) -> float:
-        while to - at > _CLOSE:
-            middle = (at + to) / 2
-            found = self._stable_at(low, middle)
-            if found is None:
-                break
-            if found.tangent == low.tangent:
-                at, low = middle, found
-            else:
-                to = middle
-        return to
-
     def _land(self, contact: Contact, travel: float) -> tuple[float, Contact] | None:
         """The state to which a vibrissa hops, and where its foot is then."""
         if contact.force < _LOOSE:
@@ -191,8 +174,12 @@ class _Walker:
         return self._way.next_touch(clear + 10 * _CLOSE), travel if released else clear
 
     def _note(self, kind: str, travel: float) -> None:
-        self._events.append(Event(kind, travel, self._way.foot(travel)))
+        self._events.append(Event(kind, travel))
 
 
 def _apart(one: Contact, other: Contact) -> float:
     return float(np.linalg.norm(one.on_parallel - other.on_parallel))
+
+
+def _phase(contact: Contact) -> bool:
+    return contact.tangent

@@ -57,7 +57,7 @@ def test_it_does_so_on_edges_and_corners_of_meshes():
         one, other, third = random.permutation(body.corners[random.integers(len(body.faces))])
         on_edge = random.random() < 0.7
         point = one + random.uniform(0.2, 0.8) * (other - one) if on_edge else third
-        normals = body.normals_at(point)
+        normals = np.array([face.normal for face in body.features(point)[0]])
         normal = random.dirichlet(np.ones(len(normals))) @ normals
         place = point + 0.25 * normal / np.linalg.norm(normal)
         alpha = Plane.of(UP, body.nearest(place, 0.25).normal).alpha

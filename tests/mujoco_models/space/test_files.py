@@ -3,7 +3,9 @@
 import pytest
 
 from analytic.space import solve_space
+from analytic.space.solver import hop as landings
 from mujoco_models import simulate_space
+from mujoco_models.space import walk as walks
 from tests.fuzz.space import events, judge, trial
 from tests.mujoco_models.space.files import FILES, oblique
 
@@ -37,3 +39,19 @@ def test_ten_oblique_ways_agree_with_the_closed_form(file, tmp_path):
         assert not {"silent", "lost", "unsettled"} & set(outcome.flags), (case.name, outcome)
         apart += "slip-off" in outcome.flags  # more than 5e-3 L, or in one only
     assert apart == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("limit", [0.06, 0.18])
+@pytest.mark.parametrize(
+    ("sweep", "owner", "name"),
+    [(solve_space, landings, "_FARTHEST"), (simulate_space, walks, "_LANDING")],
+)
+def test_each_side_has_its_own_limit_of_a_hop(sweep, owner, name, limit, tmp_path, monkeypatch):
+    """On a ball whose facets are 0.15 L wide half of that ends the contact 1 L before it ends."""
+    monkeypatch.setattr(owner, name, limit)
+    case = oblique("ball.stl", 0, tmp_path, stations=8)
+    ends = [events(one(case), "slip-off", "release")[-1] for one in (solve_space, simulate_space)]
+    changed = ends[sweep is simulate_space]
+    assert (changed < 1.1) == (limit < 0.12)
+    assert ends[sweep is solve_space] > 1.9

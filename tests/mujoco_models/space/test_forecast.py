@@ -43,7 +43,7 @@ def test_mujoco_is_at_rest_where_it_is_foreseen(beam, joints, tmp_path):
         assert np.abs(bow.angles - held.bow.angles).max() < 1e-9
         assert np.abs(bow.side - held.bow.side).max() < 1e-9
         assert found.state.force == pytest.approx(held.state.force, rel=1e-8)
-        kinds.add((held.surface.flat, held.state.sliding))
+        kinds.add((held.surface.feature.flat, held.state.sliding))
     assert len(kinds) >= 3  # faces and edges, with the tip and with the side
 
 

@@ -2,37 +2,57 @@
 
 import numpy as np
 import pytest
-from scipy.spatial import ConvexHull
 
 from mujoco_models import SpatialSettings
 from mujoco_models.space import walk as walks
 from mujoco_models.space.descent import descend
 from mujoco_models.space.rest import Rest
-from mujoco_models.space.surface import STAYS, edges_of, features_at
+from mujoco_models.space.surface import Surface
 from mujoco_models.space.sweep import compiled
 from mujoco_models.space.walk import Walk
+from tests.fuzz.space import trial
 from tests.mujoco_models.space.files import oblique
 
 
-def test_the_edges_around_a_corner_are_those_of_the_mesh(tmp_path):
+@pytest.mark.parametrize("kind", ["hull", "box"])
+def test_mujocos_contact_is_the_polyhedrons(kind, tmp_path):
+    """Next to faces, edges and corners; four corners of a box in one plane, in single precision."""
+    case = trial(0, tmp_path, kind)
+    model = compiled(case, SpatialSettings(segments=4))
+    mesh, random = model.mesh, np.random.default_rng(0)
+    model.place(case.way.foot(0.0), model.straight)
+    assert np.abs(mesh.vertices - case.way.body.vertices).max() < 1e-7
+    for _ in range(200):
+        weights = random.dirichlet([0.3, 0.3, 0.3])
+        face = random.integers(len(mesh.faces))
+        outward = mesh.normals[face] + 0.3 * random.normal(size=3)
+        centre = weights @ mesh.corners[face] + model.radius * outward
+        found, spot = model.probe(0, centre), mesh.nearest(centre, 1.0)
+        if spot.distance > 0.1 * model.radius:
+            assert found.distance + model.radius == pytest.approx(spot.distance, abs=1e-8)
+            assert np.abs(found.normal - spot.normal).max() * spot.distance < 1e-8
+
+
+def test_what_meets_next_to_a_corner_is_where_mujocos_contact_is(tmp_path):
     case = oblique("ellipsoid.obj", 0, tmp_path)
     model = compiled(case, SpatialSettings(segments=4))
     model.place(case.way.foot(0.0), model.straight)
-    hull = ConvexHull(case.way.body.vertices)
-    for corner in range(0, len(hull.points), 20):
-        around = hull.simplices[(hull.simplices == corner).any(axis=1)]
-        normals = hull.equations[(hull.simplices == corner).any(axis=1), :3]
-        outward = normals.mean(axis=0) / np.linalg.norm(normals.mean(axis=0))
-        centre = hull.points[corner] + model.radius * outward
-        faces = [one for one in features_at(model, 0, centre) if one.flat]
-        edges = edges_of(model, faces, centre)
+    mesh = model.mesh
+    for corner in range(0, len(mesh.vertices), 20):
+        around = mesh.faces[(mesh.faces == corner).any(axis=1)]
+        normals = mesh.normals[(mesh.faces == corner).any(axis=1)]
+        faces, edges = mesh.features(mesh.vertices[corner])
         others = np.setdiff1d(around, corner)
         assert len(faces) == len(edges) == len(others)
         for other in others:
             beside = normals[(around == other).any(axis=1)].sum(axis=0)
-            middle = (hull.points[corner] + hull.points[other]) / 2
-            bead = middle + model.radius * beside / np.linalg.norm(beside)
-            assert min(edge.missed_at(0, bead) for edge in edges) < STAYS
+            beside /= np.linalg.norm(beside)
+            middle = (mesh.vertices[corner] + mesh.vertices[other]) / 2
+            bead = middle + model.radius * beside
+            assert sum(Surface(model, edge).holds(0, bead) for edge in edges) == 1
+            aside = mesh.vertices[corner] + 1e-4 * (middle - mesh.vertices[corner])
+            assert mesh.snapped(aside, 1e-4) == pytest.approx(mesh.vertices[corner], abs=0)
+            assert mesh.snapped(middle, 1e-4) == pytest.approx(middle, abs=1e-13)
 
 
 @pytest.mark.slow
@@ -57,4 +77,4 @@ def test_a_side_that_comes_over_a_corner_goes_where_the_way_down_leads(
     for travel in case.path.travel:
         walk.go_to(float(travel) / case.beam.length)
     assert len(seen) >= 5
-    assert max(seen) < 1e-6  # Newton's method ends both; edges by planes and by normals
+    assert max(seen) < 1e-6  # Newton's method ends both

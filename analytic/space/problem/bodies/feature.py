@@ -1,6 +1,8 @@
 """A face, an edge or a corner of a mesh that goes on without end: what a contact stays on."""
 
+import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -32,17 +34,31 @@ class Feature(Body):
             free = np.stack([ways[:, turns][:, 0], spot.normal])
         return cls(spot.point, free, spot.normal)
 
+    @property
+    def flat(self) -> bool:
+        """Whether it is a face."""
+        return not len(self.free)
+
+    @property
+    def basis(self) -> Floats:
+        """Unit vectors that span its normals, across each other, shape (1 to 3, 3)."""
+        return self.normal[None] if self.flat else self.free
+
+    @cached_property
+    def _span(self) -> Floats:
+        """Projects on them, shape (3, 3)."""
+        return np.asarray(self.free.T @ self.free)
+
     def nearest(self, x: Floats, apart: float) -> Spot:
         """Its foot of the perpendicular."""
         away = x - self.point
-        if not len(self.free):
+        if self.flat:
             height = float(away @ self.normal)
             return Spot(x - height * self.normal, self.normal, height, np.zeros((3, 3)))
-        span = self.free.T @ self.free
-        across = span @ away
-        distance = float(np.linalg.norm(across))
+        across = self._span @ away
+        distance = math.sqrt(across @ across)
         normal = across / max(distance, 1e-300)
-        turning = (span - np.outer(normal, normal)) / apart
+        turning = (self._span - normal[:, None] * normal) / apart
         return Spot(x - across, normal, distance, turning)
 
     def scaled(self, factor: float) -> "Feature":
@@ -52,8 +68,3 @@ class Feature(Body):
     def patches(self, centre: Floats, reach: float) -> Floats:
         """Nothing is drawn of it."""
         return np.zeros((0, 3, 3))
-
-
-def corner_at(point: Floats) -> Feature:
-    """A point that holds a vibrissa whichever way it pulls."""
-    return Feature(point, np.eye(3), np.array([0.0, 1.0, 0.0]))

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -10,12 +11,12 @@ from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.mesh_file import read_body
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import positive
-from analytic.space.problem.bodies.body import Body, Spot
+from analytic.space.problem.bodies.body import Body, Spot, cross
 from analytic.space.problem.bodies.feature import Feature
 from analytic.space.problem.numbers import Vector, vector
 
 _ON_PLANE = 1e-9  # of the extent: so near to a plane a point is on it
-_PARALLEL = 1e-9  # rad; a step that rises less from a plane is along it
+_PARALLEL = 1e-9  # rad; a step that rises less from a plane is along it, and such faces are one
 _TIED = 1e-14  # of a square of a distance: so near to each other rounding decides
 
 
@@ -168,21 +169,62 @@ class Polyhedron(Body):
         """The face, the edge or the corner."""
         return Feature.of(spot)
 
-    def normals_at(self, point: Floats) -> Floats:
-        """Of the faces that meet at a point of the surface.
+    def features(self, point: Floats, off: float = 0.0) -> tuple[list[Feature], list[Feature]]:
+        """The faces that meet at a point of the surface, and the edges between them.
 
         Parameters
         ----------
         point : array, shape (3,)
             [length]
+        off : float, optional
+            By how much faces may miss the point, in addition to rounding [length].
 
         Returns
         -------
-        array, shape (n, 3)
-            Outward, of length 1.
+        faces, edges : list of Feature
+            As if they had no end.
         """
-        on = np.abs(self.normals @ point - self.heights) < self._rounding
-        return np.unique(self.normals[on], axis=0)
+        on = np.abs(self.normals @ point - self.heights) < self._rounding + off
+        normals = np.unique(self.normals[on], axis=0)
+        faces, edges = [Feature(point, np.zeros((0, 3)), n) for n in normals], []
+        for one, other in combinations(normals, 2):
+            across, apart = one + other, one - other
+            size = float(np.linalg.norm(apart))
+            ahead = normals @ cross(one, other)  # behind all other faces, on one side at least
+            slack = _PARALLEL * size
+            if size > _PARALLEL and ((ahead <= slack).all() or (ahead >= -slack).all()):
+                normal = across / np.linalg.norm(across)
+                edges.append(Feature(point, np.stack([normal, apart / size]), normal))
+        return faces, edges
+
+    def snapped(self, point: Floats, within: float) -> Floats:
+        """The corner that is near a point of the surface, else the edge's place, else the point.
+
+        Parameters
+        ----------
+        point : array, shape (3,)
+            [length]
+        within : float
+            How far away they may be [length].
+
+        Returns
+        -------
+        array, shape (3,)
+            Of the surface [length].
+        """
+        away = np.linalg.norm(self.vertices - point, axis=1)
+        corner = int(np.argmin(away))
+        if away[corner] <= within:
+            return np.asarray(self.vertices[corner])
+        left = self.heights - self.normals @ point
+        normal = self.normals[int(np.argmin(left))]
+        along = self.normals - np.outer(self.normals @ normal, normal)
+        size = np.linalg.norm(along, axis=1)
+        left = np.divide(left, size, out=np.full_like(left, np.inf), where=size > _PARALLEL)
+        edge = int(np.argmin(left))
+        if left[edge] > within:
+            return point
+        return np.asarray(point + left[edge] / size[edge] * along[edge])
 
     def room(self, point: Floats, step: Floats) -> float:
         """How much of a step along a face or an edge stays on it.
@@ -207,6 +249,27 @@ class Polyhedron(Body):
     @cached_property
     def _rounding(self) -> float:
         return _ON_PLANE * float(np.abs(self.vertices).max())
+
+    def with_vertices(self, vertices: Floats) -> "Polyhedron":
+        """The same mesh with its vertices elsewhere by rounding.
+
+        Parameters
+        ----------
+        vertices : array, shape (n, 3)
+            [length]
+
+        Returns
+        -------
+        Polyhedron
+            Normals are exactly alike where they have been.
+        """
+        _, first, of_plane = np.unique(self.normals, axis=0, return_index=True, return_inverse=True)
+        one, other, third = vertices[self.faces].swapaxes(0, 1)
+        areas = np.cross(other - one, third - one)
+        planes = np.zeros((len(first), 3))
+        np.add.at(planes, of_plane, areas)
+        planes /= np.linalg.norm(planes, axis=1)[:, None]
+        return replace(self, vertices=vertices, normals=planes[of_plane])
 
     def scaled(self, factor: float) -> "Polyhedron":
         """With the same normals."""
@@ -262,7 +325,7 @@ def convex_mesh(
     label = Path(file).name
     if body.miss > 0:
         label += f", simplified within {body.miss * unit:.1e}"
-    return _polyhedron(unit * body.vertices + place, body.faces, body.normals, label)
+    return solid(unit * body.vertices + place, body.faces, body.normals, label)
 
 
 def polyhedron(points: Floats, label: str = "polyhedron") -> Polyhedron:
@@ -299,14 +362,18 @@ def polyhedron(points: Floats, label: str = "polyhedron") -> Polyhedron:
             "an array of shape (n, 3)",
         ) from error
     faces = np.searchsorted(found.vertices, found.simplices)
-    return _polyhedron(given[found.vertices], faces, found.equations[:, :3], label)
+    return solid(given[found.vertices], faces, found.equations[:, :3], label)
 
 
-def _polyhedron(vertices: Floats, faces: Integers, normals: Floats, label: str) -> Polyhedron:
-    """Without triangles that have no area, whose normals are their neighbours'."""
-    corners = vertices[faces]
-    sides = corners - np.roll(corners, 1, axis=1)
-    longest = (sides**2).sum(axis=2).max(axis=1)
-    doubled = np.linalg.norm(np.cross(sides[:, 1], sides[:, 2]), axis=1)
-    solid = doubled > 1e-12 * longest
-    return Polyhedron(vertices, faces[solid], normals[solid], label)
+def solid(vertices: Floats, faces: Integers, normals: Floats, label: str) -> Polyhedron:
+    """A mesh of triangles of any sense, some perhaps without area: their normals are neighbours'.
+
+    Triangles are turned counterclockwise from outside, and those without area left out.
+    """
+    one, other, third = vertices[faces].swapaxes(0, 1)
+    sides = np.stack([other - one, third - other, one - third])
+    areas = np.cross(sides[0], sides[1])
+    outward = (areas * normals).sum(axis=1, keepdims=True) > 0
+    faces = np.where(outward, faces, faces[:, ::-1])
+    kept = np.linalg.norm(areas, axis=1) > 1e-12 * (sides**2).sum(axis=2).max(axis=0)
+    return Polyhedron(vertices, faces[kept], normals[kept], label)

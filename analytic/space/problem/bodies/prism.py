@@ -208,14 +208,9 @@ def prism(
     along = direction("body prism.axis", axis)
     if along[2] < 0:  # the prism is endless: its axis has no sense
         along = -along
-    x, y, z = along
-    # The rotation that takes z to the axis by the shortest way (Rodrigues).
-    turn = np.array(
-        [
-            [1 - x * x / (1 + z), -x * y / (1 + z), x],
-            [-x * y / (1 + z), 1 - y * y / (1 + z), y],
-            [-x, -y, z],
-        ]
-    )
+    from scipy.spatial.transform import Rotation  # slow to load, and few cases need it
+
+    half = along + np.eye(3)[2]  # two right angles about half-way take z to the axis,
+    to = Rotation.from_quat([*half, 0.0]) * Rotation.from_quat([0.0, 0.0, 1.0, 0.0])
     place = vector("body prism.origin", origin)
-    return Prism(contour, place, turn.T.copy(), f"prism, {contour.label}")
+    return Prism(contour, place, to.as_matrix().T, f"prism, {contour.label}")

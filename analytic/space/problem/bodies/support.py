@@ -47,7 +47,7 @@ class SmoothBody(Body):
             raise InputError(
                 "body.point", self.point, "a function of a unit vector", "the support's gradient"
             )
-        normals = _spread(_TESTED)
+        normals = spread(_TESTED)
         try:
             points = np.array([self._at(n) for n in normals])
         except (TypeError, ValueError, IndexError) as error:
@@ -142,7 +142,7 @@ class SmoothBody(Body):
         return grid_patches(np.array(grid))
 
 
-def _spread(count: int) -> Floats:
+def spread(count: int) -> Floats:
     """Unit vectors evenly over the sphere, on a spiral."""
     height = 1 - 2 * (np.arange(count) + 0.5) / count
     angle = np.pi * (1 + np.sqrt(5)) * np.arange(count)
