@@ -75,9 +75,9 @@ net: develop     ## some 280 sweeps of this checkout, held against those that an
 
 results: $(RUNS) | install ## results/README.md: all named cases, all beams there are; goes on where it stopped
 	$(BIN)/python -m docs.figures.overview results/overview.png
-	$(BIN)/python -m compare.show.figures.hysteresis results/hysteresis.png
+	$(BIN)/python -m docs.figures.hysteresis results/hysteresis.png
 	$(BIN)/python -m docs.figures.quasi_static results/quasi-static.csv
-	$(BIN)/python -m compare.show.figures.quasi_static results/quasi-static.csv results/quasi-static.png
+	$(BIN)/python -m docs.figures.quasi_static_picture results/quasi-static.csv results/quasi-static.png
 	$(BIN)/vibrissa analytic catenary --figures --out results/pictures
 	$(BIN)/vibrissa methods catenary --out results/pictures
 	cp results/pictures/methods.png results/methods-catenary.png
@@ -92,7 +92,7 @@ results: $(RUNS) | install ## results/README.md: all named cases, all beams ther
 	sed -n '/^\[beam\]/,/^```/{/^```/!p}' analytic/space.md > results/pictures/space/egg.toml
 	$(BIN)/vibrissa space results/pictures/space/egg.toml --out results/pictures/space
 	cp results/pictures/space/space.png results/
-	$(BIN)/vibrissa findings results/runs --out results
+	$(BIN)/python -m docs.figures.findings results/runs results
 
 again: install   ## the same, but forget the runs that are done
 	rm -rf results/runs

@@ -117,9 +117,8 @@ def findings(
     """Write a page about all runs in a folder."""
     require_folder(folder, "make runs in it: vibrissa run CASE --out DIR/CASE")
     from compare.commands import terminal
-    from compare.show.findings import write_findings
+    from compare.report import write_report
 
     with output_folder(out or folder) as place:
-        for path in write_findings(folder, place):
-            terminal.print_written(path)
+        terminal.print_written(write_report(folder, place).path)
     return AGREES

@@ -58,7 +58,7 @@ def calibrate(
     from compare.read.case import load_job
     from compare.read.rig import read_measured
     from compare.sense.record import without_dropouts
-    from compare.show.calibration import calibration_document, calibration_lines
+    from compare.show.calibration import calibration_document, calibration_summary
 
     known = load_job(case).case
     readings = without_dropouts(read_measured(file, beam, column or (), known.beam, direction))
@@ -70,8 +70,7 @@ def calibrate(
         from compare.show.page import document
 
         terminal.note_rows(readings)
-        for line in calibration_lines(found):
-            terminal.print_line(line)
+        terminal.show(*calibration_summary(found))
         written = write_whole(folder / "calibration.json", document(calibration_document(found)))
         terminal.print_written(written)
     return AGREES if found.explains else DISAGREES

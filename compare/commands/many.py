@@ -8,7 +8,8 @@ from compare.commands import terminal
 from compare.commands.measured_budgets import measured_budget
 from compare.commands.options import AGREES, DISAGREES
 from compare.read.case import Job
-from compare.show.engines import EngineRow, ManyEngines, write_engines
+from compare.read.runs import EngineOutcome
+from compare.show.engines import ManyEngines, write_engines
 from compare.simulate.many import sweep_many
 from engines import Outcome, list_engines
 
@@ -55,11 +56,12 @@ def swept(job: Job, folder: Path) -> Sequence[Outcome]:
     return found
 
 
-def _rows(outcomes: Sequence[Outcome]) -> list[EngineRow]:
+def _rows(outcomes: Sequence[Outcome]) -> list[EngineOutcome]:
     known = {found.name: found for found in list_engines()}
     rows = []
     for one in outcomes:
         found = known[one.engine]
         role, tuned = ("", "") if found.engine is None else (found.engine.role, found.engine.tuned)
-        rows.append(EngineRow(one.engine, role, found.version or "none", tuned, one.trouble))
+        version = found.version or "none"
+        rows.append(EngineOutcome(one.engine, role, version, tuned, one.trouble))
     return rows

@@ -122,9 +122,10 @@ def compare(
         require_readings([candidate] if job is not None else [Path(reference), candidate])
         from analytic import solve_sweep
         from compare.comparison import compare as compare_readings
+        from compare.explain.budget import Budget
         from compare.read.assumed import ASSUMED
         from compare.read.rig import read_measured
-        from compare.read.run_folder import read_budget
+        from compare.read.run_folder import read_stored
 
         if job is None:
             path = Path(reference)
@@ -139,7 +140,7 @@ def compare(
         )
         known_job = _uncertain(job, uncertainty)
         if known_job is not None and known_job.uncertainties is not None:
-            numerics = None if budget is None else read_budget(budget)
+            numerics = None if budget is None else read_stored(budget, Budget)
             comparison = comparison.validated(
                 known_job.case, known_job.uncertainties, budget=numerics
             )

@@ -234,10 +234,7 @@ def write_report(
 
     with waiting("drawing"):
         written = write_spatial_report(comparison, body, folder, parts, film)
-    for line in comparison.lines():
-        terminal.print_line(line)
-    if parts is not None:
-        terminal.print_line(parts.line())
+    terminal.print_spatial_comparison(comparison, parts)
     terminal.print_written(written)
 
 

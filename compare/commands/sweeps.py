@@ -3,12 +3,12 @@
 And ``report``, which does what ``run`` does after its sweeps.
 """
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from compare.commands.given import require_folder
 from compare.commands.options import (
     AGREES,
     DISAGREES,
@@ -26,6 +26,7 @@ from compare.commands.options import (
     Timestep,
 )
 from compare.commands.output import output_folder
+from compare.commands.reported import print_report
 from compare.commands.waiting import waiting
 
 _FRAMES = 48  # of a report's animation: smooth enough, and under 2 MB
@@ -109,36 +110,20 @@ def run(
 
 def report(
     folder: Annotated[
-        Path, typer.Argument(metavar="DIR", help="Folder of a run, as `vibrissa run` makes it.")
+        Path,
+        typer.Argument(metavar="DIR", help="Folder of a run or a study, or with folders of runs."),
     ],
 ) -> int:
-    """Write the report of a run, in the plane or in space, again from the sweeps that it stored.
+    """Write the page of a run, of a study, or of many runs, from what is stored of them.
 
     Also where there is none yet, after `analytic` and `simulate` of a case with one --out.
     """
-    from compare.read.sweep_files import sweep_files
+    require_folder(folder, "make one: vibrissa run CASE --out DIR")
+    with output_folder(folder), waiting("reading"):
+        from compare.report import write_report
 
-    reference, candidate = sweep_files(folder)
-    from compare.read.run_folder import read_run
-    from compare.read.space_readings import is_spatial
-
-    if is_spatial(reference):
-        from compare.commands.space_folder import report_in_space
-
-        return report_in_space(folder, reference, candidate)
-    stored = read_run(folder)
-    with output_folder(folder):
-        from compare.commands import terminal
-        from compare.comparison import compare
-        from compare.show.report import Film, write_report
-
-        with waiting("comparing"):
-            comparison = compare(stored.reference, stored.candidate, stored.tolerances)
-            comparison = replace(comparison, validation=stored.validation)
-            written = write_report(comparison, folder, stored.budget, Film.of(folder))
-        terminal.print_comparison(comparison)
-        terminal.print_written(written)
-        return AGREES if comparison.agrees else DISAGREES
+        written = write_report(folder)
+    return print_report(written)
 
 
 def analytic(

@@ -72,6 +72,16 @@ class Split:
             "not compute the model that was asked for."
         )
 
+    def parts(self) -> dict[str, dict[str, float]]:
+        """Relative rms of each reading, by what it is of."""
+        subject, twin = self.subject, self.twin
+        return {
+            f"{subject} against exact": self.disagreement,
+            f"implementation: {subject} against {twin}": self.implementation,
+            f"model: {twin} against exact": self.model,
+            **{f"other model: {name} against exact": rms for name, rms in self.others.items()},
+        }
+
     def to_dict(self) -> dict[str, Any]:
         """What ``engines.json`` holds of it."""
         return {

@@ -1,9 +1,11 @@
-"""What a calibration found, in lines and as a document."""
+"""What a calibration found, for people and as JSON."""
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 from analytic import Calibration
+from compare.show.document import Block, Table, Text
 
 _UNITS = {
     "flexural_rigidity": "N m^2",
@@ -14,29 +16,26 @@ _UNITS = {
 }
 
 
-def calibration_lines(calibration: Calibration) -> list[str]:
-    """What a terminal shows."""
-    names = list(calibration.found)
-    lines = []
+def calibration_summary(calibration: Calibration) -> Iterator[Block]:
+    """What a terminal shows: what was found, and how far it is to be trusted."""
+    rows = []
     for name, found in calibration.found.items():
         unit = _UNITS.get(name, "") if calibration.case.beam.si else ""
-        value, *ends = (_number(x) for x in (found.value, found.lowest, found.highest))
-        shown = f"{name} = {value} {unit}".rstrip()
-        lines.append(f"{shown}, with 95 % between {ends[0]} and {ends[1]}")
+        numbers = (_number(x) for x in (found.value, found.lowest, found.highest))
+        rows.append((name, *numbers, unit))
+    head = ("found", "value", "95 % from", "to", "")
+    yield Table(f"From {calibration.stations} stations", head, rows, words=(0, 4))
+    names = [*calibration.found]
     pairs = [(i, j) for j in range(len(names)) for i in range(j)]
     if pairs:
         i, j = max(pairs, key=lambda pair: abs(calibration.correlation[pair]))
         alike = calibration.correlation[i, j]
-        lines.append(f"trading off most: {names[i]} and {names[j]}, correlation {alike:+.2f}")
-    lines.append(
-        f"from {calibration.stations} stations; the fit leaves {calibration.misfit:.2g} times the "
-        "noise"
-    )
+        yield Text(f"trading off most: {names[i]} and {names[j]}, correlation {alike:+.2f}")
+    yield Text(f"the fit leaves {calibration.misfit:.2g} times the noise")
     if not calibration.explains:
-        lines.append(
+        yield Text(
             "something else is not as the case says: the intervals hold for noise, not for that"
         )
-    return lines
 
 
 def calibration_document(calibration: Calibration) -> dict[str, Any]:

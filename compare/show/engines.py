@@ -1,7 +1,7 @@
 """A case in many engines: one page, one picture, one table."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +11,22 @@ from matplotlib.ticker import LogFormatter
 
 from analytic import CLAMP_READINGS, Case, Readings
 from analytic.problem.files import write_whole
+from compare.comparison import Comparison
 from compare.explain.budget import Budget
 from compare.explain.split import Split, split
-from compare.show.colophon import colophon
-from compare.show.page import document, inline_svg, png, render
-from compare.show.side_by_side import SideBySide, picture, seconds_per_station, side_by_side
+from compare.read.runs import EngineOutcome
+from compare.show.document import Block, Document, Picture, Table, Text, Verdict, sections
+from compare.show.html import html
+from compare.show.numbers import short
+from compare.show.page import document as as_json
+from compare.show.page import png
+from compare.show.side_by_side import (
+    SideBySide,
+    between_table,
+    picture,
+    seconds_per_station,
+    side_by_side,
+)
 from compare.show.style import (
     AT_TOP,
     LARGE,
@@ -30,24 +41,12 @@ _DECADE = 10.0  # of time, drawn at least
 
 
 @dataclass(frozen=True)
-class EngineRow:
-    """What is known of one engine, whether or not it gave readings."""
-
-    name: str  # as the engine says itself
-    role: str  # as the engine says itself
-    version: str  # as the engine says itself
-    tuned: str  # as the engine says itself
-    trouble: str | None  # why there are no readings
-
-
-@dataclass(frozen=True)
 class ManyEngines:
     """The sweeps of one case in several engines."""
 
     case: Case  # the problem
     exact: Readings  # the closed form
-    rows: Sequence[EngineRow]  # in the order in which they were asked for
-    sweeps: Mapping[str, Readings]  # of those that gave any, by engine
+    outcomes: Sequence[EngineOutcome]  # in the order in which they were asked for
     found: SideBySide  # each against the closed form, and against each other
     split: Split | None  # implementation and model, if MuJoCo and a twin of it are there
     budget: Budget | None  # what MuJoCo's disagreement is made of, if it was measured
@@ -57,32 +56,26 @@ class ManyEngines:
         cls,
         case: Case,
         exact: Readings,
-        rows: Sequence[EngineRow],
+        asked: Sequence[EngineOutcome],
         sweeps: Mapping[str, Readings],
         budget: Budget | None = None,
     ) -> "ManyEngines":
-        """Compare them."""
-        roles = {row.name: row.role for row in rows}
+        """Compare the sweeps of those that gave any, by engine."""
         found = side_by_side(exact, dict(sweeps))
-        return cls(case, exact, rows, sweeps, found, split(exact, sweeps, roles), budget)
+        outcomes = [
+            _compared(one, found.against[one.name]) if one.name in sweeps else one for one in asked
+        ]
+        roles = {one.name: one.role for one in asked}
+        return cls(case, exact, outcomes, found, split(exact, sweeps, roles), budget)
 
     @property
     def agree(self) -> bool:
         """Whether all engines gave readings that agree with the closed form."""
-        complete = all(row.trouble is None for row in self.rows)
-        return complete and all(one.agrees for one in self.found.against.values())
+        return all(one.agrees for one in self.outcomes)
 
     def parts(self) -> dict[str, dict[str, float]]:
         """What the disagreement is split into: by the twin, by other models, by the budget."""
-        parts: dict[str, dict[str, float]] = {}
-        if self.split is not None:
-            subject, twin = self.split.subject, self.split.twin
-            parts[f"{subject} against exact"] = self.split.disagreement
-            parts[f"implementation: {subject} against {twin}"] = self.split.implementation
-            parts[f"model: {twin} against exact"] = self.split.model
-            parts |= {
-                f"other model: {name} against exact": rms for name, rms in self.split.others.items()
-            }
+        parts = {} if self.split is None else self.split.parts()
         if self.budget is not None:
             parts |= {
                 f"budget: {part}": {name: one.rms for name, one in readings.items()}
@@ -94,62 +87,120 @@ class ManyEngines:
         """What ``engines.json`` holds."""
         return {
             "case": self.case.name,
-            "engines": [
-                {
-                    **vars(row),
-                    "rms": self.rms(row.name),
-                    "snap_off_apart": self._apart(row.name),
-                    "seconds_a_station": self.seconds(row.name),
-                    "agrees": row.name in self.sweeps and self.found.against[row.name].agrees,
-                }
-                for row in self.rows
-            ],
+            "engines": [asdict(one) for one in self.outcomes],
             "split": None if self.split is None else self.split.to_dict(),
             "parts": self.parts(),
             **self.found.to_dict(),
         }
 
-    def rms(self, name: str) -> dict[str, float] | None:
-        """Of an engine's readings from the closed form's."""
-        if name not in self.sweeps:
-            return None
-        found = self.found.against[name].disagreement
-        return {reading: found[reading].rms for reading in CLAMP_READINGS}
 
-    def _apart(self, name: str) -> float | None:
-        """Snap-off of an engine less that of the closed form [L]."""
-        if name not in self.sweeps:
-            return None
-        apart = self.found.against[name].snap_off.difference
-        return None if apart is None else apart / self.exact.beam.length
-
-    def seconds(self, name: str) -> float | None:
-        """Processor time a station."""
-        seconds = seconds_per_station(self.sweeps[name]) if name in self.sweeps else np.nan
-        return None if np.isnan(seconds) else float(seconds)
+def _compared(one: EngineOutcome, found: Comparison) -> EngineOutcome:
+    apart, seconds = found.snap_off.difference, seconds_per_station(found.candidate)
+    return replace(
+        one,
+        rms={name: found.disagreement[name].rms for name in CLAMP_READINGS},
+        snap_off_apart=None if apart is None else apart / found.reference.beam.length,
+        seconds_a_station=None if np.isnan(seconds) else seconds,
+        agrees=found.agrees,
+    )
 
 
 def write_engines(many: ManyEngines, folder: Path) -> list[Path]:
     """Write the page, its numbers, and the picture of error against time."""
-    content = many.to_dict()
     timed = error_against_time(many)
-    page = render(
-        "compare.show",
-        "engines.html.j2",
-        many=many,
-        engines=content["engines"],
-        parts=content["parts"],
-        readings=CLAMP_READINGS,
-        between={names: c.disagreement for names, c in many.found.between.items()},
-        timed=inline_svg(timed, "time", "Error against time a station, a mark an engine"),
-        apart=inline_svg(picture(many.found), "apart", "Differences over the foot position"),
-        colophon=colophon(),
-    )
+    page = html(engines_document(many, timed, picture(many.found)))
     return [
         write_whole(folder / "engines.html", page),
-        write_whole(folder / "engines.json", document(content)),
+        write_whole(folder / "engines.json", as_json(many.to_dict())),
         write_whole(folder / "engines.png", png(timed)),
     ]
+
+
+def engines_document(many: ManyEngines, timed: Figure, apart: Figure) -> Document:
+    """All that there is to say of a case in many engines, with its two pictures."""
+    count = len(many.outcomes)
+    object_ = many.exact.provenance.get("profile") or "Contour not recorded"
+    return Document(
+        f"{many.case.name} in {count} engine{'s' if count > 1 else ''}",
+        f"{object_}; {len(many.exact.table)} stations. Differences are root mean squares over the "
+        "stations in contact, relative to each reading's largest magnitude.",
+        Verdict(
+            many.agree,
+            f"{'All' if many.agree else 'Not all'} agree with the closed form.",
+            "" if many.split is None else many.split.sentence,
+        ),
+        sections(
+            ("engines", "Engines", _engines(many, timed, apart)),
+            ("split", "What the disagreement is made of", _split(many)),
+            ("fairness", "What was set for each engine, and by whom", [_fairness(many)]),
+        ),
+    )
+
+
+def outcomes_table(found: Mapping[str, Sequence[EngineOutcome]]) -> Table:
+    """Each engine against the closed form, by case."""
+    rows = {
+        case: [
+            (
+                f"{one.name} {one.version}, {one.role}",
+                *(short(one.rms[name]) if one.rms else "none" for name in CLAMP_READINGS),
+                short(one.snap_off_apart),
+                "" if one.seconds_a_station is None else f"{1e3 * one.seconds_a_station:.2g}",
+                one.trouble or ("agrees" if one.agrees else "disagrees"),
+            )
+            for one in outcomes
+        ]
+        for case, outcomes in found.items()
+    }
+    head = ("engine", *CLAMP_READINGS, "snap-off apart / L", "ms a station", "")
+    caption = "Each engine against the closed form, relative rms"
+    return Table(caption, ("case", *head), _by_case(rows), words=(0, 1, 7))
+
+
+def parts_table(found: Mapping[str, Mapping[str, Mapping[str, float]]]) -> Table:
+    """What the disagreement is made of, by case."""
+    rows = {
+        case: [(part, *(short(rms[name]) for name in CLAMP_READINGS)) for part, rms in of.items()]
+        for case, of in found.items()
+    }
+    head = ("case", "part", *CLAMP_READINGS)
+    caption = "What the disagreement is made of, relative rms"
+    return Table(caption, head, _by_case(rows), words=(0, 1))
+
+
+def _by_case(found: Mapping[str, Sequence[tuple[str, ...]]]) -> list[tuple[str, ...]]:
+    return [(case, *row) for case, rows in found.items() for row in rows]
+
+
+def _engines(many: ManyEngines, timed: Figure, apart: Figure) -> Iterator[Block]:
+    yield outcomes_table({many.case.name: many.outcomes})
+    yield from between_table(many.found)
+    yield Picture(
+        "time",
+        {"Error against time a station, a mark an engine": timed},
+        "Error against time. Processor time of one process; an engine that is not tuned for this "
+        "can be faster.",
+    )
+    caption = "Differences from the closed form over the foot position."
+    yield Picture("apart", {"Differences over the foot position": apart}, caption)
+
+
+def _split(many: ManyEngines) -> Iterator[Block]:
+    if many.parts():
+        yield parts_table({many.case.name: many.parts()})
+        yield Text(
+            "A twin computes the same discrete model with the same settings, so what it differs by "
+            "is implementation. The model's part is what the twin differs by from the closed form. "
+            "Budget parts are MuJoCo's: discretisation, facets, softness and unrest, measured by "
+            "controlled changes.",
+            aside=True,
+        )
+
+
+def _fairness(many: ManyEngines) -> Table:
+    made = "All settings were made by the authors of this page's program, not by the engines' own"
+    rows = [(one.name, one.tuned) for one in many.outcomes]
+    return Table(f"{made} developers", ("engine", "what was set"), rows, words=(0, 1))
 
 
 def error_against_time(many: ManyEngines) -> Figure:
@@ -158,22 +209,21 @@ def error_against_time(many: ManyEngines) -> Figure:
     ax = figure.subplots()
     ax.set_xscale("log")
     ax.set_yscale("log")
-    timed = [row.name for row in many.rows if many.seconds(row.name)]
+    timed = [one for one in many.outcomes if one.seconds_a_station and one.rms]
+    milliseconds = [1e3 * (one.seconds_a_station or np.nan) for one in timed]
     for reading in CLAMP_READINGS:
-        points = [(many.seconds(name), many.rms(name)) for name in timed]
         ax.plot(
-            [1e3 * (seconds or np.nan) for seconds, _ in points],
-            [rms[reading] if rms else np.nan for _, rms in points],
+            milliseconds,
+            [(one.rms or {})[reading] for one in timed],
             linestyle="",
             marker=READING_MARKERS[reading],
             color=READING_COLOURS[reading],
             label=SYMBOLS[reading],
         )
-    for name in timed:
-        rms = many.rms(name) or {}
-        x, y = 1e3 * (many.seconds(name) or np.nan), max(rms.values())
+    for x, one in zip(milliseconds, timed, strict=True):
+        y = max((one.rms or {}).values())
         ax.annotate(
-            label(name), (x, y), (0, 8), textcoords="offset points", ha="center", fontsize=SMALL
+            label(one.name), (x, y), (0, 8), textcoords="offset points", ha="center", fontsize=SMALL
         )
     ax.margins(0.25)
     low, high = ax.get_xlim()

@@ -10,9 +10,12 @@ from matplotlib.figure import Figure
 
 from analytic import CLAMP_READINGS, Readings
 from compare.comparison import Comparison, compare
+from compare.show.document import Table
+from compare.show.figures.keys import key_below
 from compare.show.figures.over_foot import foot_label, shade_reference
 from compare.show.figures.thinning import draw
-from compare.show.style import AT_TOP, LARGE, LINE_STYLES, SERIES, SMALL, SYMBOLS, label
+from compare.show.numbers import short
+from compare.show.style import AT_TOP, LARGE, LINE_STYLES, SERIES, SYMBOLS, label
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,35 @@ def seconds_per_station(readings: Readings) -> float:
     return np.nan if seconds is None else float(seconds) / len(readings.table)
 
 
+def against_table(found: SideBySide) -> Table:
+    """Each sweep against the reference."""
+    rows = []
+    for number, (name, one) in enumerate(found.against.items(), 1):
+        apart, took = one.snap_off.difference, seconds_per_station(one.candidate)
+        rows.append(
+            (
+                f"{number} {name}",
+                *(short(one.disagreement[reading].rms) for reading in CLAMP_READINGS),
+                "none" if apart is None else short(apart),
+                "" if np.isnan(took) else f"{1e3 * took:.1f}",
+            )
+        )
+    return Table(
+        f"Against {found.reference}: rms relative to each reading's largest magnitude",
+        ("candidate", *CLAMP_READINGS, "snap-off", "ms/station"),
+        rows,
+    )
+
+
+def between_table(found: SideBySide) -> list[Table]:
+    """The sweeps against each other, if there are several."""
+    rows = [
+        (f"{one}, {other}", *(short(pair.disagreement[name].rms) for name in CLAMP_READINGS))
+        for (one, other), pair in found.between.items()
+    ]
+    return [Table("Each other, relative rms", ("pair", *CLAMP_READINGS), rows)] if rows else []
+
+
 def picture(found: SideBySide) -> Figure:
     """Draw how far the clamp readings are from the reference's, over the foot position."""
     figure = Figure(figsize=(12, 4.2), layout="constrained")
@@ -95,9 +127,5 @@ def picture(found: SideBySide) -> Figure:
         ax.set_title(SYMBOLS[name], fontsize=LARGE, y=AT_TOP)
         ax.set_xlabel(foot_label(first.reference))
     axes[0].set_ylabel(f"difference from {label(found.reference)}\nrelative to largest magnitude")
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="outside lower center", ncols=min(len(labels), 4), fontsize=SMALL,
-        frameon=False,
-    )  # fmt: skip
+    key_below(figure, axes[0], min(len(found.against), 4))
     return figure

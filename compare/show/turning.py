@@ -6,7 +6,7 @@ import numpy as np
 from markupsafe import Markup
 
 from analytic.problem.arrays import Floats
-from compare.show.page import render
+from compare.show.html import render
 from compare.show.scene import SweepScene
 from compare.show.style import PHASE_NAMES
 
@@ -52,7 +52,7 @@ def turning(scene: SweepScene) -> Markup:
         ],
     }
     zdog = (files("compare.show") / "templates" / "zdog.min.js").read_text(encoding="utf-8")
-    return Markup(render("compare.show", "turning.html.j2", data=data, zdog=Markup(zdog)))
+    return render("turning.html.j2", data=data, zdog=Markup(zdog))
 
 
 def _said(scene: SweepScene, station: int) -> str:

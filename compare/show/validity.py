@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from analytic import Beam
 from compare.comparison import Comparison
-from compare.show.page import short
-from compare.show.quantities import quantity
+from compare.show.document import Table, Text
+from compare.show.numbers import percent, quantity, short, words
 from compare.validate.inputs import GAINS, INPUTS
 from compare.validate.spread import NOISE, NUMERICS
 from compare.validate.validation import Validation
@@ -78,3 +78,47 @@ def _dominant(found: Validation, beam: Beam) -> str:
         )
         return f"{said}: its standard uncertainty must shrink from {now} to {then} to decide."
     return f"{said}: it must shrink to {found.shrink:.2g} of what it is to decide."
+
+
+def validation_tables(found: Validation, beam: Beam) -> Iterator[Table | Text]:
+    """E and its uncertainty by reading, what makes the latter, and what is left out."""
+    yield Table(
+        "Simulation less data, E = S - D, and its uncertainty (ASME V&V 20), root mean square of "
+        f"{found.stations} stations, relative to each reading's largest magnitude; E of a right "
+        "model is below k u_val in 95 % of all cases",
+        ("", "E", "u_num", "u_input", "u_D", "u_val", "k", "k u_val", "disagreement"),
+        [
+            (
+                name,
+                *(short(x) for x in (one.error, one.u_num, one.u_input, one.u_data, one.u_val)),
+                f"{one.coverage:.2f}",
+                short(one.limit),
+                "resolved" if one.resolved else "not resolved",
+            )
+            for name, one in {**found.by_reading, "all, correlated": found.whole}.items()
+        ],
+        words=(0, 8),
+        whole=[len(found.by_reading)],
+    )
+    shares = found.whole.shares
+    yield Table(
+        "What makes u_val squared; an input is off by the same at all stations",
+        ("uncertain", "standard uncertainty", "share", *found.by_reading),
+        [
+            (
+                words(name),
+                standard_of(name, found.standard[name], beam) if name in found.standard else "",
+                percent(share),
+                *(percent(one.shares[name]) for one in found.by_reading.values()),
+            )
+            for name, share in shares.items()
+        ],
+        blamed=[i for i, name in enumerate(shares) if name == found.dominant],
+    )
+    left = found.left_out
+    thinned = f", {left['thinned']} of very many" if left.get("thinned") else ""
+    yield Text(
+        f"Left out: {left['before_snap_off']} stations next to the snap-off, "
+        f"{left['without_sensitivity']} whose sensitivity is not known{thinned}.",
+        aside=True,
+    )

@@ -8,7 +8,7 @@ from analytic import CLAMP_READINGS
 from compare.comparison import Comparison
 from compare.explain.budget import Budget
 from compare.judge.tolerances import CONTACT_PHASES
-from compare.show.page import short
+from compare.show.numbers import short
 
 _NEARLY_ALL = 0.95  # of the compared stations: with fewer, the budget is about another disagreement
 

@@ -12,7 +12,7 @@ def undrawn(monkeypatch):
     """
     monkeypatch.setattr("compare.show.animation.write_animation", lambda *_: [])
     monkeypatch.setattr("compare.show.report.FIGURES", {})
-    monkeypatch.setattr("compare.show.report._figures", lambda *_: {})
+    monkeypatch.setattr("compare.show.report.page_pictures", lambda *_: {})
     monkeypatch.setattr("compare.show.animation.space.write_space_animation", lambda *_: [])
     monkeypatch.setattr("compare.show.spatial.png", lambda *_: b"")
-    monkeypatch.setattr("compare.show.spatial.inline_svg", lambda *_: "")
+    monkeypatch.setattr("compare.show.html.inline_svg", lambda *_: "")

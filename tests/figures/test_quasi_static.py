@@ -5,8 +5,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from compare.show.figures.quasi_static import quasi_static
 from docs.figures.quasi_static import measure, variants
+from docs.figures.quasi_static_picture import quasi_static
 
 TABLE = pd.read_csv(Path(__file__).parents[2] / "results" / "quasi-static.csv")
 

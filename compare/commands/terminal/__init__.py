@@ -3,16 +3,9 @@
 Lengths are printed in units of the vibrissa's length L, whatever the units of the case.
 """
 
-import compare.commands.terminal.artists  # noqa: F401  # before what draws is loaded
+from compare.commands.terminal.blocks import show
 from compare.commands.terminal.console import print_line, print_written, progress
-from compare.commands.terminal.sweeps import (
-    note_rows,
-    print_methods,
-    print_passes,
-    print_reconstruction,
-    print_sweep,
-)
-from compare.commands.terminal.verdicts import (
+from compare.commands.terminal.results import (
     print_advice,
     print_at_rest,
     print_budget,
@@ -22,6 +15,14 @@ from compare.commands.terminal.verdicts import (
     print_float32,
     print_motion_budget,
     print_side_by_side,
+    print_spatial_comparison,
+)
+from compare.commands.terminal.sweeps import (
+    note_rows,
+    print_methods,
+    print_passes,
+    print_reconstruction,
+    print_sweep,
 )
 
 __all__ = [
@@ -39,7 +40,9 @@ __all__ = [
     "print_passes",
     "print_reconstruction",
     "print_side_by_side",
+    "print_spatial_comparison",
     "print_sweep",
     "print_written",
     "progress",
+    "show",
 ]

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 from rich.console import Console
-from rich.table import Column, Table
-from rich.text import Text
 
 from analytic import CLAMP_READINGS, PHASES, Readings
-from compare.commands.terminal.console import console, print_line
+from compare.commands.terminal.blocks import show
+from compare.commands.terminal.console import print_line
 from compare.read.assumed import ASSUMED
 from compare.read.units import OWN_UNITS
-from compare.show.quantities import quantity
+from compare.show.document import Table
+from compare.show.numbers import quantity, short
 from compare.show.style import PHASE_LETTERS
 
 if TYPE_CHECKING:
@@ -130,26 +130,19 @@ def print_reconstruction(readings: Readings, found: pd.DataFrame, method: str) -
 
 def print_passes(passes: "Sequence[Pass]", repeats: "Mapping[tuple[str, str], Repeat]") -> None:
     """Print what was read of each pass, what was not used, and how far passes repeat each other."""
-    numbers = ("rows", "kept", "sorted", "gaps")
-    rows = Table(
-        Column("pass", overflow="fold"), "to the", *(_number(name) for name in numbers), "not kept",
-        title="Passes: rows, and why some are not used",
-    )  # fmt: skip
-    drifts = Table(
-        Column("pass", overflow="fold"), *(_number(name) for name in CLAMP_READINGS),
-        title="Drift of the zero, over the largest reading",
-    )  # fmt: skip
+    rows, drifts = [], []
     for one in passes:
         lost = (f"{n} {name.replace('_', ' ')}" for name, n in one.dropped.items() if n)
         counts = (one.rows, one.kept, one.sorted, one.record.gaps)
-        rows.add_row(Text(one.name), one.direction, *(str(n) for n in counts), ", ".join(lost))
+        rows.append((one.name, one.direction, *(str(n) for n in counts), ", ".join(lost)))
         largest = {n: np.nanmax(np.abs(one.readings.values(n)), initial=0.0) for n in one.drift}
         drift = [one.drift[n] / largest[n] if largest[n] > 0 else np.nan for n in one.drift]
-        drifts.add_row(
-            Text(one.name), *("not known" if np.isnan(x) else f"{x:+.1e}" for x in drift)
-        )
-    console().print(rows)
-    console().print(drifts)
+        drifts.append((one.name, *("not known" if np.isnan(x) else f"{x:+.1e}" for x in drift)))
+    counted = ("pass", "to the", "rows", "kept", "sorted", "gaps", "not kept")
+    show(
+        Table("Passes: rows, and why some are not used", counted, rows, words=(0, 1, 6)),
+        Table("Drift of the zero, over the largest reading", ("pass", *CLAMP_READINGS), drifts),
+    )
     length = passes[0].readings.beam.length
     for (first, second), found in repeats.items():
         apart = max(found.rms.values())
@@ -166,30 +159,18 @@ def print_passes(passes: "Sequence[Pass]", repeats: "Mapping[tuple[str, str], Re
 def print_methods(found: pd.DataFrame, title: str) -> None:
     """Print each method's median error by noise, and how many contacts it has an answer for."""
     levels = sorted(found["noise"].unique())
-    heads = ("answers", *(f"noise\n{level:g}" if level else "no\nnoise" for level in levels))
-    table = Table(
-        Column("method", overflow="fold"), "phase",
-        *(_number(head) for head in (*heads, "contacts\nper s")),
-        title=Text(f"Median error of the contact, over L: {title}"),
-    )  # fmt: skip
-    for method, rows in found.groupby("method", sort=False):
+    heads = (f"noise {level:g}" if level else "no noise" for level in levels)
+    rows = []
+    for method, of_method in found.groupby("method", sort=False):
         name = str(method)
-        for phase, by_noise in rows.groupby("phase", sort=False):
+        for phase, by_noise in of_method.groupby("phase", sort=False):
             by = by_noise.set_index("noise")
             if not by["contacts"][levels[0]]:
                 continue
-            medians = (by["median"][level] for level in levels)
-            table.add_row(
-                name,
-                PHASE_LETTERS[str(phase)],
-                f"{by['answered'][levels[0]]:.0%}",
-                *("-" if np.isnan(x) else f"{x:.1e}" for x in medians),
-                f"{1 / by['seconds'].median():.0f}" if name and by["seconds"].min() > 0 else "",
-            )
+            rate = f"{1 / by['seconds'].median():.0f}" if name and by["seconds"].min() > 0 else ""
+            share = f"{by['answered'][levels[0]]:.0%}"
+            medians = (short(by["median"][level]) for level in levels)
+            rows.append((name, PHASE_LETTERS[str(phase)], share, *medians, rate))
             name = ""
-    console().print(table)
-
-
-def _number(head: str) -> Column:
-    """A column of numbers: a narrow terminal folds words, and cuts no number."""
-    return Column(head, no_wrap=True, justify="right")
+    head = ("method", "phase", "answers", *heads, "contacts per s")
+    show(Table(f"Median error of the contact, over L: {title}", head, rows, words=(0, 1)))

@@ -1,11 +1,12 @@
-"""One sweep as it is drawn."""
+"""Sweeps as they are drawn."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from analytic import CLAMP_READINGS, Readings, curvatures, deflected_shapes, reconstruct
-from analytic.problem.arrays import Floats, Words
+from analytic.problem.arrays import Floats, Integers, Words
 from compare.sense.phases import classify
 
 _DOTS = 10  # of a dotted vibrissa, at equal steps of arc length
@@ -17,15 +18,9 @@ class Motion:
 
     readings: Readings  # the sweep
     foot_x: Floats  # shape (stations,); Foot positions
-    # Shape (stations, points); The centreline from clamp to tip, and the magnitude of its
-    # curvature.
-    x: Floats
-    # Shape (stations, points); The centreline from clamp to tip, and the magnitude of its
-    # curvature.
-    y: Floats
-    # Shape (stations, points); The centreline from clamp to tip, and the magnitude of its
-    # curvature.
-    curvature: Floats
+    x: Floats  # shape (stations, points); of the centreline, from clamp to tip
+    y: Floats  # shape (stations, points); of the centreline, from clamp to tip
+    curvature: Floats  # shape (stations, points); its magnitude there
     contact: Floats  # shape (stations, 2); Where the body is touched; NaN where it is not
     clamp: dict[str, Floats]  # shape (stations,); The clamp readings
     phase: Words  # shape (stations,); As judged from the clamp
@@ -58,3 +53,17 @@ class Motion:
         along = np.append(0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y))))
         at = np.linspace(0, along[-1], _DOTS + 1)[1:]
         return np.interp(at, along, x), np.interp(at, along, y)
+
+
+@dataclass(frozen=True)
+class Motions:
+    """Both sweeps."""
+
+    reference: Motion
+    candidate: Motion
+
+    @cached_property
+    def nearest(self) -> Integers:
+        """The candidate's station that is nearest to each of the reference, shape (stations,)."""
+        apart = np.abs(self.reference.foot_x[:, None] - self.candidate.foot_x)
+        return np.asarray(apart.argmin(axis=1))

@@ -12,7 +12,7 @@ from matplotlib.patches import Polygon
 
 from analytic import Readings
 from analytic.problem.arrays import Floats
-from compare.show.animation.motion import Motion
+from compare.show.animation.motion import Motion, Motions
 from compare.show.figures.over_foot import shade_phases
 from compare.show.style import BODY, CANDIDATE, FAINT, FOOT, GREY, INK, REFERENCE, axis_label
 
@@ -28,9 +28,9 @@ _LOWEST, _HIGHEST = -0.1, 1.08  # L; the least that is shown
 class View:
     """The object, both vibrissae, the contact and its force, in one pair of axes."""
 
-    def __init__(self, ax: Axes, motions: tuple[Motion, Motion], follows: bool) -> None:
+    def __init__(self, ax: Axes, motions: Motions, follows: bool) -> None:
         self.ax, self._motions, self._follows = ax, motions, follows
-        reference = motions[0]
+        reference = motions.reference
         width, dot = (7.0, 4.5) if follows else (2.0, 0.0)
         self._body = body = Polygon(
             _outline(reference.readings), facecolor=BODY, edgecolor=GREY, zorder=1
@@ -73,7 +73,10 @@ class View:
     def frame(self, size: tuple[float, float]) -> None:
         """Choose limits that fill the axes and that nothing will leave."""
         x = np.concatenate(
-            [(m.x - m.foot_x[:, None] * self._follows).ravel() for m in self._motions]
+            [
+                (m.x - m.foot_x[:, None] * self._follows).ravel()
+                for m in (self._motions.reference, self._motions.candidate)
+            ]
         )
         if not self._follows:
             x = np.append(x, self._outline[:, 0])
@@ -86,9 +89,9 @@ class View:
         self.ax.set_xlim(left - wide, right + wide)
         self.ax.set_ylim(low - tall, high + tall)
 
-    def show(self, station: int, other: int) -> None:
+    def show(self, station: int) -> None:
         """Move to a station."""
-        reference, candidate = self._motions
+        reference, candidate = self._motions.reference, self._motions.candidate
         origin = reference.foot_x[station] if self._follows else 0.0
         x, y = reference.x[station] - origin, reference.y[station]
         ends = np.column_stack([x, y])
@@ -96,7 +99,7 @@ class View:
         self._rim.set_data(x, y)
         bent = reference.curvature[station]
         self.line.set_array((bent[1:] + bent[:-1]) / 2)
-        beads_x, beads_y = candidate.beads(other)
+        beads_x, beads_y = candidate.beads(int(self._motions.nearest[station]))
         # Even where the stations of the two differ, each vibrissa stands on its own foot.
         self._dots.set_data(beads_x - origin, beads_y)
         self._clamp.set_data(x[0] + np.array([-0.06, 0.06]), [0.0, 0.0])
@@ -113,10 +116,12 @@ class View:
 class Curve:
     """One clamp reading over the foot position, as far as the sweep has come."""
 
-    def __init__(self, ax: Axes, motions: tuple[Motion, Motion], name: str, last: bool) -> None:
-        self._curves = [(motion.foot_x, motion.clamp[name]) for motion in motions]
+    def __init__(self, ax: Axes, motions: Motions, name: str, last: bool) -> None:
+        both = motions.reference, motions.candidate
+        self._nearest = motions.nearest
+        self._curves = [(motion.foot_x, motion.clamp[name]) for motion in both]
         (self._line,) = ax.plot([], [], color=REFERENCE, linewidth=2.2)
-        every = max(1, len(motions[1].foot_x) // _MARKS)
+        every = max(1, len(motions.candidate.foot_x) // _MARKS)
         (self._dots,) = ax.plot([], [], "o", color=CANDIDATE, markersize=2.6, markevery=every)
         (self._head,) = ax.plot([], [], "o", color=INK, markersize=5)
         foot_x = np.concatenate([x for x, _ in self._curves])
@@ -128,11 +133,12 @@ class Curve:
         ax.tick_params(labelbottom=last)
         if last:
             ax.set_xlabel(FOOT)
-        shade_phases(ax, motions[0].foot_x, motions[0].phase)
+        shade_phases(ax, motions.reference.foot_x, motions.reference.phase)
         self.moving: list[Artist] = [self._line, self._dots, self._head]
 
-    def show(self, station: int, other: int) -> None:
+    def show(self, station: int) -> None:
         """Grow up to a station."""
+        other = int(self._nearest[station])
         (x, values), (other_x, other_values) = self._curves
         self._line.set_data(x[: station + 1], values[: station + 1])
         self._dots.set_data(other_x[: other + 1], other_values[: other + 1])

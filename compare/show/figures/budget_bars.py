@@ -8,7 +8,8 @@ from matplotlib.figure import Figure
 
 from analytic import CLAMP_READINGS
 from compare.explain.budget import UNRESOLVED, Budget
-from compare.show.page import short
+from compare.show.budgets import headline
+from compare.show.numbers import short
 from compare.show.style import AT_TOP, BLUE, BODY, GREY, INK, LARGE, ORANGE, SMALL
 
 _BLAMED, _OTHER, _UNEXPLAINED, _ZONE = ORANGE, BLUE, INK, BODY
@@ -44,19 +45,6 @@ def panels(found: Budget) -> dict[str, Figure]:
         figures[reading] = figure = Figure(figsize=_PANEL, layout="constrained")
         _draw(figure.subplots(), found, reading)
     return figures
-
-
-def headline(found: Budget) -> str:
-    """What the picture shows, in one sentence."""
-    rest = short(max(part.rms for part in found.parts["unexplained"].values()))
-    if found.closes:
-        remains = f"at most {rest} stays unexplained, and the budget closes"
-    elif found.undecided:
-        unsure = short(max(part.uncertainty for part in found.parts["unexplained"].values()))
-        remains = f"the budget is undecided: {rest} +- {unsure} stays unexplained"
-    else:
-        remains = f"{rest} stays unexplained, too much for the budget to close"
-    return f"The largest part is {found.blame}; {remains}"
 
 
 def _draw(ax: Axes, found: Budget, reading: str) -> None:

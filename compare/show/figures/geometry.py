@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.figure import Figure
@@ -16,9 +15,10 @@ from matplotlib.patches import Circle
 from analytic import Readings, deflected_shapes, reconstruct
 from analytic.problem.arrays import Words
 from compare.comparison import Comparison
+from compare.show.figures.keys import key_below, phase_handles
 from compare.show.figures.over_foot import foot, on_vibrissa, place_labels
 from compare.show.figures.thinning import cloud, draw
-from compare.show.quantities import quantity
+from compare.show.numbers import quantity
 from compare.show.style import (
     AT_TOP,
     BODY,
@@ -29,8 +29,6 @@ from compare.show.style import (
     NORMAL,
     PAGE_WIDTH,
     PHASE_COLOURS,
-    PHASE_NAMES,
-    SMALL,
     label,
 )
 
@@ -58,11 +56,11 @@ def geometry(comparison: Comparison) -> Figure:
     direction = "right" if foot_x[-1] > foot_x[0] else "left"
     axes[-1].set_xlabel(f"$x$ / $L$   ({size}the foot moves to the {direction} along $y = 0$)")
     handles = [
-        *_phase_handles(),
+        *phase_handles(),
         Line2D([], [], **_OBJECT, label="object"),
         Line2D([], [], **_CONTACT | {"markersize": 3}, label="reconstructed contact"),
     ]
-    figure.legend(handles=handles, loc="lower center", ncols=5, fontsize=SMALL, frameon=False)
+    key_below(figure, handles, 5)
     at_equal_scales(figure, axes, PAGE_WIDTH)
     _fill(figure, axes)
     return figure
@@ -100,10 +98,7 @@ def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
     ax.set_xlabel(f"$x$ / $L$   ($L$ = {quantity(scale, 'length', beam)}{own})")
     ax.set_ylabel("$y$ / $L$")
     ax.axhline(0, color=FAINT, linewidth=0.8)
-    figure.legend(
-        handles=_phase_handles() + ax.get_legend_handles_labels()[0],
-        loc="outside lower center", ncols=3, fontsize=SMALL, frameon=False,
-    )  # fmt: skip
+    key_below(figure, phase_handles() + ax.get_legend_handles_labels()[0], 3)
     at_equal_scales(figure, [ax], PAGE_WIDTH)
     return figure
 
@@ -128,10 +123,6 @@ def _fill(figure: Figure, axes: Sequence[Axes]) -> None:
     for ax in axes:
         ax.apply_aspect()
         place_labels(ax)
-
-
-def _phase_handles() -> list[Artist]:
-    return [Line2D([], [], color=PHASE_COLOURS[p], label=PHASE_NAMES[p]) for p in PHASE_COLOURS]
 
 
 def _draw_shapes(ax: Axes, readings: Readings, phase: Words) -> None:

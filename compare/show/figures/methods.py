@@ -6,7 +6,8 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from compare.show.page import short
+from compare.show.figures.keys import key_below
+from compare.show.numbers import short
 from compare.show.style import (
     AT_TOP,
     BLUE,
@@ -41,10 +42,7 @@ def picture(found: pd.DataFrame, title: str) -> Figure:
         )
     axes[0].set_yticks(range(len(methods)), methods)
     axes[0].invert_yaxis()
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize=SMALL
-    )
+    key_below(figure, axes[0], 3)
     figure.supxlabel(
         "error / $L$: median, and a line to the worst; at the left edge: $10^{-6}$ or less; "
         "right: share answered without noise",

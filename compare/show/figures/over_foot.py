@@ -5,19 +5,18 @@ from typing import Any
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.lines import Line2D
 
 from analytic import CLAMP_READINGS, Readings
 from analytic.problem.arrays import Floats, Words
 from compare.comparison import Comparison
 from compare.sense.phases import Classification
+from compare.show.figures.keys import phase_handles
 from compare.show.figures.thinning import stretches
-from compare.show.quantities import Kind, quantity
+from compare.show.numbers import Kind, quantity
 from compare.show.style import (
     CANDIDATE,
     FOOT,
     PHASE_COLOURS,
-    PHASE_NAMES,
     REFERENCE,
     SYMBOLS,
     UNITS,
@@ -105,10 +104,9 @@ def shade_reference(ax: Axes, comparison: Comparison) -> None:
     shade_phases(ax, foot(comparison.reference), comparison.judged["reference"].phase)
 
 
-def key(ax: Axes) -> tuple[list[Artist], list[str]]:
+def key(ax: Axes) -> list[Artist]:
     """What the lines and the shades of a reading's axes mean."""
-    handles, labels = ax.get_legend_handles_labels()
-    shades: list[Artist] = [
-        Line2D([], [], color=PHASE_COLOURS[p], alpha=0.35, linewidth=7) for p in ("tip", "tangent")
+    return [
+        *ax.get_legend_handles_labels()[0],
+        *phase_handles("tip", "tangent", alpha=0.35, linewidth=7),
     ]
-    return [*handles, *shades], [*labels, PHASE_NAMES["tip"], PHASE_NAMES["tangent"]]

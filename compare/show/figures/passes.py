@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from analytic import CLAMP_READINGS
 from compare.read.passes import Pass
+from compare.show.figures.keys import key_below
 from compare.show.figures.over_foot import foot, foot_label, reading_label, unit
 from compare.show.figures.thinning import draw
 from compare.show.style import PAGE_WIDTH, SERIES, SMALL, label
@@ -26,15 +27,10 @@ def picture(passes: Sequence[Pass]) -> Figure:
                 "markersize": 3.5,
             }
             values = one.readings.values(name) / unit(one.readings, name)
-            said = f"{one.name}, to the {one.direction}" if i < _MOST else "_"
-            draw(
-                ax, foot(one.readings), values, label=label(said) if said != "_" else said, **style
-            )
+            said = label(f"{one.name}, to the {one.direction}") if i < _MOST else "_"
+            draw(ax, foot(one.readings), values, label=said, **style)
         ax.set_ylabel(reading_label(passes[0].readings, name), fontsize=SMALL)
         ax.tick_params(labelsize=SMALL)
     axes[-1].set_xlabel(foot_label(passes[0].readings))
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize=SMALL
-    )
+    key_below(figure, axes[0], 3)
     return figure

@@ -3,6 +3,7 @@
 from matplotlib.figure import Figure
 
 from compare.comparison import Comparison
+from compare.show.figures.keys import key_below
 from compare.show.figures.over_foot import (
     LINE,
     dots,
@@ -13,7 +14,7 @@ from compare.show.figures.over_foot import (
     shade_reference,
 )
 from compare.show.figures.thinning import draw
-from compare.show.style import CANDIDATE, GREY, PAGE_WIDTH, REFERENCE, SMALL, label
+from compare.show.style import CANDIDATE, GREY, PAGE_WIDTH, REFERENCE, label
 
 _AXES = {"left": 0.107, "right": 0.99, "top": 0.98, "bottom": 0.15, "hspace": 0.08}
 
@@ -44,5 +45,5 @@ def phase_criterion(comparison: Comparison) -> Figure:
             if where is not None:
                 for ax in axes:
                     ax.axvline(where / length, color=colour, linestyle=":", linewidth=1)
-    figure.legend(loc="lower center", ncols=2, fontsize=SMALL, frameon=False)
+    key_below(figure, axes[0], 2)
     return figure

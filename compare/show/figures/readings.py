@@ -1,6 +1,5 @@
 """Clamp readings over the foot position: both models above, their difference below."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +11,7 @@ from analytic import CLAMP_READINGS, reconstruct
 from analytic.problem.arrays import Floats
 from compare.comparison import Comparison
 from compare.show.figures.fold import with_fold
+from compare.show.figures.keys import key_below
 from compare.show.figures.over_foot import (
     LINE,
     dots,
@@ -32,7 +32,6 @@ from compare.show.style import (
     INK,
     LARGE,
     REFERENCE,
-    SMALL,
     SYMBOLS,
     label,
 )
@@ -57,8 +56,7 @@ def readings(comparison: Comparison) -> Figure:
     for i, name in enumerate(SYMBOLS):
         _draw_reading(upper[i], lower[i], comparison, name)
     lower[0].set_ylabel("difference\n(same unit)")
-    handles, labels = key(upper[0])
-    figure.legend(handles, labels, loc="lower center", ncols=4, fontsize=SMALL, frameon=False)
+    key_below(figure, key(upper[0]), 4)
     return figure
 
 
@@ -67,22 +65,22 @@ def reading_panels(comparison: Comparison) -> dict[str, Figure]:
     return {name: _panel(comparison, name) for name in SYMBOLS}
 
 
-def at_snap_off(panels: Mapping[str, Figure], comparison: Comparison) -> dict[str, Figure]:
-    """Show what is around the snap-off in the panels of the clamp readings."""
+def at_snap_off(comparison: Comparison) -> dict[str, Figure]:
+    """Draw the clamp readings around the snap-off; nothing if neither sweep has one."""
     places = [comparison.snap_off.reference, comparison.snap_off.candidate]
-    known = [place / comparison.reference.beam.length for place in places if place is not None]
+    length = comparison.reference.beam.length
+    known = [place / length for place in places if place is not None]
     if not known:
         return {}
     half = _NEAR * float(np.ptp(foot(comparison.reference))) or _NEAR
-    figures = {name: panels[name] for name in CLAMP_READINGS}
+    figures = {name: _panel(comparison, name) for name in CLAMP_READINGS}
     for figure in figures.values():
         for ax in figure.axes:
             ax.set_xlim(min(known) - half, max(known) + half)
             ax.xaxis.set_major_locator(MaxNLocator(4))
             for place, colour in zip(places, (REFERENCE, CANDIDATE), strict=True):
                 if place is not None:
-                    where = place / comparison.reference.beam.length
-                    ax.axvline(where, color=colour, linestyle=":", linewidth=1.3)
+                    ax.axvline(place / length, color=colour, linestyle=":", linewidth=1.3)
     return figures
 
 
@@ -91,8 +89,7 @@ def _panel(comparison: Comparison, name: str) -> Figure:
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.2, 1], gridspec_kw=_AXES)
     _draw_reading(upper, lower, comparison, name)
     lower.set_ylabel("difference")
-    handles, labels = key(upper)
-    figure.legend(handles, labels, loc="lower center", ncols=2, fontsize=SMALL, frameon=False)
+    key_below(figure, key(upper), 2)
     return figure
 
 

@@ -1,5 +1,8 @@
 """A sweep in space: body, vibrissa and contacts as they stand, and the readings along the way."""
 
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -14,6 +17,7 @@ from compare.align.frames import components
 from compare.align.travel import travel_of
 from compare.comparison_in_space import SpatialComparison
 from compare.explain.split_space import Parts
+from compare.show.figures.keys import key_below, phase_handles
 from compare.show.scene import SweepScene
 from compare.show.style import (
     BLUE,
@@ -26,7 +30,6 @@ from compare.show.style import (
     ORANGE,
     PAGE_WIDTH,
     PHASE_COLOURS,
-    PHASE_NAMES,
     SMALL,
     label,
 )
@@ -35,8 +38,29 @@ _SHAPES = 24  # drawn of a sweep
 _DARK = 0.35  # how much darker a face is that looks away from the light
 _LIGHT = np.array([0.4, -0.2, -0.9]) / np.linalg.norm([0.4, -0.2, -0.9])
 _VIEW = {"elev": 12.0, "azim": -62.0}
-_COLOURS = (BLUE, ORANGE, GREEN)
+COLOURS = (BLUE, ORANGE, GREEN)
+"""Of the components in x, y and z."""
 _LEAST = 1e-12  # L; contacts that are closer are drawn at this
+
+
+@dataclass(frozen=True)
+class Load:
+    """Force or moment, as it is drawn."""
+
+    names: tuple[str, ...]
+    title: str
+
+    def of(self, readings: SpatialReadings, name: str) -> Floats:
+        """A component in the unit of the title; NaN where it is not to be trusted."""
+        return np.where(readings.trusted, self.scaled(readings, readings.values(name)), np.nan)
+
+    def scaled(self, readings: SpatialReadings, values: Floats) -> Floats:
+        """Values in the unit of the title."""
+        beam = readings.beam
+        return values / (beam.force_unit if self.names == FORCE else beam.moment_unit)
+
+
+LOADS = (Load(FORCE, "$F$ / ($EI/L^2$)"), Load(MOMENT, "$M$ / ($EI/L$)"))
 
 
 def sweep_in_space(scene: SweepScene) -> Figure:
@@ -52,22 +76,12 @@ def sweep_in_space(scene: SweepScene) -> Figure:
         Line3DCollection(upright(scene.lines[chosen]), colors=colours, linewidths=1.3)
     )
     ax.plot(*upright(scene.contact).T, color=INK, marker="o", markersize=1.8, linestyle="")
-    left, right = (figure.add_subplot(grid[1, i]) for i in range(2))
-    unit = readings.beam
-    _draw_components(left, readings, FORCE, unit.force_unit, "$F$ / ($EI/L^2$)")
-    _draw_components(right, readings, MOMENT, unit.moment_unit, "$M$ / ($EI/L$)")
+    for i, load in enumerate(LOADS):
+        _draw_components(figure.add_subplot(grid[1, i]), readings, load)
     figure.suptitle(label(readings.source), x=0.01, ha="left", fontsize=NORMAL)
-    handles = [
-        Line2D([], [], color=colour, label=PHASE_NAMES[phase])
-        for phase, colour in PHASE_COLOURS.items()
-    ]
-    handles.append(
-        Line2D([], [], color=INK, marker="o", markersize=3, linestyle="", label="contact found")
-    )
-    handles.append(Line2D([], [], color=GREY, linestyle="--", label="way of the foot"))
-    figure.legend(
-        handles=handles, loc="outside lower center", ncols=5, fontsize=SMALL, frameon=False
-    )
+    found = Line2D([], [], color=INK, marker="o", markersize=3, ls="", label="contact found")
+    travel = Line2D([], [], color=GREY, linestyle="--", label="way of the foot")
+    key_below(figure, [*phase_handles(), found, travel], 5)
     return figure
 
 
@@ -79,21 +93,16 @@ def both_in_space(comparison: SpatialComparison) -> Figure:
     beam = one.beam
     travel = comparison.travel / beam.length
     values = [components(r, comparison.frame) for r in (one, other)]
-    for column, (names, unit, title) in enumerate(
-        (
-            (FORCE, beam.force_unit, "$F$ / ($EI/L^2$)"),
-            (MOMENT, beam.moment_unit, "$M$ / ($EI/L$)"),
-        )
-    ):
+    for column, load in enumerate(LOADS):
         above, below = grid[:, column]
-        for name, colour in zip(names, _COLOURS, strict=True):
-            exact, found = (value[name] / unit for value in values)
+        for name, colour in zip(load.names, COLOURS, strict=True):
+            exact, found = (load.scaled(one, value[name]) for value in values)
             exact[~one.trusted], found[~other.trusted] = np.nan, np.nan
             above.plot(travel, exact, color=colour, linewidth=1, label=name[-1])
             above.plot(travel, found, color=colour, marker=".", markersize=3, linestyle="")
             off = np.where(comparison.compared, found - exact, np.nan)
             below.plot(travel, off, color=colour, marker=".", markersize=2.5, linewidth=0.8)
-        above.set_ylabel(title)
+        above.set_ylabel(load.title)
         above.legend(fontsize=SMALL, frameon=False, ncols=3)
         below.set_ylabel("difference")
         below.set_xlabel("way of the foot / $L$")
@@ -128,15 +137,11 @@ def contacts_in_space(comparison: SpatialComparison) -> Figure:
         strips.plot(at, [1 - row] * len(at), color=INK, marker="|", markersize=18, linestyle="")
     strips.set_yticks([1, 0], [label(readings.source) for readings in sides])
     strips.set_ylim(-0.6, 1.6)
-    handles = [
-        Line2D([], [], color=colour, linewidth=5, label=PHASE_NAMES[phase])
-        for phase, colour in PHASE_COLOURS.items()
-    ]
-    handles.append(
-        Line2D([], [], color=INK, marker="|", markersize=9, linestyle="", label="touches or leaves")
-    )
-    strips.legend(handles=handles, fontsize=SMALL, frameon=False, ncols=4, loc="lower left",
-                  bbox_to_anchor=(0, 1))  # fmt: skip
+    leaves = Line2D([], [], color=INK, marker="|", markersize=9, ls="", label="touches or leaves")
+    strips.legend(
+        handles=[*phase_handles(linewidth=5), leaves], fontsize=SMALL, frameon=False, ncols=4,
+        loc="lower left", bbox_to_anchor=(0, 1),
+    )  # fmt: skip
     far = np.maximum(comparison.contact.distance, _LEAST)
     below.semilogy(travel, far, color=INK, marker=".", markersize=3, linewidth=0.8)
     below.axhline(comparison.tolerances.contact, color=GREY, linestyle="--", linewidth=1)
@@ -195,17 +200,12 @@ def upright(points: Floats) -> Floats:
     return points[..., [0, 2, 1]]
 
 
-def _draw_components(
-    ax: Axes, readings: SpatialReadings, names: tuple[str, ...], unit: float, title: str
-) -> None:
+def _draw_components(ax: Axes, readings: SpatialReadings, load: Load) -> None:
     travel = travel_of(readings) / readings.beam.length
-    values = readings.values(*names) / unit
-    values[~readings.trusted] = np.nan
-    for name, colour, column in zip(names, _COLOURS, values.T, strict=True):
-        ax.plot(
-            travel, column, color=colour, marker=".", markersize=2.5, linewidth=1, label=name[-1]
-        )
+    style: dict[str, Any] = {"marker": ".", "markersize": 2.5, "linewidth": 1}
+    for name, colour in zip(load.names, COLOURS, strict=True):
+        ax.plot(travel, load.of(readings, name), color=colour, label=name[-1], **style)
     ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
     ax.set_xlabel("way of the foot / $L$")
-    ax.set_ylabel(title)
+    ax.set_ylabel(load.title)
     ax.legend(fontsize=SMALL, frameon=False, ncols=3)

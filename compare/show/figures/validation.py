@@ -4,6 +4,7 @@ from matplotlib.figure import Figure
 
 from analytic import CLAMP_READINGS
 from compare.comparison import Comparison
+from compare.show.figures.keys import key_below
 from compare.show.figures.over_foot import foot_label, shade_reference
 from compare.show.figures.thinning import draw
 from compare.show.style import AT_TOP, BLUE, GREY, INK, PAGE_WIDTH, SKY, SMALL, SYMBOLS
@@ -41,8 +42,5 @@ def validation_picture(comparison: Comparison, found: Validation) -> Figure:
         ax.set_ylabel("of the largest magnitude", fontsize=SMALL)
         ax.tick_params(labelsize=SMALL)
     axes[-1].set_xlabel(foot_label(comparison.reference))
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=SMALL
-    )
+    key_below(figure, axes[0], 4)
     return figure

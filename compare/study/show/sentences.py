@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from compare.show.page import short
+from compare.show.numbers import short
 from compare.study.show.questions import Question
 from compare.study.show.results import StudyResults
 from compare.study.show.slices import Line, lines, words

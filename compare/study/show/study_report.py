@@ -1,5 +1,6 @@
 """The report of a study: tables, figures and one offline page, from what is stored alone."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pandas as pd
@@ -7,20 +8,33 @@ from matplotlib.figure import Figure
 
 from analytic import InputError
 from analytic.problem.files import write_whole
-from compare.show.page import inline_svg, png, render
+from compare.show.document import (
+    Block,
+    Document,
+    Picture,
+    Table,
+    Text,
+    Tile,
+    Verdict,
+    sections,
+)
+from compare.show.html import html
+from compare.show.page import png
 from compare.study.keep.database import Warn
 from compare.study.keep.reading import read_plan, read_rows
 from compare.study.show import pictures, tables
-from compare.study.show.questions import asked
+from compare.study.show.questions import Question, asked
 from compare.study.show.results import StudyResults
 from compare.study.show.sentences import headline, varied
 from compare.study.show.slices import curves, repeated
 
 _LONGEST_TABLE = 24  # rows on the page; all of them are in a file
+_COST = "Each dot is a run. No run beats the line in both time and error."
+_TABLES = {"orders": "Observed orders", "phase-b-vanishes": "Where Phase B vanishes"}
 
 
-def write_report(folder: Path, warn: Warn) -> Path:
-    """Write ``report.html``, ``report/*.png`` and ``report/*.csv`` into the folder of a study."""
+def write_report(folder: Path, warn: Warn, place: Path | None = None) -> Path:
+    """Write ``report.html``, ``report/*.png`` and ``report/*.csv`` of a study, by default there."""
     damage: list[str] = []
     rows = read_rows(folder, damage.append)
     found = StudyResults.of(read_plan(folder), rows)
@@ -37,15 +51,15 @@ def write_report(folder: Path, warn: Warn) -> Path:
         "curves": curves(found, [question.metric for question in asked(found)]),
     }
     drawn = _drawn(found)
-    (folder / "report").mkdir(exist_ok=True)
+    place = place or folder
+    (place / "report").mkdir(parents=True, exist_ok=True)
     for section in drawn.values():
         for name, figure in section.items():
-            write_whole(folder / "report" / f"{name}.png", png(figure))
+            write_whole(place / "report" / f"{name}.png", png(figure))
     for name, table in numbers.items():
         if not table.empty:
-            write_whole(folder / "report" / f"{name}.csv", table.to_csv(index=False).encode())
-    write_whole(folder / "report.html", _page(found, numbers, drawn).encode())
-    return folder / "report.html"
+            write_whole(place / "report" / f"{name}.csv", table.to_csv(index=False).encode())
+    return write_whole(place / "report.html", html(_document(found, numbers, drawn)))
 
 
 def _drawn(found: StudyResults) -> dict[str, dict[str, Figure]]:
@@ -64,30 +78,89 @@ def _drawn(found: StudyResults) -> dict[str, dict[str, Figure]]:
     return drawn
 
 
-def _page(
+def _document(
     found: StudyResults, numbers: dict[str, pd.DataFrame], drawn: dict[str, dict[str, Figure]]
-) -> str:
-    questions = asked(found)
+) -> Document:
+    """All that there is to say of a study."""
+    study, questions = found.plan.study, asked(found)
     answers = {question.name: headline(found, question) for question in questions}
-    titles = {"orders": "Observed orders", "phase-b-vanishes": "Where Phase B vanishes"}
+    done, planned = len(found.done), len(found.plan)
+    against = ", closed form alone"
+    if study.beams:
+        against = f", MuJoCo's {' and '.join(study.beams)} against the closed form"
+    outcomes = list(numbers["outcomes"].itertuples(index=False, name=None))
+    first = (
+        answers[questions[0].name] if questions else "What was recorded does not vary over them."
+    )
+    lost = [(what, str(n), str(why)) for what, n, why in outcomes if what != "done"]
+    return Document(
+        f"Study {study.name}: {study.case}{against}",
+        f"Varied: {varied(found)}.",
+        Verdict(
+            done == planned,
+            f"{'All' if done == planned else f'{done} of'} {planned} runs are done.",
+            first,
+        ),
+        sections(
+            ("not-done", "Why runs are not done", _lost(lost)),
+            *(
+                (one.name, one.text, _answer(found, one, answers[one.name], drawn))
+                for one in questions
+            ),
+            ("time", "What does accuracy cost?", _panels("time", drawn, _COST)),
+            *((name, title, _table(name, numbers[name])) for name, title in _TABLES.items()),
+            ("versions", "Versions", _versions(found)),
+        ),
+        [Tile(what, str(n), "run" if n == 1 else "runs") for what, n, _ in outcomes],
+    )
+
+
+def _lost(rows: list[tuple[str, str, str]]) -> Iterator[Block]:
+    if rows:
+        yield Table("One example each", ("outcome", "runs", "example"), rows, words=(0, 2))
+
+
+def _answer(
+    found: StudyResults, question: Question, answer: str, drawn: dict[str, dict[str, Figure]]
+) -> Iterator[Block]:
+    yield Text(answer)
+    yield from _panels(question.name, drawn, _caption(found, question))
+
+
+def _versions(found: StudyResults) -> Iterator[Block]:
+    versions = [*found.plan.versions.items()]
+    yield Table("Of the programs that made the runs", (), versions, words=(0, 1))
+    yield Text("All lines are in report/curves.csv, all runs in the study's folder.", aside=True)
+
+
+def _caption(found: StudyResults, question: Question) -> str:
+    said = (
+        "A line is one beam with every other parameter held at what the legend or the title says."
+    )
     bands = sorted({axis for one in found.plain_axes for axis in repeated(found, one)})
-    return render(
-        "compare.study.show",
-        "study.html.j2",
-        study=found.plan.study,
-        versions=found.plan.versions,
-        varied=varied(found),
-        answers=answers,
-        questions=questions,
-        outcomes=list(numbers["outcomes"].itertuples(index=False, name=None)),
-        bands=bands,
-        done=len(found.done),
-        planned=len(found.plan),
-        tables={titles[name]: (name, numbers[name].head(_LONGEST_TABLE), len(numbers[name]))
-                for name in titles if not numbers[name].empty},
-        figures={
-            section: {name: inline_svg(figure, f"p{number}-{place}", name.replace("-", " "))
-                      for place, (name, figure) in enumerate(figures.items())}
-            for number, (section, figures) in enumerate(drawn.items())
-        },
-    )  # fmt: skip
+    if bands:
+        said += f" Lines are medians and bands hold 80 % over {', '.join(bands)}."
+    if question.limit is not None:
+        said += f" Dashed, or orange in a map: {question.limit}."
+    return said
+
+
+def _panels(name: str, drawn: dict[str, dict[str, Figure]], caption: str) -> Iterator[Picture]:
+    figures = {title.replace("-", " "): one for title, one in drawn.get(name, {}).items()}
+    if figures:
+        yield Picture(f"p-{name}", figures, caption, "panels" if len(figures) > 1 else "middle")
+
+
+def _table(name: str, table: pd.DataFrame) -> Iterator[Table]:
+    if table.empty:
+        return
+    shown = table.head(_LONGEST_TABLE)
+    rest = f"The first {len(shown)} of {len(table)} rows; all" if len(table) > len(shown) else "All"
+    rows = [[_cell(value) for value in row] for row in shown.itertuples(index=False, name=None)]
+    yield Table(f"{rest} are in report/{name}.csv", [str(column) for column in table], rows)
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, float):
+        return "" if value != value else f"{value:.4g}"
+    return str(value)

@@ -33,9 +33,11 @@ def test_the_clamp_is_found_and_written(file, folder, tmp_path):
         cwd=tmp_path,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    lines = done.stdout.splitlines()
-    assert lines[0].startswith("clamp_stiffness = 8, with 95 % between 7.")
-    assert lines[2].startswith("trading off most: clamp_stiffness and flexural_rigidity, corr")
+    rows = [line.split() for line in done.stdout.splitlines()]
+    (stiffness,) = (row for row in rows if row[:1] == ["clamp_stiffness"])
+    assert stiffness[1] == "8"
+    assert stiffness[2].startswith("7.")
+    assert "trading off most: clamp_stiffness and flexural_rigidity, corr" in done.stdout
     written = json.loads((tmp_path / "found" / "calibration.json").read_text())
     assert written["found"]["clamp_stiffness"]["value"] == pytest.approx(8.0)
     assert written["stations"] > 30

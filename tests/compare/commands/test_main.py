@@ -31,7 +31,7 @@ def test_run_writes_what_it_promises(tmp_path):
     found = json.loads((tmp_path / "out" / "comparison.json").read_text())
     assert found["verdict"] == "agrees"
     report = (tmp_path / "out" / "report.html").read_text()
-    assert "<b>The two agree.</b>" in report
+    assert "<b>mujoco chain agrees with analytic.</b>" in report
     again = vibrissa("compare", "out/analytic.parquet", "out/mujoco-chain.parquet", cwd=tmp_path)
     assert again.returncode == 0
 
@@ -51,7 +51,8 @@ def test_a_coarse_beam_disagrees_and_its_budget_says_why(tmp_path):
     assert 'id="budget"' in (written / "report.html").read_text()
     done = vibrissa("findings", "results", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "| small object | chain | 10 |" in (tmp_path / "results" / "README.md").read_text()
+    page = (tmp_path / "results" / "report.html").read_text()
+    assert '<th scope="row">small object</th><td class="text">chain</td><td>10</td>' in page
     assert vibrissa("findings", "nowhere", cwd=tmp_path).returncode == 2
 
 

@@ -3,6 +3,9 @@
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
 
+from compare.show.comparison_page import comparison_document
+from compare.show.html import html
+
 VOID = {"meta", "link", "img", "br", "hr", "input", "source"}
 ADDRESSES = ("href", "src", "srcset", "xlink:href", "data", "action", "poster")
 
@@ -46,3 +49,8 @@ class Page(HTMLParser):
     @property
     def addresses(self) -> list[str]:
         return [a[name] for _, a in self.elements for name in ADDRESSES if name in a]
+
+
+def written_page(comparison) -> str:
+    """The report without its pictures."""
+    return html(comparison_document(comparison, {}))

@@ -15,7 +15,7 @@ from compare.sense.phases import classify
 from compare.show.figures.fold import with_fold
 from compare.show.figures.over_foot import foot
 from compare.show.figures.thinning import cloud, envelope, stretches
-from compare.show.page import markdown
+from compare.show.markdown import plain
 from compare.show.report import write_report
 from compare.show.style import axis_label, label
 from tests.compare.show import sweeps
@@ -121,7 +121,7 @@ def test_any_name_can_be_drawn(text):
 
 @given(st.text())
 def test_any_name_is_plain_in_markdown(text):
-    written = markdown(text)
+    written = plain(text)
     assert not set("<>|\n") & set(written)
 
 

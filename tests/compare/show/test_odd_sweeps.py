@@ -10,9 +10,9 @@ from compare import compare
 from compare.show.figures.geometry import geometry
 from compare.show.figures.phases import phase_criterion
 from compare.show.figures.readings import at_snap_off, reading_panels
-from compare.show.report import report_page, write_report
+from compare.show.report import write_report
 from tests.compare.show import sweeps
-from tests.compare.show.pages import Page
+from tests.compare.show.pages import Page, written_page
 
 
 def picked(stations: slice) -> tuple[Readings, Readings]:
@@ -79,7 +79,7 @@ ODD = {
 @pytest.mark.parametrize("pair", ODD.values(), ids=ODD)
 def test_page_and_pictures(pair):
     found = compare(*pair())
-    page = Page(report_page(found, {}))
+    page = Page(written_page(found))
     assert page.faults == []
     assert "nan" not in page.text.split("<body>")[1]
     for name in CLAMP_READINGS:
@@ -88,7 +88,7 @@ def test_page_and_pictures(pair):
     assert phase_criterion(found).axes
     panels = reading_panels(found)
     assert set(panels) >= set(CLAMP_READINGS)
-    for figure in at_snap_off(panels, found).values():
+    for figure in at_snap_off(found).values():
         low, high = figure.axes[0].get_xlim()
         assert low < high
 
@@ -111,8 +111,8 @@ def test_whole_reports(pair, tmp_path):
 
 def test_units_are_those_of_the_beam():
     found = compare(*scaled())
-    text = report_page(found, {})
+    text = written_page(found)
     assert "= 50, forces in" in text
-    small = report_page(compare(*picked(slice(None))), {})
+    small = written_page(compare(*picked(slice(None))))
     apart = [row.split("</tr>")[0] for row in (text, small) for row in [row.split('id="apart"')[1]]]
     assert apart[0] == apart[1]

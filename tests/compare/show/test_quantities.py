@@ -9,8 +9,8 @@ from analytic import SENSED, Beam, Case, Readings, circle, named_case, solve_swe
 from compare import compare
 from compare.commands.terminal import print_comparison
 from compare.show.figures.over_foot import foot_label, reading_label
-from compare.show.quantities import quantity
-from compare.show.report import report_page
+from compare.show.numbers import quantity
+from tests.compare.show.pages import written_page
 
 SI = Beam(0.05, 2e-6, 0.25e-3, si=True)
 
@@ -45,8 +45,8 @@ def measured(exact: Readings) -> Readings:
 
 def test_a_case_with_units_names_them(exact, capsys, tmp_path):
     found = compare(exact, measured(exact), offset=2e-3)
-    page = report_page(found, {})
-    assert "<i>L</i> = 50 mm, forces in <i>EI</i>/<i>L</i>² = 0.8 mN" in page
+    page = written_page(found)
+    assert "L = 50 mm, forces in EI/L² = 0.8 mN" in page
     assert "(2 mm ± 0 m)" in page
     assert reading_label(exact, "moment_z").endswith("= 40 µN m)")
     assert "50 mm" in foot_label(exact)
@@ -63,7 +63,7 @@ def test_a_case_with_units_names_them(exact, capsys, tmp_path):
 
 def test_a_case_without_units_names_none():
     exact = solve_sweep(named_case("parabola"))
-    assert "of the readings' own units" in report_page(compare(exact, exact), {})
+    assert "of the readings&#39; own units" in written_page(compare(exact, exact))
     assert foot_label(exact) == "foot $x_0$ / $L$"
     assert exact.plot()[0].get_ylabel() == "force_x"
 
@@ -73,14 +73,15 @@ def test_phases_are_those_of_the_candidate(exact, capsys):
     rig = measured(exact)
     print_comparison(compare(exact, rig, offset=2e-3))
     shown = capsys.readouterr().out
-    assert "100.0% alike" in shown
-    assert "right" not in shown
+    assert "phases alike" in shown
+    assert "100.0 %" in shown
+    assert "true ones are not known" in " ".join(shown.split())
     wrong = rig.table.assign(force_y=3 * rig.table["force_y"])
     found = compare(exact, replace(rig, table=wrong), offset=2e-3)
     share = found.phases_alike()
     assert share is not None
     assert share < 0.9  # observed 0.845
-    assert "the candidate's true ones are not known" in report_page(found, {})
+    assert "the candidate&#39;s true ones are not known" in written_page(found)
     assert found.to_dict()["phases"]["agreement"] == 1.0  # of those whose truth is recorded
     lost = replace(exact, table=exact.table.assign(force_y=np.nan))
     assert compare(exact, lost).phases_alike() is None

@@ -14,13 +14,13 @@ from analytic import CLAMP_READINGS, Readings
 from compare import Tolerances, compare
 from compare.explain.convergence import convergence, fitted_orders
 from compare.explain.suspects import Suspect
-from compare.show.figures.budget_bars import headline, panels
+from compare.show.budgets import headline
+from compare.show.figures.budget_bars import panels
 from compare.show.page import inline_svg
-from compare.show.report import report_page
 from compare.show.verdict import verdict
 from tests.compare.planted import planted
 from tests.compare.show import sweeps
-from tests.compare.show.pages import Page
+from tests.compare.show.pages import Page, written_page
 
 ELSEWHERE = re.compile(r"(?:https?:)?//(?!www\.w3\.org/(?:1999/xlink|2000/svg)\")[a-z]")
 
@@ -44,7 +44,7 @@ def test_it_is_one_offline_file(page, film):
 
 def test_the_verdict_comes_first(page, comparison):
     body = page.text[page.text.index("<body>") :]
-    first = body.index("The two agree.")
+    first = body.index("mujoco chain agrees with analytic.")
     for later in ("<nav", "<table", "<svg", "<img", "<h2"):
         assert first < body.index(later), later
     assert page.ids.index("verdict") < page.ids.index("budget")
@@ -98,7 +98,7 @@ def test_it_says_what_it_was_made_with(page):
 def test_measured_readings_without_budget_or_provenance():
     exact = sweeps.exact("parabola")
     bare = Readings(exact.table.drop(columns=["phase", "status"]), exact.beam)
-    page = Page(report_page(compare(bare, bare), {}))
+    page = Page(written_page(compare(bare, bare)))
     assert page.faults == []
     assert "Contour not recorded" in page.text
     assert not {"budget", "convergence"} & set(page.ids)

@@ -17,8 +17,8 @@ from analytic import (
 )
 from compare import compare
 from compare.sense.noise import with_noise
-from compare.show.report import report_page
 from compare.show.verdict import absent_transitions, verdict, why
+from tests.compare.show.pages import written_page
 
 
 def by(source: str, sweep: Readings) -> Readings:
@@ -60,7 +60,7 @@ def test_advice_fits_the_source(exact, source, advice, others):
 def test_the_cause_comes_first_and_the_remark_once(exact):
     stiff = exact.table.assign(**{name: 1.02 * exact.values(name) for name in CLAMP_READINGS})
     found = compare(exact, by("mine", replace(exact, table=stiff)))
-    for text in (repr(found), report_page(found, {})):
+    for text in (repr(found), written_page(found)):
         assert text.lower().index("likely: flexural") < text.index("force_x")
         assert text.count("a convention for this source") == 1
 

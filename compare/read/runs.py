@@ -1,36 +1,35 @@
-"""What runs have left behind in their folders."""
+"""What many runs have left: of each what a page about all of them shows."""
 
-import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeAlias, TypeVar
 
-from pydantic import BaseModel, Field, ValidationError
+from pydantic import BaseModel, Field
 
-from analytic import CASE_NAMES, CLAMP_READINGS, InputError
-from compare.explain.suspects import Suspect
+from analytic import CASE_NAMES, CLAMP_READINGS
+from compare.explain.budget import Budget
+from compare.explain.split import Split
+from compare.read.run_folder import read_stored, read_stored_if_there
+
+_Rms: TypeAlias = dict[str, float | None]  # by reading; None where nothing could be compared
+_Numbers: TypeAlias = dict[str, Any]
+_Record = TypeVar("_Record", "RunRecord", "EnginesRecord")
 
 
 class _Beam(BaseModel):
-    length: float = Field(gt=0)
+    length: Annotated[float, Field(gt=0)]
 
 
 class _Sweep(BaseModel):
     source: str
     beam: _Beam
-    stations: int = Field(gt=0)
-    provenance: dict[str, Any]
+    stations: Annotated[int, Field(gt=0)]
+    provenance: _Numbers
 
 
 class _Disagreement(BaseModel):
     rms: float | None
-
-
-class _Disagreements(BaseModel):
-    force_x: _Disagreement
-    force_y: _Disagreement
-    moment_z: _Disagreement
 
 
 class _SnapOff(BaseModel):
@@ -42,31 +41,13 @@ class _Phases(BaseModel):
 
 
 class ComparisonFile(BaseModel):
-    """What the findings need of a ``comparison.json``."""
+    """What is looked at of a ``comparison.json``."""
 
     verdict: str
-    disagreement: _Disagreements
+    disagreement: dict[str, _Disagreement]
     snap_off: _SnapOff
     phases: _Phases
     candidate: _Sweep
-
-
-class _Part(BaseModel):
-    rms: float
-
-
-class BudgetFile(BaseModel):
-    """What the findings need of a ``budget.json``."""
-
-    parts: dict[str, dict[str, _Part]]
-    blame: str
-    closes: bool
-    undecided: bool = False  # files of older versions do not say
-    order: float
-    suspects: list[Suspect]
-
-
-_File = TypeVar("_File", bound=BaseModel)
 
 
 @dataclass(frozen=True)
@@ -75,10 +56,10 @@ class RunRecord:
 
     folder: Path
     comparison: ComparisonFile
-    budget: BudgetFile | None
+    budget: Budget | None
 
     @property
-    def _origin(self) -> dict[str, Any]:
+    def _origin(self) -> _Numbers:
         return self.comparison.candidate.provenance
 
     @property
@@ -102,7 +83,7 @@ class RunRecord:
         return str(self._origin.get("engine", "not recorded"))
 
     @property
-    def settings(self) -> dict[str, Any]:
+    def settings(self) -> _Numbers:
         """The numerics of the candidate."""
         settings = self._origin.get("settings")
         return settings if isinstance(settings, dict) else {}
@@ -113,9 +94,9 @@ class RunRecord:
         return self.comparison.verdict == "agrees"
 
     @property
-    def rms(self) -> dict[str, float | None]:
+    def rms(self) -> _Rms:
         """Disagreement by reading; None where nothing could be compared."""
-        return {n: getattr(self.comparison.disagreement, n).rms for n in CLAMP_READINGS}
+        return {name: self.comparison.disagreement[name].rms for name in CLAMP_READINGS}
 
     @property
     def worst(self) -> str:
@@ -153,34 +134,53 @@ class RunRecord:
         return max((part.rms for part in self.budget.parts[name].values()), default=None)
 
 
-def read_records(folder: Path) -> list[RunRecord]:
+@dataclass(frozen=True)
+class EngineOutcome:
+    """What one engine came to."""
+
+    name: str
+    role: str
+    version: str
+    tuned: str  # what was set for it, as it says itself
+    trouble: str | None  # why there are no readings
+    rms: dict[str, float] | None = None  # from the closed form's readings
+    snap_off_apart: float | None = None  # less that of the closed form [L]
+    seconds_a_station: float | None = None  # of processor time
+    agrees: bool = False
+
+
+@dataclass(frozen=True)
+class EnginesRecord:
+    """One run in many engines."""
+
+    case: str
+    engines: list[EngineOutcome]
+    split: Split | None
+
+
+def read_runs(folder: Path) -> list[RunRecord]:
     """All runs in the folders of `folder`: the named cases first, in their order."""
-    runs = [
-        RunRecord(
-            file.parent,
-            read_left(file, ComparisonFile),
-            read_left(budget, BudgetFile) if budget.exists() else None,
-        )
-        for file in sorted(folder.glob("*/comparison.json"))
-        for budget in [file.with_name("budget.json")]
-    ]
-    order = {name: i for i, name in enumerate(CASE_NAMES)}
-    return sorted(runs, key=lambda run: (order.get(run.case, len(order)), run.case))
-
-
-def read_left(file: Path, kind: type[_File]) -> _File:
-    """What a run has left in a file."""
-    try:
-        return kind.model_validate(json.loads(file.read_text(encoding="utf-8")))
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(map(str, first["loc"])) or "the whole"
-        fault = f"damaged ({where}: {first['msg']})"
-    except (OSError, ValueError, RecursionError) as error:
-        fault = f"unreadable ({type(error).__name__})"
-    raise InputError(
-        f"file {file}", fault, "JSON that a run has written", "run it again, or remove its folder"
+    return _in_order(
+        [
+            RunRecord(
+                file.parent,
+                read_stored(file, ComparisonFile),
+                read_stored_if_there(file.with_name("budget.json"), Budget),
+            )
+            for file in sorted(folder.glob("*/comparison.json"))
+        ]
     )
+
+
+def read_engines(folder: Path) -> list[EnginesRecord]:
+    """All runs in many engines in the folders of `folder`, in the same order."""
+    files = sorted(folder.glob("*/engines.json"))
+    return _in_order([read_stored(file, EnginesRecord) for file in files])
+
+
+def _in_order(found: list[_Record]) -> list[_Record]:
+    order = {name: i for i, name in enumerate(CASE_NAMES)}
+    return sorted(found, key=lambda one: (order.get(one.case, len(order)), one.case))
 
 
 def _size(rms: float | None) -> float:

@@ -1,6 +1,6 @@
 """How slow is quasi-static, and what do MuJoCo's settings cost?
 
-``python -m compare.show.figures.quasi_static FILE.csv FILE.png`` draws what
+``python -m docs.figures.quasi_static_picture FILE.csv FILE.png`` draws what
 `docs.figures.quasi_static` measured.
 """
 

@@ -1,24 +1,23 @@
-"""The findings' page: planted numbers, and the sentences that they must lead to."""
+"""The page of many runs: planted numbers, and the sentences that they must lead to."""
 
 import json
+import math
 import shutil
 from pathlib import Path
 
-import pandas as pd
 import pytest
 
-from analytic import CASE_NAMES, InputError
+from analytic import InputError
 from analytic.problem.files import write_whole
 from compare import compare
-from compare.show.findings import write_findings
-from compare.show.findings.methods import method_sentences, read_methods
-from compare.show.findings.page import page
-from compare.show.findings.records import BudgetFile, ComparisonFile, RunRecord, read_records
-from compare.show.findings.sentences import overview, sentences
+from compare.read.runs import ComparisonFile, RunRecord, read_runs
+from compare.report import write_report
 from compare.show.page import document
 from compare.show.report import budget_files
+from compare.show.run_sentences import overview, sentences
 from tests.compare.planted import planted
 from tests.compare.show import sweeps
+from tests.compare.show.pages import Page
 
 
 def run(
@@ -45,48 +44,8 @@ def run(
     return RunRecord(
         Path(f"{case}-{beam}"),
         ComparisonFile.model_validate(comparison),
-        budget and BudgetFile.model_validate(budget.to_dict()),
+        budget,
     )
-
-
-def methods_table(**medians):
-    """A table of two methods on exact readings and with friction, in two phases."""
-    rows = [
-        {
-            "case": "mine", "readings": readings, "method": method, "noise": noise, "phase": phase,
-            "contacts": 10, "answered": 0.5 if method == "rare" else 1.0,
-            "median": medians[method] * (1 if noise == 0 else 30),
-        }
-        for readings in ("exact", "friction")
-        for method in medians
-        for noise in (0.0, 0.01)
-        for phase in ("tangent", "tip")
-    ]  # fmt: skip
-    return pd.DataFrame(rows)
-
-
-def test_methods_that_survive_are_named(tmp_path):
-    folder = tmp_path / "runs" / "one"
-    folder.mkdir(parents=True)
-    methods_table(good=1e-3, poor=0.2, rare=1e-3).to_csv(folder / "methods.csv", index=False)
-    (record,) = read_methods(tmp_path / "runs")
-    assert record.survivors("exact", 0.0) == ["good"]
-    said = method_sentences(record)
-    assert "exact: good; friction: good." in said
-    assert "At 1 % of noise the best on exact readings: A good (3.0e-2), B good (3.0e-2)." in said
-    assert record.cell("rare", "exact", 0.0) == "B 1.0e-3 (50%), A 1.0e-3 (50%)"
-    assert record.cell("absent", "exact", 0.0) == ""
-    text = page([run()], [], [record])
-    assert "![What each method survives on readings of the case mine](methods-on-mine.png)" in text
-    assert "| good |  | B 1.0e-3, A 1.0e-3 |" in text
-
-
-@pytest.mark.parametrize("damage", ["", "a,b\n1,2\n", "\x00"])
-def test_a_damaged_table_of_methods_is_one_line(tmp_path, damage):
-    (tmp_path / "one").mkdir()
-    (tmp_path / "one" / "methods.csv").write_text(damage)
-    with pytest.raises(InputError, match=r"methods\.csv"):
-        read_methods(tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -175,51 +134,24 @@ def runs(folder, tmp_path) -> Path:
 
 
 def test_page(folder, tmp_path):
-    written = write_findings(folder, tmp_path)
-    assert [path.name for path in written] == ["README.md", "budget-parabola-chain.png"]
-    assert {path.name for path in tmp_path.iterdir()} == {path.name for path in written}
-    assert written[1].stat().st_size < 40_000  # fifteen of them stay below 1 MB
-    text = written[0].read_text(encoding="utf-8")
-    rows = [line for line in text.splitlines() if line.startswith("| catenary | chain")]
-    rms = read_records(folder)[0].rms
-    assert f"| 40 | {rms['force_x']:.1e}".replace("e-0", "e-") in rows[0]
-    assert "not measured" in rows[0]
-    assert text.index("## catenary") < text.index("## parabola")
-    assert "](budget-parabola-chain.png)" in text
-    tables = [line.count("|") for line in text.splitlines() if line.startswith("|")]
-    assert set(tables) == {12, 9}  # every row has all its cells
-
-
-def test_it_replaces_and_removes_only_what_it_has_written(runs, tmp_path):
-    out = tmp_path / "out"
-    out.mkdir()
-    (out / "budget-of-mine.png").write_bytes(b"mine")
-    write_findings(runs, out)
-    assert (out / "budget-parabola-chain.png").exists()
-    (runs / "parabola-chain").rename(runs / "odd (name) ü")
-    assert {path.name for path in write_findings(runs, out)} == {
-        "README.md", "budget-odd (name) ü.png"
-    }  # fmt: skip
-    assert not (out / "budget-parabola-chain.png").exists()
-    (runs / "odd (name) ü" / "budget.json").unlink()
-    write_findings(runs, out)
-    assert {path.name for path in out.iterdir()} == {"README.md", "budget-of-mine.png"}
-    assert (out / "budget-of-mine.png").read_bytes() == b"mine"
-
-
-@pytest.mark.parametrize("name", ["README.md", "budget-parabola-chain.png"])
-@pytest.mark.parametrize("content", [b"# My own\n", b"\xff\xfe"])
-def test_files_of_others_stay(runs, tmp_path, name, content):
-    (tmp_path / name).write_bytes(content)
-    with pytest.raises(InputError, match=rf"--out = .*{name}.*: must be a folder without"):
-        write_findings(runs, tmp_path)
-    assert (tmp_path / name).read_bytes() == content
-    assert {path.name for path in tmp_path.iterdir()} == {name, "runs"}
+    written = write_report(folder, tmp_path).path
+    assert [path.name for path in tmp_path.iterdir()] == ["report.html"]
+    text = written.read_text(encoding="utf-8")
+    page = Page(text)
+    assert page.faults == []
+    assert len(page.ids) == len(set(page.ids))
+    rms = read_runs(folder)[0].rms
+    row = next(line for line in text.splitlines() if '<th scope="row">catenary</th>' in line)
+    assert '<td class="text">chain</td><td>40</td>' in row
+    assert f"{rms['force_x']:.1e}".replace("e-0", "e-") in row
+    assert "not measured" in row
+    assert text.index(">catenary</h2>") < text.index(">parabola</h2>")
+    (picture,) = page.all("img")
+    assert picture["alt"].startswith("Budget of the chain: discretisation")
 
 
 def test_names_settings_and_blame_are_no_markup(tmp_path):
     nasty = "a|b <script>alert(1)</script>\n# *c* $x$"
-    plain = r"a&#124;b &#60;script&#62;alert(1)&#60;/script&#62; \# \*c\* \$x\$"
     record = run(case=nasty, budget=planted())
     comparison = record.comparison.model_dump()
     comparison["candidate"]["provenance"]["settings"] = {"segments": nasty, "beam": nasty}
@@ -228,14 +160,14 @@ def test_names_settings_and_blame_are_no_markup(tmp_path):
     budget = planted().to_dict() | {"blame": nasty}
     (tmp_path / "odd" / "budget.json").write_text(json.dumps(budget))
     (tmp_path / "odd" / "budget.png").write_bytes(budget_files(planted())["budget.png"])
-    text = write_findings(tmp_path, tmp_path)[0].read_text(encoding="utf-8")
-    assert f"| {plain} | {plain} | {plain} |" in text
-    assert "script>" not in text
+    text = write_report(tmp_path).path.read_text(encoding="utf-8")
+    assert "<td>a|b &lt;script&gt;" in text
+    assert "<script" not in text
 
 
 def test_nothing_to_report(tmp_path):
     with pytest.raises(InputError, match="a folder with runs in it"):
-        write_findings(tmp_path, tmp_path)
+        write_report(tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -248,13 +180,12 @@ def test_nothing_to_report(tmp_path):
         ("comparison.json", "[" * 100_000),
         ("comparison.json", '{"verdict": "agrees", "disagreement": {"force_x": 1}}'),
         ("budget.json", '{"blame": 1}'),
-        ("budget.png", "no picture"),
     ],
 )
 def test_damaged_runs_are_named(runs, tmp_path, file, content):
     (runs / "parabola-chain" / file).write_text(content)
     with pytest.raises(InputError, match=f"parabola-chain/{file}.*a run") as caught:
-        write_findings(runs, tmp_path / "out")
+        write_report(runs, tmp_path / "out")
     assert "\n" not in str(caught.value)
     assert len(str(caught.value)) < 400
     assert not (tmp_path / "out").exists()
@@ -263,15 +194,9 @@ def test_damaged_runs_are_named(runs, tmp_path, file, content):
 def test_a_run_of_which_nothing_could_be_compared():
     never = run(snap_off=None, right=None)
     for reading in ("force_x", "force_y", "moment_z"):
-        getattr(never.comparison.disagreement, reading).rms = None
+        never.comparison.disagreement[reading].rms = None
     assert "No station could be compared." in sentences([never])
     assert "catenary, chain" in overview([run(), never])
-
-
-def test_all_named_cases_are_made():
-    makefile = (Path(__file__).parents[3] / "Makefile").read_text()
-    (line,) = (line for line in makefile.splitlines() if line.startswith("CASES :="))
-    assert line.removeprefix("CASES :=").split() == list(CASE_NAMES)
 
 
 def engines_left(folder, implementation=1e-9):
@@ -279,11 +204,11 @@ def engines_left(folder, implementation=1e-9):
     readings = ("force_x", "force_y", "moment_z")
     rms = dict.fromkeys(readings, 2e-3)
     row = {"role": "twin", "version": "1.0", "trouble": None, "rms": rms, "snap_off_apart": None}
-    row |= {"seconds_a_station": 0.01, "agrees": True}
+    row |= {"seconds_a_station": 0.01, "agrees": True, "tuned": "as it is"}
     lost = {"trouble": "not finished after 20 s", "rms": None, "agrees": False}
     split = {"subject": "mujoco", "twin": "drake", "disagreement": rms, "model": rms}
-    split |= {"implementation": dict.fromkeys(readings, implementation), "blame": "model"}
-    split["others"] = {"exudyn": dict.fromkeys(readings, 5e-5) | {"force_x": None}}
+    split |= {"implementation": dict.fromkeys(readings, implementation), "snap_off": None}
+    split["others"] = {"exudyn": dict.fromkeys(readings, 5e-5) | {"force_x": math.nan}}
     engines = [{"name": "mujoco", **row}, {"name": "drake", **row}, {"name": "slow", **row, **lost}]
     folder.mkdir(parents=True)
     content = {"case": "catenary", "engines": engines, "split": split}
@@ -300,11 +225,11 @@ def engines_left(folder, implementation=1e-9):
 def test_runs_in_many_engines_are_split(tmp_path, implementation, says):
     """Without any run in MuJoCo alone, too."""
     engines_left(tmp_path / "runs" / "one", implementation)
-    (written,) = write_findings(tmp_path / "runs", tmp_path / "out")
+    written = write_report(tmp_path / "runs", tmp_path / "out").path
     text = " ".join(written.read_text().split())
     assert says in text
-    assert "2.0e-3. exudyn's is it to 5.0e-5." in text
-    assert "| catenary | slow 1.0 | twin | none | none | none |" in text
+    assert "2.0e-3. exudyn&#39;s is it to 5.0e-5." in text
+    assert '<td class="text">slow 1.0, twin</td><td>none</td>' in text
     assert "not finished after 20 s" in text
     assert "implementation: mujoco against drake" in text
 
@@ -313,4 +238,4 @@ def test_a_damaged_run_in_many_engines_is_a_line(tmp_path):
     (tmp_path / "runs" / "one").mkdir(parents=True)
     (tmp_path / "runs" / "one" / "engines.json").write_text('{"case": "catenary"}')
     with pytest.raises(InputError, match=r"engines\.json = damaged \(engines"):
-        write_findings(tmp_path / "runs", tmp_path / "out")
+        write_report(tmp_path / "runs", tmp_path / "out")

@@ -1,11 +1,12 @@
 """What was found, in words: every sentence follows from the numbers by a rule."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
-from compare.explain.budget import UNRESOLVED
-from compare.show.findings.records import BudgetFile, RunRecord
-from compare.show.page import short
+from compare.explain.budget import UNRESOLVED, Budget
+from compare.explain.split import ROUNDING
+from compare.read.runs import EnginesRecord, RunRecord
+from compare.show.numbers import short
 
 
 def overview(runs: Sequence[RunRecord]) -> str:
@@ -33,6 +34,35 @@ def sentences(runs: Sequence[RunRecord]) -> str:
         said += [_blame(with_budget), _closure(with_budget, _beam)]
     said.append(_events(runs))
     return " ".join(said)
+
+
+def split_overview(records: Sequence[EnginesRecord]) -> str:
+    """What of the disagreements is implementation, and what is the model, over all cases."""
+    splits = [(one.case, one.split) for one in records if one.split is not None]
+    if not splits:
+        return ""
+    apart = {case: _worst(split.implementation) for case, split in splits}
+    model = max(_worst(split.model) for _, split in splits)
+    subject, twin = splits[0][1].subject, splits[0][1].twin
+    faulty = [case for case, worst in apart.items() if worst > ROUNDING]
+    largest = short(max(apart.values()))
+    if not faulty:
+        said = (
+            f"{subject} computes its model right: it and its twin {twin} are at most {largest} "
+            f"apart. The model is the rod to {short(model)}."
+        )
+    else:
+        said = (
+            f"{subject} and its twin {twin} are up to {largest} apart, above rounding in "
+            f"{', '.join(faulty)}; the twin's model is the rod to {short(model)}."
+        )
+    others = {
+        name: max(_worst(split.others[name]) for _, split in splits if name in split.others)
+        for name in dict.fromkeys(name for _, split in splits for name in split.others)
+    }
+    return " ".join(
+        [said, *(f"{name}'s is it to {short(worst)}." for name, worst in others.items())]
+    )
 
 
 def _agreeing(runs: Sequence[RunRecord], named: Callable[[RunRecord], str]) -> str:
@@ -124,7 +154,7 @@ def _events(runs: Sequence[RunRecord]) -> str:
     return f"{said}, and the clamp readings give the right phase of {share}."
 
 
-def _budget(run: RunRecord) -> BudgetFile:
+def _budget(run: RunRecord) -> Budget:
     assert run.budget is not None
     return run.budget
 
@@ -144,3 +174,8 @@ def _span(values: Sequence[float], write: Callable[[float], str]) -> str:
 
 def _list(words: Sequence[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def _worst(rms: Mapping[str, float]) -> float:
+    """Of the readings that could be compared."""
+    return max((one for one in rms.values() if not math.isnan(one)), default=0.0)

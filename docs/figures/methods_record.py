@@ -9,7 +9,7 @@ import pandas as pd
 
 from analytic import InputError
 from analytic.problem.files import regular_file
-from compare.show.page import short
+from compare.show.numbers import short
 from compare.show.style import PHASE_LETTERS
 
 _COLUMNS = ("case", "readings", "method", "noise", "phase", "contacts", "answered", "median")

@@ -1,6 +1,6 @@
 """What friction does to a sweep: the way back is another one, and the vibrissa lets go elsewhere.
 
-``python -m compare.show.figures.hysteresis FILE.png`` draws it.
+``python -m docs.figures.hysteresis FILE.png`` draws it.
 """
 
 import sys

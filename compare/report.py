@@ -1,0 +1,85 @@
+"""The page of whatever a folder holds: a run, a study, or many runs."""
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from analytic.problem.files import write_whole
+from compare.comparison import Comparison, compare
+from compare.comparison_in_space import SpatialComparison, compare_space
+from compare.explain.split_space import Parts
+from compare.read.run_folder import StoredSpatialRun, read_run
+from compare.show import report, spatial
+from compare.show.document import Film
+from compare.show.html import html
+from compare.show.runs import runs_document
+from compare.study.show.study_report import write_report as write_study_report
+
+
+@dataclass(frozen=True)
+class Report:
+    """A page that was written.
+
+    Attributes
+    ----------
+    path : Path
+        The page.
+    comparison : Comparison or SpatialComparison or None
+        What it is about, if that is a run.
+    parts : Parts or None
+        What the disagreement of a run in space is made of, if that was measured.
+    """
+
+    path: Path
+    comparison: Comparison | SpatialComparison | None = None
+    parts: Parts | None = None
+
+
+def write_report(
+    folder: Path, out: Path | None = None, warn: Callable[[str], None] = warnings.warn
+) -> Report:
+    """Write the page of a run, a study, or a folder with runs in it, from what is stored there.
+
+    A run may be two sweeps that nobody compared yet, and a study may be under way.
+
+    Parameters
+    ----------
+    folder : Path
+        What ``vibrissa run`` or ``vibrissa study`` has made, or a folder of such folders.
+    out : Path, optional
+        Where the page and its files are put, by default `folder`.
+    warn : callable
+        Called with each line on what of a study cannot be read.
+
+    Returns
+    -------
+    Report
+        Its page is ``report.html``.
+
+    Raises
+    ------
+    InputError
+        If the folder holds none of these, or a file in it is damaged.
+    """
+    place = folder if out is None else out
+    if (folder / "study.json").exists():
+        return Report(write_study_report(folder, warn, place))
+    if any(folder.glob("*.parquet")):
+        return _of_a_run(folder, place)
+    page = html(runs_document(folder))
+    place.mkdir(parents=True, exist_ok=True)
+    return Report(write_whole(place / "report.html", page))
+
+
+def _of_a_run(folder: Path, place: Path) -> Report:
+    stored, film = read_run(folder), Film.of(folder)
+    if isinstance(stored, StoredSpatialRun):
+        found = compare_space(
+            stored.reference, stored.candidate, stored.tolerances, frame=stored.frame
+        )
+        page = spatial.write_spatial_report(found, stored.body, place, stored.parts, film)
+        return Report(page, found, stored.parts)
+    comparison = compare(stored.reference, stored.candidate, stored.tolerances)
+    comparison = replace(comparison, validation=stored.validation)
+    return Report(report.write_report(comparison, place, stored.budget, film), comparison)

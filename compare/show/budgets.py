@@ -1,0 +1,98 @@
+"""What a disagreement is made of, in tables and sentences."""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from analytic import CLAMP_READINGS
+from compare.explain.budget import Budget
+from compare.explain.motion import MotionBudget
+from compare.explain.parts import Part
+from compare.explain.suspects import Suspect
+from compare.show.document import Block, Items, Table, Text
+from compare.show.numbers import percent, short, words
+from compare.show.style import PHASE_LETTERS
+
+_RMS = "relative to each reading's largest magnitude"
+
+
+def headline(found: Budget) -> str:
+    """What a budget comes to, in one sentence."""
+    rest = short(max(part.rms for part in found.parts["unexplained"].values()))
+    if found.closes:
+        remains = f"at most {rest} stays unexplained, and the budget closes"
+    elif found.undecided:
+        unsure = short(max(part.uncertainty for part in found.parts["unexplained"].values()))
+        remains = f"the budget is undecided: {rest} +- {unsure} stays unexplained"
+    else:
+        remains = f"{rest} stays unexplained, too much for the budget to close"
+    return f"The largest part is {found.blame}; {remains}"
+
+
+def budget_summary(found: Budget) -> Iterator[Block]:
+    """The parts, what they come to, and the suspects."""
+    yield parts_table(found, found.checks)
+    yield Text("", strong=f"{headline(found)}.")
+    if found.suspects:
+        yield Items([_suspect(one) for one in found.suspects])
+
+
+def motion_budget_summary(found: MotionBudget) -> Iterator[Block]:
+    """The parts of a disagreement in motion, and what they come to."""
+    yield parts_table(found)
+    closes = "closes" if found.closes else "does not close"
+    yield Text(f"The budget {closes}; {found.blame} dominates, over {found.stations} stations.")
+    yield Text(f"Observed order in the speed, of three speeds: {found.order:.2f}.")
+    if found.left_out:
+        yield Text(f"Diverged, and left out: {', '.join(found.left_out)}.")
+
+
+def parts_table(
+    found: Budget | MotionBudget, checks: Mapping[str, Mapping[str, float]] | None = None
+) -> Table:
+    """The parts with their uncertainties, the whole, and what the closed form says of some."""
+    rows: list[Sequence[str]] = [
+        (name, *(_uncertain(part) for part in parts.values()))
+        for name, parts in found.parts.items()
+    ]
+    rows.append(("disagreement", *(short(x) for x in found.disagreement.values())))
+    rows += [
+        (f"{name}, closed form alone", *(short(x) for x in sizes.values()))
+        for name, sizes in (checks or {}).items()
+    ]
+    return Table(
+        f"Root mean square and uncertainty, {_RMS}",
+        ("part", *CLAMP_READINGS),
+        rows,
+        blamed=[i for i, name in enumerate(found.parts) if name == found.blame],
+        whole=[len(found.parts)],
+    )
+
+
+def phases_table(found: Budget, phases: Sequence[str]) -> Table:
+    """The parts in each phase."""
+    return Table(
+        "The same in each phase (A: tip contact, B: tangential contact), root mean square",
+        ("part", *(f"{r}, {PHASE_LETTERS[p]}" for r in CLAMP_READINGS for p in phases)),
+        [
+            (name, *(short(sizes[r].get(p)) for r in CLAMP_READINGS for p in phases))
+            for name, sizes in found.by_phase.items()
+        ],
+        blamed=[i for i, name in enumerate(found.by_phase) if name == found.blame],
+    )
+
+
+def convergence_table(found: Mapping[int, Mapping[str, float]]) -> Table:
+    """The disagreement by number of segments."""
+    return Table(
+        f"Root mean square, {_RMS}",
+        ("segments", *CLAMP_READINGS),
+        [(str(n), *(short(rms[r]) for r in CLAMP_READINGS)) for n, rms in found.items()],
+    )
+
+
+def _uncertain(part: Part) -> str:
+    return f"{short(part.rms)} ± {short(part.uncertainty)}"
+
+
+def _suspect(one: Suspect) -> str:
+    found = f"Suspect: {words(one.name)}, {one.size} in the candidate"
+    return f"{found}, accounts for {percent(one.share)} of the unexplained."

@@ -1,0 +1,48 @@
+"""Numbers and names as people read them."""
+
+from typing import Literal, TypeAlias
+
+from analytic import Beam
+
+Kind: TypeAlias = Literal["length", "force", "moment"]
+
+_UNITS: dict[Kind, str] = {"length": "m", "force": "N", "moment": "N m"}
+_PREFIXES = {"": 1.0, "m": 1e-3, "µ": 1e-6}
+_SMALLEST = 0.1  # that is written without a smaller unit
+
+
+def short(x: float | None, unit: str = "") -> str:
+    """Two digits and a power of ten."""
+    if x is None or x != x:
+        return "none"
+    return (f"{x:.1e}".replace("e-0", "e-").replace("e+0", "e+") if x else "0") + unit
+
+
+def place(x: float | None) -> str:
+    """A position, to what a picture could show."""
+    return "none" if x is None or x != x else f"{x:.5g}"
+
+
+def percent(x: float) -> str:
+    """A share to a tenth of a hundredth."""
+    return f"{100 * x:.1f} %"
+
+
+def words(name: str) -> str:
+    """An identifier as words."""
+    return name.replace("_", " ").replace("phase b", "Phase B")
+
+
+def sentence(text: str) -> str:
+    """A clause as a sentence, without the marks of code that a terminal and Markdown have."""
+    text = text.replace("`", "")
+    return text and f"{text[0].upper()}{text[1:].rstrip('.')}."
+
+
+def quantity(value: float, kind: Kind, beam: Beam) -> str:
+    """A number with its unit, where that is known: in SI, with the prefix that suits it."""
+    if not beam.si:
+        return f"{value:.4g}"
+    sizes = [(prefix, size) for prefix, size in _PREFIXES.items() if abs(value) >= _SMALLEST * size]
+    prefix, size = sizes[0] if sizes and value else ("", 1.0)
+    return f"{value / size:.4g} {prefix}{_UNITS[kind]}"

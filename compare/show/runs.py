@@ -1,0 +1,118 @@
+"""One page about all runs in a folder, every word of it from measured numbers."""
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from pathlib import Path
+
+from analytic import CLAMP_READINGS, InputError
+from compare.explain.budget import UNRESOLVED
+from compare.read.runs import EnginesRecord, RunRecord, read_engines, read_runs
+from compare.show.document import (
+    Block,
+    Document,
+    Image,
+    Items,
+    Table,
+    Text,
+    Verdict,
+    sections,
+)
+from compare.show.engines import outcomes_table, parts_table
+from compare.show.numbers import percent, short
+from compare.show.run_sentences import overview, sentences, split_overview
+
+
+def runs_document(folder: Path) -> Document:
+    """All that there is to say of the runs in the folders of `folder`."""
+    runs, engines = read_runs(folder), read_engines(folder)
+    if not runs and not engines:
+        raise InputError(
+            "DIR",
+            folder,
+            "the folder of a run or a study, or a folder with runs in it",
+            "make one: vibrissa run CASE --budget --out DIR/CASE",
+        )
+    agree = [run.agrees for run in runs]
+    agree += [engine.agrees for one in engines for engine in one.engines]
+    claim = f"{sum(agree)} of {len(agree)} sweeps agree with the closed form."
+    said = overview(runs) if runs else split_overview(engines)
+    return Document(
+        "Findings",
+        f"{len(runs) + len(engines)} runs in the folder {folder.resolve().name}.",
+        Verdict(all(agree), claim, said),
+        sections(
+            ("runs", "Runs", _runs(runs)),
+            *(
+                (f"case-{number}", case, _case([*group]))
+                for number, (case, group) in enumerate(groupby(runs, key=lambda run: run.case), 1)
+            ),
+            ("engines", "Engines", _engines(engines)),
+            ("made", "Made with", _made_with(runs)),
+        ),
+    )
+
+
+def _runs(runs: Sequence[RunRecord]) -> Iterator[Block]:
+    if not runs:
+        return
+    yield _runs_table(runs)
+    yield Text(
+        "Disagreements are root mean squares over the stations in contact, of each reading's "
+        "largest magnitude; so is the unexplained, of the worst reading. Both leave out the last "
+        "stretch before the snap-off, where readings grow like a square root. A budget closes if "
+        f"what is unexplained lies within the uncertainty of the parts and {short(UNRESOLVED)}, "
+        "added in quadrature, and both are small; it is undecided if they are not. Times are of "
+        "the machine that made this page.",
+        aside=True,
+    )
+
+
+def _case(runs: Sequence[RunRecord]) -> Iterator[Block]:
+    yield Text(f"{runs[0].profile}. {sentences(runs)}")
+    for run in runs:
+        if run.budget is not None:
+            shows = f"Budget of the {run.beam}: {run.budget.blame} is the largest part"
+            caption = f"{run.beam}, {run.settings.get('segments', '?')} segments, {run.engine}"
+            yield Image(run.folder / "budget.png", shows, caption)
+
+
+def _made_with(runs: Sequence[RunRecord]) -> Iterator[Block]:
+    if runs:
+        yield Items([*dict.fromkeys(run.engine for run in runs)])
+
+
+def _runs_table(runs: Sequence[RunRecord]) -> Table:
+    rows = [
+        (
+            run.case,
+            run.beam,
+            str(run.settings.get("segments", "?")),
+            *(short(run.rms[name]) for name in CLAMP_READINGS),
+            short(run.snap_off),
+            "none" if run.phases_right is None else percent(run.phases_right),
+            "not measured" if run.budget is None else run.budget.blame,
+            "not measured" if run.budget is None else short(run.part("unexplained")),
+            "" if run.seconds_a_station is None else f"{1e3 * run.seconds_a_station:.2g}",
+        )
+        for run in runs
+    ]
+    head = (
+        "case", "beam", "segments", *CLAMP_READINGS, "snap-off apart / L", "phases right",
+        "largest part", "unexplained", "ms a station",
+    )  # fmt: skip
+    return Table("Each run against its closed form", head, rows, words=(0, 1, 8))
+
+
+def _engines(records: Sequence[EnginesRecord]) -> Iterator[Block]:
+    if not records:
+        return
+    yield Text(split_overview(records))
+    yield outcomes_table({one.case: one.engines for one in records})
+    parts = {one.case: one.split.parts() for one in records if one.split}
+    if parts:
+        yield parts_table(parts)
+    yield Text(
+        "What is implementation, engine against twin, and what is model, twin against the closed "
+        "form; another model's own disagreement stands beside it.",
+        aside=True,
+    )
