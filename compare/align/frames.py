@@ -19,7 +19,7 @@ _OVERTURNED = 1e-9  # of 1 + cos: a clamp that points straight down
 
 
 def clamp_axes(tangent: Floats) -> Floats:
-    """The clamp's axes: the world's, by the shortest turn that takes y to the clamp's tangent."""
+    """The world's axes by the shortest rotation that takes y to the clamp's tangent."""
     x, y, z = tangent
     if 1 + y < _OVERTURNED:
         return np.diag([1.0, -1.0, -1.0])
@@ -42,12 +42,12 @@ def from_frame(readings: SpatialReadings, frame: Frame) -> SpatialReadings:
     axes = _axes(readings, frame)
     if frame == "world":
         return readings
-    turned = {
+    rotated = {
         name: column
         for names in (COMPONENTS[:3], COMPONENTS[3:])
         for name, column in zip(names, (readings.values(*names) @ axes).T, strict=True)
     }
-    return replace(readings, table=readings.table.assign(**turned))
+    return replace(readings, table=readings.table.assign(**rotated))
 
 
 def _axes(readings: SpatialReadings, frame: Frame) -> Floats:

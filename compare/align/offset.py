@@ -116,7 +116,7 @@ def estimate_offset(
     return Offset(best.value, best.uncertainty)
 
 
-class Fit(NamedTuple):
+class OffsetFit(NamedTuple):
     """An offset that fits, at least better than those around it."""
 
     value: float
@@ -130,7 +130,7 @@ def offset_fits(
     candidate: Readings,
     reference_phase: Classification,
     candidate_phase: Classification,
-) -> list[Fit]:
+) -> list[OffsetFit]:
     """Offsets at which the candidate's clamp readings fit the reference's, the best first."""
     curve = _Curve.of(reference, reference_phase)
     loaded = np.isin(candidate_phase.phase, ("tip", "tangent"))
@@ -219,8 +219,8 @@ def _scan(
     low, high = x[loaded].min(), x[loaded].max()
     first, last = curve.ends
     half = min(high - low, last - first) / 2
-    way = high - low + last - first - 2 * half
-    count = int(min(_SCAN * way / curve.spacing, _MOST)) + 2 if way > 0 else 2
+    range_ = high - low + last - first - 2 * half
+    count = int(min(_SCAN * range_ / curve.spacing, _MOST)) + 2 if range_ > 0 else 2
     trials = np.linspace(low - last + half, high - first - half, count)
     stride = -(-int(trusted.sum()) // _MOST)
     tried = np.flatnonzero(trusted)[::stride]
@@ -251,7 +251,7 @@ def _scan(
 
 def _fit(
     curve: _Curve, x: Floats, seen: Floats, start: float, scale: Floats, *, robust: bool
-) -> Fit | None:
+) -> OffsetFit | None:
     """Gauss and Newton's method from `start`; None where it leads out of the reference.
 
     Plain least squares first, each reading over its largest magnitude: the scatter that the
@@ -280,7 +280,7 @@ def _fit(
         if abs(step) < 1e-12 * (abs(value) + curve.spacing):
             break
     misfit = float(np.sqrt(np.mean((clipped * scatter) ** 2)))
-    return Fit(value, _half_width(score, information), misfit)
+    return OffsetFit(value, _half_width(score, information), misfit)
 
 
 def _half_width(score: Floats, information: float) -> float:

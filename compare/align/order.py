@@ -10,12 +10,12 @@ from compare.sense.record import Record, direction, inspect_record
 
 _ROWS = 400  # that two sweeps are laid over each other by
 _TRIALS, _ROUNDS = 201, 3  # positions tried, and how often the best one is closed in on
-_ALIKE = 0.05  # share of the readings' square that may be left where one way to count explains them
+_ALIKE = 0.05  # of the readings' square: what one way to count may leave of them
 _CLEARLY = 0.25  # of what the other explanation leaves
 
 
 @dataclass(frozen=True)
-class Order:
+class RowOrder:
     """How the candidate's rows follow the motion, seen from the reference."""
 
     # The rows run against the reference's, while force and moment have its signs: the last station
@@ -50,7 +50,7 @@ class Order:
         return None
 
 
-def in_order(reference: Readings, candidate: Readings) -> tuple[Readings, Record, Order]:
+def in_order(reference: Readings, candidate: Readings) -> tuple[Readings, Record, RowOrder]:
     """The candidate with its rows in the order of the motion, and what was wrong with them.
 
     The vibrissa bends against the foot's motion, so that a sweep in the opposite direction has a
@@ -60,26 +60,26 @@ def in_order(reference: Readings, candidate: Readings) -> tuple[Readings, Record
     counts its way backwards: which of them lays the readings over the reference's decides.
     """
     record = inspect_record(candidate)
-    turned = _sign(candidate, "moment_z") * _sign(reference, "moment_z") < 0
+    opposite = _sign(candidate, "moment_z") * _sign(reference, "moment_z") < 0
     if record.retreats:
         # A sweep the other way has the sign of force_y; a sensor that is turned has not.
-        turned &= _sign(candidate, "force_y") * _sign(reference, "force_y") > 0
-        way = -direction(reference) if turned else direction(reference)
-        sorted_ = _taken(candidate, np.argsort(way * candidate.values("foot_x"), kind="stable"))
+        opposite &= _sign(candidate, "force_y") * _sign(reference, "force_y") > 0
+        sign = -direction(reference) if opposite else direction(reference)
+        sorted_ = _taken(candidate, np.argsort(sign * candidate.values("foot_x"), kind="stable"))
         again = replace(inspect_record(sorted_), retreats=record.retreats)
-        return sorted_, again, Order(sorted=True, opposite=turned)
+        return sorted_, again, RowOrder(sorted=True, opposite=opposite)
     if direction(candidate) * direction(reference) > 0:
-        return candidate, record, Order()
-    if turned:
-        return candidate, record, Order(opposite=True)
+        return candidate, record, RowOrder()
+    if opposite:
+        return candidate, record, RowOrder(opposite=True)
     origin = _backwards_from(reference, candidate)
     if origin is not None:
-        turned_back = replace(
+        counted_back = replace(
             candidate, table=candidate.table.assign(foot_x=origin - candidate.values("foot_x"))
         )
-        return turned_back, inspect_record(turned_back), Order(backwards_from=origin)
-    turned_round = _taken(candidate, np.arange(len(candidate.table))[::-1])
-    return turned_round, inspect_record(turned_round), Order(reversed=True)
+        return counted_back, inspect_record(counted_back), RowOrder(backwards_from=origin)
+    reversed_rows = _taken(candidate, np.arange(len(candidate.table))[::-1])
+    return reversed_rows, inspect_record(reversed_rows), RowOrder(reversed=True)
 
 
 def _backwards_from(reference: Readings, candidate: Readings) -> float | None:
@@ -96,15 +96,15 @@ def _backwards_from(reference: Readings, candidate: Readings) -> float | None:
         there = np.stack([np.interp(at, x_ref, row, left=0.0, right=0.0) for row in true])
         return float(np.sum((seen - there) ** 2) / np.sum(seen**2))
 
-    def nearest(way: float) -> tuple[float, float]:
+    def nearest(sign: float) -> tuple[float, float]:
         """What the best origin of that way to count leaves, and the origin."""
         width = max(float(np.ptp(x_ref)), float(np.ptp(x)))
-        best, reach = float(np.mean(x_ref) - way * np.mean(x)), width
+        best, reach = float(np.mean(x_ref) - sign * np.mean(x)), width
         for _ in range(_ROUNDS):
             origins = best + np.linspace(-reach, reach, _TRIALS)
-            best = float(min(origins, key=lambda origin: left(origin + way * x)))
+            best = float(min(origins, key=lambda origin: left(origin + sign * x)))
             reach = 2 * reach / _TRIALS
-        return left(best + way * x), best
+        return left(best + sign * x), best
 
     reversed_rows = min(left(x), nearest(1.0)[0])
     for rest, origin in ((left(-x), 0.0), nearest(-1.0)):

@@ -13,7 +13,7 @@ from mujoco_models.settings import Settings
 
 _SEGMENTS = np.unique(np.geomspace(5, 1000, 120).astype(int))
 _POINTS = 100 * 2 ** np.arange(9)  # up to 25,600
-_SHARE = 0.9  # of the target that is planned for; the rest is for what a power law leaves out
+_FRACTION = 0.9  # of the target that is planned for; the rest is for what a power law leaves out
 _SOFTNESS = 0.3  # of the target that a contact may give way
 _FACET_ORDERS = (0.5, 2.0)  # facets' normals fall with their number, their chords with its square
 
@@ -60,10 +60,13 @@ def advise(found: Budget, runs: Mapping[str, Readings], coarser: Readings, targe
     ]
     error = np.sqrt(np.max(squares, axis=0))
     time = _time(runs, coarser, segments, points)
-    enough = error <= _SHARE * target
+    enough = error <= _FRACTION * target
     if not enough.any():
         raise InputError(
-            "--target", target, f"at least {error.min() / _SHARE:.1e} for this case", "ask for less"
+            "--target",
+            target,
+            f"at least {error.min() / _FRACTION:.1e} for this case",
+            "ask for less",
         )
     best = np.unravel_index(np.argmin(np.where(enough, time, np.inf)), time.shape)
     chosen = replace(

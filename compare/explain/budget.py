@@ -10,6 +10,7 @@ from analytic import CLAMP_READINGS, Readings
 from analytic.problem.arrays import Floats
 from compare.explain.changes import SHARPER, STIFFER
 from compare.explain.convergence import convergence
+from compare.explain.oscillation import without_oscillation
 from compare.explain.parts import (
     SAFETY,
     Part,
@@ -21,7 +22,6 @@ from compare.explain.parts import (
     with_unexplained,
 )
 from compare.explain.suspects import Suspect, suspects
-from compare.explain.swing import without_swing
 from compare.explain.variations import shifted_inward, stretched
 from compare.judge.tolerances import Tolerances
 from compare.measure.disagreement import rms
@@ -101,7 +101,7 @@ def budget(
     power: Floats = 0.5 ** (order * np.arange(3.0))
     refined, joints = [run[name] for name in REFINED], _joints(runs)
     if joints is not None:
-        refined = without_swing(refined, joints, contact, tangent, power)
+        refined = without_oscillation(refined, joints, contact, tangent, power)
     limit, doubt = _limit(refined, power)
     _, middle, finest = refined
     from_two = finest + (finest - middle) / (2**order - 1)
@@ -195,11 +195,11 @@ def _joints(runs: Mapping[str, Readings]) -> list[Floats] | None:
 def _limit(refined: list[Floats], power: Floats) -> tuple[Floats, Floats]:
     """What the sweeps tend to as segments are refined, and how unsure the three of them leave that.
 
-    Richardson's extrapolation, from all three. What still swings in them, as the contact passes
+    Richardson's extrapolation, from all three. What still oscillates in them, as the contact passes
     from bead to bead, falls no faster than their power of h. So a line in that power is fitted,
-    each sweep weighed by it: the limit has three quarters of the swing that the two finest sweeps
-    alone leave it. One combination of three sweeps holds neither the limit nor the power. What is
-    left in it are their own errors, which the limit has its part of.
+    each sweep weighed by it: the limit has three quarters of the amplitude that the two finest
+    sweeps alone leave it. One combination of three sweeps holds neither the limit nor the power.
+    What is left in it are their own errors, which the limit has its part of.
     """
     design = np.column_stack([np.ones(3), power]) / power[:, None]
     weights = np.linalg.pinv(design)[0] / power

@@ -13,7 +13,7 @@ class Fitted(NamedTuple):
     size: float
     left: float
     """Sum of squares that it leaves."""
-    share: float
+    fraction: float
     """Of the disagreement's sum of squares that it accounts for."""
 
 

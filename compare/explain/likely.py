@@ -14,16 +14,16 @@ from compare.judge.tolerances import Tolerances
 from compare.measure.disagreement import before_snap_off
 from compare.measure.measurement import Measurement
 
-_CONVINCING = 0.9  # share of the disagreement, its scatter apart, that one cause must explain
+_CONVINCING = 0.9  # fraction of the disagreement, its scatter apart, that one cause must explain
 _DISTINCT = 2.0  # the next cause must leave so many times the square that the best one leaves
-_REST = 0.1  # share of the disagreement, rms, that a named cause may leave without saying so
-_ALIKE = 0.3  # share that a signature must explain for the fault to be solved at its size
+_REST = 0.1  # fraction of the disagreement, rms, that a named cause may leave without saying so
+_ALIKE = 0.3  # fraction that a signature must explain for the fault to be solved at its size
 _SECANTS, _SETTLED = 5, 1e-3  # sweeps at most for that, and the last change of its size
 _BETTER = 6.0  # the same, for three constants to be preferred to one cause of one size
-_SCATTERED = 0.5  # share of the disagreement's square that jumps from station to station
+_SCATTERED = 0.5  # fraction of the disagreement's square that jumps from station to station
 _UNSURE = 1.3  # times the scatter's square, to be on the safe side of its estimate
 _FEWEST = 10  # stations
-_FAR_OFF, _SELDOM = 20.0, 0.05  # times the median difference; share of the stations, at the most
+_FAR_OFF, _SELDOM = 20.0, 0.05  # times the median difference; fraction of the stations, at the most
 _ROUND_OFF = 1e-12  # of the largest magnitude; nothing below has a cause
 
 
@@ -201,8 +201,8 @@ def _exact(
 
     Next to where a sweep with the fault is free, its signature stands in.
     """
-    size, _, share = fitted(error, fault.signature[:, known])
-    if fault.change is None or share < _ALIKE:
+    size, _, fraction = fitted(error, fault.signature[:, known])
+    if fault.change is None or fraction < _ALIKE:
         return best
     last, before = 0.0, np.zeros_like(error)
     for _ in range(_SECANTS):
@@ -253,7 +253,7 @@ def _best(tried: list[Explanation], all_: float, noise: float) -> Explanation | 
 
 
 def _rest(best: Explanation, all_: float, noise: float) -> float:
-    """Share of the disagreement that the best explanation leaves, rms."""
+    """Fraction of the disagreement that the best explanation leaves, rms."""
     return float(np.sqrt(_beyond(best, noise) / all_))
 
 

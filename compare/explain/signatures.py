@@ -132,8 +132,8 @@ def _extended(points: Floats, beyond: float) -> Floats:
     """A contour, shape (points, 2), extrapolated at either end, unless it is vertical there."""
     from scipy.interpolate import CubicSpline  # slow to load
 
-    way = np.append(0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
-    first, last = CubicSpline(way, points)([-beyond, way[-1] + beyond])
+    arc_length = np.append(0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
+    first, last = CubicSpline(arc_length, points)([-beyond, arc_length[-1] + beyond])
     before = [first] if first[0] < points[0, 0] else []
     after = [last] if last[0] > points[-1, 0] else []
     return np.vstack([*before, points, *after])

@@ -10,7 +10,7 @@ from compare.explain.fit import fitted
 from compare.explain.variations import STEP
 
 _UNITS = {"friction": "", "natural_curvature": "/L", "clamp_compliance": " L/EI"}
-_CONVINCING = 0.8  # share of the unexplained that a suspect must account for
+_CONVINCING = 0.8  # fraction of the unexplained that a suspect must account for
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ def suspects(
         return ()
     found = []
     for name, signature in signatures.items():
-        size, _, share = fitted(unexplained, signature)
-        if share >= _CONVINCING:
-            found.append(Suspect(name, size * STEP, share))
+        size, _, fraction = fitted(unexplained, signature)
+        if fraction >= _CONVINCING:
+            found.append(Suspect(name, size * STEP, fraction))
     return tuple(sorted(found, key=lambda suspect: -suspect.share))

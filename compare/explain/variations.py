@@ -11,6 +11,16 @@ from analytic.problem.quantities import QUANTITIES
 
 STEP = 1e-3
 """Relative change of each quantity, from which its signature is taken."""
+VARIED = (
+    "flexural_rigidity",
+    "length",
+    "radius",
+    "foot_x",
+    "friction",
+    "clamp_compliance",
+    "natural_curvature",
+)
+"""What may differ in any case; a cone's `tip_radius` comes beside them."""
 
 
 def variations(case: Case) -> dict[str, Readings]:
@@ -39,7 +49,7 @@ def variations(case: Case) -> dict[str, Readings]:
             return with_friction(case, STEP)
         return solve_sweep(QUANTITIES[name].larger(case, STEP * units[name]))
 
-    found = {name: swept(name) for name in _VARIED}
+    found = {name: swept(name) for name in VARIED}
     exact = solve_sweep(case)
     if beam.radius > 0 and np.isfinite(tip_radius):
         found["tip_radius"] = swept("tip_radius")
@@ -47,17 +57,6 @@ def variations(case: Case) -> dict[str, Readings]:
         name: _opposite(exact, varied) if units[name] < 0 else varied
         for name, varied in found.items()
     }
-
-
-_VARIED = (
-    "flexural_rigidity",
-    "length",
-    "radius",
-    "foot_x",
-    "friction",
-    "clamp_compliance",
-    "natural_curvature",
-)
 
 
 def _opposite(exact: Readings, changed: Readings) -> Readings:

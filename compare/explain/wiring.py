@@ -35,14 +35,14 @@ _MOMENTS = {
 }
 _SAME_UNIT = 0.02  # of the factor; as far as a model's own error may move it
 _DEAD = 0.01  # of the reading's variance: what of it a dead channel still shows
-_FOLLOWS = 0.5  # share of a small reading's variance that follows the load, if it is alive
-_TURN = np.radians(60)  # beyond, it is a swap of axes
+_FOLLOWS = 0.5  # fraction of a small reading's variance that follows the load, if it is alive
+_ROTATION = np.radians(60)  # beyond, it is a swap of axes
 
 
 def misread(true: Floats, seen: Floats, scale: Floats, length: float) -> Iterator[Explanation]:
     """Every mistake that needs no contour, with what it leaves unexplained."""
     yield from _axes(true, seen, scale)
-    yield from _turned(true, seen, scale)
+    yield from _rotated(true, seen, scale)
     yield from _displaced(true, seen, scale, length)
     yield from _units(true, seen)
     yield from _dead(true, seen)
@@ -74,17 +74,17 @@ def _axes_text(signs: tuple[int, ...], swap: bool) -> str:
     return f"opposite sign of {' and '.join(negated)}"
 
 
-def _turned(true: Floats, seen: Floats, scale: Floats) -> Iterator[Explanation]:
+def _rotated(true: Floats, seen: Floats, scale: Floats) -> Iterator[Explanation]:
     """A sensor that is turned about z: forces in its axes instead of the world's."""
     x, y = true[:2] * scale[:2, None]
     a, b = seen[:2] * scale[:2, None]
     angle = float(np.arctan2(np.sum(a * y - b * x), np.sum(a * x + b * y)))
-    if abs(angle) > _TURN:
+    if abs(angle) > _ROTATION:
         return
     c, s = np.cos(angle), np.sin(angle)
-    turned = np.stack([(c * x + s * y) / scale[0], (c * y - s * x) / scale[1], true[2]])
+    rotated = np.stack([(c * x + s * y) / scale[0], (c * y - s * x) / scale[1], true[2]])
     text = f"sensor turned by {np.degrees(angle):+.3g} degrees about z: force_x and force_y mix"
-    yield Explanation(text, float(np.sum((seen - turned) ** 2)))
+    yield Explanation(text, float(np.sum((seen - rotated) ** 2)))
 
 
 def _displaced(true: Floats, seen: Floats, scale: Floats, length: float) -> Iterator[Explanation]:

@@ -10,14 +10,14 @@ from typing import Any, TypeAlias
 from compare.judge.allowance import Allowance
 from compare.judge.failure import Failure
 from compare.judge.tolerances import CONVENTION, Limits
-from compare.measure.measured import Measured, Sweep
+from compare.measure.sweep_pair import Sweep, SweepPair
 from compare.sense.occurrence import Occurrence
 
 Number: TypeAlias = float | int | bool | None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Judged(Measured[Sweep]):
+class Judged(SweepPair[Sweep]):
     """A comparison of n components along a travel; the plane and space each add their own.
 
     Attributes

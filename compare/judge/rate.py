@@ -35,7 +35,7 @@ class Rate:
 
     @property
     def lag(self) -> float:
-        """Way of the foot by which dampers delay the moments [L].
+        """Travel of the foot by which dampers delay the moments [L].
 
         A joint's moment is k (theta + tau theta'), with tau = 2 zeta/omega_1 = zeta T1/pi.
         """
@@ -50,24 +50,24 @@ class Rate:
     def lateness(self) -> float:
         """How late it lets go [L].
 
-        Near the fold M q'' + C q' = a d + b q^2, with d = v t the way past it: until q runs away,
-        d grows to (M v^2)^(2/5) where inertia rules and to (C v)^(2/3) where dampers do, a and b of
-        the order of the stiffness K, M = K/omega_1^2, C = K tau. Both at most add.
+        Near the fold M q'' + C q' = a d + b q^2, with d = v t the distance past it: until q runs
+        away, d grows to (M v^2)^(2/5) where inertia rules and to (C v)^(2/3) where dampers do, a
+        and b of the order of the stiffness K, M = K/omega_1^2, C = K tau. Both at most add.
         """
         inertial: float = (self.speed / (2 * math.pi)) ** 0.8
         damped: float = self.lag ** (2 / 3)
         return inertial + damped
 
 
-def free_share(readings: "Readings") -> float:
-    """Share of the trusted stations at which nothing touches, as the source recorded."""
+def free_fraction(readings: "Readings") -> float:
+    """Fraction of the trusted stations at which nothing touches, as the source recorded."""
     if "phase" not in readings.table or not readings.trusted.any():
         return 0.0
     return float(np.mean(readings.table["phase"][readings.trusted] == "free"))
 
 
-def soft_tip_share(readings: "Readings") -> float:
-    """Share of the trusted stations whose contact, in Phase B, takes in the tip as well.
+def soft_tip_fraction(readings: "Readings") -> float:
+    """Fraction of the trusted stations whose contact, in Phase B, takes in the tip as well.
 
     A contact that has sunk in by p spreads over sqrt(2 p R) to either side, R the radius of
     curvature of what it is pressed on, here L. If the tip is that near, the source may call

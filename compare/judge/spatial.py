@@ -29,11 +29,11 @@ class SpatialTolerances(Limits):
     contact : float
         Of the contact point, root mean square [L].
     event : float
-        Of the foot's way to where the vibrissa touches and where it leaves [L].
+        Of the foot's travel to where the vibrissa touches and where it leaves [L].
     phase_agreement : float
-        Share of the compared stations that are in one phase.
+        Fraction of the compared stations that are in one phase.
     untrusted : float
-        Share of the stations without readings that the reference has.
+        Fraction of the stations without readings that the reference has.
     special : mapping
         Limits for one component, by dotted name: ``"force_x.rms"``, ``"moment_z.max"``.
 

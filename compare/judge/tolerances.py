@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypeVar
 import numpy as np
 
 from analytic import CLAMP_READINGS, PHASES, InputError
-from compare.judge.rate import Rate, free_share, soft_tip_share
+from compare.judge.rate import Rate, free_fraction, soft_tip_fraction
 from compare.sense.given import checked
 
 if TYPE_CHECKING:  # limits are checked before pandas is needed
@@ -119,13 +119,13 @@ class Tolerances(Limits):
     snap_off_window : float
         Stretch before snap-off, of the sweep's length, where neither applies.
     phase_agreement : float
-        Share of stations whose phase, judged from the clamp, is the true contact's.
+        Fraction of stations whose phase, judged from the clamp, is the true contact's.
     transition, snap_off : float
         Of each event's foot position [L].
     lateness : float
         By how much more than `snap_off` the candidate may let go late, not early [L].
     untrusted : float
-        Share of the candidate's stations that may have failed to settle.
+        Fraction of the candidate's stations that may have failed to settle.
     special : mapping
         Limits for one reading, one phase, or one reading in one phase, by dotted name:
         ``"force_x.rms"``, ``"tangent.max"``, ``"moment_z.tip.rms"``. An ``rms`` of a phase is asked
@@ -205,7 +205,7 @@ class Tolerances(Limits):
         rms = max(self.rms, min(self.rms + adds, _QUASI_STATIC))
         capped = rms < self.rms + adds
         most = ", but no more than this: a faster motion is not quasi-static" if capped else ""
-        free, soft = free_share(candidate), soft_tip_share(candidate)
+        free, soft = free_fraction(candidate), soft_tip_fraction(candidate)
         bounces = 2 / stations + rate.speed / travel
         transition = self.transition + adds
         unclear = 4 * transition / travel
@@ -329,8 +329,8 @@ def is_smooth_model(readings: "Readings") -> bool:
     contour = np.asarray(readings.provenance.get("contour", []), dtype=float)
     if contour.ndim != 2 or contour.shape[1] < 3:
         return True
-    way = np.unwrap(np.arctan2(*np.diff(contour)[::-1]))
-    return bool(np.abs(np.diff(way)).max() < _CORNER)
+    slope = np.unwrap(np.arctan2(*np.diff(contour)[::-1]))
+    return bool(np.abs(np.diff(slope)).max() < _CORNER)
 
 
 GENERAL = Tolerances.general()

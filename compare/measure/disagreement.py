@@ -96,8 +96,8 @@ def before_snap_off(
     ends = [x for x in (snap.reference, snap.candidate) if x is not None]
     if not ends:
         return np.zeros(len(foot_x), dtype=bool)
-    way = direction(reference)
-    ahead = min(way * np.array(ends)) - way * foot_x
+    sign = direction(reference)
+    ahead = min(sign * np.array(ends)) - sign * foot_x
     return np.asarray(np.abs(ahead) < window * np.ptp(reference.values("foot_x")))
 
 

@@ -13,10 +13,10 @@ from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT
 from compare.align.frames import Frame, components
 from compare.align.travel import travel_of
 from compare.measure.disagreement import Disagreement, disagreement, rms
-from compare.measure.measured import Measured
+from compare.measure.sweep_pair import SweepPair
 from compare.sense.occurrence import Occurrence
 from compare.sense.spatial_events import paired_events
-from compare.sense.touching import Touching, touching
+from compare.sense.touching import TouchingStations, touching
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class ContactDisagreement:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SpatialMeasurement(Measured[SpatialReadings]):
+class SpatialMeasurement(SweepPair[SpatialReadings]):
     """What two sweeps in space differ by, before anyone judges it.
 
     Attributes
@@ -63,7 +63,7 @@ class SpatialMeasurement(Measured[SpatialReadings]):
         How many stations have which status, of the ``"reference"`` and of the ``"candidate"``.
     untrusted : int
         Stations of the candidate without readings where the reference has them.
-    touching : Touching
+    touching : TouchingStations
         Stations that touch.
     """
 
@@ -75,7 +75,7 @@ class SpatialMeasurement(Measured[SpatialReadings]):
     events: dict[str, Occurrence]
     statuses: dict[str, dict[str, int]]
     untrusted: int
-    touching: Touching
+    touching: TouchingStations
 
 
 def measure_in_space(

@@ -14,11 +14,11 @@ from compare.align.offset import (
     estimate_offset,
     without_offset,
 )
-from compare.align.order import Order, in_order
+from compare.align.order import RowOrder, in_order
 from compare.align.stations import Alignment, align
 from compare.align.units import check_unit_of_length, in_units_of
 from compare.measure.disagreement import disagreements
-from compare.measure.measured import Measured
+from compare.measure.sweep_pair import SweepPair
 from compare.sense.noise import scales
 from compare.sense.occurrence import Occurrence
 from compare.sense.phases import Classification, classify, confusion
@@ -28,7 +28,7 @@ from compare.sense.transitions import TRANSITIONS, locate_transitions, snap_off
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Measurement(Measured[Readings]):
+class Measurement(SweepPair[Readings]):
     """What two sweeps differ by, before anyone judges it.
 
     Attributes
@@ -52,7 +52,7 @@ class Measurement(Measured[Readings]):
         What was taken from the candidate's ``foot_x`` before anything else.
     records : dict of Record
         Defects of the records, of ``"reference"`` and ``"candidate"``.
-    order : Order
+    order : RowOrder
         How the candidate's rows follow the motion.
     """
 
@@ -63,7 +63,7 @@ class Measurement(Measured[Readings]):
     snap_off: Occurrence
     offset: Offset
     records: dict[str, Record]
-    order: Order
+    order: RowOrder
 
     @property
     def events(self) -> dict[str, Occurrence]:

@@ -49,7 +49,7 @@ def _foot(readings: Readings) -> np.ndarray:
 
 
 def _averaged(readings: Readings, width: float) -> Readings:
-    """The means over stretches of the foot's way: unevenly spaced noise has no spline."""
+    """The means over stretches of the foot's travel: unevenly spaced noise has no spline."""
     if not width > 0:
         return readings
     foot_x = _foot(readings)

@@ -56,7 +56,7 @@ def with_noise(readings: Readings, level: Mapping[str, float], seed: int) -> Rea
     rng = np.random.default_rng(seed)
     noisy = {
         name: readings.values(name)
-        + share * largest(readings.values(name)) * rng.standard_normal(len(readings.table))
-        for name, share in level.items()
+        + fraction * largest(readings.values(name)) * rng.standard_normal(len(readings.table))
+        for name, fraction in level.items()
     }
     return replace(readings, table=readings.table.assign(**noisy))

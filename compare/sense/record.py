@@ -15,7 +15,7 @@ _PILED = 3  # times more stations at the extreme than at any other one value: no
 _LOADED = 0.02  # of the largest magnitude; a reading that should be larger is not zero by chance
 _WIDE = 5  # times the median step: a gap
 _JITTER = 10  # median steps that the foot may retreat by the jitter of its reading, ...
-_BACK = (0.01, 0.1)  # ... and at least and at most this share of its travel
+_BACK = (0.01, 0.1)  # ... and at least and at most this fraction of its travel
 
 
 @dataclass(frozen=True, repr=False)
@@ -167,7 +167,7 @@ def _retreats(readings: Readings, median: float) -> int:
     """Steps back, if the rows are not in the order of a motion to one side."""
     x = direction(readings) * readings.values("foot_x")
     back = float(np.max(np.maximum.accumulate(x) - x))
-    least, most = (share * float(np.ptp(x)) for share in _BACK)
+    least, most = (fraction * float(np.ptp(x)) for fraction in _BACK)
     if back <= min(max(_JITTER * median, least), most):
         return 0
     return int((np.diff(x) < 0).sum())

@@ -7,14 +7,17 @@ import numpy as np
 from analytic.problem.arrays import Booleans, Floats
 from analytic.space import SpatialReadings
 from compare.sense.occurrence import Occurrence
-from compare.sense.touching import Touching
+from compare.sense.touching import TouchingStations
 
 _TOUCH, _LEAVING, _ENDS = "touch", "leaving", ("slip-off", "release")
-_Events = list[tuple[str, float, float]]  # kind, way, by how much that is uncertain
+_Events = list[tuple[str, float, float]]  # kind, travel, by how much that is uncertain
 
 
 def paired_events(
-    reference: SpatialReadings, candidate: SpatialReadings, travel: Floats, touching: Touching
+    reference: SpatialReadings,
+    candidate: SpatialReadings,
+    travel: Floats,
+    touching: TouchingStations,
 ) -> dict[str, Occurrence]:
     """Touches, slip-offs and releases of two sweeps at the same stations.
 

@@ -15,7 +15,7 @@ from compare.sense.noise import checked_level
 _CLEAR = 2.0  # times the least force that is felt: noise hides no such force
 
 
-class Touching(NamedTuple):
+class TouchingStations(NamedTuple):
     """Stations that touch, as far as noise lets it be seen; each of shape (stations,)."""
 
     reference: Booleans
@@ -26,7 +26,7 @@ class Touching(NamedTuple):
 
 def touching(
     reference: SpatialReadings, candidate: SpatialReadings, stated: Mapping[str, float]
-) -> Touching:
+) -> TouchingStations:
     """Which stations touch in either sweep.
 
     A force counts if it stands out of its noise, stated or seen. Where that leaves in doubt whether
@@ -42,7 +42,7 @@ def touching(
         doubtful = seen[other] & (force[other] <= _CLEAR * least[mine])
         found.append(np.asarray(seen[mine] | (doubtful & sides[mine].trusted)))
     clear = seen[0] & seen[1] & (force[0] > _CLEAR * max(least))
-    return Touching(found[0], found[1], np.asarray(clear))
+    return TouchingStations(found[0], found[1], np.asarray(clear))
 
 
 def component_scales(reference: SpatialReadings) -> dict[str, float]:

@@ -66,11 +66,11 @@ def snap_off(readings: Readings, judged: Classification) -> tuple[float | None, 
 def _in_contact(readings: Readings) -> Booleans:
     """Stations from the first contact to the snap-off, as far as the source recorded them."""
     foot_x = readings.values("foot_x")
-    way = np.sign(foot_x[-1] - foot_x[0])
+    sign = np.sign(foot_x[-1] - foot_x[0])
     first = readings.provenance.get("events", {}).get("first_contact")
-    begin = way * foot_x[0] if first is None else way * first
-    end = way * foot_x[-1] if readings.snap_off is None else way * readings.snap_off
-    return np.asarray((begin <= way * foot_x) & (way * foot_x <= end))
+    begin = sign * foot_x[0] if first is None else sign * first
+    end = sign * foot_x[-1] if readings.snap_off is None else sign * readings.snap_off
+    return np.asarray((begin <= sign * foot_x) & (sign * foot_x <= end))
 
 
 def _recorded(readings: Readings, foot_x: Floats) -> float | None:

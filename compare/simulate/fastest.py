@@ -11,7 +11,7 @@ from compare.explain.motion import THREE_SPEEDS
 from mujoco_models.errors import DivergedError
 
 _TRIES = 8
-_CHATTER = 0.1  # share of the stations in contact; what is left of such a sweep says little
+_CHATTER = 0.1  # fraction of the stations in contact; what is left of such a sweep says little
 _NEAR = 1.1  # a speed that is known to within a tenth is good enough
 _SPEEDS = 1e-3, 2.0  # L/T1; below it takes hours, above the vibrissa is thrown
 

@@ -70,8 +70,8 @@ class Inspection:
         yield "natural curvature", f"{found.natural_curvature * length:.3g}/L"
         yield "mass", f"{found.mass:.4g}"
         yield "first period T1", f"{period:.4g}; damping ratio {found.damping_ratio:.3g}"
-        share = found.timestep / period
-        yield "time step", f"{found.timestep:g} ({share:.2g} T1), {found.integrator}"
+        fraction = found.timestep / period
+        yield "time step", f"{found.timestep:g} ({fraction:.2g} T1), {found.integrator}"
         yield "foot", found.drive or "nothing moves it"
 
     def to_dict(self) -> dict[str, Any]:

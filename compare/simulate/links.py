@@ -13,12 +13,12 @@ from mujoco_models.inspect.measured import MeasuredBeam
 _FEWEST = 4  # joints: two of them are ends, and the others have to be alike
 _ALIKE = 1e-3  # relative; of the lengths of links that are one length
 _ITERATIONS = 100
-_LONGEST_TURN = 0.2  # rad, of a joint in an iteration
+_LARGEST_ROTATION = 0.2  # rad, of a joint in an iteration
 _AT_REST = 1e-12  # rad
 
 
 @dataclass(frozen=True)
-class Order:
+class OrderInLinks:
     """What more links of the same layout would give."""
 
     links: float  # number of them: the length over that of a link
@@ -30,7 +30,7 @@ class Order:
     error_of_twice: float  # of a chain of the same layout with twice as many links [L]
 
 
-def order_in_links(found: MeasuredBeam) -> Order | None:
+def order_in_links(found: MeasuredBeam) -> OrderInLinks | None:
     """How fast a chain that is refined as it is laid out tends to the exact cantilever.
 
     Its layout is where the first and the last joint are within their links, and how much softer
@@ -62,7 +62,7 @@ def order_in_links(found: MeasuredBeam) -> Order | None:
         return links, _farthest(tips - exact)
 
     (twice, middle), (fourfold, fine) = map(refined, (2, 4))
-    return Order(
+    return OrderInLinks(
         links=1 / link,
         first=float(ends[0]),
         order=math.log(middle / fine) / math.log(fourfold / twice),
@@ -78,29 +78,29 @@ def _farthest(off: Floats) -> float:
 def tips_of_chain(places: Floats, compliances: Floats, loads: Floats) -> Floats:
     """Where the tip of a chain of rigid links is under a force across its unloaded axis."""
     lengths = np.diff(places, append=1.0)
-    turns = np.zeros(len(places))
+    rotations = np.zeros(len(places))
     tips = []
     for load in np.asarray(loads, dtype=float).tolist():
-        turns = _at_rest(lengths, compliances, load, turns)
-        slopes = np.cumsum(turns)
+        rotations = _at_rest(lengths, compliances, load, rotations)
+        slopes = np.cumsum(rotations)
         along = places[0] + lengths @ np.cos(slopes)
         tips.append([lengths @ np.sin(slopes), 1 - along])
     return np.array(tips)
 
 
-def _at_rest(lengths: Floats, compliances: Floats, load: float, turns: Floats) -> Floats:
-    """Turns of the joints, by Newton's method; a joint's moment is the load times its lever."""
-    n = np.arange(len(turns))
+def _at_rest(lengths: Floats, compliances: Floats, load: float, rotations: Floats) -> Floats:
+    """Rotations of the joints, by Newton's method; a joint's moment is the load times its lever."""
+    n = np.arange(len(rotations))
     outer = np.maximum(n[:, None], n)
     for _ in range(_ITERATIONS):
-        slopes = np.cumsum(turns)
+        slopes = np.cumsum(rotations)
         levers = np.cumsum((lengths * np.cos(slopes))[::-1])[::-1]
         asides = np.cumsum((lengths * np.sin(slopes))[::-1])[::-1]
-        off = load * compliances * levers - turns
+        off = load * compliances * levers - rotations
         if np.abs(off).max() < _AT_REST:
-            return turns
-        # A joint's lever falls with a turn by what the links beyond both are aside.
-        slope = np.eye(len(turns)) + load * compliances[:, None] * asides[outer]
+            return rotations
+        # A joint's lever falls with a rotation by what the links beyond both are aside.
+        slope = np.eye(len(rotations)) + load * compliances[:, None] * asides[outer]
         step = np.linalg.solve(slope, off)
-        turns = turns + step * min(1.0, _LONGEST_TURN / np.abs(step).max())
-    raise ArithmeticError(f"a chain of {len(turns)} links does not come to rest")
+        rotations = rotations + step * min(1.0, _LARGEST_ROTATION / np.abs(step).max())
+    raise ArithmeticError(f"a chain of {len(rotations)} links does not come to rest")

@@ -25,7 +25,7 @@ _RADIUS = 2e-3  # L; the contour that the axis feels is the radius away
 _JOINT = (
     0.05  # relative; one of twenty that is off by that moves readings by a quarter of a per cent
 )
-_TURNED = np.deg2rad(0.5)  # rad; 0.9 per cent of one force is read as the other
+_ROTATED = np.deg2rad(0.5)  # rad; 0.9 per cent of one force is read as the other
 _LEVER = 5e-3  # L; of the force's moment
 _SAG = 2e-3  # L; as a contact that is so far off
 _SINKS = 2e-3  # L; likewise
@@ -80,11 +80,11 @@ def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
             why = ": too few links for its taper"
         yield Remark("fault", "clamp", f"bends like EI {abs(off):.1%} "
                      f"{'lower' if off < 0 else 'higher'} than its joints say{why}")  # fmt: skip
-    for joint, share in list(zip(found.joints, own / rigidity - 1, strict=True))[1:-1]:
-        if abs(share) > _JOINT:
+    for joint, off_by in list(zip(found.joints, own / rigidity - 1, strict=True))[1:-1]:
+        if abs(off_by) > _JOINT:
             yield Remark("fault", "uniformity", f"the joint of {joint.name!r}, at s = "
-                         f"{joint.s / found.length:.2f} L, is {abs(share):.0%} too "
-                         f"{'stiff' if share > 0 else 'soft'} beside its neighbours")  # fmt: skip
+                         f"{joint.s / found.length:.2f} L, is {abs(off_by):.0%} too "
+                         f"{'stiff' if off_by > 0 else 'soft'} beside its neighbours")  # fmt: skip
     if tapers(found):
         yield Remark("note", "uniformity", f"EI goes from {rigidity[0]:.4g} at the clamp to "
                      f"{rigidity[-1]:.4g} at the tip")  # fmt: skip
@@ -221,9 +221,9 @@ def _axes(word: str, sensor: Sensed) -> Iterator[Remark]:
     nearest = np.zeros((3, 3))
     for row, column in enumerate(np.argmax(np.abs(axes), axis=1)):
         nearest[row, column] = np.sign(axes[row, column])
-    turn = axes.T @ nearest
-    angle = float(np.arccos(np.clip((np.trace(turn) - 1) / 2, -1, 1)))
-    if angle > _TURNED:
+    rotation = axes.T @ nearest
+    angle = float(np.arccos(np.clip((np.trace(rotation) - 1) / 2, -1, 1)))
+    if angle > _ROTATED:
         yield Remark("fault", f"{word} sensor", f"{sensor.name!r} is turned by "
                      f"{np.rad2deg(angle):.2g} degrees against vibrissa and sweep")  # fmt: skip
     if not np.array_equal(nearest, np.eye(3)):
@@ -269,8 +269,8 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
 def _softness(geom: Geom, found: MeasuredBeam) -> str:
     if np.isnan(geom.time_constant):
         return "its stiffness is low:"
-    share = geom.time_constant / found.period
-    return f"solref of {geom.time_constant:g} is {share:.2g} of the first period:"
+    fraction = geom.time_constant / found.period
+    return f"solref of {geom.time_constant:g} is {fraction:.2g} of the first period:"
 
 
 def _steps(found: MeasuredBeam) -> Iterator[Remark]:

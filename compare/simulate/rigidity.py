@@ -9,7 +9,7 @@ from mujoco_models.inspect.measured import MeasuredBeam
 
 _POINTS = 2001  # of an integral along the beam
 _UNEVEN = 0.02  # relative; what tapers by less is uniform
-_TURNS = 0.01  # relative to a cell; what is left of a smooth course of EI
+_LEAST_COMPLIANCE = 0.01  # relative to a cell; what is left of a smooth course of EI
 _CURVATURE = 0.01  # 1/L; the tip of such an arc is 0.005 L aside
 
 
@@ -71,10 +71,10 @@ def by_its_clamp(found: MeasuredBeam) -> float:
 def clamp_stiffness(found: MeasuredBeam) -> float:
     """Rotational stiffness of the clamp that the first joint stands for beside its own cell."""
     bends = found.joints[0].cell / smooth_rigidity(found)[0]
-    turns = found.joints[0].compliance - bends
-    if turns <= _TURNS * bends:
+    compliance = found.joints[0].compliance - bends
+    if compliance <= _LEAST_COMPLIANCE * bends:
         return float("inf")
-    return float(found.length / (as_intended(found) * turns))
+    return float(found.length / (as_intended(found) * compliance))
 
 
 def tapers(found: MeasuredBeam) -> bool:

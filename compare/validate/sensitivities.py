@@ -11,7 +11,7 @@ from compare.validate.stated import Uncertainties
 from compare.validate.swept import Swept, swept
 
 _STEP = 1e-4  # of an input's unit: derivatives are good to 1e-4 of their largest, next to a fold
-_MOST_FAILED = 0.1  # share of the samples that may be of no solvable problem
+_MOST_FAILED = 0.1  # fraction of the samples that may be of no solvable problem
 
 
 @dataclass(frozen=True)
@@ -34,12 +34,14 @@ class Sensitivities:
         order = np.argsort(self.foot_x)
         known = self.foot_x[order]
         right = np.clip(np.searchsorted(known, foot_x), 1, len(known) - 1)
-        share = np.clip((foot_x - known[right - 1]) / np.diff(known)[right - 1], 0, 1)
+        weight = np.clip((foot_x - known[right - 1]) / np.diff(known)[right - 1], 0, 1)
 
         def between(values: Floats) -> Floats:
             values = values[..., order]
             low, high = values[..., right - 1], values[..., right]
-            return np.where(share == 0, low, np.where(share == 1, high, low + share * (high - low)))
+            return np.where(
+                weight == 0, low, np.where(weight == 1, high, low + weight * (high - low))
+            )
 
         return Sensitivities(
             foot_x,
@@ -96,8 +98,8 @@ def _slope(case: Case, name: str, nominal: Swept) -> tuple[Floats, float]:
     after = swept(case, {name: step})
     one_sided = kind.positive and kind.value(case) < step
     before = nominal if one_sided else swept(case, {name: -step})
-    way = step if one_sided else 2 * step
+    width = step if one_sided else 2 * step
     snap = 0.0
     if after.snap_off is not None and before.snap_off is not None:
-        snap = (after.snap_off - before.snap_off) / way
-    return (after.readings - before.readings) / way, snap
+        snap = (after.snap_off - before.snap_off) / width
+    return (after.readings - before.readings) / width, snap

@@ -99,11 +99,11 @@ class Uncertainties:
             if isinstance(size, bool | str) or not 0 <= size < math.inf:
                 raise InputError(f"uncertainty.noise.{name}", size, "0 or more", "correct it")
         normal = [n for n, x in self.inputs.items() if x.distribution == "normal"]
-        for first, second, share in self.correlations:
-            if first == second or not {first, second} <= set(normal) or not -1 <= share <= 1:
+        for first, second, coefficient in self.correlations:
+            if first == second or not {first, second} <= set(normal) or not -1 <= coefficient <= 1:
                 raise InputError(
                     "uncertainty.correlations",
-                    f"[{first}, {second}, {share}]",
+                    f"[{first}, {second}, {coefficient}]",
                     "two inputs with a standard uncertainty, and a number from -1 to 1",
                     f"those are {', '.join(normal) or 'none'}",
                 )
@@ -125,8 +125,8 @@ class Uncertainties:
         """Coefficients of correlation, shape (inputs, inputs)."""
         place = {name: i for i, name in enumerate(self.inputs)}
         matrix = np.eye(len(place))
-        for one, other, share in self.correlations:
-            matrix[place[one], place[other]] = matrix[place[other], place[one]] = share
+        for one, other, coefficient in self.correlations:
+            matrix[place[one], place[other]] = matrix[place[other], place[one]] = coefficient
         return matrix
 
     def draws(self, count: int, rng: "np.random.Generator") -> Floats:

@@ -25,7 +25,7 @@ _SAMPLES = 64  # of the inputs: what second-order terms add is known to a sixth 
 _MOST = 10_000  # stations that count; of more, every second or third one and so on
 _LARGEST = 1e6  # of a reading's largest magnitude; whoever states more means another unit
 _SNAP = 3.0  # standard uncertainties of the snap-off's place in which nothing is linear
-_DOMINATES = 0.5  # share of the variance
+_DOMINATES = 0.5  # fraction of the variance
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class Validation:
         What u_num is from.
     second_order : float
         What the sensitivities miss of the change of the readings under the stated errors, as a
-        share of it, from samples. It is part of u_input.
+        fraction of it, from samples. It is part of u_input.
     samples : int
         How many samples there are.
     stations : int
@@ -349,7 +349,7 @@ def _difference(error: Floats, spread: Spread) -> Difference:
     of_numerics, of_data = shares.get(NUMERICS, 0.0), shares[NOISE]
     of_inputs = max(1 - of_numerics - of_data, 0.0) if u_val > 0 else 0.0
     u_num, u_input, u_data = (
-        u_val * float(np.sqrt(share)) for share in (of_numerics, of_inputs, of_data)
+        u_val * float(np.sqrt(fraction)) for fraction in (of_numerics, of_inputs, of_data)
     )
     size = float(np.sqrt(np.mean(error**2)))
     return Difference(size, u_num, u_input, u_data, u_val, expand, shares)

@@ -11,7 +11,7 @@ Sweep = TypeVar("Sweep", Readings, SpatialReadings)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Measured(Generic[Sweep]):
+class SweepPair(Generic[Sweep]):
     """Two sweeps, and how far each component of the candidate is off along their travel."""
 
     reference: Sweep

@@ -1,9 +1,9 @@
-"""What swings as the contact passes from segment to segment is taken out of an extrapolation."""
+"""What oscillates as the contact passes from segment to segment is no part of the limit."""
 
 import numpy as np
 import pytest
 
-from compare.explain.swing import without_swing
+from compare.explain.oscillation import without_oscillation
 
 STATIONS = np.arange(120)
 CONTACT = 0.7 + 0.3 * np.cos(STATIONS / 38)  # from the tip down to 0.4 L, and back
@@ -20,14 +20,14 @@ def slope_error(joints, contact):
     return turns - contact**2 / 2
 
 
-def sweeps(swings: bool):
+def sweeps(oscillations: bool):
     """Of second order, with a part in proportion to the error of the slope at the contact."""
     sizes = np.stack([1 + STATIONS / 60, np.exp(-STATIONS / 80), -2 + STATIONS / 100])
     found = []
     for joints in JOINTS:
         h = joints[1] - joints[0]
         slope = np.array([slope_error(joints, c) for c in CONTACT])
-        found.append(LIMIT + 3 * h**2 + swings * np.where(TANGENT, sizes * slope, 0.0))
+        found.append(LIMIT + 3 * h**2 + oscillations * np.where(TANGENT, sizes * slope, 0.0))
     return found
 
 
@@ -37,25 +37,27 @@ def extrapolated(runs):
 
 def test_the_limit_is_found_though_all_sweeps_swing():
     """The slope's error is summed joint by joint; 1.4e-5 of the limit without, 2e-9 with."""
-    runs = sweeps(swings=True)
+    runs = sweeps(oscillations=True)
     assert np.abs(extrapolated(runs) - LIMIT).max() > 1e-5
-    still = without_swing(runs, JOINTS, CONTACT, TANGENT, POWER)
+    still = without_oscillation(runs, JOINTS, CONTACT, TANGENT, POWER)
     np.testing.assert_allclose(extrapolated(still), LIMIT, rtol=0, atol=1e-7)
 
 
 def test_what_does_not_swing_stays():
-    runs = sweeps(swings=False)
-    for run, still in zip(runs, without_swing(runs, JOINTS, CONTACT, TANGENT, POWER), strict=True):
+    runs = sweeps(oscillations=False)
+    for run, still in zip(
+        runs, without_oscillation(runs, JOINTS, CONTACT, TANGENT, POWER), strict=True
+    ):
         np.testing.assert_allclose(still, run, rtol=0, atol=1e-12)
 
 
 def test_an_error_that_no_segment_makes_is_not_taken_for_swing():
     """A bump that all sweeps share stays in the limit to the last digit."""
     bump = 1e-3 * np.exp(-(((STATIONS - 60) / 5) ** 2))
-    runs = sweeps(swings=True)
+    runs = sweeps(oscillations=True)
     with_bump = [run + bump for run in runs]
     one, other = (
-        extrapolated(without_swing(some, JOINTS, CONTACT, TANGENT, POWER))
+        extrapolated(without_oscillation(some, JOINTS, CONTACT, TANGENT, POWER))
         for some in (runs, with_bump)
     )
     np.testing.assert_allclose(other - one, np.tile(bump, (3, 1)), rtol=0, atol=1e-12)
@@ -63,7 +65,9 @@ def test_an_error_that_no_segment_makes_is_not_taken_for_swing():
 
 @pytest.mark.parametrize("count", [0, 19])
 def test_too_few_stations_are_left_as_they_are(count):
-    runs = sweeps(swings=True)
+    runs = sweeps(oscillations=True)
     few = count > STATIONS
-    for run, still in zip(runs, without_swing(runs, JOINTS, CONTACT, few, POWER), strict=True):
+    for run, still in zip(
+        runs, without_oscillation(runs, JOINTS, CONTACT, few, POWER), strict=True
+    ):
         assert (still == run).all()
