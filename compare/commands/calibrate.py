@@ -14,16 +14,17 @@ from compare.commands.options import (
     Way,
     number_or_auto,
     out_folder,
+    words,
 )
 from compare.commands.output import distinct_name, output_folder
 from compare.commands.waiting import waiting
 
 
 def calibrate(
-    case: CaseName,
     file: Annotated[
-        Path, typer.Argument(metavar="READINGS", help="Readings of that object, Parquet or CSV.")
+        Path, typer.Argument(metavar="FILE", help="Readings past a known object, Parquet or CSV.")
     ],
+    case: CaseName,
     fit: Annotated[
         str,
         typer.Option(
@@ -45,13 +46,12 @@ def calibrate(
         ),
     ] = "auto",
 ) -> int:
-    """Fit what is unknown of a vibrissa to a sweep past a known object.
+    """Find what is unknown of a vibrissa, past a known object.
 
     The case has the object, and all that is known of vibrissa, clamp and friction. Exit code 1: the
     fit leaves more than the noise.
     """
     level = number_or_auto("--noise", noise)
-    names = [name.strip() for name in fit.split(",")]
     from analytic import calibrate as calibrate_case
     from analytic import relative_noise
     from compare.commands import terminal
@@ -64,7 +64,7 @@ def calibrate(
     readings = without_dropouts(read_measured(file, beam, column or (), known.beam, direction))
     with waiting("fitting"):
         sizes = None if level == "auto" else relative_noise(readings, level)
-        found = calibrate_case(readings, known, names, sizes)
+        found = calibrate_case(readings, known, words(fit), sizes)
     with output_folder(out or Path("results") / f"{distinct_name(file)}-calibrated") as folder:
         from analytic.problem.files import write_whole
         from compare.show.page import document

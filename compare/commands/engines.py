@@ -7,7 +7,7 @@ import typer
 
 from analytic import Readings
 from compare.commands.terminal import progress
-from compare.read.case import Job
+from compare.read.job import Job
 from mujoco_models import simulate_model, simulate_motion, simulate_sweep
 from mujoco_models.allowed import CONTACT_STIFFNESSES
 from mujoco_models.motion import Motion

@@ -18,3 +18,10 @@ def require_folder(folder: Path, remedy: str) -> None:
     """Refuse a folder that is not there."""
     if not folder.is_dir():
         raise InputError("DIR", folder, "a folder that is there", remedy)
+
+
+def no_rigs(files: Iterable[Path]) -> bool:
+    """Whether this project wrote all of these files of readings."""
+    from analytic.problem.readings_file import is_ours
+
+    return all(is_ours(file) for file in files)

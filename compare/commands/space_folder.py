@@ -1,4 +1,4 @@
-"""``report`` of a sweep in space: made anew from what `vibrissa space` has left in a folder."""
+"""``report`` of a sweep in space: made anew from what `vibrissa run` has left in a folder."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from compare.explain.split_space import Parts
 
 
-def report_in_space(folder: Path, reference: Path, candidate: Path) -> int:
+def report_in_space(folder: Path, reference: Path, candidate: Path, place: Path) -> int:
     """Write the report of both sweeps again, and print the verdict."""
     with waiting("comparing"):
         from analytic.space import SpatialReadings
@@ -31,8 +31,8 @@ def report_in_space(folder: Path, reference: Path, candidate: Path) -> int:
             frame=_frame(judged),
         )
         parts, body = _parts(folder / "budget.json"), _body(folder / "body.ply")
-    with output_folder(folder):
-        write_report(comparison, body, folder, parts, Film.of(folder))
+    with output_folder(place):
+        write_report(comparison, body, place, parts, Film.of(folder))
     return AGREES if comparison.agrees else DISAGREES
 
 

@@ -18,9 +18,9 @@ from analytic.problem.places import Place, row_number
 from analytic.problem.readings_file import is_ours
 from analytic.problem.table import as_numbers
 from compare.read.assumed import BEAM_WANTED, assumed_of
-from compare.read.case_file import read_beam
 from compare.read.dialect import read_text_table
-from compare.read.suffixes import TEXTS
+from compare.read.kinds import TEXTS
+from compare.read.tables import read_beam
 from compare.read.units import DIMENSIONS, OWN_UNITS, unit_in_si
 
 Source: TypeAlias = "str | Path | pd.DataFrame | Mapping[str, ArrayLike]"

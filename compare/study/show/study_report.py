@@ -19,8 +19,8 @@ from compare.study.show.slices import curves, repeated
 _LONGEST_TABLE = 24  # rows on the page; all of them are in a file
 
 
-def write_report(folder: Path, warn: Warn) -> Path:
-    """Write ``report.html``, ``report/*.png`` and ``report/*.csv`` into the folder of a study."""
+def write_report(folder: Path, warn: Warn, place: Path | None = None) -> Path:
+    """Write ``report.html``, ``report/*.png`` and ``report/*.csv`` of a study, by default there."""
     damage: list[str] = []
     rows = read_rows(folder, damage.append)
     found = StudyResults.of(read_plan(folder), rows)
@@ -37,15 +37,16 @@ def write_report(folder: Path, warn: Warn) -> Path:
         "curves": curves(found, [question.metric for question in asked(found)]),
     }
     drawn = _drawn(found)
-    (folder / "report").mkdir(exist_ok=True)
+    place = place or folder
+    (place / "report").mkdir(exist_ok=True)
     for section in drawn.values():
         for name, figure in section.items():
-            write_whole(folder / "report" / f"{name}.png", png(figure))
+            write_whole(place / "report" / f"{name}.png", png(figure))
     for name, table in numbers.items():
         if not table.empty:
-            write_whole(folder / "report" / f"{name}.csv", table.to_csv(index=False).encode())
-    write_whole(folder / "report.html", _page(found, numbers, drawn).encode())
-    return folder / "report.html"
+            write_whole(place / "report" / f"{name}.csv", table.to_csv(index=False).encode())
+    write_whole(place / "report.html", _page(found, numbers, drawn).encode())
+    return place / "report.html"
 
 
 def _drawn(found: StudyResults) -> dict[str, dict[str, Figure]]:

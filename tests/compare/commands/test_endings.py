@@ -68,7 +68,17 @@ def children(process):
     ],
 )
 def test_a_sweep_that_is_ended_keeps_its_stations(tmp_path, way, said):
-    words = ["simulate", "catenary", "--stations", "4000", "--segments", "10", "--out", "out"]
+    words = [
+        "run",
+        "catenary",
+        "--sweep-only",
+        "--stations",
+        "4000",
+        "--segments",
+        "10",
+        "--out",
+        "out",
+    ]
     command = [sys.executable, "-c", ANNOUNCED, *words]
     with subprocess.Popen(command, cwd=tmp_path, **PIPES) as process:
         for _ in range(5):
@@ -88,7 +98,7 @@ def test_a_sweep_that_is_ended_keeps_its_stations(tmp_path, way, said):
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="children are found in /proc")
 @pytest.mark.parametrize("way", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_a_budget_that_is_ended_leaves_no_process_and_no_folder(tmp_path, way):
-    words = ["budget", "catenary", "--stations", "20000", "--out", "out"]
+    words = ["run", "catenary", "--budget", "--stations", "20000", "--out", "out"]
     with subprocess.Popen([*COMMAND, *words], cwd=tmp_path, **PIPES) as process:
         end = time.monotonic() + 120
         while not (workers := children(process.pid)):
@@ -168,7 +178,7 @@ def test_strange_environments(tmp_path, strange):
     (tmp_path / "größe.csv").write_text("ü,é\n1,2\n", encoding="utf-8")
     drawn = "--figures" if "MPLBACKEND" in strange else ""
     commands = (
-        f"0 analytic parabola --stations 30 --out ä {drawn}"
+        f"0 run parabola --engine exact --stations 30 --out ä {drawn}"
         " then 0 compare ä/analytic.parquet ä/analytic.parquet --out ü"
         " then 2 reconstruct größe.csv"
     )
@@ -186,10 +196,11 @@ def test_an_encoding_without_the_letters_of_a_name(tmp_path):
     """Python cannot even say what file is meant; one line says what to do."""
     strange = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
     environment = {**os.environ, **strange}
+    exact = ("--engine", "exact", "--stations", "30")
     for words, code in (
-        (["cases"], 0),
-        (["analytic", "parabola", "--stations", "30", "--out", "out"], 0),
-        (["analytic", "parabola", "--stations", "30", "--out", "ä"], 2),
+        (["list", "cases"], 0),
+        (["run", "parabola", *exact, "--out", "out"], 0),
+        (["run", "parabola", *exact, "--out", "ä"], 2),
     ):
         done = subprocess.run(
             [*COMMAND, *words], cwd=tmp_path, env=environment, capture_output=True, check=False

@@ -106,8 +106,7 @@ def test_rigs_side_by_side(tmp_path, sweep):
     columns = ("foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm")
     words = [word for column in columns for word in ("--column", column)]
     files = ("engine.csv", "one.csv", "two.txt", "three.parquet")
-    done = vibrissa(
-        "side-by-side", "analytic.parquet", *files, *words, "--direction", "left", "--out", "out",
+    done = vibrissa("compare", "analytic.parquet", *files, *words, "--direction", "left", "--out", "out",
         cwd=tmp_path,
     )  # fmt: skip
     assert "three.parquet" in done.stderr or "out of order" in done.stderr
@@ -120,11 +119,12 @@ def test_rigs_side_by_side(tmp_path, sweep):
     assert done.returncode in (0, 1)
 
 
-def test_an_engines_file_keeps_its_beam_beside_rigs(tmp_path, sweep):
-    sweep.write(tmp_path / "analytic.parquet")
+def test_an_engines_files_keep_their_beam(tmp_path, sweep):
+    for name in ("analytic", "one", "two"):
+        sweep.write(tmp_path / f"{name}.parquet")
     (tmp_path / "other.toml").write_text("[beam]\nlength = 7.0\n")
-    done = vibrissa(
-        "side-by-side", "analytic.parquet", "analytic.parquet", "--beam", "other.toml",
-        "--out", "out", cwd=tmp_path,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
+    words = ("compare", "analytic.parquet", "one.parquet", "two.parquet", "--out", "out")
+    assert vibrissa(*words, cwd=tmp_path).returncode == 0
+    done = vibrissa(*words, "--beam", "other.toml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "--beam = other.toml: must be beside a file that no engine wrote" in done.stderr
