@@ -158,7 +158,7 @@ class Changes:
 
     def folder(self, out: Path | None, case: str) -> Path:
         """Where the results go by default: runs that differ do not overwrite each other."""
-        words = [
+        parts = [
             case,
             *(word for word in (self.beam, self.obstacle) if word),
             *([f"{self.segments}-segments"] if self.segments is not None else []),
@@ -167,9 +167,9 @@ class Changes:
             *(["in-motion"] if self.motion else []),
             *([f"speed-{self.speed:g}"] if self.speed is not None else []),
             *([f"timestep-{self.timestep:g}"] if self.timestep is not None else []),
-            *(self.engines.replace(" ", "").split(",") if self.engines is not None else []),
+            *(one for one in words(self.engines or "") if one not in ("", "exact")),
         ]
-        return out or Path("results") / "-".join(words)
+        return out or Path("results") / "-".join(parts)
 
 
 def number_or_auto(option: str, text: str) -> float | Literal["auto"]:

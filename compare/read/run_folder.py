@@ -34,7 +34,7 @@ class StoredRun:
 
 
 def read_run(folder: Path) -> StoredRun:
-    """Read the folder of a run, or of an `analytic` and a `simulate` of one case."""
+    """Read the folder of a run, or two sweeps of one case."""
     reference, candidate = sweep_files(folder)
     return StoredRun(
         Readings.read(reference),
@@ -67,7 +67,7 @@ def read_limits(file: Path, kind: type[AnyTolerances]) -> AnyTolerances:
 
 
 def read_budget(file: Path) -> Budget:
-    """A budget, as `vibrissa run --budget` or `vibrissa budget` wrote it."""
+    """A budget, as `vibrissa run --budget` wrote it."""
     try:
         return TypeAdapter(Budget).validate_python(read_json(file))
     except ValueError as error:

@@ -23,7 +23,7 @@ from compare.show.findings.records import RunRecord, read_records
 from compare.show.findings.sentences import overview, sentences
 from compare.show.page import render
 
-_MARK = "<!-- Written by `vibrissa findings`"
+_MARK = "<!-- Written by `vibrissa report`"
 _PICTURE = re.compile(r"\]\(((?:budget|methods-on)-[^()/\\\s]+\.png)\)$", re.MULTILINE)
 _COLOURS = 48  # that a picture keeps, which makes it a third as large
 

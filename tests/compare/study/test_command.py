@@ -1,4 +1,4 @@
-"""``vibrissa study`` and ``vibrissa study-report`` as a user meets them."""
+"""``vibrissa study`` and ``vibrissa report`` as a user meets them."""
 
 import re
 import resource
