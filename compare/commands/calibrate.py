@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from compare.commands.given import A_RIG, no_rigs, require_readings
+from compare.commands.kinds import For, require_use
 from compare.commands.options import (
     AGREES,
     DISAGREES,
@@ -19,8 +21,11 @@ from compare.commands.options import (
 from compare.commands.output import distinct_name, output_folder
 from compare.commands.waiting import waiting
 
+KNOWN = "a sweep past a known object"
+
 
 def calibrate(
+    context: typer.Context,
     file: Annotated[
         Path, typer.Argument(metavar="FILE", help="Readings past a known object, Parquet or CSV.")
     ],
@@ -36,7 +41,7 @@ def calibrate(
     out: Annotated[Path | None, out_folder("results/FILE-calibrated")] = None,
     column: Columns = None,
     beam: BeamFile = None,
-    direction: Way = None,
+    direction: Annotated[Way, For((KNOWN,), (A_RIG,))] = None,
     noise: Annotated[
         str,
         typer.Option(
@@ -52,6 +57,8 @@ def calibrate(
     fit leaves more than the noise.
     """
     level = number_or_auto("--noise", noise)
+    require_readings([file])
+    require_use(context, KNOWN, *([] if no_rigs([file]) and not column else [A_RIG]))
     from analytic import calibrate as calibrate_case
     from analytic import relative_noise
     from compare.commands import terminal

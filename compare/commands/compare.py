@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from analytic.problem.errors import InputError
-from compare.commands.given import no_rigs, require_readings
+from compare.commands.given import A_RIG, no_rigs, require_readings
 from compare.commands.kinds import For, require_use
 from compare.commands.options import (
     AGREES,
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from compare.read.job import Job, SpaceJob
 
 ONE, SEVERAL = "two sweeps in the plane", "several candidates in the plane"
-_STORED, _RIG = "a reference that is a file", "a file that no engine wrote"
+_STORED = "a reference that is a file"
 
 
 def compare(
@@ -41,8 +41,8 @@ def compare(
     out: Annotated[
         Path | None, out_folder("results/REFERENCE-CANDIDATE, of several results/side-by-side")
     ] = None,
-    column: Annotated[Columns, For((ONE, SPACE)), For((SEVERAL,), (_RIG,))] = None,
-    beam: Annotated[BeamFile, For((ONE,)), For((SEVERAL,), (_RIG,))] = None,
+    column: Annotated[Columns, For((ONE, SPACE)), For((SEVERAL,), (A_RIG,))] = None,
+    beam: Annotated[BeamFile, For((ONE,)), For((SEVERAL,), (A_RIG,))] = None,
     reference_column: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME=COLUMN[:UNIT]", help="As --column, for the reference."),
@@ -70,7 +70,7 @@ def compare(
         ),
         For((ONE, SPACE)),
     ] = "0",
-    direction: Annotated[Way, For((ONE, SEVERAL), (_RIG,))] = None,
+    direction: Annotated[Way, For((ONE, SEVERAL), (A_RIG,))] = None,
     tolerances: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="TOML file whose [tolerances] table has the limits."),
@@ -104,7 +104,7 @@ def compare(
     require_readings([*stored, *candidates])
     raw = kind == ONE and bool(column or reference_column)  # then our files are read as a rig's
     rigs = raw or not no_rigs([*stored, *candidates])
-    require_use(context, kind, *([_STORED] if stored else []), *([_RIG] if rigs else []))
+    require_use(context, kind, *([_STORED] if stored else []), *([A_RIG] if rigs else []))
     from compare.read.job import SpaceJob
 
     if isinstance(job, SpaceJob) or kind == SPACE:

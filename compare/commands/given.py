@@ -7,6 +7,8 @@ from pathlib import Path
 from analytic.problem.errors import InputError
 from analytic.problem.files import regular_file
 
+A_RIG = "a file that no engine wrote"
+
 
 def require_readings(files: Iterable[Path]) -> None:
     """Refuse files of readings that are not there."""

@@ -22,6 +22,7 @@ AGREES, DISAGREES = 0, 1
 EXACT, SIMULATED = "the closed form", "an engine"
 IN_MUJOCO, COMPARED = "MuJoCo", "a comparison"
 WITH_MUJOCO = "a comparison with MuJoCo alone"
+AT_REST = "a case at rest"
 
 CaseName = Annotated[
     str,
@@ -65,7 +66,7 @@ Spatial = Annotated[
 InMotion = Annotated[
     bool,
     typer.Option("--motion", help="Let the foot move as [motion] says, or at 0.01 L/T1."),
-    For((MOTION, MODEL), (IN_MUJOCO,)),
+    For((MOTION,), (IN_MUJOCO, AT_REST)),
 ]
 Speed = Annotated[
     float | None,

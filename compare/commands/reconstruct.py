@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from compare.commands.given import no_rigs, require_readings
+from compare.commands.given import A_RIG, no_rigs, require_readings
 from compare.commands.kinds import For, require_use
 from compare.commands.options import (
     AGREES,
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from compare.read.job import Job, SpaceJob
 
 SWEEP, ERRORS = "readings in the plane", "contacts that are known"
-_CASE, _STORED, _RIG = "a case", "a file", "a file that no engine wrote"
+_CASE, _STORED = "a case", "a file"
 _LEVELS = "0,0.001,0.01"  # of noise
 
 
@@ -42,7 +42,7 @@ def reconstruct(
     out: Annotated[Path | None, out_folder("results/FILE-reconstructed, or CASE-methods")] = None,
     beam: Annotated[BeamFile, For((SWEEP, SPACE))] = None,
     column: Annotated[Columns, For((SWEEP, SPACE))] = None,
-    direction: Annotated[Way, For((SWEEP,), (_RIG,))] = None,
+    direction: Annotated[Way, For((SWEEP,), (A_RIG,))] = None,
     noise: Annotated[
         str | None,
         typer.Option(
@@ -94,7 +94,7 @@ def reconstruct(
         ),
         For((ERRORS,), (_CASE,)),
     ] = "exact",
-    frame: Annotated[InFrame, For((SPACE,), (_RIG,))] = "world",
+    frame: Annotated[InFrame, For((SPACE,), (A_RIG,))] = "world",
 ) -> int:
     """Find the object from the clamp readings alone.
 
@@ -110,7 +110,7 @@ def reconstruct(
         ours = not column and isinstance(source, Path) and no_rigs([source])
         is_file = isinstance(source, Path)
         require_use(
-            context, kind, _STORED if is_file else _CASE, *([] if ours or not is_file else [_RIG])
+            context, kind, _STORED if is_file else _CASE, *([] if ours or not is_file else [A_RIG])
         )
         place = out if out is None or len(several) == 1 else out / name
         if kind == ERRORS:

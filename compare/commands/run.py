@@ -11,6 +11,7 @@ from compare.commands.asked import Asked
 from compare.commands.kinds import ANY_CASE, IN_THE_PLANE, For, require_use
 from compare.commands.options import (
     AGREES,
+    AT_REST,
     COMPARED,
     DISAGREES,
     EXACT,
@@ -114,7 +115,8 @@ def run(
     changes = Changes(stations, segments, beam, obstacle, spatial, motion, speed, timestep, engine)
     loaded = changes.load(case)
     kind = changes.kind(loaded)
-    require_use(context, kind, *_done(loaded.engines, sweep_only))
+    at_rest = [AT_REST] if loaded.kind == PLANE else []
+    require_use(context, kind, *_done(loaded.engines, sweep_only), *at_rest)
     if kind != PLANE and loaded.engines not in ((), _OURS):
         raise InputError("engine", ", ".join(loaded.engines), "exact or mujoco", f"this is {kind}")
     if target is not None:

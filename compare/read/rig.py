@@ -55,7 +55,7 @@ def read_measured(
         The vibrissa, if nothing else says. By default that is ``Beam()``, if no column has a unit
         and the readings can be of a vibrissa with L = EI = 1; ``provenance`` says so.
     direction : {"left", "right"}, optional
-        Which sweep, if there is one in each direction.
+        Which sweep, if there is one in each direction; a single one must go that way.
 
     Returns
     -------
@@ -72,8 +72,7 @@ def read_measured(
     if direction not in (None, *get_args(Direction)):
         raise InputError("direction", repr(direction), "'left' or 'right'", "or leave it out")
     sweeps = read_sweeps(source, beam, columns, otherwise)
-    several = len(sweeps) > 1
-    chosen = [one for way, one in sweeps if not several or direction in (None, way)]
+    chosen = [one for way, one in sweeps if direction in (None, way)]
     if len(chosen) != 1:
         ways = ", ".join(f"one to the {way}" for way, _ in sweeps)
         raise InputError(

@@ -15,7 +15,7 @@ from tests.compare.commands.case_files import CASE, UNITS
 @pytest.mark.slow
 def test_run_writes_what_it_promises(tmp_path):
     (tmp_path / "case.toml").write_text(CASE)
-    done = vibrissa("run", "case.toml", "--out", "out", "--segments", 40, cwd=tmp_path)
+    done = vibrissa("run", "case.toml", "--film", "--out", "out", "--segments", 40, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         "analytic.parquet",

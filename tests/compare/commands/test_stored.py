@@ -106,9 +106,8 @@ def test_rigs_side_by_side(tmp_path, sweep):
     columns = ("foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm")
     words = [word for column in columns for word in ("--column", column)]
     files = ("engine.csv", "one.csv", "two.txt", "three.parquet")
-    done = vibrissa("compare", "analytic.parquet", *files, *words, "--direction", "left", "--out", "out",
-        cwd=tmp_path,
-    )  # fmt: skip
+    words += ["--direction", "left", "--out", "out"]
+    done = vibrissa("compare", "analytic.parquet", *files, *words, cwd=tmp_path)
     assert "three.parquet" in done.stderr or "out of order" in done.stderr
     found = json.loads((tmp_path / "out" / "side-by-side.json").read_text())["comparisons"]
     assert [one["names"][1] for one in found[:4]] == ["engine", "one", "two", "three"]
