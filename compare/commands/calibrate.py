@@ -10,11 +10,11 @@ from compare.commands.kinds import For, require_use
 from compare.commands.options import (
     AGREES,
     DISAGREES,
-    BeamFile,
     CaseName,
     Columns,
     Way,
     number_or_auto,
+    option,
     out_folder,
     words,
 )
@@ -32,22 +32,20 @@ def calibrate(
     case: CaseName,
     fit: Annotated[
         str,
-        typer.Option(
-            metavar="A,B,...",
-            help="What is unknown: flexural_rigidity, clamp_stiffness, natural_curvature, "
-            "tip_radius, friction, offset (of foot_x).",
+        option(
+            "What is unknown: flexural_rigidity, clamp_stiffness, natural_curvature, tip_radius, "
+            "friction, offset (of foot_x).",
+            "A,B,...",
         ),
     ] = "flexural_rigidity",
     out: Annotated[Path | None, out_folder("results/FILE-calibrated")] = None,
     column: Columns = None,
-    beam: BeamFile = None,
     direction: Annotated[Way, For((KNOWN,), (A_RIG,))] = None,
     noise: Annotated[
         str,
-        typer.Option(
-            metavar="NUMBER|auto",
-            help="Noise of the clamp readings over their largest magnitude, as 0.01; auto: what "
-            "the readings show.",
+        option(
+            "Of the clamp readings over their largest magnitude, as 0.01; auto: what they show.",
+            "NUMBER|auto",
         ),
     ] = "auto",
 ) -> int:
@@ -68,7 +66,7 @@ def calibrate(
     from compare.show.calibration import calibration_document, calibration_lines
 
     known = load_job(case).case
-    readings = without_dropouts(read_measured(file, beam, column or (), known.beam, direction))
+    readings = without_dropouts(read_measured(file, None, column or (), known.beam, direction))
     with waiting("fitting"):
         sizes = None if level == "auto" else relative_noise(readings, level)
         found = calibrate_case(readings, known, words(fit), sizes)

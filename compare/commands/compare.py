@@ -16,6 +16,7 @@ from compare.commands.options import (
     InFrame,
     Way,
     number_or_auto,
+    option,
     out_folder,
 )
 from compare.commands.output import distinct_name, distinct_names, output_folder
@@ -45,48 +46,40 @@ def compare(
     beam: Annotated[BeamFile, For((ONE,)), For((SEVERAL,), (A_RIG,))] = None,
     reference_column: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME=COLUMN[:UNIT]", help="As --column, for the reference."),
+        option("As --column, for the reference.", "NAME=COLUMN[:UNIT]"),
         For((ONE,), (_STORED,)),
     ] = None,
     reference_beam: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="As --beam, for the reference."),
-        For((ONE,), (_STORED,)),
+        Path | None, option("As --beam, for the reference.", "FILE"), For((ONE,), (_STORED,))
     ] = None,
     offset: Annotated[
         str,
-        typer.Option(
-            metavar="NUMBER|auto",
-            help="By how much the candidate's foot_x exceeds the reference's; auto: estimate it.",
-        ),
+        option("Of the candidate's foot_x from the reference's; auto: estimate it.", "NUMBER|auto"),
         For((ONE,)),
     ] = "0",
     noise: Annotated[
         str,
-        typer.Option(
-            metavar="NUMBER|auto",
-            help="Noise of the clamp readings over their largest magnitude, as 0.01, by which the "
-            "limits are widened; auto: estimate it.",
+        option(
+            "Of the clamp readings over their largest magnitude, as 0.01: the limits are widened "
+            "by it; auto: estimate it.",
+            "NUMBER|auto",
         ),
         For((ONE, SPACE)),
     ] = "0",
     direction: Annotated[Way, For((ONE, SEVERAL), (A_RIG,))] = None,
     tolerances: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="TOML file whose [tolerances] table has the limits."),
+        option("TOML file whose [tolerances] are the limits.", "FILE"),
         For((ONE, SPACE)),
     ] = None,
     uncertainty: Annotated[
         Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="Case file whose [uncertainty] table holds for a reference that is a file.",
-        ),
+        option("Case file whose [uncertainty] holds for a reference that is a file.", "FILE"),
         For((ONE,), (_STORED,)),
     ] = None,
     budget: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="budget.json of that reference, for its numerics."),
+        option("budget.json of that reference, for its numerics.", "FILE"),
         For((ONE,)),
     ] = None,
     frame: Annotated[InFrame, For((SPACE,))] = "world",

@@ -3,14 +3,14 @@
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
 
 from analytic.problem.errors import InputError
 from analytic.problem.files import regular_file
 from compare.commands.kinds import For, require_use
-from compare.commands.options import AGREES, DISAGREES, Changes
+from compare.commands.options import AGREES, DISAGREES, Changes, flag, option, out_folder
 from compare.commands.output import output_folder
 from compare.read.kinds import MODEL
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 FILE, SINGLE = "a model's own file", "single precision"
 _OF_A_FILE, _IN_SINGLE = For((FILE,)), For((SINGLE,))
+Name: TypeAlias = str | None
 
 
 def inspect(
@@ -33,66 +34,32 @@ def inspect(
     ],
     float32: Annotated[
         bool,
-        typer.Option(
-            "--float32", help="Evaluate MuJoCo's states at rest in MuJoCo Warp's single precision."
-        ),
+        flag("--float32", "Evaluate the states at rest in MuJoCo Warp's single precision."),
     ] = False,
-    foot: Annotated[
-        str | None,
-        typer.Option(metavar="BODY", help="The body that holds the vibrissa."),
-        _OF_A_FILE,
-    ] = None,
-    force: Annotated[
-        str | None, typer.Option(metavar="NAME", help="The force sensor at its clamp."), _OF_A_FILE
-    ] = None,
-    torque: Annotated[
-        str | None, typer.Option(metavar="NAME", help="The torque sensor at its clamp."), _OF_A_FILE
-    ] = None,
+    foot: Annotated[Name, option("The body that holds the vibrissa.", "BODY"), _OF_A_FILE] = None,
+    force: Annotated[Name, option("The force sensor at its clamp.", "NAME"), _OF_A_FILE] = None,
+    torque: Annotated[Name, option("The torque sensor at its clamp.", "NAME"), _OF_A_FILE] = None,
     geoms: Annotated[
-        str | None,
-        typer.Option(metavar="NAMES", help="The vibrissa's geoms, as 'whisker*,tip'."),
-        _OF_A_FILE,
+        Name, option("The vibrissa's geoms, as 'whisker*,tip'.", "NAMES"), _OF_A_FILE
     ] = None,
     site: Annotated[
-        str | None,
-        typer.Option(metavar="NAME", help="A site at its clamp, where sensors are added."),
-        _OF_A_FILE,
+        Name, option("A site at its clamp, where sensors are added.", "NAME"), _OF_A_FILE
     ] = None,
     beam: Annotated[
         Path | None,
-        typer.Option(
-            metavar="FILE", help="TOML file whose [beam] table is what the model should be."
-        ),
+        option("TOML file whose [beam] is what the model should be.", "FILE"),
         _OF_A_FILE,
     ] = None,
     stations: Annotated[
-        int | None,
-        typer.Option(metavar="N", help="Stations of the sweep.", show_default="the case's"),
-        _IN_SINGLE,
+        int | None, option("Stations of the sweep.", "N", "the case's"), _IN_SINGLE
     ] = None,
     segments: Annotated[
-        int | None,
-        typer.Option(metavar="N", help="Segments of MuJoCo's beam.", show_default="the case's"),
-        _IN_SINGLE,
+        int | None, option("Segments of MuJoCo's beam.", "N", "the case's"), _IN_SINGLE
     ] = None,
-    stiffnesses: Annotated[
-        str,
-        typer.Option(
-            "--contact-stiffness",
-            metavar="A,B,...",
-            help="What is looked at beside the case's own [EI/L^3].",
-        ),
-        _IN_SINGLE,
+    contact_stiffness: Annotated[
+        str, option("What is looked at beside the case's own [EI/L^3].", "A,B,..."), _IN_SINGLE
     ] = "1e4,1e5,1e6,1e7,1e8,1e9",
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out",
-            metavar="DIR",
-            help="Folder for what is written.",
-            show_default="none; with --float32 results/CASE-float32",
-        ),
-    ] = None,
+    out: Annotated[Path | None, out_folder("none; with --float32 results/CASE-float32")] = None,
 ) -> int:
     """Measure what beam a MuJoCo model is, and what is wrong.
 
@@ -106,7 +73,7 @@ def inspect(
 
         changes = Changes(stations=stations, segments=segments)
         job = changes.made(changes.load(model))
-        return evaluate(job, changes.folder(out, f"{job.case.name}-float32"), stiffnesses)
+        return evaluate(job, changes.folder(out, f"{job.case.name}-float32"), contact_stiffness)
     from analytic.problem.named import NAMED_TABLES
 
     is_case = model in NAMED_TABLES or model.endswith(".toml")

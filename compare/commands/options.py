@@ -24,80 +24,71 @@ IN_MUJOCO, COMPARED = "MuJoCo", "a comparison"
 WITH_MUJOCO = "a comparison with MuJoCo alone"
 AT_REST = "a case at rest"
 
+
+def option(text: str, metavar: str | None = None, default: str | bool = True, *names: str) -> Any:  # noqa: ANN401
+    """An option of a command, by default named as its parameter."""
+    return typer.Option(*names, metavar=metavar, help=text, show_default=default)
+
+
+def flag(name: str, text: str) -> Any:  # noqa: ANN401
+    """An option without a value."""
+    return typer.Option(name, help=text, show_default=False)
+
+
+def out_folder(default: str) -> Any:  # noqa: ANN401
+    """The option ``--out`` of a command."""
+    return option("Folder for what is written.", "DIR", default, "--out")
+
+
 CaseName = Annotated[
     str,
     typer.Argument(metavar="CASE", help="A named case (see `vibrissa list cases`) or a TOML file."),
 ]
-CaseAtRest = Annotated[CaseName, For((PLANE,))]
-
-
-def out_folder(default: str) -> Any:  # noqa: ANN401  # typer's
-    """The option ``--out`` of a command on files."""
-    return typer.Option(
-        "--out", metavar="DIR", help="Folder for what is written.", show_default=default
-    )
-
-
 Out = Annotated[Path | None, out_folder("results/CASE, with the options that change the case")]
-Stations = Annotated[
-    int | None,
-    typer.Option(metavar="N", help="Stations of the sweep.", show_default="the case's, or 200"),
-]
+Stations = Annotated[int | None, option("Stations of the sweep.", "N", "the case's, or 200")]
 Segments = Annotated[
     int | None,
-    typer.Option(metavar="N", help="Segments of MuJoCo's beam.", show_default="the case's, or 40"),
+    option("Segments of MuJoCo's beam.", "N", "the case's, or 40"),
     For((PLANE, MOTION, SPACE), (SIMULATED,)),
 ]
 Beam = Annotated[
     BeamKind | None,
-    typer.Option(help="MuJoCo's beam.", show_default="the case's, or chain"),
+    option("MuJoCo's beam.", default="the case's, or chain"),
     For((PLANE, MOTION, SPACE), (IN_MUJOCO,)),
 ]
 Obstacle = Annotated[
     ObstacleKind | None,
-    typer.Option(help="MuJoCo's obstacle.", show_default="the case's, or mesh"),
+    option("MuJoCo's obstacle.", default="the case's, or mesh"),
     For((PLANE, MOTION), (IN_MUJOCO,)),
 ]
 Spatial = Annotated[
     bool,
-    typer.Option("--spatial", help="Let MuJoCo's beam leave the plane of the sweep."),
+    flag("--spatial", "Let MuJoCo's beam leave the plane of the sweep."),
     For((PLANE,), (IN_MUJOCO,)),
 ]
 InMotion = Annotated[
-    bool,
-    typer.Option("--motion", help="Let the foot move as [motion] says, or at 0.01 L/T1."),
-    For((MOTION,), (IN_MUJOCO, AT_REST)),
+    bool, flag("--motion", "Let the foot move, at 0.01 L/T1."), For((MOTION,), (IN_MUJOCO, AT_REST))
 ]
 Speed = Annotated[
     float | None,
-    typer.Option(metavar="V", help="Of the foot in motion [L/T1].", show_default="the case's"),
+    option("Of the foot in motion [L/T1].", "V", "the case's"),
     For((MOTION, MODEL), (IN_MUJOCO,)),
 ]
 Timestep = Annotated[
     float | None,
-    typer.Option(metavar="DT", help="MuJoCo's, in motion [T1].", show_default="the case's"),
+    option("MuJoCo's, in motion [T1].", "DT", "the case's"),
     For((MOTION,), (IN_MUJOCO,)),
 ]
 BeamFile = Annotated[
-    Path | None,
-    typer.Option(
-        metavar="FILE",
-        help="TOML file whose [beam] table describes the vibrissa of measured data.",
-    ),
+    Path | None, option("TOML file whose [beam] is the vibrissa of measured data.", "FILE")
 ]
 Columns = Annotated[
     list[str] | None,
-    typer.Option(
-        metavar="NAME=COLUMN[:UNIT]", help="A column of a rig's file; repeat the option for each."
-    ),
+    option("A column of a rig's file; repeat the option for each.", "NAME=COLUMN[:UNIT]"),
 ]
-InFrame = Annotated[
-    Literal["world", "clamp"],
-    typer.Option("--frame", help="Of the six components in space."),
-]
+InFrame = Annotated[Literal["world", "clamp"], option("Of the six components in space.")]
 Way = Annotated[
-    Literal["left", "right"] | None,
-    typer.Option(help="Which sweep of a rig's file with one in each direction."),
+    Literal["left", "right"] | None, option("Which sweep of a rig's file with one each way.")
 ]
 
 

@@ -15,7 +15,9 @@ from compare.commands.options import (
     Columns,
     InFrame,
     Way,
+    flag,
     number_or_auto,
+    option,
     out_folder,
     shares,
     words,
@@ -45,52 +47,50 @@ def reconstruct(
     direction: Annotated[Way, For((SWEEP,), (A_RIG,))] = None,
     noise: Annotated[
         str | None,
-        typer.Option(
-            metavar="NUMBER",
-            help="Noise of the clamp readings over their largest magnitude, as 0.01; beside "
-            "contacts that are known up to three, as 0,0.001,0.01.",
+        option(
+            "Of the clamp readings over their largest magnitude, as 0.01; beside contacts that "
+            "are known up to three, as 0,0.001,0.01.",
+            "NUMBER",
         ),
     ] = None,
     offset: Annotated[
         float,
-        typer.Option(
-            metavar="NUMBER",
-            help="By how much foot_x is too large, as `compare --offset auto` finds it; in the "
+        option(
+            "By how much foot_x is too large, as `compare --offset auto` finds it; in the "
             "vibrissa's unit of length, metres beside units.",
+            "NUMBER",
         ),
         For((SWEEP,)),
     ] = 0.0,
     friction: Annotated[
         str | None,
-        typer.Option(
-            metavar="NUMBER|auto",
-            help="Friction coefficient of the sweep; auto: estimate it from Phase B.",
-            show_default="the file's, or that of --beam",
+        option(
+            "Friction coefficient of the sweep; auto: estimate it from Phase B.",
+            "NUMBER|auto",
+            "the file's, or that of --beam",
         ),
         For((SWEEP,)),
     ] = None,
     method: Annotated[
         str | None,
-        typer.Option(
-            metavar="A,B,...",
-            help="Which methods; `vibrissa list methods` has all.",
-            show_default="elastica; all beside contacts that are known",
+        option(
+            "Which methods; `vibrissa list methods` has all.",
+            "A,B,...",
+            "elastica; all beside contacts that are known",
         ),
         For((SWEEP, ERRORS)),
     ] = None,
     errors: Annotated[
         bool,
-        typer.Option(
-            "--errors", help="How well methods find the contacts that a model's file holds."
-        ),
+        flag("--errors", "How well methods find the contacts that a model's file holds."),
         For((ERRORS,), (_STORED,)),
     ] = False,
     on: Annotated[
         str,
-        typer.Option(
-            metavar="A,B,...",
-            help="Readings of what, while the methods take it for a straight vibrissa in a rigid "
-            "clamp without friction: exact, curved, tapered, soft-clamp, friction, mujoco; or all.",
+        option(
+            "Readings of what, while methods take it for a straight vibrissa in a rigid clamp "
+            "without friction: exact, curved, tapered, soft-clamp, friction, mujoco; or all.",
+            "A,B,...",
         ),
         For((ERRORS,), (_CASE,)),
     ] = "exact",

@@ -11,6 +11,7 @@ from compare.commands.options import AGREES, DISAGREES, out_folder
 from compare.commands.output import output_folder
 from compare.commands.waiting import waiting
 
+_MAKE = "make one: vibrissa run CASE --out DIR, or vibrissa study FILE --out DIR"
 _PLAN = "study.json"  # is in the folder of a study
 
 
@@ -27,14 +28,16 @@ def report(
     a study may be under way. The exit code of a run is that of its comparison.
     """
     if not folder.is_dir():
-        raise InputError(
-            "DIR", folder, "a folder that is there", "make one: vibrissa run CASE --out DIR"
-        )
+        raise InputError("DIR", folder, "a folder that is there", _MAKE)
     place = out or folder
     if (folder / _PLAN).exists():
         return _of_a_study(folder, place)
     if any(folder.glob("*.parquet")):
         return _of_a_run(folder, place)
+    if not any(folder.glob("*/*.json")):
+        raise InputError(
+            "DIR", folder, "the folder of a run or a study, or with some of runs", _MAKE
+        )
     from compare.commands import terminal
     from compare.show.findings import write_findings
 

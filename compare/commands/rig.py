@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from compare.commands.options import AGREES, out_folder
+from compare.commands.options import AGREES, option, out_folder
 from compare.commands.output import distinct_name, output_folder
 
 
@@ -16,10 +16,7 @@ def rig(
         typer.Argument(metavar="FILE...", help="A rig's files, or folders with its files."),
     ],
     rig: Annotated[
-        Path,
-        typer.Option(
-            metavar="FILE", help="TOML file with [beam], [columns] and [passes] of the rig."
-        ),
+        Path, option("TOML file with [beam], [columns] and [passes] of the rig.", "FILE")
     ],
     out: Annotated[Path | None, out_folder("results/FILE-passes")] = None,
 ) -> int:

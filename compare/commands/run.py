@@ -19,7 +19,6 @@ from compare.commands.options import (
     SIMULATED,
     WITH_MUJOCO,
     Beam,
-    CaseAtRest,
     CaseName,
     Changes,
     InFrame,
@@ -31,6 +30,8 @@ from compare.commands.options import (
     Speed,
     Stations,
     Timestep,
+    flag,
+    option,
 )
 from compare.commands.output import output_folder
 from compare.commands.waiting import waiting
@@ -49,35 +50,29 @@ def run(
     out: Out = None,
     engine: Annotated[
         str | None,
-        typer.Option(
-            metavar="A,B,...",
-            help="What sweeps the case, beside its closed form; exact: that alone. `vibrissa list "
-            "engines` has all.",
-            show_default="the case's, or mujoco",
+        option(
+            "What sweeps it beside its closed form: see `vibrissa list engines`; exact: only that.",
+            "A,B,...",
+            "the case's, or mujoco",
         ),
     ] = None,
     sweep_only: Annotated[
         bool,
-        typer.Option("--sweep-only", help="Sweep in the engines alone, and compare nothing."),
+        flag("--sweep-only", "Sweep in the engines alone, and compare nothing."),
         For(ANY_CASE, (SIMULATED,)),
     ] = False,
-    with_budget: Annotated[
+    budget: Annotated[
         bool,
-        typer.Option("--budget", help="Split MuJoCo's disagreement into its parts too."),
+        flag("--budget", "Split MuJoCo's disagreement into its parts too."),
         For(ANY_CASE, (IN_MUJOCO, COMPARED)),
     ] = False,
     target: Annotated[
         float | None,
-        typer.Option(
-            metavar="RMS",
-            help="Find the cheapest settings, or the fastest motion, with an rms of at most this.",
-        ),
+        option("Find the cheapest settings, or the fastest motion, with at most this rms.", "RMS"),
         For(IN_THE_PLANE, (WITH_MUJOCO, "--budget")),
     ] = None,
     film: Annotated[
-        bool,
-        typer.Option("--film", help="Draw the sweep in motion too."),
-        For(ANY_CASE, (WITH_MUJOCO,)),
+        bool, flag("--film", "Draw the sweep in motion too."), For(ANY_CASE, (WITH_MUJOCO,))
     ] = False,
     frames: Annotated[
         int,
@@ -85,15 +80,11 @@ def run(
         For(ANY_CASE, (WITH_MUJOCO, "--film")),
     ] = 48,
     figures: Annotated[
-        bool,
-        typer.Option("--figures", help="Draw the vibrissa along its sweep, as the paper does."),
-        For(IN_THE_PLANE, (EXACT,)),
+        bool, flag("--figures", "Draw the paper's figures of it too."), For(IN_THE_PLANE, (EXACT,))
     ] = False,
     certified: Annotated[
         bool,
-        typer.Option(
-            "--certified", help="Check the closed form's stations by integration from the clamp."
-        ),
+        flag("--certified", "Check the closed form's stations by integration from the clamp."),
         For(ANY_CASE, (EXACT,)),
     ] = False,
     stations: Stations = None,
@@ -124,9 +115,7 @@ def run(
 
         check_target(target)
     job = changes.made(loaded)
-    asked = Asked(
-        sweep_only, with_budget, target, frames if film else None, figures, certified, frame
-    )
+    asked = Asked(sweep_only, budget, target, frames if film else None, figures, certified, frame)
     from compare.read.job import Job
 
     with output_folder(changes.folder(out, job.case.name)) as folder:
@@ -141,7 +130,7 @@ def run(
         if job.engines != _OURS:
             from compare.commands.many import run_many
 
-            return run_many(job, _solved(job, folder, asked), folder, with_budget)
+            return run_many(job, _solved(job, folder, asked), folder, budget)
         return _with_mujoco(job, folder, asked)
 
 
@@ -252,7 +241,7 @@ def _with_mujoco(job: "Job", folder: Path, asked: Asked) -> int:
 
 def view(
     context: typer.Context,
-    case: CaseAtRest,
+    case: Annotated[CaseName, For((PLANE,))],
     stations: Stations = None,
     segments: Segments = None,
     beam: Beam = None,

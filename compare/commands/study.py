@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from compare.commands.kinds import For, require_use
-from compare.commands.options import AGREES, DISAGREES
+from compare.commands.options import AGREES, DISAGREES, flag, option, out_folder
 
 HERE, ON_A_CLUSTER, COUNTED = "a study done here", "a study done on a cluster", "a dry run"
 
@@ -18,15 +18,9 @@ def study(
         str, typer.Argument(metavar="FILE", help="A TOML file, or the name of a shipped study.")
     ],
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Check, count and estimate; store nothing.")
+        bool, flag("--dry-run", "Check, count and estimate; store nothing.")
     ] = False,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out", metavar="DIR", help="Folder of the study.", show_default="results/NAME"
-        ),
-        For((HERE, ON_A_CLUSTER)),
-    ] = None,
+    out: Annotated[Path | None, out_folder("results/NAME")] = None,
     workers: Annotated[
         int | None,
         typer.Option(min=1, metavar="N", help="Processes.", show_default="one a core"),
@@ -34,10 +28,10 @@ def study(
     ] = None,
     scheduler: Annotated[
         str | None,
-        typer.Option(
-            metavar="ADDR",
-            help="Of a Dask cluster, as tcp://host:8786. Dask listens on all interfaces and lets "
+        option(
+            "Of a Dask cluster, as tcp://host:8786. Dask listens on all interfaces and lets "
             "anyone run code there; outside a trusted network use tls:// with certificates.",
+            "ADDR",
         ),
         For((ON_A_CLUSTER,)),
     ] = None,

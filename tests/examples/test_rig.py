@@ -23,7 +23,7 @@ MADE = runpy.run_path(str(EXAMPLE / "make_data.py"))
 
 @pytest.fixture(scope="module")
 def passes():
-    return read_passes(EXAMPLE / "data", read_rig(EXAMPLE / "rig.toml"))
+    return read_passes([EXAMPLE / "data"], read_rig(EXAMPLE / "rig.toml"))
 
 
 @pytest.fixture
@@ -124,7 +124,7 @@ def flawed(folder, old, new, name="rig.toml"):
 def test_a_description_that_cannot_be_is_one_line(folder, old, new, why):
     flawed(folder, old, new)
     with pytest.raises(InputError, match=why) as found:
-        read_passes(folder / "data", read_rig(folder / "rig.toml"))
+        read_passes([folder / "data"], read_rig(folder / "rig.toml"))
     assert "\n" not in str(found.value)
 
 
