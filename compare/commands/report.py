@@ -35,9 +35,7 @@ def report(
     if any(folder.glob("*.parquet")):
         return _of_a_run(folder, place)
     if not any(folder.glob("*/*.json")):
-        raise InputError(
-            "DIR", folder, "the folder of a run or a study, or with some of runs", _MAKE
-        )
+        raise InputError("DIR", folder, "the folder of a run, a study, or of runs", _MAKE)
     from compare.commands import terminal
     from compare.show.findings import write_findings
 

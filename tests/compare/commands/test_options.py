@@ -98,6 +98,7 @@ VALUES = {
 }  # fmt: skip
 # Where an option needs another start than the rest of its kind.
 INSTEAD = {
+    ("compare", ONE, "--budget"): ("rig.csv", "near.csv", "--uncertainty", "uncertain.toml"),
     ("run", MOTION, "--motion"): ("plane.toml",),
     ("reconstruct", ERRORS, "--errors"): ("ours.parquet",),
     ("reconstruct", ERRORS, "--noise"): ("plane.toml", "--method", "elastica"),
@@ -216,8 +217,21 @@ def test_what_needs_another_option_is_refused_without(command, kind, option, fil
     assert re.fullmatch(rf"vibrissa: {option} = .*: must be beside --.*\n", done.stderr)
 
 
+@pytest.fixture
+def filmed(undrawn, monkeypatch):
+    """A film is a text that says of how many frames it is."""
+
+    def drawn(*given):
+        place, frames = given[2], given[-2]
+        (place / "animation.gif").write_text(str(frames))
+
+    for module in ("animation", "animation.space"):
+        name = f"write_{'space_' if 'space' in module else ''}animation"
+        monkeypatch.setattr(f"compare.show.{module}.{name}", drawn)
+
+
 @pytest.mark.slow
-@pytest.mark.usefixtures("undrawn", "in_turn")
+@pytest.mark.usefixtures("filmed", "in_turn")
 @pytest.mark.parametrize(
     ("command", "kind", "option", "uses"),
     [one for one in HELD if one[:2] not in NOT_SHOWN and one[2] not in UNSEEN],
@@ -256,5 +270,6 @@ def outcome(given: list[str], files: Path, folder: Path) -> tuple[int, str, dict
         elif path.suffix == ".json":
             written[path.name] = re.sub(r'"[^"]*(seconds|date)[^"]*": [^\n]*', "", path.read_text())
         else:
-            written[path.name] = None
+            is_text = path.name in ("points.csv", "animation.gif")
+            written[path.name] = path.read_text() if is_text else None
     return done.returncode, said, written
