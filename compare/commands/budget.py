@@ -1,13 +1,13 @@
 """What a disagreement is made of: ``run --budget``, at rest and in motion."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from analytic import Readings
-from analytic.problem.files import write_whole
 from compare.commands import terminal
+from compare.commands.keep import keep
 from compare.commands.measured_budgets import (
     fastest_motion,
     measured_budget,
@@ -26,7 +26,7 @@ class Measured:
     base: Readings  # MuJoCo's sweep that it is of
     at_rest: Budget | None  # None in motion
     reached: bool = True  # the target at rest, if there is one
-    contents: Mapping[str, str | bytes] = field(default_factory=dict)  # of files, by name
+    contents: Mapping[str, Any] = field(default_factory=dict)  # of files, by name
     runs: Mapping[str, Readings] = field(default_factory=dict)  # all of its sweeps
 
     def write(self, folder: Path) -> None:
@@ -34,7 +34,7 @@ class Measured:
         for name, readings in self.runs.items():
             readings.write(folder / f"{name}.parquet")
         for name, content in self.contents.items():
-            terminal.print_written(write_whole(folder / name, content))
+            keep(folder / name, content)
 
 
 def measured(job: Job, target: float | None) -> Measured:
@@ -61,5 +61,5 @@ def _in_motion(job: Job, target: float | None) -> Measured:
         fastest = fastest_motion(job, runs, target)
         content["fastest"] = fastest.to_dict()
         terminal.print_fastest(fastest)
-    contents = {"motion-budget.json": json.dumps(content, indent=2)}
+    contents = {"motion-budget.json": content}
     return Measured(runs["base"], None, True, contents, runs)

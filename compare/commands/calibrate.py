@@ -71,12 +71,10 @@ def calibrate(
         sizes = None if level == "auto" else relative_noise(readings, level)
         found = calibrate_case(readings, known, words(fit), sizes)
     with output_folder(out or Path("results") / f"{distinct_name(file)}-calibrated") as folder:
-        from analytic.problem.files import write_whole
-        from compare.show.page import document
+        from compare.commands.keep import keep
 
         terminal.note_rows(readings)
         for line in calibration_lines(found):
             terminal.print_line(line)
-        written = write_whole(folder / "calibration.json", document(calibration_document(found)))
-        terminal.print_written(written)
+        keep(folder / "calibration.json", calibration_document(found))
     return AGREES if found.explains else DISAGREES

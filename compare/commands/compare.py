@@ -103,8 +103,9 @@ def compare(
     if isinstance(job, SpaceJob) or kind == SPACE:
         from compare.commands.space import compare_in_space
 
+        known = job if isinstance(job, SpaceJob) else Path(reference)
         level = number_or_auto("--noise", noise)
-        return compare_in_space(reference, candidates[0], out, column, frame, tolerances, level)
+        return compare_in_space(known, candidates[0], out, column, frame, tolerances, level)
     if kind == SEVERAL:
         return _several(reference, job, candidates, out, column, beam, direction)
     given_offset = number_or_auto("--offset", offset)
@@ -124,8 +125,8 @@ def compare(
         else:
             expected = _closed_form(job)
             limits = limits or job.tolerances
-        known = None if ASSUMED in expected.provenance else expected.beam
-        measured = read_measured(candidates[0], beam, column or (), known, direction)
+        otherwise = None if ASSUMED in expected.provenance else expected.beam
+        measured = read_measured(candidates[0], beam, column or (), otherwise, direction)
         comparison = compare_readings(
             expected, measured, limits, offset=given_offset, noise=given_noise
         )
@@ -186,16 +187,14 @@ def _several(
     with waiting("comparing"):
         found = side_by_side(exact, candidates)
     with output_folder(out or Path("results") / "side-by-side") as folder:
-        from analytic.problem.files import write_whole
-        from compare.show.page import document, save_figure
+        from compare.commands.keep import keep
         from compare.show.side_by_side import picture
 
-        path = write_whole(folder / "side-by-side.json", document(found.to_dict()))
         for readings in (exact, *candidates.values()):
             terminal.note_rows(readings)
         terminal.print_side_by_side(found)
-        terminal.print_written(path)
-        terminal.print_written(save_figure(picture(found), folder / "side-by-side.png"))
+        keep(folder / "side-by-side.json", found.to_dict())
+        keep(folder / "side-by-side.png", picture(found))
     return AGREES if all(one.agrees for one in found.against.values()) else DISAGREES
 
 

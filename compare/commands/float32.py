@@ -24,10 +24,9 @@ def evaluate(job: Job | SpaceJob, folder: Path, stiffnesses: str) -> int:
     if trouble is not None:
         raise InputError("mujoco-warp", version or "missing", _WARP, trouble)
     with output_folder(folder) as place:
-        from analytic.problem.files import write_whole
         from compare.commands import terminal
+        from compare.commands.keep import keep
         from compare.show.float32 import picture, sentence
-        from compare.show.page import save_figure
         from engines.warp.gate import by_stiffness, gate
 
         steps = len(wanted) * job.case.sweep.stations
@@ -37,9 +36,8 @@ def evaluate(job: Job | SpaceJob, folder: Path, stiffnesses: str) -> int:
         terminal.print_float32(found, job.case.name)
         terminal.print_line(sentence(found, version or ""))
         for name, rows in (("stations", table), ("float32", found)):
-            path = write_whole(place / f"{name}.csv", rows.to_csv(index=False))
-            terminal.print_written(path)
-        terminal.print_written(save_figure(picture(found, job.case.name), place / "float32.png"))
+            keep(place / f"{name}.csv", rows)
+        keep(place / "float32.png", picture(found, job.case.name))
         lost = found.loc[found["contact_stiffness"] == own, "lost"].sum()
         return DISAGREES if lost else AGREES
 

@@ -1,6 +1,5 @@
 """The command ``inspect``: what beam a MuJoCo model is, and what single precision makes of one."""
 
-import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypeAlias
@@ -88,11 +87,10 @@ def inspect(
     for line in inspection.lines():
         terminal.print_line(line)
     if out is not None:
-        from analytic.problem.files import write_whole
+        from compare.commands.keep import keep
 
         with output_folder(out) as folder:
-            content = json.dumps(inspection.to_dict(), indent=2)
-            terminal.print_written(write_whole(folder / "inspection.json", content))
+            keep(folder / "inspection.json", inspection.to_dict())
     return AGREES if inspection.sound else DISAGREES
 
 

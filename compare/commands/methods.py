@@ -6,8 +6,8 @@ from pathlib import Path
 from analytic import Readings, solve_sweep
 from analytic.from_clamp.earlier.methods import NAMES
 from analytic.problem.errors import InputError
-from analytic.problem.files import write_whole
 from compare.commands import terminal
+from compare.commands.keep import keep
 from compare.commands.options import AGREES
 from compare.commands.output import output_folder
 from compare.measure.conditions import CONDITIONS, SIMULATED, as_believed, chosen_conditions
@@ -32,7 +32,6 @@ def compare_methods(
         import pandas as pd
 
         from compare.show.figures.methods import picture, side_by_side
-        from compare.show.page import save_figure
 
         tables = []
         for which, truth, believed in _truths(source, on, folder):
@@ -47,10 +46,10 @@ def compare_methods(
             tables.append(found)
             terminal.print_methods(found, f"{called} ({which if len(on) > 1 else truth.source})")
         every = pd.concat(tables, ignore_index=True)
-        terminal.print_written(write_whole(folder / "methods.csv", every.to_csv(index=False)))
+        keep(folder / "methods.csv", every)
         title = f"{called} ({truth.source})" if len(tables) == 1 else called
         drawn = picture(tables[0], title) if len(tables) == 1 else side_by_side(every, title)
-        terminal.print_written(save_figure(drawn, folder / "methods.png"))
+        keep(folder / "methods.png", drawn)
     return AGREES
 
 

@@ -113,14 +113,13 @@ def reconstruct(
             context, kind, _STORED if is_file else _CASE, *([] if ours or not is_file else [A_RIG])
         )
         place = out if out is None or len(several) == 1 else out / name
-        if kind == ERRORS:
+        if errors or not isinstance(source, Path):
             from compare.commands.methods import compare_methods
 
             levels = shares("--noise", _LEVELS if noise is None else noise, 3)
             chosen = None if method is None else words(method)
             code |= compare_methods(source, place, chosen, levels, words(on))
             continue
-        assert isinstance(source, Path)
         share = None if noise is None else shares("--noise", noise, 1)[0]
         folder = place or Path("results") / f"{distinct_name(path)}-reconstructed"
         if kind == SPACE:
@@ -202,23 +201,20 @@ def _in_the_plane(
     if "elastica" in contacts:
         require_beam(contacts["elastica"], readings)
     with output_folder(place) as folder:
-        from analytic.problem.files import write_whole
+        from compare.commands.keep import keep
         from compare.show.figures.geometry import reconstruction
-        from compare.show.page import save_figure
 
         terminal.note_rows(readings)
         for name, found in contacts.items():
             points = found.assign(foot_x=readings.values("foot_x"))
             end = "" if name == "elastica" else f"-{name}"
-            path = write_whole(folder / f"points{end}.csv", points.to_csv(index=False))
             terminal.print_reconstruction(readings, found, name)
             if name == "elastica" and (why := doubt(found, readings)) is not None:
                 terminal.print_line(why)
-            terminal.print_written(path)
+            keep(folder / f"points{end}.csv", points)
             with waiting("drawing"):
                 picture = reconstruction(readings, found)
-                drawn = save_figure(picture, folder / f"reconstruction{end}.png")
-            terminal.print_written(drawn)
+            keep(folder / f"reconstruction{end}.png", picture)
     return AGREES
 
 

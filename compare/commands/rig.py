@@ -25,13 +25,12 @@ def rig(
     They are calibrated, zero and drift are taken off, and what is left out is counted. Each pass
     becomes a file for `compare` and `reconstruct`.
     """
-    from analytic.problem.files import write_whole
     from compare.commands import terminal
+    from compare.commands.keep import keep
     from compare.measure.repeats import repeat
     from compare.read.passes import read_passes, without_gaps
     from compare.read.rig_file import read_rig
     from compare.show.figures.passes import picture
-    from compare.show.page import document, save_figure
     from compare.show.passes import passes_document
 
     passes = read_passes(files, read_rig(rig))
@@ -46,7 +45,6 @@ def rig(
         terminal.print_passes(passes, repeats)
         for one in passes:
             terminal.print_written(one.readings.write(folder / f"{one.name}.parquet"))
-        written = write_whole(folder / "passes.json", document(passes_document(passes, repeats)))
-        terminal.print_written(written)
-        terminal.print_written(save_figure(picture(passes), folder / "passes.png"))
+        keep(folder / "passes.json", passes_document(passes, repeats))
+        keep(folder / "passes.png", picture(passes))
     return AGREES

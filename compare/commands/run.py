@@ -152,16 +152,15 @@ def _solved(job: "Job", folder: Path, asked: Asked) -> "Readings":
         exact.write(folder / "analytic.parquet")
     if asked.figures:
         from analytic import reconstruct
-        from compare.commands import terminal
+        from compare.commands.keep import keep
         from compare.show.figures.geometry import reconstruction
         from compare.show.figures.paper import paper_figures
-        from compare.show.page import save_figure
 
         drawn = paper_figures(job.case, exact)
         if not job.case.beam.varies:
             drawn["shapes"] = reconstruction(exact, reconstruct(exact))
         for name, figure in drawn.items():
-            terminal.print_written(save_figure(figure, folder / f"{name}.png"))
+            keep(folder / f"{name}.png", figure)
     return exact
 
 

@@ -127,11 +127,10 @@ def _points(
     with_picture: bool,
 ) -> bool:
     """Write the contacts found from the clamp; whether a vibrissa can have such readings."""
-    from analytic.problem.files import write_whole
     from analytic.space import point_cloud, reconstruct_space, wrench_complaint, write_ply
     from compare.commands import terminal
+    from compare.commands.keep import keep
     from compare.show.figures.space import sweep_in_space
-    from compare.show.page import save_figure
     from compare.show.scene import SweepScene
 
     with waiting("reconstructing"):
@@ -141,18 +140,17 @@ def _points(
         terminal.print_line(f"readings: {complaint}")
     cloud = point_cloud(points)
     terminal.print_line(_reconstructed(cloud, body, readings.beam.length))
-    terminal.print_written(write_whole(folder / "points.csv", points.to_csv(index=False)))
+    keep(folder / "points.csv", points)
     terminal.print_written(write_ply(cloud, folder / "points.ply"))
     if with_picture:
         with waiting("drawing"):
             picture = sweep_in_space(SweepScene.of(readings, body))
-            written = save_figure(picture, folder / "space.png")
-        terminal.print_written(written)
+        keep(folder / "space.png", picture)
     return complaint is None
 
 
 def compare_in_space(
-    reference: str,
+    reference: "SpaceJob | Path",
     candidate: Path,
     out: Path | None,
     column: list[str] | None,
@@ -163,7 +161,6 @@ def compare_in_space(
     """Compare a file of readings in space with another or with a case's closed form."""
     from compare.commands import terminal
     from compare.judge.spatial import SpatialTolerances
-    from compare.read.case import load_space_job
     from compare.read.limits import read_tolerances
     from compare.read.space_readings import read_space
 
@@ -179,12 +176,11 @@ def compare_in_space(
         from compare.show.report import Film
 
         body = None
-        if reference.endswith(".toml"):
-            job = load_space_job(reference)
-            body, limits = job.case.body, limits or job.tolerances
-            exact, called = solve_space(job.case), job.case.name
+        if isinstance(reference, Path):
+            exact, called = SpatialReadings.read(reference), distinct_name(reference)
         else:
-            exact, called = SpatialReadings.read(reference), distinct_name(Path(reference))
+            body, limits = reference.case.body, limits or reference.tolerances
+            exact, called = solve_space(reference.case), reference.case.name
         measured = read_space(candidate, exact.beam, exact.tangent, column or (), frame)
         comparison = compare_space(exact, measured, limits, noise=noise, frame=frame)
     default = Path("results") / f"{called}-{distinct_name(candidate)}"

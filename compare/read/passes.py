@@ -12,7 +12,7 @@ from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.table import as_numbers
 from compare.read.dialect import TextTable, read_text_table
 from compare.read.kinds import TEXTS
-from compare.read.rig import read_sweeps
+from compare.read.rig import cells, read_sweeps
 from compare.read.rig_file import Rig
 from compare.sense.record import Record, inspect_record
 from compare.sense.size import check_size
@@ -36,8 +36,6 @@ class Pass:
     # Of each clamp reading where the vibrissa is free: before the contact, and by how much it
     # changes until after it [force, force length]. NaN if no such stretch is known.
     zero: dict[str, float]
-    # Of each clamp reading where the vibrissa is free: before the contact, and by how much it
-    # changes until after it [force, force length]. NaN if no such stretch is known.
     drift: dict[str, float]
 
     @property
@@ -97,16 +95,10 @@ def _calibrated(table: TextTable, rig: Rig, path: Path) -> pd.DataFrame:
     found = {}
     for name in SENSED:
         said = getattr(rig.columns, name)
-        if said.column not in table.frame:
-            there = ", ".join(map(str, table.frame.columns[:20]))
-            raise InputError(
-                f"column {said.column!r} of {path}", "missing", f"one of {there}", "fix [columns]"
-            )
-        cells = table.frame[said.column]
-        if not pd.api.types.is_numeric_dtype(cells):
-            words = cells.astype(str).str.strip().isin(rig.missing)
-            cells = cells.mask(words)
-        numbers = as_numbers(cells, said.column, table.place)
+        column = cells(table.frame, said.column, path, "fix [columns]")
+        if not pd.api.types.is_numeric_dtype(column):
+            column = column.mask(column.astype(str).str.strip().isin(rig.missing))
+        numbers = as_numbers(column, said.column, table.place)
         zero = 0.0 if name in CLAMP_READINGS else said.zero
         found[name] = said.scale(name) * (numbers - zero)
     return pd.DataFrame(found)
@@ -117,12 +109,7 @@ def _groups(table: TextTable, rig: Rig, path: Path) -> Floats:
     column = rig.passes.column
     if column is None:
         return np.zeros(len(table.frame))
-    if column not in table.frame:
-        there = ", ".join(map(str, table.frame.columns[:20]))
-        raise InputError(
-            f"column {column!r} of {path}", "missing", f"one of {there}", "fix [passes]"
-        )
-    values = table.frame[column]
+    values = cells(table.frame, column, path, "fix [passes]")
     return np.asarray((values != values.shift()).cumsum(), dtype=float)
 
 

@@ -55,7 +55,7 @@ def read_measured(
         The vibrissa, if nothing else says. By default that is ``Beam()``, if no column has a unit
         and the readings can be of a vibrissa with L = EI = 1; ``provenance`` says so.
     direction : {"left", "right"}, optional
-        Which sweep, if there is one in each direction; a single one must go that way.
+        Which sweep, if there is one in each direction.
 
     Returns
     -------
@@ -72,7 +72,8 @@ def read_measured(
     if direction not in (None, *get_args(Direction)):
         raise InputError("direction", repr(direction), "'left' or 'right'", "or leave it out")
     sweeps = read_sweeps(source, beam, columns, otherwise)
-    chosen = [one for way, one in sweeps if direction in (None, way)]
+    several = len(sweeps) > 1
+    chosen = [one for way, one in sweeps if not several or direction in (None, way)]
     if len(chosen) != 1:
         ways = ", ".join(f"one to the {way}" for way, _ in sweeps)
         raise InputError(
@@ -202,13 +203,7 @@ def renamed(
             )
         if name in named:
             raise InputError("--column", repr(text), f"the only one for {name}", "leave one out")
-        if column not in table:
-            there = ", ".join(map(str, table.columns[:20]))
-            raise InputError(
-                f"column {column!r} of {called}", "missing", f"one of {there}", "check --column"
-            )
-        numbers = as_numbers(table[column], column, place)
-        named[name] = numbers
+        named[name] = as_numbers(cells(table, column, called, "check --column"), column, place)
         if unit:
             used[name] = unit
         elif units.get(column):
@@ -231,6 +226,14 @@ def renamed(
             f"name them with --column {example}",
         )
     return found, used, own
+
+
+def cells(table: pd.DataFrame, column: str, called: object, remedy: str) -> pd.Series:
+    """A column of a table."""
+    if column in table:
+        return table[column]
+    there = ", ".join(map(str, table.columns[:20]))
+    raise InputError(f"column {column!r} of {called}", "missing", f"one of {there}", remedy)
 
 
 def _example(name: str, columns: Iterable[object], units: Mapping[str, str], dimension: str) -> str:

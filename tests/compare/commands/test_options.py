@@ -98,6 +98,10 @@ VALUES = {
 }  # fmt: skip
 # Where an option needs another start than the rest of its kind.
 INSTEAD = {
+    ("compare", ONE, "--direction"): ("ours.parquet", "both.csv"),
+    ("compare", SEVERAL, "--direction"): ("ours.parquet", "both.csv", "near.csv"),
+    ("reconstruct", SWEEP, "--direction"): ("both.csv",),
+    ("calibrate", KNOWN, "--direction"): ("both.csv", "plane.toml"),
     ("compare", ONE, "--budget"): ("rig.csv", "near.csv", "--uncertainty", "uncertain.toml"),
     ("run", MOTION, "--motion"): ("plane.toml",),
     ("reconstruct", ERRORS, "--errors"): ("ours.parquet",),
@@ -180,6 +184,8 @@ def files(tmp_path_factory) -> Path:
     sensed.assign(other=1.1 * sensed["force_x"]).to_csv(folder / "rig.csv", index=False)
     near = sensed.assign(force_x=1.001 * sensed["force_x"])
     near.assign(other=1.1 * sensed["force_x"]).to_csv(folder / "near.csv", index=False)
+    back = 1.01 * sensed[::-1].assign(foot_x=sensed["foot_x"][::-1] / 1.01)
+    pd.concat([sensed, back]).to_csv(folder / "both.csv", index=False)
     swept = solve_space(load_case(folder / "space.toml").case).table[[*SENSED_IN_SPACE]]
     swept.assign(other=1.1 * swept["force_x"]).to_csv(folder / "space.csv", index=False)
     return folder
