@@ -125,8 +125,6 @@ class Changes:
         """The job with these changes."""
         from compare.read.job import SpaceJob
 
-        if self.stations is not None:
-            job = job.with_stations(self.stations)
         named: dict[str, Any] = {
             "segments": self.segments,
             "beam": self.beam,
@@ -135,9 +133,15 @@ class Changes:
         }
         given = {key: value for key, value in named.items() if value is not None}
         if isinstance(job, SpaceJob):
+            if self.stations is not None:
+                path = replace(job.case.path, stations=self.stations)
+                job = replace(job, case=replace(job.case, path=path))
             return replace(job, settings=replace(job.settings, **given))
-        motion = self._moved(job.motion)
-        return replace(job, settings=replace(job.settings, **given), motion=motion)
+        if self.stations is not None:
+            sweep = replace(job.case.sweep, stations=self.stations)
+            job = replace(job, case=replace(job.case, sweep=sweep))
+        settings = replace(job.settings, **given)
+        return replace(job, settings=settings, motion=self._moved(job.motion))
 
     def _moved(self, motion: "Motion | None") -> "Motion | None":
         named: dict[str, Any] = {"speed": self.speed, "timestep": self.timestep}

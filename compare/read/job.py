@@ -1,7 +1,7 @@
 """A case, and what is to be done with it."""
 
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Self
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from analytic import Case
 from compare.judge.spatial import SpatialTolerances
@@ -61,11 +61,6 @@ class Job:
             return MODEL
         return PLANE if self.motion is None else MOTION
 
-    def with_stations(self, stations: int) -> Self:
-        """The same with another number of stations."""
-        sweep = replace(self.case.sweep, stations=stations)
-        return replace(self, case=replace(self.case, sweep=sweep))
-
 
 @dataclass(frozen=True)
 class SpaceJob:
@@ -92,11 +87,6 @@ class SpaceJob:
     def kind(self) -> str:
         """In space."""
         return SPACE
-
-    def with_stations(self, stations: int) -> Self:
-        """The same with another number of stations."""
-        path = replace(self.case.path, stations=stations)
-        return replace(self, case=replace(self.case, path=path))
 
 
 def engines_beside_exact(names: str) -> tuple[str, ...]:

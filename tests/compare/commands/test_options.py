@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any, get_type_hints
@@ -10,7 +11,7 @@ import pandas as pd
 import pytest
 import typer
 
-from analytic import SENSED, solve_sweep
+from analytic import SENSED, Sweep, solve_sweep
 from analytic.space import solve_space
 from analytic.space.problem.readings import SENSED_IN_SPACE
 from compare import load_case
@@ -177,8 +178,8 @@ def files(tmp_path_factory) -> Path:
     }
     for name, text in written.items():
         (folder / name).write_text(text)
-    case = load_case(folder / "plane.toml").with_stations(60).case
-    sweep = solve_sweep(case)
+    case = load_case(folder / "plane.toml").case
+    sweep = solve_sweep(replace(case, sweep=Sweep(60)))
     sweep.write(folder / "ours.parquet")
     sensed = sweep.table[[*SENSED]]
     sensed.assign(other=1.1 * sensed["force_x"]).to_csv(folder / "rig.csv", index=False)
