@@ -30,7 +30,7 @@ def test_the_report_of_a_run_again(tmp_path):
         '[profile]\nkind = "catenary"\na = 0.5\nc = -0.8\n' + limits
     )
     words = ("case.toml", "--stations", 30, "--segments", 8, "--out", "out")
-    done = vibrissa("run", *words, "--budget", cwd=tmp_path)
+    done = vibrissa("run", *words, "--budget", "--film", cwd=tmp_path)
     before = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
     for name in ("report.html", "readings.png"):
         (tmp_path / "out" / name).unlink()
