@@ -200,7 +200,7 @@ def _with_mujoco(job: "Job", folder: Path, asked: Asked) -> int:
     with waiting("loading MuJoCo"):
         from compare.commands import budget as split
         from compare.commands import terminal
-        from compare.commands.engines import at_rest, simulated, sweep_file
+        from compare.commands.engines import simulated, sweep_file, swept_at_rest
         from compare.comparison import compare
         from compare.show.animation import write_animation
         from compare.show.report import write_report
@@ -230,7 +230,7 @@ def _with_mujoco(job: "Job", folder: Path, asked: Asked) -> int:
         for line in faults_of(job.model, job.case.beam):
             terminal.print_line(line)
     elif job.motion is not None:
-        rest = at_rest(job)
+        rest = swept_at_rest(job)
         rest.write(folder / "at-rest.parquet")
         terminal.print_at_rest(compare(exact, rest), compare(rest, candidate))
     terminal.print_written(written)

@@ -86,13 +86,13 @@ def _mujoco(job: "SpaceJob", folder: Path) -> "SpatialReadings":
 def _simulated(job: "SpaceJob", settings: "SpatialSettings", folder: Path) -> "SpatialReadings":
     """MuJoCo's sweep; if it ends early, the stations that there are go into `folder`."""
     from compare.commands import terminal
-    from mujoco_models import simulate_space
+    from compare.simulate.dispatch import simulate
 
     def keep(part: "SpatialReadings") -> None:
         terminal.print_written(part.write(folder / f"mujoco-{job.settings.beam}.parquet"))
 
     with terminal.progress("stations", job.case.path.stations) as advance:
-        return simulate_space(job.case, settings, advance, keep)
+        return simulate(job.case, settings, advance=advance, keep=keep)
 
 
 def _compared(

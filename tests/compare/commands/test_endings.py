@@ -21,14 +21,14 @@ COMMAND = [sys.executable, "-c", "from compare.commands.main import main; main()
 # Says of every station that it is done, so that a test knows when to end the sweep.
 ANNOUNCED = """
 import sys
-import compare.commands.engines as engines
+import compare.simulate.dispatch as dispatch
 
-sweep = engines.simulate_sweep
+sweep = dispatch.simulate_sweep
 
 def announced(case, settings, advance, keep):
     return sweep(case, settings, lambda: (advance(), print("station", flush=True)), keep)
 
-engines.simulate_sweep = announced
+dispatch.simulate_sweep = announced
 from compare.commands.main import main
 main()
 """
