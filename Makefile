@@ -78,19 +78,19 @@ results: $(RUNS) | install ## results/README.md: all named cases, all beams ther
 	$(BIN)/python -m docs.figures.hysteresis results/hysteresis.png
 	$(BIN)/python -m docs.figures.quasi_static results/quasi-static.csv
 	$(BIN)/python -m docs.figures.quasi_static_picture results/quasi-static.csv results/quasi-static.png
-	$(BIN)/vibrissa analytic catenary --figures --out results/pictures
-	$(BIN)/vibrissa methods catenary --out results/pictures
+	$(BIN)/vibrissa run catenary --engine exact --figures --out results/pictures
+	$(BIN)/vibrissa reconstruct catenary --out results/pictures
 	cp results/pictures/methods.png results/methods-catenary.png
 	for case in catenary parabola tip-only; do \
-	  $(BIN)/vibrissa methods $$case --on all --out results/runs/methods-$$case; done
+	  $(BIN)/vibrissa reconstruct $$case --on all --out results/runs/methods-$$case; done
 	$(BIN)/vibrissa study resolution --out results/resolution
-	$(BIN)/vibrissa study-report results/resolution
+	$(BIN)/vibrissa report results/resolution
 	cp results/resolution/report/disagreement-mujoco.segments.png results/study-resolution.png
-	$(BIN)/vibrissa animate catenary --stations 60 --out results/pictures
+	$(BIN)/vibrissa run catenary --stations 60 --film --frames 60 --out results/pictures || test $$? -eq 1
 	cp results/pictures/figure-15.png results/pictures/still-2.png results/
 	mkdir -p results/pictures/space
 	sed -n '/^\[beam\]/,/^```/{/^```/!p}' analytic/space.md > results/pictures/space/egg.toml
-	$(BIN)/vibrissa space results/pictures/space/egg.toml --out results/pictures/space
+	$(BIN)/vibrissa run results/pictures/space/egg.toml --engine exact --out results/pictures/space
 	cp results/pictures/space/space.png results/
 	$(BIN)/python -m docs.figures.findings results/runs results
 
@@ -100,7 +100,7 @@ again: install   ## the same, but forget the runs that are done
 
 studies: install ## all shipped studies at full size
 	set -e; for study in $(STUDIES); do \
-	  $(BIN)/vibrissa study $$study || test $$? -eq 1; $(BIN)/vibrissa study-report results/$$study; done
+	  $(BIN)/vibrissa study $$study || test $$? -eq 1; $(BIN)/vibrissa report results/$$study; done
 
 install-mujoco3: .venv-mujoco3/installed   ## build .venv-mujoco3 with MuJoCo 3.17
 
@@ -114,10 +114,10 @@ test-engines: install-engines    ## the tests of the other engines, on two cases
 
 versions: install install-mujoco3    ## the beams of both MuJoCo versions and the closed form side by side
 	set -e; for beam in chain rod; do \
-	  $(BIN)/vibrissa simulate $(CASE) --beam $$beam --out results/versions/4 $(ARGS); done
+	  $(BIN)/vibrissa run $(CASE) --sweep-only --beam $$beam --out results/versions/4 $(ARGS); done
 	set -e; for beam in chain cable; do \
-	  $(BIN_MUJOCO3)/vibrissa simulate $(CASE) --beam $$beam --out results/versions/3.17 $(ARGS); done
-	$(BIN)/vibrissa side-by-side $(CASE) --out results/versions \
+	  $(BIN_MUJOCO3)/vibrissa run $(CASE) --sweep-only --beam $$beam --out results/versions/3.17 $(ARGS); done
+	$(BIN)/vibrissa compare $(CASE) --out results/versions \
 	  $(foreach sweep,3.17/mujoco-chain 3.17/mujoco-cable 4/mujoco-chain 4/mujoco-rod,results/versions/$(sweep).parquet)
 
 clean:           ## remove what the targets above made

@@ -39,8 +39,7 @@ if TYPE_CHECKING:
     from compare.explain.budget import Budget
     from compare.judge.spatial import SpatialTolerances
     from compare.judge.tolerances import Tolerances
-    from compare.read.case import Job
-    from compare.read.space import SpaceJob
+    from compare.read.job import Job, SpaceJob
     from mujoco_models import Settings
     from mujoco_models.allowed import BeamKind
 
@@ -95,7 +94,7 @@ _SPACE_CASE = _Choice(
     "FILE",
     "case in space",
     "",
-    ("compare.read.space", "load_space_job"),
+    ("compare.read.case", "load_space_job"),
 )
 _CHOICES = (_CASE, _ENGINE, _SPACE_CASE)
 

@@ -8,10 +8,15 @@ from .explain.split_space import split_space as split_space
 from .judge.spatial import SpatialTolerances as SpatialTolerances
 from .judge.tolerances import Limit as Limit
 from .judge.tolerances import Tolerances as Tolerances
+from .read.case import load_case as load_case
+from .read.case import load_space as load_space
+from .read.job import Job as Job
+from .read.job import SpaceJob as SpaceJob
 from .read.rig import read_measured as read_measured
 from .read.rig import read_sweeps as read_sweeps
-from .read.space import load_space as load_space
 from .read.space_readings import read_space as read_space
+from .report import Report as Report
+from .report import write_report as write_report
 from .sense.phases import Classification as Classification
 from .sense.phases import classify as classify
 from .simulate.budgets import measure_budget as measure_budget

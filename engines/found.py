@@ -66,7 +66,7 @@ def find_engine(name: str) -> Engine:
     known = known_engines()
     if name not in known:
         raise InputError(
-            "engine", repr(name), f"one of {', '.join(known)}", "`vibrissa engines` lists them"
+            "engine", repr(name), f"one of {', '.join(known)}", "`vibrissa list engines` lists them"
         )
     found = _found(name, known[name])
     if found.engine is None or found.trouble is not None:

@@ -25,7 +25,7 @@ def named_engines(names: str) -> list[str]:
             "engine",
             repr(names),
             f"names between commas, each once, of {', '.join(known)}",
-            "`vibrissa engines` lists them",
+            "`vibrissa list engines` lists them",
         )
     return listed
 

@@ -99,5 +99,5 @@ def _ask_for_display() -> None:
         "display",
         "none",
         "a screen for MuJoCo's viewer",
-        "`vibrissa animate` draws the sweep without one",
+        "`vibrissa run CASE --film` draws the sweep without one",
     )

@@ -85,7 +85,7 @@ def named_case(name: str) -> Case:
             "case",
             repr(name),
             f"one of {', '.join(NAMED_TABLES)}, or a TOML file",
-            "see `vibrissa cases`",
+            "see `vibrissa list cases`",
         )
     tables = NAMED_TABLES[name]
     return Case(

@@ -400,7 +400,7 @@ class Readings:
                 f"readings file {path}",
                 "of a sweep in space",
                 "one sweep in the plane",
-                "read it with `analytic.space.SpatialReadings` or `vibrissa space`",
+                "read it with `analytic.space.SpatialReadings` or `vibrissa reconstruct`",
             )
         try:
             beam = _beam(metadata["beam"]) if "beam" in metadata else otherwise

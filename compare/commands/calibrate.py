@@ -5,53 +5,58 @@ from typing import Annotated
 
 import typer
 
+from compare.commands.given import A_RIG, no_rigs, require_readings
+from compare.commands.kinds import For, require_use
 from compare.commands.options import (
     AGREES,
     DISAGREES,
-    BeamFile,
     CaseName,
     Columns,
     Way,
     number_or_auto,
+    option,
     out_folder,
+    words,
 )
 from compare.commands.output import distinct_name, output_folder
 from compare.commands.waiting import waiting
 
+KNOWN = "a sweep past a known object"
+
 
 def calibrate(
-    case: CaseName,
+    context: typer.Context,
     file: Annotated[
-        Path, typer.Argument(metavar="READINGS", help="Readings of that object, Parquet or CSV.")
+        Path, typer.Argument(metavar="FILE", help="Readings past a known object, Parquet or CSV.")
     ],
+    case: CaseName,
     fit: Annotated[
         str,
-        typer.Option(
-            metavar="A,B,...",
-            help="What is unknown: flexural_rigidity, clamp_stiffness, natural_curvature, "
-            "tip_radius, friction, offset (of foot_x).",
+        option(
+            "What is unknown: flexural_rigidity, clamp_stiffness, natural_curvature, tip_radius, "
+            "friction, offset (of foot_x).",
+            "A,B,...",
         ),
     ] = "flexural_rigidity",
     out: Annotated[Path | None, out_folder("results/FILE-calibrated")] = None,
     column: Columns = None,
-    beam: BeamFile = None,
-    direction: Way = None,
+    direction: Annotated[Way, For((KNOWN,), (A_RIG,))] = None,
     noise: Annotated[
         str,
-        typer.Option(
-            metavar="NUMBER|auto",
-            help="Noise of the clamp readings over their largest magnitude, as 0.01; auto: what "
-            "the readings show.",
+        option(
+            "Of the clamp readings over their largest magnitude, as 0.01; auto: what they show.",
+            "NUMBER|auto",
         ),
     ] = "auto",
 ) -> int:
-    """Fit what is unknown of a vibrissa to a sweep past a known object.
+    """Find what is unknown of a vibrissa, past a known object.
 
     The case has the object, and all that is known of vibrissa, clamp and friction. Exit code 1: the
     fit leaves more than the noise.
     """
     level = number_or_auto("--noise", noise)
-    names = [name.strip() for name in fit.split(",")]
+    require_readings([file])
+    require_use(context, KNOWN, *([] if no_rigs([file]) and not column else [A_RIG]))
     from analytic import calibrate as calibrate_case
     from analytic import relative_noise
     from compare.commands import terminal
@@ -61,16 +66,14 @@ def calibrate(
     from compare.show.calibration import calibration_document, calibration_summary
 
     known = load_job(case).case
-    readings = without_dropouts(read_measured(file, beam, column or (), known.beam, direction))
+    readings = without_dropouts(read_measured(file, None, column or (), known.beam, direction))
     with waiting("fitting"):
         sizes = None if level == "auto" else relative_noise(readings, level)
-        found = calibrate_case(readings, known, names, sizes)
+        found = calibrate_case(readings, known, words(fit), sizes)
     with output_folder(out or Path("results") / f"{distinct_name(file)}-calibrated") as folder:
-        from analytic.problem.files import write_whole
-        from compare.show.page import document
+        from compare.commands.keep import keep
 
         terminal.note_rows(readings)
         terminal.show(*calibration_summary(found))
-        written = write_whole(folder / "calibration.json", document(calibration_document(found)))
-        terminal.print_written(written)
+        keep(folder / "calibration.json", calibration_document(found))
     return AGREES if found.explains else DISAGREES

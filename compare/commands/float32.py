@@ -1,46 +1,21 @@
-"""The command ``float32``: what single precision makes of MuJoCo's states at rest."""
+"""What single precision makes of MuJoCo's states at rest: ``inspect --float32``."""
 
-from typing import Annotated
-
-import typer
+from pathlib import Path
 
 from analytic.problem.errors import InputError
-from compare.commands.options import (
-    AGREES,
-    DISAGREES,
-    CaseName,
-    Changes,
-    Out,
-    Segments,
-    Stations,
-)
+from compare.commands.options import AGREES, DISAGREES, words
 from compare.commands.output import output_folder
+from compare.read.job import Job, SpaceJob
+from compare.read.kinds import PLANE
 from mujoco_models.allowed import CONTACT_STIFFNESSES
 
 _WARP = "mujoco-warp>=4.0,<5"
 
 
-def float32(
-    case: CaseName,
-    out: Out = None,
-    stations: Stations = None,
-    segments: Segments = None,
-    stiffnesses: Annotated[
-        str,
-        typer.Option(
-            "--contact-stiffness",
-            metavar="A,B,...",
-            help="What is looked at beside the case's own [EI/L^3].",
-        ),
-    ] = "1e4,1e5,1e6,1e7,1e8,1e9",
-) -> int:
-    """Evaluate MuJoCo's states at rest in MuJoCo Warp, in single precision.
-
-    Reports where contacts are lost and how far off the forces are, over the contact stiffness, and
-    beside them what float32's resolution predicts. Contacts that are lost at the case's own contact
-    stiffness are a disagreement.
-    """
-    job = Changes(stations=stations, segments=segments).job_at_rest(case, "float32")
+def evaluate(job: Job | SpaceJob, folder: Path, stiffnesses: str) -> int:
+    """Evaluate the states in MuJoCo Warp, in single precision, over the contact stiffness."""
+    if not isinstance(job, Job) or job.kind != PLANE:
+        raise InputError("--float32", "given", f"for {PLANE}", f"this is {job.kind}")
     own = float(job.settings.contact_stiffness)
     wanted = sorted({own, *_numbers(stiffnesses)})
     from engines.found import installed
@@ -48,12 +23,10 @@ def float32(
     version, trouble = installed(_WARP)
     if trouble is not None:
         raise InputError("mujoco-warp", version or "missing", _WARP, trouble)
-    folder = Changes(stations=stations, segments=segments).folder(out, f"{job.case.name}-float32")
     with output_folder(folder) as place:
-        from analytic.problem.files import write_whole
         from compare.commands import terminal
+        from compare.commands.keep import keep
         from compare.show.float32 import picture, sentence
-        from compare.show.page import save_figure
         from engines.warp.gate import by_stiffness, gate
 
         steps = len(wanted) * job.case.sweep.stations
@@ -63,23 +36,22 @@ def float32(
         terminal.print_float32(found, job.case.name)
         terminal.print_line(sentence(found, version or ""))
         for name, rows in (("stations", table), ("float32", found)):
-            path = write_whole(place / f"{name}.csv", rows.to_csv(index=False))
-            terminal.print_written(path)
-        terminal.print_written(save_figure(picture(found, job.case.name), place / "float32.png"))
+            keep(place / f"{name}.csv", rows)
+        keep(place / "float32.png", picture(found, job.case.name))
         lost = found.loc[found["contact_stiffness"] == own, "lost"].sum()
         return DISAGREES if lost else AGREES
 
 
-def _numbers(words: str) -> list[float]:
+def _numbers(text: str) -> list[float]:
     least, largest = CONTACT_STIFFNESSES
     try:
-        found = [float(word) for word in words.split(",")]
+        found = [float(word) for word in words(text)]
     except ValueError:
         found = []
     if not found or not all(least <= one <= largest for one in found):
         raise InputError(
             "--contact-stiffness",
-            repr(words),
+            repr(text),
             f"numbers between commas, each between {least:g} and {largest:g}",
             "correct it",
         )

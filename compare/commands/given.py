@@ -7,6 +7,8 @@ from pathlib import Path
 from analytic.problem.errors import InputError
 from analytic.problem.files import regular_file
 
+A_RIG = "a file that no engine wrote"
+
 
 def require_readings(files: Iterable[Path]) -> None:
     """Refuse files of readings that are not there."""
@@ -18,3 +20,10 @@ def require_folder(folder: Path, remedy: str) -> None:
     """Refuse a folder that is not there."""
     if not folder.is_dir():
         raise InputError("DIR", folder, "a folder that is there", remedy)
+
+
+def no_rigs(files: Iterable[Path]) -> bool:
+    """Whether this project wrote all of these files of readings."""
+    from analytic.problem.readings_file import is_ours
+
+    return all(is_ours(file) for file in files)

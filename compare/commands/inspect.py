@@ -1,51 +1,101 @@
-"""The command ``inspect``: what beam a user's own MuJoCo model is."""
+"""The command ``inspect``: what beam a MuJoCo model is, and what single precision makes of one."""
 
-import json
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
 
 from analytic.problem.errors import InputError
 from analytic.problem.files import regular_file
-from compare.commands.options import AGREES, DISAGREES
+from compare.commands.kinds import For, require_use
+from compare.commands.options import AGREES, DISAGREES, Changes, flag, option, out_folder
 from compare.commands.output import output_folder
+from compare.read.kinds import MODEL
+
+if TYPE_CHECKING:
+    from compare.simulate.inspection import Inspection
+
+FILE, SINGLE = "a model's own file", "single precision"
+_OF_A_FILE, _IN_SINGLE = For((FILE,)), For((SINGLE,))
+Name: TypeAlias = str | None
 
 
 def inspect(
+    context: typer.Context,
     model: Annotated[
-        str, typer.Argument(metavar="MODEL", help="An MJCF or URDF file, or a shipped model.")
+        str,
+        typer.Argument(
+            metavar="MODEL",
+            help="An MJCF or URDF file, a shipped model, or a case with a [model]; with --float32 "
+            "any case at rest in the plane.",
+        ),
     ],
-    foot: Annotated[
-        str | None, typer.Option(metavar="BODY", help="The body that holds the vibrissa.")
-    ] = None,
-    force: Annotated[
-        str | None, typer.Option(metavar="NAME", help="The force sensor at its clamp.")
-    ] = None,
-    torque: Annotated[
-        str | None, typer.Option(metavar="NAME", help="The torque sensor at its clamp.")
-    ] = None,
+    float32: Annotated[
+        bool,
+        flag("--float32", "Evaluate the states at rest in MuJoCo Warp's single precision."),
+    ] = False,
+    foot: Annotated[Name, option("The body that holds the vibrissa.", "BODY"), _OF_A_FILE] = None,
+    force: Annotated[Name, option("The force sensor at its clamp.", "NAME"), _OF_A_FILE] = None,
+    torque: Annotated[Name, option("The torque sensor at its clamp.", "NAME"), _OF_A_FILE] = None,
     geoms: Annotated[
-        str | None, typer.Option(metavar="NAMES", help="The vibrissa's geoms, as 'whisker*,tip'.")
+        Name, option("The vibrissa's geoms, as 'whisker*,tip'.", "NAMES"), _OF_A_FILE
     ] = None,
     site: Annotated[
-        str | None,
-        typer.Option(metavar="NAME", help="A site at its clamp, where sensors are added."),
+        Name, option("A site at its clamp, where sensors are added.", "NAME"), _OF_A_FILE
     ] = None,
     beam: Annotated[
         Path | None,
-        typer.Option(
-            metavar="FILE", help="TOML file whose [beam] table is what the model should be."
-        ),
+        option("TOML file whose [beam] is what the model should be.", "FILE"),
+        _OF_A_FILE,
     ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", metavar="DIR", help="Folder for inspection.json; none without."),
+    stations: Annotated[
+        int | None, option("Stations of the sweep.", "N", "the case's"), _IN_SINGLE
     ] = None,
+    segments: Annotated[
+        int | None, option("Segments of MuJoCo's beam.", "N", "the case's"), _IN_SINGLE
+    ] = None,
+    contact_stiffness: Annotated[
+        str, option("What is looked at beside the case's own [EI/L^3].", "A,B,..."), _IN_SINGLE
+    ] = "1e4,1e5,1e6,1e7,1e8,1e9",
+    out: Annotated[Path | None, out_folder("none; with --float32 results/CASE-float32")] = None,
 ) -> int:
-    """Measure what beam a MuJoCo model is, and say what a user should know of it."""
-    from compare.read.case_file import read_beam
+    """Measure what beam a MuJoCo model is, and what is wrong.
+
+    With --float32: where contacts are lost in single precision, and how far off the forces are,
+    over the contact stiffness, beside what float32's resolution predicts. Contacts that are lost at
+    the case's own stiffness are a disagreement.
+    """
+    if float32:
+        require_use(context, SINGLE)
+        from compare.commands.float32 import evaluate
+
+        changes = Changes(stations=stations, segments=segments)
+        job = changes.made(changes.load(model))
+        return evaluate(job, changes.folder(out, f"{job.case.name}-float32"), contact_stiffness)
+    from analytic.problem.named import NAMED_TABLES
+
+    is_case = model in NAMED_TABLES or model.endswith(".toml")
+    require_use(context, MODEL if is_case else FILE)
+    if is_case:
+        inspection = _of_a_case(model)
+    else:
+        names = {"foot": foot, "force": force, "torque": torque, "geoms": geoms, "site": site}
+        inspection = _of_a_file(model, names, beam)
+    from compare.commands import terminal
+
+    for line in inspection.lines():
+        terminal.print_line(line)
+    if out is not None:
+        from compare.commands.keep import keep
+
+        with output_folder(out) as folder:
+            keep(folder / "inspection.json", inspection.to_dict())
+    return AGREES if inspection.sound else DISAGREES
+
+
+def _of_a_file(model: str, names: dict[str, str | None], beam: Path | None) -> "Inspection":
+    from compare.read.tables import read_beam
     from mujoco_models import shipped_models
 
     stated = None if beam is None else read_beam(beam)[0]
@@ -55,18 +105,30 @@ def inspect(
             "MODEL", repr(model), f"a file, or one of {', '.join(shipped)}", "name one of them"
         )
     path = regular_file(shipped.get(model, Path(model)), "model", sys.maxsize)
-    from compare.commands import terminal
     from compare.simulate.inspection import Inspection
     from mujoco_models import inspect_model
 
-    found = inspect_model(path, foot=foot, force=force, torque=torque, geoms=geoms, site=site)
-    inspection = Inspection(found, stated)
-    for line in inspection.lines():
-        terminal.print_line(line)
-    if out is not None:
-        from analytic.problem.files import write_whole
+    return Inspection(inspect_model(path, **names), stated)
 
-        with output_folder(out) as folder:
-            content = json.dumps(inspection.to_dict(), indent=2)
-            terminal.print_written(write_whole(folder / "inspection.json", content))
-    return AGREES if inspection.sound else DISAGREES
+
+def _of_a_case(case: str) -> "Inspection":
+    """What the model of a case is, beside the vibrissa that the case states."""
+    from compare.read.case import load_case
+    from compare.read.job import Job
+
+    job = load_case(case)
+    if not isinstance(job, Job) or job.model is None:
+        raise InputError("MODEL", case, "a model, or a case with one", "or ask for --float32")
+    from compare.simulate.inspection import Inspection
+    from mujoco_models import inspect_model
+
+    own = job.model
+    found = inspect_model(
+        own.file,
+        foot=own.foot,
+        force=own.force,
+        torque=own.torque,
+        geoms=own.geoms,
+        site=own.site,
+    )
+    return Inspection(found, job.case.beam)

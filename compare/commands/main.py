@@ -14,19 +14,17 @@ import typer
 from typer.exceptions import TyperException
 
 from analytic.problem.errors import InputError
-from compare.commands import (
-    budget,
-    calibrate,
-    float32,
-    inspect,
-    methods,
-    readings,
-    rig,
-    space,
-    study,
-    sweeps,
-)
+from compare.commands.calibrate import calibrate
+from compare.commands.compare import compare
+from compare.commands.group import Group
+from compare.commands.inspect import inspect
+from compare.commands.listing import list_what_there_is
 from compare.commands.output import ended_by_signals
+from compare.commands.reconstruct import reconstruct
+from compare.commands.report import report
+from compare.commands.rig import rig
+from compare.commands.run import run, view
+from compare.commands.study import study
 
 BAD_INPUT = 2
 _LONGEST = 800  # characters of an error
@@ -35,34 +33,20 @@ _LONGEST = 800  # characters of an error
 _OBJECTS = 400_000
 
 app = typer.Typer(
+    cls=Group,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,  # markup would swallow the brackets of [beam] and [tolerances]
 )
 
-COMMANDS: tuple[Callable[..., int], ...] = (
-    sweeps.run,
-    sweeps.analytic,
-    sweeps.simulate,
-    space.space,
-    sweeps.view,
-    sweeps.animate,
-    sweeps.report,
-    readings.compare,
-    readings.reconstruct,
-    calibrate.calibrate,
-    readings.side_by_side,
-    rig.rig,
-    methods.methods,
-    budget.budget,
-    budget.findings,
-    inspect.inspect,
-    study.study,
-    study.study_report,
-    sweeps.cases,
-    sweeps.engines,
-    float32.float32,
-)
+COMMANDS: dict[str, tuple[Callable[..., int], ...]] = {
+    "Sweep and compare": (run, compare, view),
+    "What the clamp says": (reconstruct, calibrate, rig),
+    "Models": (inspect,),
+    "Many": (study, report),
+    "What there is": (list_what_there_is,),
+}
+_NAMES = {list_what_there_is: "list"}
 
 
 def _saying_what_ended_it(command: Callable[..., int]) -> Callable[..., int]:
@@ -72,18 +56,20 @@ def _saying_what_ended_it(command: Callable[..., int]) -> Callable[..., int]:
     """
 
     @wraps(command)
-    def run(*given: Any, **named: Any) -> int:  # noqa: ANN401  # as the command takes them
+    def ended(*given: Any, **named: Any) -> int:  # noqa: ANN401  # as the command takes them
         try:
             with ended_by_signals():
                 return command(*given, **named)
         except KeyboardInterrupt as error:
             raise typer.Abort(str(error)) from error
 
-    return run
+    return ended
 
 
-for command in COMMANDS:
-    app.command()(_saying_what_ended_it(command))
+for group, commands in COMMANDS.items():
+    for command in commands:
+        name = _NAMES.get(command, command.__name__)
+        app.command(name, rich_help_panel=group)(_saying_what_ended_it(command))
 
 
 def _show_version(asked: bool) -> None:

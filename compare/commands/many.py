@@ -1,24 +1,22 @@
-"""Several engines on one case: what ``--engine`` asks of ``run`` and ``simulate``."""
+"""Several engines on one case: ``run --engine A,B``."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
-from analytic import InputError, solve_sweep
+from analytic import InputError, Readings
 from compare.commands import terminal
 from compare.commands.measured_budgets import measured_budget
 from compare.commands.options import AGREES, DISAGREES
-from compare.read.case import Job
+from compare.read.job import Job
 from compare.read.runs import EngineOutcome
 from compare.show.engines import ManyEngines, write_engines
 from compare.simulate.many import sweep_many
 from engines import Outcome, list_engines
 
 
-def run_many(job: Job, folder: Path, with_budget: bool) -> int:
+def run_many(job: Job, exact: Readings, folder: Path, with_budget: bool) -> int:
     """Sweep a case with the engines of its job, and write one report of all."""
     outcomes = swept(job, folder)
-    exact = solve_sweep(job.case)
-    exact.write(folder / "analytic.parquet")
     sweeps = {one.engine: one.readings for one in outcomes if one.readings is not None}
     budget = None
     if with_budget and "mujoco" in sweeps:
@@ -32,11 +30,6 @@ def run_many(job: Job, folder: Path, with_budget: bool) -> int:
 
 def swept(job: Job, folder: Path) -> Sequence[Outcome]:
     """The sweeps of a job's engines, each written to ``ENGINE.parquet``."""
-    if job.motion is not None or job.model is not None:
-        raise InputError(
-            "engine", ", ".join(job.engines), "mujoco for a case in motion or with a [model]",
-            "take [motion] and [model] out of the case",
-        )  # fmt: skip
     with terminal.progress("engines", len(job.engines)) as advance:
 
         def keep(one: Outcome) -> None:

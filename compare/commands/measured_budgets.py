@@ -7,7 +7,7 @@ from analytic import Readings, solve_sweep
 from compare.commands.terminal import progress
 from compare.explain.budget import Budget
 from compare.explain.motion import MotionBudget
-from compare.read.case import Job
+from compare.read.job import Job
 from compare.simulate.budgets import measure_budget, sweeps_of_budget
 from compare.simulate.dispatch import simulate
 from compare.simulate.fastest import Fastest, find_fastest

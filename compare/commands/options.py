@@ -8,93 +8,87 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from analytic.problem.errors import InputError
+from compare.commands.kinds import For
+from compare.read.kinds import MODEL, MOTION, PLANE, SPACE
 from mujoco_models.allowed import BeamKind, ObstacleKind
 
 if TYPE_CHECKING:
-    from compare.read.case import Job
+    from compare.read.job import Job, SpaceJob
     from mujoco_models.motion import Motion
 
 AGREES, DISAGREES = 0, 1
 
+# What is done with a case, as options ask for it.
+EXACT, SIMULATED = "the closed form", "an engine"
+IN_MUJOCO, COMPARED = "MuJoCo", "a comparison"
+WITH_MUJOCO = "a comparison with MuJoCo alone"
+AT_REST = "a case at rest"
+
+
+def option(text: str, metavar: str | None = None, default: str | bool = True, *names: str) -> Any:  # noqa: ANN401
+    """An option of a command, by default named as its parameter."""
+    return typer.Option(*names, metavar=metavar, help=text, show_default=default)
+
+
+def flag(name: str, text: str) -> Any:  # noqa: ANN401
+    """An option without a value."""
+    return typer.Option(name, help=text, show_default=False)
+
+
+def out_folder(default: str) -> Any:  # noqa: ANN401
+    """The option ``--out`` of a command."""
+    return option("Folder for what is written.", "DIR", default, "--out")
+
+
 CaseName = Annotated[
-    str, typer.Argument(metavar="CASE", help="A named case (see `vibrissa cases`) or a TOML file.")
+    str,
+    typer.Argument(metavar="CASE", help="A named case (see `vibrissa list cases`) or a TOML file."),
 ]
-Out = Annotated[
-    Path | None,
-    typer.Option(
-        "--out",
-        metavar="DIR",
-        help="Folder for what is written.",
-        show_default="results/CASE, with the options that change the case",
-    ),
-]
-
-
-def out_folder(default: str) -> Any:  # noqa: ANN401  # typer's
-    """The option ``--out`` of a command on files."""
-    return typer.Option(
-        "--out", metavar="DIR", help="Folder for what is written.", show_default=default
-    )
-
-
-Stations = Annotated[
-    int | None,
-    typer.Option(metavar="N", help="Stations of the sweep.", show_default="the case's, or 200"),
-]
+Out = Annotated[Path | None, out_folder("results/CASE, with the options that change the case")]
+Stations = Annotated[int | None, option("Stations of the sweep.", "N", "the case's, or 200")]
 Segments = Annotated[
     int | None,
-    typer.Option(metavar="N", help="Segments of MuJoCo's beam.", show_default="the case's, or 40"),
+    option("Segments of MuJoCo's beam.", "N", "the case's, or 40"),
+    For((PLANE, MOTION, SPACE), (SIMULATED,)),
 ]
 Beam = Annotated[
-    BeamKind | None, typer.Option(help="MuJoCo's beam.", show_default="the case's, or chain")
+    BeamKind | None,
+    option("MuJoCo's beam.", default="the case's, or chain"),
+    For((PLANE, MOTION, SPACE), (IN_MUJOCO,)),
 ]
 Obstacle = Annotated[
     ObstacleKind | None,
-    typer.Option(help="MuJoCo's obstacle.", show_default="the case's, or mesh"),
+    option("MuJoCo's obstacle.", default="the case's, or mesh"),
+    For((PLANE, MOTION), (IN_MUJOCO,)),
 ]
 Spatial = Annotated[
-    bool, typer.Option("--spatial", help="Let MuJoCo's beam leave the plane of the sweep.")
+    bool,
+    flag("--spatial", "Let MuJoCo's beam leave the plane of the sweep."),
+    For((PLANE,), (IN_MUJOCO,)),
 ]
 InMotion = Annotated[
-    bool, typer.Option("--motion", help="Let the foot move as [motion] says, or at 0.01 L/T1.")
+    bool, flag("--motion", "Let the foot move, at 0.01 L/T1."), For((MOTION,), (IN_MUJOCO, AT_REST))
 ]
 Speed = Annotated[
     float | None,
-    typer.Option(metavar="V", help="Of the foot in motion [L/T1].", show_default="the case's"),
+    option("Of the foot in motion [L/T1].", "V", "the case's"),
+    For((MOTION, MODEL), (IN_MUJOCO,)),
 ]
 Timestep = Annotated[
     float | None,
-    typer.Option(metavar="DT", help="MuJoCo's, in motion [T1].", show_default="the case's"),
-]
-Engines = Annotated[
-    str | None,
-    typer.Option(
-        "--engine",
-        metavar="A,B,...",
-        help="Engines that sweep the case at rest; `vibrissa engines` lists them.",
-        show_default="the case's, or mujoco",
-    ),
+    option("MuJoCo's, in motion [T1].", "DT", "the case's"),
+    For((MOTION,), (IN_MUJOCO,)),
 ]
 BeamFile = Annotated[
-    Path | None,
-    typer.Option(
-        metavar="FILE",
-        help="TOML file whose [beam] table describes the vibrissa of measured data.",
-    ),
+    Path | None, option("TOML file whose [beam] is the vibrissa of measured data.", "FILE")
 ]
 Columns = Annotated[
     list[str] | None,
-    typer.Option(
-        metavar="NAME=COLUMN[:UNIT]", help="A column of a rig's file; repeat the option for each."
-    ),
+    option("A column of a rig's file; repeat the option for each.", "NAME=COLUMN[:UNIT]"),
 ]
-InFrame = Annotated[
-    Literal["world", "clamp"],
-    typer.Option("--frame", help="Of the six components in space."),
-]
+InFrame = Annotated[Literal["world", "clamp"], option("Of the six components in space.")]
 Way = Annotated[
-    Literal["left", "right"] | None,
-    typer.Option(help="Which sweep of a rig's file with one in each direction."),
+    Literal["left", "right"] | None, option("Which sweep of a rig's file with one each way.")
 ]
 
 
@@ -112,16 +106,25 @@ class Changes:
     timestep: float | None = None
     engines: str | None = None
 
-    def job(self, name: str) -> "Job":
-        """The job of that name or TOML file, with these changes."""
-        from compare.read.case import load_job
+    def load(self, name: str) -> "Job | SpaceJob":
+        """The case of that name or TOML file, with the engines that are to sweep it."""
+        from compare.read.case import load_case
+        from compare.read.job import engines_beside_exact
 
-        job = load_job(name)
-        if job.model is not None:
-            self._check_model()
-        case = job.case
-        if self.stations is not None:
-            case = replace(case, sweep=replace(case.sweep, stations=self.stations))
+        job = load_case(name)
+        if self.engines is None:
+            return job
+        return replace(job, engines=engines_beside_exact(self.engines))
+
+    def kind(self, job: "Job | SpaceJob") -> str:
+        """What kind of a case it is, with these changes."""
+        moved = self.motion or self.speed is not None or self.timestep is not None
+        return MOTION if moved and job.kind == PLANE else job.kind
+
+    def made(self, job: "Job | SpaceJob") -> "Job | SpaceJob":
+        """The job with these changes."""
+        from compare.read.job import SpaceJob
+
         named: dict[str, Any] = {
             "segments": self.segments,
             "beam": self.beam,
@@ -129,37 +132,16 @@ class Changes:
             "planar": False if self.spatial else None,
         }
         given = {key: value for key, value in named.items() if value is not None}
-        if self.engines is not None:
-            from engines.known import named_engines
-
-            job = replace(job, engines=tuple(named_engines(self.engines)))
-        return replace(
-            job, case=case, settings=replace(job.settings, **given), motion=self._moved(job.motion)
-        )
-
-    def job_at_rest(self, name: str, command: str) -> "Job":
-        """The job, as `job` makes it, for what knows sweeps at rest only."""
-        job = self.job(name)
-        if job.motion is not None:
-            raise InputError(
-                command,
-                "of a sweep in motion",
-                "of a sweep at rest",
-                "take [motion] and [model] out of the case",
-            )
-        return job
-
-    def _check_model(self) -> None:
-        """Refuse what a model of the user's own says itself."""
-        for option, value in (
-            ("--segments", self.segments),
-            ("--beam", self.beam),
-            ("--obstacle", self.obstacle),
-            ("--spatial", self.spatial or None),
-            ("--timestep", self.timestep),
-        ):
-            if value is not None:
-                raise InputError(option, value, "left out", "the case has a [model] of its own")
+        if isinstance(job, SpaceJob):
+            if self.stations is not None:
+                path = replace(job.case.path, stations=self.stations)
+                job = replace(job, case=replace(job.case, path=path))
+            return replace(job, settings=replace(job.settings, **given))
+        if self.stations is not None:
+            sweep = replace(job.case.sweep, stations=self.stations)
+            job = replace(job, case=replace(job.case, sweep=sweep))
+        settings = replace(job.settings, **given)
+        return replace(job, settings=settings, motion=self._moved(job.motion))
 
     def _moved(self, motion: "Motion | None") -> "Motion | None":
         named: dict[str, Any] = {"speed": self.speed, "timestep": self.timestep}
@@ -172,7 +154,7 @@ class Changes:
 
     def folder(self, out: Path | None, case: str) -> Path:
         """Where the results go by default: runs that differ do not overwrite each other."""
-        words = [
+        parts = [
             case,
             *(word for word in (self.beam, self.obstacle) if word),
             *([f"{self.segments}-segments"] if self.segments is not None else []),
@@ -181,9 +163,9 @@ class Changes:
             *(["in-motion"] if self.motion else []),
             *([f"speed-{self.speed:g}"] if self.speed is not None else []),
             *([f"timestep-{self.timestep:g}"] if self.timestep is not None else []),
-            *(self.engines.replace(" ", "").split(",") if self.engines is not None else []),
+            *(one for one in words(self.engines or "") if one not in ("", "exact")),
         ]
-        return out or Path("results") / "-".join(words)
+        return out or Path("results") / "-".join(parts)
 
 
 def number_or_auto(option: str, text: str) -> float | Literal["auto"]:
@@ -197,3 +179,20 @@ def number_or_auto(option: str, text: str) -> float | Literal["auto"]:
     if not math.isfinite(number):
         raise InputError(option, repr(text), "a number or auto", "write it with a decimal point")
     return number
+
+
+def words(text: str) -> list[str]:
+    """The words between the commas of an option."""
+    return [word.strip() for word in text.split(",")]
+
+
+def shares(option: str, text: str, most: int) -> list[float]:
+    """The numbers between the commas of an option, each at least 0 and below 1."""
+    try:
+        found = [float(word) for word in words(text)]
+    except ValueError:
+        found = []
+    if not 0 < len(found) <= most or not all(0 <= share < 1 for share in found):
+        allowed = "a number" if most == 1 else f"one to {most} numbers"
+        raise InputError(option, repr(text), f"{allowed} from 0 up to 1", "as 0.01")
+    return found

@@ -1,5 +1,6 @@
 """The folder that a command writes to, and signals that end it."""
 
+import os
 import signal
 import sys
 import tempfile
@@ -49,6 +50,15 @@ def distinct_name(path: Path) -> str:
     inside = absolute.is_relative_to(here)
     steps = absolute.relative_to(here if inside else absolute.anchor).with_suffix("").parts
     return "-".join(steps[1:] if steps[0] == "results" and len(steps) > 1 else steps)[-_LONGEST:]
+
+
+def distinct_names(files: list[Path]) -> dict[str, Path]:
+    """The files by what distinguishes them from each other."""
+    common = os.path.commonpath([path.absolute().parent for path in files])
+    named = {str(path.absolute().with_suffix("").relative_to(common)): path for path in files}
+    if len(named) < len(files):  # one.csv and one.parquet
+        return {str(path.absolute().relative_to(common)): path for path in files}
+    return named
 
 
 @contextmanager

@@ -6,33 +6,31 @@ from typing import Annotated
 
 import typer
 
-from compare.commands.options import AGREES, out_folder
+from compare.commands.options import AGREES, option, out_folder
 from compare.commands.output import distinct_name, output_folder
 
 
 def rig(
     files: Annotated[
-        Path, typer.Argument(metavar="FILES", help="A rig's file, or a folder with its files.")
+        list[Path],
+        typer.Argument(metavar="FILE...", help="A rig's files, or folders with its files."),
     ],
     rig: Annotated[
-        Path,
-        typer.Option(
-            metavar="FILE", help="TOML file with [beam], [columns] and [passes] of the rig."
-        ),
+        Path, option("TOML file with [beam], [columns] and [passes] of the rig.", "FILE")
     ],
-    out: Annotated[Path | None, out_folder("results/FILES-passes")] = None,
+    out: Annotated[Path | None, out_folder("results/FILE-passes")] = None,
 ) -> int:
-    """Read a rig's files: calibrate, take off zero and drift, leave out defects, and count them.
+    """Make readings of a rig's files, without their defects.
 
-    Writes a file of readings for each pass, for `compare` and `reconstruct`.
+    They are calibrated, zero and drift are taken off, and what is left out is counted. Each pass
+    becomes a file for `compare` and `reconstruct`.
     """
-    from analytic.problem.files import write_whole
     from compare.commands import terminal
+    from compare.commands.keep import keep
     from compare.measure.repeats import repeat
     from compare.read.passes import read_passes, without_gaps
     from compare.read.rig_file import read_rig
     from compare.show.figures.passes import picture
-    from compare.show.page import document, save_figure
     from compare.show.passes import passes_document
 
     passes = read_passes(files, read_rig(rig))
@@ -43,11 +41,10 @@ def rig(
             and one.readings.bends_left == other.readings.bends_left
         ):
             repeats[one.name, other.name] = repeat(without_gaps(one), without_gaps(other))
-    with output_folder(out or Path("results") / f"{distinct_name(files)}-passes") as folder:
+    with output_folder(out or Path("results") / f"{distinct_name(files[0])}-passes") as folder:
         terminal.print_passes(passes, repeats)
         for one in passes:
             terminal.print_written(one.readings.write(folder / f"{one.name}.parquet"))
-        written = write_whole(folder / "passes.json", document(passes_document(passes, repeats)))
-        terminal.print_written(written)
-        terminal.print_written(save_figure(picture(passes), folder / "passes.png"))
+        keep(folder / "passes.json", passes_document(passes, repeats))
+        keep(folder / "passes.png", picture(passes))
     return AGREES

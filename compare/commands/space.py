@@ -1,182 +1,156 @@
-"""The command ``space``: a sweep past a body in space, and the body from its clamp."""
+"""What the commands do in space: ``run``, ``compare`` and ``reconstruct``."""
 
-from dataclasses import replace
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Literal
 
-import typer
-
-from compare.commands.options import (
-    AGREES,
-    DISAGREES,
-    Columns,
-    InFrame,
-    Segments,
-    out_folder,
-)
+from compare.commands.options import AGREES, DISAGREES
 from compare.commands.output import distinct_name, output_folder
 from compare.commands.waiting import waiting
 
 if TYPE_CHECKING:
     from analytic.problem.arrays import Floats
-    from analytic.space import Body, Cloud, SpatialCase, SpatialReadings
+    from analytic.space import Body, Cloud, SpatialReadings
     from compare.align.frames import Frame
+    from compare.commands.asked import Asked
     from compare.comparison_in_space import SpatialComparison
     from compare.explain.split_space import Parts
-    from compare.read.space import SpaceJob
+    from compare.read.job import SpaceJob
     from compare.show.report import Film
     from mujoco_models import SpatialSettings
 
-_FRAMES = 48  # of the animation, as in the plane
 
-
-def space(
-    case: Annotated[
-        str, typer.Argument(metavar="CASE", help="A TOML file with [body] and [path].")
-    ],
-    out: Annotated[Path | None, out_folder("results/CASE")] = None,
-    readings: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="Take these readings in place of the closed form's: nine columns, foot_x to "
-            "moment_z.",
-            show_default=False,
-        ),
-    ] = None,
-    noise: Annotated[
-        float,
-        typer.Option(min=0, max=1, help="Noise of each component over its largest magnitude."),
-    ] = 0.0,
-    certified: Annotated[
-        bool, typer.Option("--certified", help="Check each station by integration from the clamp.")
-    ] = False,
-    engine: Annotated[
-        str | None,
-        typer.Option(
-            metavar="mujoco",
-            help="Sweep in this engine too, compare, and reconstruct from its readings.",
-            show_default=False,
-        ),
-    ] = None,
-    segments: Segments = None,
-    with_budget: Annotated[
-        bool, typer.Option("--budget", help="Split the engine's disagreement into parts too.")
-    ] = False,
-    frame: InFrame = "world",
-    column: Columns = None,
-) -> int:
-    """Sweep past a body in space in closed form, and find the body from the clamp.
+def run_in_space(job: "SpaceJob", folder: Path, asked: "Asked") -> int:
+    """Sweep past a body, compare, and find the body from the clamp.
 
     Writes the readings, the contacts found as a table and as a point cloud with normals, and a
-    picture; with an engine also the comparison, an animation and a report. `vibrissa compare` takes
-    such a case and the readings of any other simulator.
+    picture; with MuJoCo also the comparison and a report.
     """
-    from compare.read.space import load_space_job
-
-    job = load_space_job(case)
-    found = job.case
-    _check_engine(engine, readings, segments, with_budget)
     agrees = True
-    with output_folder(out or Path("results") / found.name) as folder:
-        from analytic.problem.files import write_whole
-        from analytic.space import (
-            point_cloud,
-            reconstruct_space,
-            solve_space,
-            wrench_complaint,
-            write_ply,
-        )
-        from compare.commands import terminal
-        from compare.show.figures.space import sweep_in_space
-        from compare.show.page import save_figure
-        from compare.show.scene import SweepScene
-
-        if readings is None:
-            with waiting("solving"):
-                swept = solve_space(found, certified)
-            terminal.print_line(_solved(swept))
-            terminal.print_written(swept.write(folder / "analytic.parquet"))
-            if engine is not None:
-                if segments is not None:
-                    job = job._replace(settings=replace(job.settings, segments=segments))
-                compared = _compared(job, swept, folder, with_budget, frame)
-                swept, agrees = compared.candidate, compared.agrees
-        else:
-            from compare.read.space_readings import read_space
-
-            swept = read_space(readings, found.beam, found.path.tangent, column or (), frame)
-        with waiting("reconstructing"):
-            points = reconstruct_space(swept, _deviations(swept, noise))
-        complaint = wrench_complaint(points)
-        if complaint is not None:
-            terminal.print_line(f"readings: {complaint}")
-        cloud = point_cloud(points)
-        terminal.print_line(_reconstructed(cloud, found))
-        terminal.print_written(write_whole(folder / "points.csv", points.to_csv(index=False)))
-        terminal.print_written(write_ply(cloud, folder / "points.ply"))
-        if engine is None:  # else the report has drawn it
-            with waiting("drawing"):
-                picture = sweep_in_space(SweepScene.of(swept, found.body))
-                written = save_figure(picture, folder / "space.png")
-            terminal.print_written(written)
-    wrong = complaint is not None or not agrees
-    if "status" in swept.table:
-        wrong |= bool((swept.table["status"] == "diverged").any())
-    return DISAGREES if wrong else AGREES
+    if asked.sweep_only:
+        swept = _mujoco(job, folder)
+    else:
+        swept = _exact(job, folder, asked)
+        if job.engines:
+            comparison = _compared(job, swept, folder, asked)
+            swept, agrees = comparison.candidate, comparison.agrees
+    drawn = bool(job.engines) and not asked.sweep_only  # by the report
+    explained = _points(swept, job.case.body, folder, 0.0, not drawn)
+    diverged = bool((swept.table["status"] == "diverged").any())
+    return AGREES if agrees and explained and not diverged else DISAGREES
 
 
-def _check_engine(
-    engine: str | None, readings: Path | None, segments: int | None, with_budget: bool
-) -> None:
-    from analytic import InputError
+def reconstruct_in_space(
+    file: Path,
+    known: "SpaceJob | None",
+    folder: Path,
+    noise: float,
+    columns: list[str],
+    frame: "Frame",
+) -> int:
+    """Find the body from a file of readings; the case has the vibrissa, if the file has not."""
+    from compare.read.space_readings import read_space
 
-    if engine is not None and engine != "mujoco":
-        raise InputError("--engine", repr(engine), "mujoco in space", "the others are planar")
-    if engine is not None and readings is not None:
-        raise InputError("--readings", str(readings), "not beside --engine", "leave one out")
-    if engine is None and (segments is not None or with_budget):
-        option = "--budget" if with_budget else "--segments"
-        raise InputError(option, "given", "with --engine mujoco only", "add --engine mujoco")
+    if known is None:
+        readings = read_space(file, columns=columns, frame=frame)
+    else:
+        case = known.case
+        readings = read_space(file, case.beam, case.path.tangent, columns, frame)
+    with output_folder(folder):
+        body = None if known is None else known.case.body
+        explained = _points(readings, body, folder, noise, True)
+    diverged = "status" in readings.table and (readings.table["status"] == "diverged").any()
+    return AGREES if explained and not diverged else DISAGREES
+
+
+def _exact(job: "SpaceJob", folder: Path, asked: "Asked") -> "SpatialReadings":
+    from analytic.space import solve_space
+    from compare.commands import terminal
+
+    with waiting("solving"):
+        exact = solve_space(job.case, asked.certified)
+    terminal.print_line(_solved(exact))
+    terminal.print_written(exact.write(folder / "analytic.parquet"))
+    return exact
+
+
+def _mujoco(job: "SpaceJob", folder: Path) -> "SpatialReadings":
+    from compare.commands import terminal
+
+    candidate = _simulated(job, job.settings, folder)
+    terminal.print_line(_solved(candidate))
+    terminal.print_written(candidate.write(folder / f"mujoco-{job.settings.beam}.parquet"))
+    return candidate
+
+
+def _simulated(job: "SpaceJob", settings: "SpatialSettings", folder: Path) -> "SpatialReadings":
+    """MuJoCo's sweep; if it ends early, the stations that there are go into `folder`."""
+    from compare.commands import terminal
+    from compare.simulate.dispatch import simulate
+
+    def keep(part: "SpatialReadings") -> None:
+        terminal.print_written(part.write(folder / f"mujoco-{job.settings.beam}.parquet"))
+
+    with terminal.progress("stations", job.case.path.stations) as advance:
+        return simulate(job.case, settings, advance=advance, keep=keep)
 
 
 def _compared(
-    job: "SpaceJob",
-    exact: "SpatialReadings",
-    folder: Path,
-    with_budget: bool,
-    frame: "Frame",
+    job: "SpaceJob", exact: "SpatialReadings", folder: Path, asked: "Asked"
 ) -> "SpatialComparison":
-    """MuJoCo's sweep, the comparison, its parts if asked for, the animation and the report."""
-    from compare.commands import terminal
+    """MuJoCo's sweep, the comparison, its parts and a film if asked for, and the report."""
     from compare.comparison_in_space import compare_space
     from compare.explain.split_space import split_space
     from compare.show.animation.space import write_space_animation
-    from compare.show.report import Film
-    from mujoco_models import simulate_space
 
-    case, file = job.case, folder / f"mujoco-{job.settings.beam}.parquet"
+    candidate = _mujoco(job, folder)
+    comparison = compare_space(exact, candidate, job.tolerances, frame=asked.frame)
+    parts = None
+    if asked.budget:
+        parts = split_space(
+            exact, candidate, job.settings, lambda chosen: _simulated(job, chosen, folder)
+        )
 
-    def sweep(chosen: "SpatialSettings") -> "SpatialReadings":
-        with terminal.progress("stations", case.path.stations) as advance:
-            return simulate_space(case, chosen, advance, keep)
+    def draw(place: Path, frames: int, advance: Callable[[], None]) -> object:
+        return write_space_animation(exact, candidate, place, job.case.body, frames, advance)
 
-    def keep(part: "SpatialReadings") -> None:
-        terminal.print_written(part.write(file))
-
-    candidate = sweep(job.settings)
-    terminal.print_line(_solved(candidate))
-    terminal.print_written(candidate.write(file))
-    comparison = compare_space(exact, candidate, job.tolerances, frame=frame)
-    parts = split_space(exact, candidate, job.settings, sweep) if with_budget else None
-    with terminal.progress("frames", _FRAMES) as advance:
-        write_space_animation(exact, candidate, folder, case.body, _FRAMES, advance)
-    write_report(comparison, case.body, folder, parts, Film.of(folder))
+    film = asked.film(draw, folder)
+    write_report(comparison, job.case.body, folder, parts, film)
     return comparison
 
 
+def _points(
+    readings: "SpatialReadings",
+    body: "Body | None",
+    folder: Path,
+    noise: float,
+    with_picture: bool,
+) -> bool:
+    """Write the contacts found from the clamp; whether a vibrissa can have such readings."""
+    from analytic.space import point_cloud, reconstruct_space, wrench_complaint, write_ply
+    from compare.commands import terminal
+    from compare.commands.keep import keep
+    from compare.show.figures.space import sweep_in_space
+    from compare.show.scene import SweepScene
+
+    with waiting("reconstructing"):
+        points = reconstruct_space(readings, _deviations(readings, noise))
+    complaint = wrench_complaint(points)
+    if complaint is not None:
+        terminal.print_line(f"readings: {complaint}")
+    cloud = point_cloud(points)
+    terminal.print_line(_reconstructed(cloud, body, readings.beam.length))
+    keep(folder / "points.csv", points)
+    terminal.print_written(write_ply(cloud, folder / "points.ply"))
+    if with_picture:
+        with waiting("drawing"):
+            picture = sweep_in_space(SweepScene.of(readings, body))
+        keep(folder / "space.png", picture)
+    return complaint is None
+
+
 def compare_in_space(
-    reference: str,
+    reference: "SpaceJob | Path",
     candidate: Path,
     out: Path | None,
     column: list[str] | None,
@@ -188,7 +162,6 @@ def compare_in_space(
     from compare.commands import terminal
     from compare.judge.spatial import SpatialTolerances
     from compare.read.limits import read_tolerances
-    from compare.read.space import load_space_job
     from compare.read.space_readings import read_space
 
     limits = None if tolerances is None else read_tolerances(tolerances, SpatialTolerances)
@@ -203,12 +176,11 @@ def compare_in_space(
         from compare.show.report import Film
 
         body = None
-        if reference.endswith(".toml"):
-            job = load_space_job(reference)
-            body, limits = job.case.body, limits or job.tolerances
-            exact, called = solve_space(job.case), job.case.name
+        if isinstance(reference, Path):
+            exact, called = SpatialReadings.read(reference), distinct_name(reference)
         else:
-            exact, called = SpatialReadings.read(reference), distinct_name(Path(reference))
+            body, limits = reference.case.body, limits or reference.tolerances
+            exact, called = solve_space(reference.case), reference.case.name
         measured = read_space(candidate, exact.beam, exact.tangent, column or (), frame)
         comparison = compare_space(exact, measured, limits, noise=noise, frame=frame)
     default = Path("results") / f"{called}-{distinct_name(candidate)}"
@@ -260,13 +232,15 @@ def _solved(readings: "SpatialReadings") -> str:
     return f"{readings.source}: {'; '.join(parts)}"
 
 
-def _reconstructed(cloud: "Cloud", case: "SpatialCase") -> str:
+def _reconstructed(cloud: "Cloud", body: "Body | None", length: float) -> str:
     from numpy import degrees, sqrt
 
     from analytic.space import misses
 
-    found = misses(cloud, case.body, case.beam.length)
-    distances = found.distances / case.beam.length
+    if body is None:
+        return f"{len(cloud.points)} contacts"
+    found = misses(cloud, body, length)
+    distances = found.distances / length
     return (
         f"{len(distances)} contacts; from the true body {sqrt((distances**2).mean()):.1e} L rms, "
         f"{distances.max():.1e} L at most; normals {degrees(found.angles.max()):.1e} degrees"

@@ -1,4 +1,4 @@
-"""``vibrissa study`` and ``vibrissa study-report``."""
+"""The command ``study``."""
 
 from contextlib import closing
 from pathlib import Path
@@ -6,34 +6,34 @@ from typing import Annotated
 
 import typer
 
-from compare.commands.given import require_folder
-from compare.commands.options import AGREES, DISAGREES
+from compare.commands.kinds import For, require_use
+from compare.commands.options import AGREES, DISAGREES, flag, option, out_folder
+
+HERE, ON_A_CLUSTER, COUNTED = "a study done here", "a study done on a cluster", "a dry run"
 
 
 def study(
+    context: typer.Context,
     file: Annotated[
         str, typer.Argument(metavar="FILE", help="A TOML file, or the name of a shipped study.")
     ],
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Check, count and estimate; store nothing.")
+        bool, flag("--dry-run", "Check, count and estimate; store nothing.")
     ] = False,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out", metavar="DIR", help="Folder of the study.", show_default="results/NAME"
-        ),
-    ] = None,
+    out: Annotated[Path | None, out_folder("results/NAME")] = None,
     workers: Annotated[
         int | None,
         typer.Option(min=1, metavar="N", help="Processes.", show_default="one a core"),
+        For((HERE, COUNTED)),
     ] = None,
     scheduler: Annotated[
         str | None,
-        typer.Option(
-            metavar="ADDR",
-            help="Of a Dask cluster, as tcp://host:8786. Dask listens on all interfaces and lets "
+        option(
+            "Of a Dask cluster, as tcp://host:8786. Dask listens on all interfaces and lets "
             "anyone run code there; outside a trusted network use tls:// with certificates.",
+            "ADDR",
         ),
+        For((ON_A_CLUSTER,)),
     ] = None,
 ) -> int:
     """Do the runs of a study that are not done yet.
@@ -41,6 +41,7 @@ def study(
     The exit code is 0 if all are done then, 1 if any failed, diverged, did not settle or took too
     long: those are tried again the next time.
     """
+    require_use(context, COUNTED if dry_run else ON_A_CLUSTER if scheduler else HERE)
     from compare.study.grid.file import load_study
 
     read = load_study(file)
@@ -64,7 +65,7 @@ def study(
     folder = out or Path("results") / plan.study.name
     crew = local_crew(cores) if scheduler is None else dask_crew(scheduler)
     counts: dict[str, int] = {}
-    with Store(folder, plan, _warn) as store:
+    with Store(folder, plan, warn) as store:
         done = store.done()
         todo = (run for run in plan if run.id not in done)
         count = len(plan) - len(done)
@@ -83,17 +84,6 @@ def study(
     return AGREES if counts.keys() <= {"done"} else DISAGREES
 
 
-def study_report(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a study.")],
-) -> int:
-    """Write the report of a study, also under way."""
-    require_folder(folder, "start `vibrissa study FILE --out DIR` first")
-    from compare.commands.terminal import print_written
-    from compare.study.show.study_report import write_report
-
-    print_written(write_report(folder, _warn))
-    return AGREES
-
-
-def _warn(line: str) -> None:
+def warn(line: str) -> None:
+    """Say on standard error what is wrong with a study's folder."""
     typer.echo(f"vibrissa: {line}", err=True)

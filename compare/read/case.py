@@ -1,49 +1,97 @@
 """Cases by name or TOML file, and what is to be done with them."""
 
 import difflib
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from analytic import NAMED_TABLES, Case, InputError, named_case
-from compare.judge.tolerances import Tolerances
+from analytic import NAMED_TABLES, InputError, named_case
+from compare.read.job import Job, SpaceJob
 from mujoco_models.settings import Settings
 
 if TYPE_CHECKING:
-    from compare.validate.stated import Uncertainties
-    from mujoco_models.motion import Motion
-    from mujoco_models.own.names import OwnModel
+    from analytic.space import SpatialCase
 
 
-@dataclass(frozen=True)
-class Job:
-    """A case, how MuJoCo is to simulate it, how far models may disagree, what is uncertain."""
+def load_case(name_or_path: str | Path) -> Job | SpaceJob:
+    """The case of that name, or from that TOML file: in the plane or in space, as the file says.
 
-    case: Case  # the problem
-    settings: Settings  # the numerics
-    tolerances: Tolerances = field(default_factory=Tolerances)  # the limits
-    # How the foot moves; None if MuJoCo's beam is at rest at every station.
-    motion: "Motion | None" = None
-    # What is uncertain about the case; None if nothing is stated.
-    uncertainties: "Uncertainties | None" = None
-    # The user's own model, if that is to be swept; it is always in motion.
-    model: "OwnModel | None" = None
-    engines: tuple[str, ...] = ("mujoco",)  # which engines sweep the case at rest
-    timeout: float = 600.0  # the longest that each of them may take [s]
+    Parameters
+    ----------
+    name_or_path : str or Path
+        One of `analytic.CASE_NAMES`, or a file named ``*.toml``.
 
+    Returns
+    -------
+    Job or SpaceJob
+        ``.case`` is an `analytic.Case`, or an `analytic.space.SpatialCase` if the file has a
+        ``[body]``; ``.settings`` and ``.tolerances`` are what `simulate_sweep` or `simulate_space`
+        and `compare` take. In the plane there are also ``.motion``, ``.model``,
+        ``.uncertainties`` and ``.engines``, as the file states them.
 
-def load_job(name_or_path: str) -> Job:
-    """The case of that name, or from that TOML file."""
-    if name_or_path in NAMED_TABLES:
-        return Job(named_case(name_or_path), Settings())
-    if not name_or_path.endswith(".toml"):
-        near = difflib.get_close_matches(name_or_path, NAMED_TABLES, n=1)
+    Raises
+    ------
+    InputError
+        If there is neither, or anything in the file cannot be used; the line is named.
+    """
+    name = str(name_or_path)
+    if name in NAMED_TABLES:
+        return Job(named_case(name), Settings())
+    if not name.endswith(".toml"):
+        near = difflib.get_close_matches(name, NAMED_TABLES, n=1)
         raise InputError(
             "case",
-            repr(name_or_path),
+            repr(name),
             f"one of {', '.join(NAMED_TABLES)}, or the path of a .toml file",
-            f"did you mean {near[0]}?" if near else "`vibrissa cases` lists them",
+            f"did you mean {near[0]}?" if near else "`vibrissa list cases` lists them",
         )
-    from compare.read.case_file import read_job  # named cases need none of the tables of a file
+    from compare.read.toml import TomlFile  # named cases need none of the tables of a file
 
-    return read_job(Path(name_or_path))
+    file = TomlFile.read(Path(name), "case file")
+    if "body" in file.tables:
+        from compare.read.space import job_in_space
+
+        return job_in_space(file)
+    from compare.read.tables import job_in_the_plane
+
+    return job_in_the_plane(file)
+
+
+def load_job(name_or_path: str | Path) -> Job:
+    """The case in the plane of that name, or from that TOML file."""
+    job = load_case(name_or_path)
+    if isinstance(job, Job):
+        return job
+    raise InputError(
+        f"{name_or_path}: body", "given", "left out in the plane", "`vibrissa run` takes it"
+    )
+
+
+def load_space_job(path: str | Path) -> SpaceJob:
+    """The case in space from a TOML file."""
+    job = load_case(path)
+    if isinstance(job, SpaceJob):
+        return job
+    raise InputError(
+        f"{path}: [body]", "missing", "given for a sweep in space", "`vibrissa run` takes it"
+    )
+
+
+def load_space(path: str | Path) -> "SpatialCase":
+    """The case in space from a TOML file.
+
+    Parameters
+    ----------
+    path : str or Path
+        Named ``*.toml``.
+
+    Returns
+    -------
+    SpatialCase
+        See `load_case`, which takes cases in the plane, too.
+
+    Raises
+    ------
+    InputError
+        As there, and if the case is in the plane.
+    """
+    return load_space_job(path).case

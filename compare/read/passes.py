@@ -1,6 +1,6 @@
 """The passes in the files of a rig: calibrated, without defects, their zero taken off."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,9 +11,9 @@ from analytic import CLAMP_READINGS, SENSED, Direction, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.table import as_numbers
 from compare.read.dialect import TextTable, read_text_table
-from compare.read.rig import read_sweeps
+from compare.read.kinds import TEXTS
+from compare.read.rig import cells, read_sweeps
 from compare.read.rig_file import Rig
-from compare.read.suffixes import TEXTS
 from compare.sense.record import Record, inspect_record
 from compare.sense.size import check_size
 
@@ -36,8 +36,6 @@ class Pass:
     # Of each clamp reading where the vibrissa is free: before the contact, and by how much it
     # changes until after it [force, force length]. NaN if no such stretch is known.
     zero: dict[str, float]
-    # Of each clamp reading where the vibrissa is free: before the contact, and by how much it
-    # changes until after it [force, force length]. NaN if no such stretch is known.
     drift: dict[str, float]
 
     @property
@@ -50,16 +48,27 @@ class Pass:
         return f"Pass({self.name} to the {self.direction}: {self.kept} of {self.rows} rows)"
 
 
-def read_passes(source: Path, rig: Rig) -> list[Pass]:
-    """All passes in a file, or in the files of a folder."""
-    files = [source]
-    if source.is_dir():
-        files = sorted(path for path in source.iterdir() if path.suffix.lower() in TEXTS)
-        if not files:
+def read_passes(sources: Iterable[Path], rig: Rig) -> list[Pass]:
+    """All passes in files, and in the files of folders."""
+    files = [path for source in sources for path in _files(source)]
+    stems = [path.stem for path in files]
+    for path in files:
+        if stems.count(path.stem) > 1:
             raise InputError(
-                "FILES", source, f"a folder with files named *{', *'.join(TEXTS)}", "name another"
+                "FILE", path, "of a name that no other has", "rename it: passes take it"
             )
     return [one for path in files for one in _of_file(path, rig)]
+
+
+def _files(source: Path) -> list[Path]:
+    if not source.is_dir():
+        return [source]
+    files = sorted(path for path in source.iterdir() if path.suffix.lower() in TEXTS)
+    if not files:
+        raise InputError(
+            "FILE", source, f"a folder with files named *{', *'.join(TEXTS)}", "name another"
+        )
+    return files
 
 
 def _of_file(path: Path, rig: Rig) -> Iterator[Pass]:
@@ -86,16 +95,10 @@ def _calibrated(table: TextTable, rig: Rig, path: Path) -> pd.DataFrame:
     found = {}
     for name in SENSED:
         said = getattr(rig.columns, name)
-        if said.column not in table.frame:
-            there = ", ".join(map(str, table.frame.columns[:20]))
-            raise InputError(
-                f"column {said.column!r} of {path}", "missing", f"one of {there}", "fix [columns]"
-            )
-        cells = table.frame[said.column]
-        if not pd.api.types.is_numeric_dtype(cells):
-            words = cells.astype(str).str.strip().isin(rig.missing)
-            cells = cells.mask(words)
-        numbers = as_numbers(cells, said.column, table.place)
+        column = cells(table.frame, said.column, path, "fix [columns]")
+        if not pd.api.types.is_numeric_dtype(column):
+            column = column.mask(column.astype(str).str.strip().isin(rig.missing))
+        numbers = as_numbers(column, said.column, table.place)
         zero = 0.0 if name in CLAMP_READINGS else said.zero
         found[name] = said.scale(name) * (numbers - zero)
     return pd.DataFrame(found)
@@ -106,12 +109,7 @@ def _groups(table: TextTable, rig: Rig, path: Path) -> Floats:
     column = rig.passes.column
     if column is None:
         return np.zeros(len(table.frame))
-    if column not in table.frame:
-        there = ", ".join(map(str, table.frame.columns[:20]))
-        raise InputError(
-            f"column {column!r} of {path}", "missing", f"one of {there}", "fix [passes]"
-        )
-    values = table.frame[column]
+    values = cells(table.frame, column, path, "fix [passes]")
     return np.asarray((values != values.shift()).cumsum(), dtype=float)
 
 

@@ -1,14 +1,25 @@
 """Values of a file: numbers, and texts with a unit; and tables of them, checked."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, TypeVar, get_args
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+)
 from pydantic_core import PydanticCustomError
 
 from analytic import InputError
-from compare.read.complaints import plain_name
+from compare.read.complaints import complaint, plain_name
+from compare.read.toml import Place
 from compare.read.units import in_si
+
+_WITH_UNITS = ("beam", "support", "profile", "sweep", "body", "path")
 
 _EXAMPLES = {
     "m": ("length", "50 mm"),
@@ -119,3 +130,61 @@ def _has_dimension(parts: list[Any]) -> bool:
         isinstance(getattr(part, "func", None), Dimension) or _has_dimension(list(get_args(part)))
         for part in parts
     )
+
+
+_Schema = TypeVar("_Schema", bound=Table)
+
+
+def validated(schema: type[_Schema], tables: Mapping[str, Any], place: Place) -> _Schema:
+    """What a file's tables say."""
+    try:
+        file = schema.model_validate(tables)
+    except ValidationError as error:
+        raise complaint(error, schema, place) from error
+    _check_units(file, tables, place)
+    return file
+
+
+def _check_units(file: Table, tables: Mapping[str, Any], place: Place) -> None:
+    """Refuse dimensions with and without units side by side, also those left to a default."""
+    bare: list[list[str]] = []
+    united: list[list[str]] = []
+    left_out: list[list[str]] = []
+    for name in filter(type(file).model_fields.__contains__, _WITH_UNITS):
+        if getattr(file, name) is None:
+            continue
+        given, schema = tables.get(name, {}), type(getattr(file, name))
+        # A shape whose scale has a unit is itself in units of the scale.
+        relative = name == "profile" and isinstance(given.get("scale"), str)
+        for key in schema.quantities():
+            number = key != "scale" and not relative
+            if key not in given:  # a scale of 1 is a factor
+                default = schema.model_fields[key].default
+                left_out += [[name, key]] if number and any(_numbers(default)) else []
+                continue
+            for value in _numbers(given[key]):
+                if isinstance(value, str):
+                    united.append([name, key])
+                elif value != 0 and (number or key == "scale"):  # 0 needs no unit
+                    bare.append([name, key])
+    if bare and united:
+        raise InputError(
+            place(bare[0]),
+            "without a unit",
+            f"given with a unit, as {united[0][-1]} is",
+            "write all dimensions with units, or none",
+        )
+    if left_out and united:
+        raise InputError(
+            place(left_out[0]),
+            "missing",
+            f"given with a unit, as {united[0][-1]} is",
+            "add it: its default is a number without a unit",
+        )
+
+
+def _numbers(value: Any) -> list[Any]:  # noqa: ANN401
+    """The numbers of a quantity, a pair of them, or a list of pairs."""
+    if isinstance(value, list | tuple):
+        return [number for part in value for number in _numbers(part)]
+    return [value]

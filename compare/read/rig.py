@@ -18,9 +18,9 @@ from analytic.problem.places import Place, row_number
 from analytic.problem.readings_file import is_ours
 from analytic.problem.table import as_numbers
 from compare.read.assumed import BEAM_WANTED, assumed_of
-from compare.read.case_file import read_beam
 from compare.read.dialect import read_text_table
-from compare.read.suffixes import TEXTS
+from compare.read.kinds import TEXTS
+from compare.read.tables import read_beam
 from compare.read.units import DIMENSIONS, OWN_UNITS, unit_in_si
 
 Source: TypeAlias = "str | Path | pd.DataFrame | Mapping[str, ArrayLike]"
@@ -203,13 +203,7 @@ def renamed(
             )
         if name in named:
             raise InputError("--column", repr(text), f"the only one for {name}", "leave one out")
-        if column not in table:
-            there = ", ".join(map(str, table.columns[:20]))
-            raise InputError(
-                f"column {column!r} of {called}", "missing", f"one of {there}", "check --column"
-            )
-        numbers = as_numbers(table[column], column, place)
-        named[name] = numbers
+        named[name] = as_numbers(cells(table, column, called, "check --column"), column, place)
         if unit:
             used[name] = unit
         elif units.get(column):
@@ -232,6 +226,14 @@ def renamed(
             f"name them with --column {example}",
         )
     return found, used, own
+
+
+def cells(table: pd.DataFrame, column: str, called: object, remedy: str) -> pd.Series:
+    """A column of a table."""
+    if column in table:
+        return table[column]
+    there = ", ".join(map(str, table.columns[:20]))
+    raise InputError(f"column {column!r} of {called}", "missing", f"one of {there}", remedy)
 
 
 def _example(name: str, columns: Iterable[object], units: Mapping[str, str], dimension: str) -> str:

@@ -3,11 +3,10 @@
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from analytic import SENSED, InputError
-from compare.read.complaints import complaint
-from compare.read.quantities import Length, Table
+from compare.read.quantities import Length, Table, validated
 from compare.read.tables import BeamTable
 from compare.read.toml import TomlFile
 from compare.read.units import DIMENSIONS, unit_in_si
@@ -42,10 +41,8 @@ class Passes(Table):
     column: str | None = None
     # The first and the last stretch of a pass, in which the vibrissa touches nothing: what the
     # sensor reads there is its zero, taken off along a straight line from one to the other.
-    free_before: Length = 0.0
-    # The first and the last stretch of a pass, in which the vibrissa touches nothing: what the
-    # sensor reads there is its zero, taken off along a straight line from one to the other.
-    free_after: Length = 0.0
+    free_before: Length = Field(default=0.0, ge=0)
+    free_after: Length = Field(default=0.0, ge=0)
 
 
 class Rig(Table):
@@ -66,10 +63,7 @@ class Rig(Table):
 def read_rig(path: Path) -> Rig:
     """The description of a rig."""
     file = TomlFile.read(path, "description of the rig")
-    try:
-        rig = Rig.model_validate(file.tables)
-    except ValidationError as error:
-        raise complaint(error, Rig, file.place) from error
+    rig = validated(Rig, file.tables, file.place)
     for name in SENSED:
         unit = getattr(rig.columns, name).unit
         if bool(unit) != rig.in_units or rig.in_units != rig.beam.build().si:
@@ -83,7 +77,4 @@ def read_rig(path: Path) -> Rig:
             unit_in_si(unit, DIMENSIONS[name])
         if getattr(rig.columns, name).gain == 0:
             raise InputError(file.place(["columns", name, "gain"]), 0, "not 0", "correct it")
-    for name in ("free_before", "free_after"):
-        if getattr(rig.passes, name) < 0:
-            raise InputError(file.place(["passes", name]), "negative", "0 or more", "correct it")
     return rig

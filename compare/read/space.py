@@ -1,11 +1,11 @@
 """Case files of sweeps in space."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, ValidationError
+from pydantic import BeforeValidator, Field
 
 from analytic import InputError
 from analytic.space import (
@@ -20,13 +20,12 @@ from analytic.space import (
     sphere,
 )
 from compare.judge.spatial import SpatialTolerances
-from compare.read.case_file import check_units
-from compare.read.complaints import complaint, name_of
+from compare.read.complaints import name_of
+from compare.read.job import SpaceJob
 from compare.read.limits import tolerances_of
 from compare.read.profiles import Drawn
-from compare.read.quantities import FileName, Length, Several, Table
+from compare.read.quantities import FileName, Length, Several, Table, validated
 from compare.read.tables import BeamTable
-from compare.read.toml import Place as Keyed
 from compare.read.toml import TomlFile
 from mujoco_models.space.settings import SpatialSettings
 
@@ -159,64 +158,9 @@ class SpaceFile(Table):
         )
 
 
-class SpaceJob(NamedTuple):
-    """What a case file of a sweep in space asks for."""
-
-    case: SpatialCase
-    settings: SpatialSettings
-    tolerances: SpatialTolerances
-
-
-def load_space(path: str | Path) -> SpatialCase:
-    """The case in space from a TOML file.
-
-    Parameters
-    ----------
-    path : str or Path
-        Named ``*.toml``.
-
-    Returns
-    -------
-    SpatialCase
-        See `load_space_job`.
-
-    Raises
-    ------
-    InputError
-        As there.
-    """
-    return load_space_job(path).case
-
-
-def load_space_job(path: str | Path) -> SpaceJob:
-    """The case in space from a TOML file, MuJoCo's settings, and the limits of agreement."""
-    if not str(path).endswith(".toml"):
-        raise InputError(
-            "case",
-            repr(str(path)),
-            "the path of a .toml file with [body] and [path]",
-            "the named cases are planar: `vibrissa run` takes them",
-        )
-    path = Path(path)
-    file = TomlFile.read(path, "case file")
-    if "profile" in file.tables and "body" not in file.tables:
-        raise InputError(
-            f"{path}: [body]",
-            "missing",
-            "given for a sweep in space",
-            "`vibrissa run` takes cases in the plane",
-        )
-    found = validate_space(file.tables, file.place)
+def job_in_space(file: TomlFile) -> SpaceJob:
+    """The job that a case file of a sweep in space states."""
+    found = validated(SpaceFile, file.tables, file.place)
     limits = tolerances_of(found.tolerances, file.place, SpatialTolerances)
-    case = found.case(path.parent, found.name or name_of(path))
+    case = found.case(file.path.parent, found.name or name_of(file.path))
     return SpaceJob(case, found.mujoco, limits)
-
-
-def validate_space(tables: Mapping[str, Any], place: Keyed) -> SpaceFile:
-    """What the tables of a case in space say."""
-    try:
-        found = SpaceFile.model_validate(tables)
-    except ValidationError as error:
-        raise complaint(error, SpaceFile, place) from error
-    check_units(found, tables, place)
-    return found

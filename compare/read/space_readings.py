@@ -11,8 +11,8 @@ from analytic.problem.readings_file import is_ours, read_file
 from analytic.space import SpatialReadings
 from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE, MOMENT, SENSED_IN_SPACE
 from compare.align.frames import Frame, from_frame
+from compare.read.kinds import TABLES
 from compare.read.rig import raw_table, renamed
-from compare.read.suffixes import TABLES
 
 DIMENSIONS_IN_SPACE = (
     dict.fromkeys(FOOT, "m") | dict.fromkeys(FORCE, "N") | dict.fromkeys(MOMENT, "N m")

@@ -15,6 +15,6 @@ def sweep_files(folder: Path) -> tuple[Path, Path]:
             "DIR",
             f"{folder} ({there[:200]})",
             "the folder of one run, with analytic.parquet and one mujoco-BEAM.parquet",
-            "make one: vibrissa run CASE --out DIR, in space vibrissa space CASE --engine mujoco",
+            "make one: vibrissa run CASE --out DIR",
         )
     return folder / "analytic.parquet", sweeps[0]

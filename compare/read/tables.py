@@ -20,6 +20,10 @@ from analytic import (
     Sweep,
 )
 from analytic.problem.support import check_support
+from compare.judge.tolerances import Tolerances
+from compare.read.complaints import name_of
+from compare.read.job import Job, engines_beside_exact
+from compare.read.limits import tolerances_of
 from compare.read.motion import MotionTable
 from compare.read.profiles import Drawn, MeshTable
 from compare.read.quantities import (
@@ -29,7 +33,11 @@ from compare.read.quantities import (
     RigidityAlong,
     RotationalStiffness,
     Table,
+    validated,
 )
+from compare.read.toml import Place, TomlFile
+from compare.read.uncertainty import uncertainties_of
+from mujoco_models.motion import Motion
 from mujoco_models.own.names import ContactKind, OwnModel
 from mujoco_models.own.shipped import shipped_models
 from mujoco_models.settings import Settings
@@ -199,3 +207,46 @@ class BeamFile(Table):
         friction = 0.0 if self.contact is None else self.contact.friction
         check_support(stiffness or math.inf, friction, self.beam.build(), signed=False)
         return {"support": {"clamp_stiffness": stiffness, "friction": friction}}
+
+
+def job_in_the_plane(file: TomlFile) -> Job:
+    """The job that a case file states."""
+    found = validated(CaseFile, file.tables, file.place)
+    limits = tolerances_of(found.tolerances, file.place, Tolerances)
+    case = found.case(file.path.parent, found.name or name_of(file.path))
+    moved, own = found.motion, found.model
+    motion = None if moved is None else moved.build(case.beam)
+    if own is not None:
+        motion = Motion() if moved is None else moved.of_a_model(case.beam, file.place)
+    return Job(
+        case,
+        found.mujoco,
+        limits,
+        motion,
+        uncertainties_of(found.uncertainty, case, file.place),
+        None if own is None else own.build(file.path.parent),
+        _engines_of(found, file.place),
+        found.engine.timeout,
+    )
+
+
+def _engines_of(case: CaseFile, place: Place) -> tuple[str, ...]:
+    try:
+        return engines_beside_exact(case.engine.name)
+    except InputError as error:
+        raise InputError(
+            place(["engine", "name"]), repr(case.engine.name), "names of engines", str(error)
+        ) from error
+
+
+def read_beam(path: Path) -> tuple[Beam, dict[str, Any]]:
+    """The vibrissa of a file's ``[beam]``, ``[support]`` and ``[contact]`` tables.
+
+    Other tables do not matter.
+    """
+    file = TomlFile.read(path, "beam file")
+    if "beam" not in file.tables:
+        raise InputError(f"{path}: [beam]", "missing", "given", "add the table")
+    known = {name: file.tables[name] for name in BeamFile.model_fields if name in file.tables}
+    found = validated(BeamFile, known, file.place)
+    return found.beam.build(), found.provenance()

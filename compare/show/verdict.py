@@ -52,7 +52,7 @@ def why(comparison: Comparison, budget: Budget | None = None) -> str:
         return f"likely: {comparison.likely}"
     unknown = "the readings alone do not show why"
     if _is_mujoco(comparison):
-        return f"{unknown}; `vibrissa budget CASE` measures the parts of a MuJoCo model"
+        return f"{unknown}; `vibrissa run CASE --budget` measures the parts of a MuJoCo model"
     rig = "check its units and columns, the vibrissa's length and rigidity, the object's place"
     if comparison.candidate.source.startswith("measured"):
         return f"{unknown}; {rig}"

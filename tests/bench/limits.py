@@ -91,8 +91,8 @@ def figures(quick: bool) -> list[Figure]:
         ),
         Figure(f"one of {cases:,} such sweeps", batch, of_one, _INTEGRALS, cases),
         Figure(
-            "`vibrissa cases`",
-            partial(process, command("cases")),
+            "`vibrissa list cases`",
+            partial(process, command("list", "cases")),
             partial(process, "import typer"),
             "Python, and the import of Typer",
         ),

@@ -101,8 +101,8 @@ def costs() -> dict[str, Cost]:
         ),
         "one of many such sweeps, by the same": Cost(many, _pendulum, _BATCH),
         "the object from its readings, by the same": Cost(lambda: reconstruct(readings), _pendulum),
-        "`vibrissa cases`, by an import of SciPy's optimisers": Cost(
-            partial(process, command("cases")),
+        "`vibrissa list cases`, by an import of SciPy's optimisers": Cost(
+            partial(process, command("list", "cases")),
             partial(process, "import scipy.optimize"),
         ),
     }

@@ -250,7 +250,7 @@ def test_the_command_compares_and_ends_with_the_right_code(tmp_path, request):
     def runs(segments, code, says):
         (tmp_path / "case.toml").write_text(text.format(segments))
         out = f"of-{segments}"
-        done = vibrissa("space", "case.toml", "--engine", "mujoco", "--out", out, cwd=tmp_path)
+        done = vibrissa("run", "case.toml", "--film", "--out", out, cwd=tmp_path)
         assert done.returncode == code, done.stdout + done.stderr
         assert says in done.stdout
 
@@ -289,8 +289,8 @@ def test_the_command_compares_and_ends_with_the_right_code(tmp_path, request):
         (("catenary", "other.txt", "--frame", "clamp"), 2, "--frame"),
     ):
         compares(*arguments, code=code, says=says)
-    for wrong in (["--engine", "drake"], ["--budget"]):
-        done = vibrissa("space", "case.toml", *wrong, cwd=tmp_path)
+    for wrong in (["--engine", "drake"], ["--engine", "exact", "--budget"]):
+        done = vibrissa("run", "case.toml", *wrong, cwd=tmp_path)
         assert done.returncode == 2
         assert len(done.stderr.strip().splitlines()) == 1
 
@@ -320,8 +320,8 @@ force_x.max = { limit = 0.3, reason = "for the controller" }
 def test_the_report_of_a_run_again(tmp_path, request):
     """Limits with their reasons, frame, parts, body and animation are those of the run."""
     (tmp_path / "case.toml").write_text(RUN)
-    words = ("--engine", "mujoco", "--budget", "--frame", "clamp", "--out", "out")
-    done = vibrissa("space", "case.toml", *words, cwd=tmp_path)
+    words = ("--film", "--budget", "--frame", "clamp", "--out", "out")
+    done = vibrissa("run", "case.toml", *words, cwd=tmp_path)
     before = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
     for name in ("report.html", "contacts.png"):
         (tmp_path / "out" / name).unlink()

@@ -1,13 +1,15 @@
-"""The command ``float32`` where nothing of it can be done."""
+"""``inspect --float32`` where nothing of it can be done."""
 
 import pytest
 
 from tests.compare.command import vibrissa
 
+FLOAT32 = ("inspect", "catenary", "--float32")
+
 
 @pytest.mark.parametrize("stiffnesses", ["", "1e7,", "many", "1e12", "nan"])
 def test_odd_stiffnesses_are_a_line(tmp_path, stiffnesses):
-    done = vibrissa("float32", "catenary", "--contact-stiffness", stiffnesses, cwd=tmp_path)
+    done = vibrissa(*FLOAT32, "--contact-stiffness", stiffnesses, cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert "numbers between commas" in done.stderr
@@ -19,7 +21,7 @@ def test_a_wrong_version_of_the_extra_is_a_line(tmp_path, monkeypatch):
     text = "Metadata-Version: 2.1\nName: mujoco-warp\nVersion: 1.0\n"
     (hidden / "mujoco_warp-1.0.dist-info" / "METADATA").write_text(text)
     monkeypatch.syspath_prepend(hidden)
-    done = vibrissa("float32", "catenary", cwd=tmp_path)
+    done = vibrissa(*FLOAT32, cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert "mujoco-warp 1.0 is not" in done.stderr

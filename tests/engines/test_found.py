@@ -182,7 +182,7 @@ def test_an_interrupt_keeps_the_engines_that_are_done(odd_engines, tmp_path, mon
 
 
 def test_the_command_lists_them(odd_engines, tmp_path):
-    done = vibrissa("engines", cwd=tmp_path)
+    done = vibrissa("list", "engines", cwd=tmp_path)
     assert done.returncode == 0
     assert any(line.split()[:2] == ["mujoco", "subject"] for line in done.stdout.splitlines())
     assert "no-such-thing is not installed" in done.stdout

@@ -23,7 +23,7 @@ MADE = runpy.run_path(str(EXAMPLE / "make_data.py"))
 
 @pytest.fixture(scope="module")
 def passes():
-    return read_passes(EXAMPLE / "data", read_rig(EXAMPLE / "rig.toml"))
+    return read_passes([EXAMPLE / "data"], read_rig(EXAMPLE / "rig.toml"))
 
 
 @pytest.fixture
@@ -112,7 +112,8 @@ def flawed(folder, old, new, name="rig.toml"):
         ('column = "Fx"', 'column = "F_x"', "column 'F_x' of .*missing"),
         ("gain = 1.02", "gain = 0", "gain"),
         ("gain = 1.02", "gain = 1e200", r"force_x of the pass .*less than 1e\+40"),
-        ('"2e-6 N m^2"', "1e-320", "flexural_rigidity .*1e-150"),
+        ('"2e-6 N m^2"', '"1e-320 N m^2"', "flexural_rigidity .*1e-150"),
+        ('"2e-6 N m^2"', "2e-6", "flexural_rigidity = without a unit"),
         ("gain = 1.02", "gian = 1.02", "did you mean gain"),
         ('column = "pass"', 'column = "run"', "column 'run'"),
         ('free_before = "5 mm"', 'free_before = "-5 mm"', "free_before"),
@@ -124,7 +125,7 @@ def flawed(folder, old, new, name="rig.toml"):
 def test_a_description_that_cannot_be_is_one_line(folder, old, new, why):
     flawed(folder, old, new)
     with pytest.raises(InputError, match=why) as found:
-        read_passes(folder / "data", read_rig(folder / "rig.toml"))
+        read_passes([folder / "data"], read_rig(folder / "rig.toml"))
     assert "\n" not in str(found.value)
 
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
-from compare.read.case_file import validate
-from compare.read.space import SpaceFile, validate_space
+from compare.read.quantities import validated
+from compare.read.space import SpaceFile
 from compare.read.tables import CaseFile
 from compare.read.toml import Place
 from compare.study.grid.axes import Axis
@@ -97,7 +97,9 @@ def case_file(parameters: Mapping[str, Any]) -> tuple[CaseFile | SpaceFile, Sens
 
 def checked_case(tables: Mapping[str, Any], place: Place) -> CaseFile | SpaceFile:
     """The case of some tables, in space if it has a body."""
-    return validate_space(tables, place) if "body" in tables else validate(tables, place)
+    if "body" in tables:
+        return validated(SpaceFile, tables, place)
+    return validated(CaseFile, tables, place)
 
 
 def replaced(values: Sequence[Any], component: str, value: object) -> list[Any]:

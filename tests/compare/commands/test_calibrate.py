@@ -28,7 +28,7 @@ def folder(tmp_path_factory):
 @pytest.mark.parametrize("file", ["swept.parquet", "rig.csv"])
 def test_the_clamp_is_found_and_written(file, folder, tmp_path):
     done = vibrissa(
-        "calibrate", folder / "object.toml", folder / file,
+        "calibrate", folder / file, folder / "object.toml",
         "--fit", "clamp_stiffness, flexural_rigidity", "--noise", "0.01", "--out", "found",
         cwd=tmp_path,
     )  # fmt: skip
@@ -46,7 +46,7 @@ def test_the_clamp_is_found_and_written(file, folder, tmp_path):
 @pytest.mark.slow
 def test_a_case_that_is_wrong_in_something_else_disagrees(folder, tmp_path):
     done = vibrissa(
-        "calibrate", folder / "rubs.toml", folder / "rig.csv", "--fit", "clamp_stiffness",
+        "calibrate", folder / "rig.csv", folder / "rubs.toml", "--fit", "clamp_stiffness",
         "--noise", "0.001", cwd=tmp_path,
     )  # fmt: skip
     assert done.returncode == 1
@@ -66,7 +66,7 @@ def test_a_case_that_is_wrong_in_something_else_disagrees(folder, tmp_path):
     ],
 )
 def test_bad_input_is_one_line(file, options, message, folder, tmp_path):
-    done = vibrissa("calibrate", folder / "object.toml", folder / file, *options, cwd=tmp_path)
+    done = vibrissa("calibrate", folder / file, folder / "object.toml", *options, cwd=tmp_path)
     assert done.returncode == 2
     assert message in done.stderr
     assert len(done.stderr.splitlines()) == 1

@@ -10,7 +10,15 @@ from tests.compare.command import vibrissa
 @pytest.mark.slow
 def test_the_papers_figures(tmp_path):
     done = vibrissa(
-        "analytic", "shallow-catenary", "--figures", "--certified", "--out", ".", cwd=tmp_path
+        "run",
+        "shallow-catenary",
+        "--engine",
+        "exact",
+        "--figures",
+        "--certified",
+        "--out",
+        ".",
+        cwd=tmp_path,
     )
     assert done.returncode == 0, done.stderr
     drawn = {path.name for path in tmp_path.glob("*.png")}
@@ -21,7 +29,9 @@ def test_the_papers_figures(tmp_path):
 @pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("name", [name for name in REAL_CASE_NAMES if name != "whisker"])
 def test_cases_beyond_the_paper(tmp_path, name):
-    done = vibrissa("analytic", name, "--figures", "--certified", "--out", ".", cwd=tmp_path)
+    done = vibrissa(
+        "run", name, "--engine", "exact", "--figures", "--certified", "--out", ".", cwd=tmp_path
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     assert "200 of 200 stations ok" in done.stdout
     drawn = {path.name for path in tmp_path.glob("*.png")}
@@ -35,7 +45,17 @@ def test_cases_beyond_the_paper(tmp_path, name):
 @pytest.mark.slow
 def test_a_whisker(tmp_path):
     """A picture that holds for uniform vibrissae alone is not drawn; contacts are found."""
-    done = vibrissa("analytic", "whisker", "--figures", "--certified", "--out", ".", cwd=tmp_path)
+    done = vibrissa(
+        "run",
+        "whisker",
+        "--engine",
+        "exact",
+        "--figures",
+        "--certified",
+        "--out",
+        ".",
+        cwd=tmp_path,
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     assert {path.name for path in tmp_path.glob("*.png")} == {"figure-14.png", "figure-15.png"}
     found = vibrissa("reconstruct", "analytic.parquet", "--out", "found", cwd=tmp_path)
@@ -49,7 +69,9 @@ def test_a_vibrissa_that_locks_itself_is_said(tmp_path):
         "[beam]\nnatural_curvature = 0.5\n[contact]\nfriction = 0.9\n"
         '[profile]\nkind = "parabola"\na = 0.5\nc = 0.5\n'
     )
-    done = vibrissa("analytic", "locks.toml", "--stations", 60, "--out", "out", cwd=tmp_path)
+    done = vibrissa(
+        "run", "locks.toml", "--engine", "exact", "--stations", 60, "--out", "out", cwd=tmp_path
+    )
     assert done.returncode == 1
     assert "5 sticks (foot_x 1.1757 to 0.9986 L: the contact would slide back, " in done.stdout
     assert len(done.stdout.splitlines()) == 2
@@ -59,7 +81,7 @@ def test_a_vibrissa_that_would_touch_twice_is_said(tmp_path):
     (tmp_path / "forward.toml").write_text(
         '[beam]\nnatural_curvature = 0.5\n[profile]\nkind = "catenary"\na = 0.5\nc = -0.8\n'
     )
-    done = vibrissa("analytic", "forward.toml", "--out", ".", cwd=tmp_path)
+    done = vibrissa("run", "forward.toml", "--engine", "exact", "--out", ".", cwd=tmp_path)
     assert done.returncode == 1
     assert "touches again (foot_x" in done.stdout
     assert "another part of the vibrissa touches the object, or would lie in it" in done.stdout
@@ -84,7 +106,7 @@ def test_other_contours(tmp_path, profile, said):
 
     trimesh.creation.icosphere(subdivisions=3).export(tmp_path / "ball.stl")
     (tmp_path / "case.toml").write_text(f"[profile]\n{profile}\n[sweep]\nstations = 20\n")
-    done = vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
+    done = vibrissa("run", "case.toml", "--engine", "exact", "--out", ".", cwd=tmp_path)
     if said is None:
         assert done.returncode == 0, done.stderr
     else:

@@ -1,4 +1,4 @@
-"""`vibrissa run` and `simulate` of a sweep in motion."""
+"""`vibrissa run` of a sweep in motion."""
 
 import json
 
@@ -31,7 +31,7 @@ def test_run_compares_with_the_closed_form_and_with_rest(tmp_path):
 
 
 def test_simulate_says_what_moved(tmp_path):
-    done = vibrissa("simulate", "catenary", *FAST, cwd=tmp_path)
+    done = vibrissa("run", "catenary", "--sweep-only", *FAST, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "kinetic share in contact at most" in done.stdout
     folder = "catenary-primitive-10-segments-40-stations-speed-0.4"
@@ -42,12 +42,12 @@ def test_simulate_says_what_moved(tmp_path):
     ("words", "said"),
     [
         (("--speed", "0"), "motion.speed"),
-        (("--motion", "--spatial"), "mujoco.planar"),
+        (("--motion", "--spatial"), "--spatial"),
         (("--timestep", "9"), "motion.timestep"),
     ],
 )
 def test_bad_motions_are_refused(tmp_path, words, said):
-    done = vibrissa("simulate", "catenary", *words, cwd=tmp_path)
+    done = vibrissa("run", "catenary", "--sweep-only", *words, cwd=tmp_path)
     assert done.returncode == 2
     assert said in done.stderr
     assert done.stderr.count("\n") == 1

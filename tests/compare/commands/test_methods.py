@@ -1,4 +1,4 @@
-"""The command ``methods``."""
+"""``reconstruct`` of contacts that are known: how well methods find them."""
 
 import pandas as pd
 import pytest
@@ -10,9 +10,9 @@ from tests.compare.command import vibrissa
 @pytest.mark.slow
 def test_a_case_and_a_file_of_its_readings_are_alike(tmp_path):
     solve_sweep(named_case("parabola")).write(tmp_path / "mine.parquet")
-    for given in ("parabola", "mine.parquet"):
+    for given in (["parabola"], ["mine.parquet", "--errors"]):
         done = vibrissa(
-            "methods", given, "--method", "kaneko,elastica", "--noise", "0,0.01", cwd=tmp_path
+            "reconstruct", *given, "--method", "kaneko,elastica", "--noise", "0,0.01", cwd=tmp_path
         )
         assert done.returncode == 0, done.stderr
         assert "kaneko" in done.stdout
@@ -25,8 +25,7 @@ def test_a_case_and_a_file_of_its_readings_are_alike(tmp_path):
 
 
 def test_readings_of_other_vibrissae(tmp_path):
-    done = vibrissa(
-        "methods", "parabola", "--method", "binary,elastica", "--noise", "0",
+    done = vibrissa("reconstruct", "parabola", "--method", "binary,elastica", "--noise", "0",
         "--on", "exact,friction", "--out", "out", cwd=tmp_path,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
@@ -49,11 +48,11 @@ def test_readings_of_other_vibrissae(tmp_path):
         ("missing.parquet",),
         ("parabole",),
         ("parabola", "--on", "smooth"),
-        ("mine.parquet", "--on", "friction"),
+        ("mine.parquet", "--errors"),
     ],
 )
 def test_bad_input_is_one_line(arguments, tmp_path):
-    done = vibrissa("methods", *arguments, cwd=tmp_path)
+    done = vibrissa("reconstruct", *arguments, cwd=tmp_path)
     assert done.returncode == 2
     assert len(done.stderr.strip().splitlines()) == 1
     assert not list(tmp_path.iterdir())

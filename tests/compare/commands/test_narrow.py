@@ -21,7 +21,7 @@ def methods():
 
 
 def passes():
-    terminal.print_passes(read_passes(RIG / "data", read_rig(RIG / "rig.toml")), {})
+    terminal.print_passes(read_passes([RIG / "data"], read_rig(RIG / "rig.toml")), {})
 
 
 def budget():

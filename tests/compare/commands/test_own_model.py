@@ -52,7 +52,7 @@ def test_run_compares_it_with_the_closed_form(folder):
 @pytest.mark.slow
 def test_the_budget_of_a_model_and_its_fastest_motion(folder):
     """Observed: contact model 3e-4, beam 5e-4, solver 2e-7; 0.24 L/T1 for a per cent."""
-    done = vibrissa("budget", "case.toml", "--target", "1e-2", "--out", "out", cwd=folder)
+    done = vibrissa("run", "case.toml", "--budget", "--target", "1e-2", "--out", "out", cwd=folder)
     assert done.returncode in (0, 1), done.stderr
     found = json.loads((folder / "out" / "motion-budget.json").read_text())
     assert {"rate", "damping", "time step", "contact model", "solver", "beam", "at rest"} < set(
@@ -71,7 +71,7 @@ def test_the_budget_blames_default_contacts(folder):
     """Observed 0.31 of the 0.51 that the tutorial's chain is off by."""
     (folder / "mine.xml").write_bytes(shipped_models()["tutorial-chain"].read_bytes())
     (folder / "case.toml").write_text(CASE + "[motion]\nspeed = 0.1\n")
-    vibrissa("budget", "case.toml", "--out", "out", cwd=folder)
+    vibrissa("run", "case.toml", "--budget", "--out", "out", cwd=folder)
     found = json.loads((folder / "out" / "motion-budget.json").read_text())
     assert found["blame"] == "contact model"
 
@@ -82,7 +82,7 @@ def test_the_budget_blames_a_beam_that_is_too_soft(folder):
     text = (folder / "mine.xml").read_text()
     (folder / "mine.xml").write_text(text.replace('stiffness="0.1288"', 'stiffness="0.12236"'))
     (folder / "case.toml").write_text(CASE.replace("= 400", "= 800") + "[motion]\nspeed = 0.2\n")
-    done = vibrissa("budget", "case.toml", "--out", "out", cwd=folder)
+    done = vibrissa("run", "case.toml", "--budget", "--out", "out", cwd=folder)
     assert "The budget closes; beam dominates" in done.stdout
     found = json.loads((folder / "out" / "motion-budget.json").read_text())
     part, whole = found["parts"]["beam"]["moment_z"]["rms"], found["disagreement"]["moment_z"]
@@ -90,14 +90,14 @@ def test_the_budget_blames_a_beam_that_is_too_soft(folder):
 
 
 def test_simulate_sweeps_it(folder):
-    done = vibrissa("simulate", "case.toml", cwd=folder)
+    done = vibrissa("run", "case.toml", "--sweep-only", cwd=folder)
     assert done.returncode == 0, done.stderr
     assert "model sound chain" in done.stdout
 
 
 def test_a_shipped_model_is_known_by_its_name(folder):
     (folder / "case.toml").write_text(CASE.replace("mine.xml", "sound-chain"))
-    done = vibrissa("simulate", "case.toml", "--speed", "0.3", cwd=folder)
+    done = vibrissa("run", "case.toml", "--sweep-only", "--speed", "0.3", cwd=folder)
     assert done.returncode == 0, done.stderr
     assert "model sound chain" in done.stdout
 
@@ -117,7 +117,7 @@ def test_a_shipped_model_is_known_by_its_name(folder):
 )
 def test_what_is_wrong_is_one_line(folder, text, words, said):
     (folder / "case.toml").write_text(text)
-    done = vibrissa("simulate", "case.toml", *words, cwd=folder)
+    done = vibrissa("run", "case.toml", "--sweep-only", *words, cwd=folder)
     assert done.returncode == 2
     assert said in done.stderr
     assert done.stderr.count("\n") == 1

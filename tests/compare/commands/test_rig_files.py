@@ -15,7 +15,7 @@ from tests.compare.commands.case_files import CASE, UNITS
 def test_reconstruction_of_a_rigs_file(tmp_path):
     """Own column names, millimetres and millinewtons, and the vibrissa given by a file."""
     (tmp_path / "case.toml").write_text(UNITS)
-    vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
+    vibrissa("run", "case.toml", "--engine", "exact", "--out", ".", cwd=tmp_path)
     sweep = Readings.read(tmp_path / "analytic.parquet")
     rig = sweep.table[["foot_x"]] * 1e3
     rig.columns = ["stage"]
@@ -51,7 +51,7 @@ RIG_COLUMNS = tuple(word for column in RIG for word in ("--column", column))
 def rig(tmp_path) -> Path:
     """A folder with a sweep in SI units and the same from a rig: mm, mN, 2 mm off, 0.3 % noise."""
     (tmp_path / "case.toml").write_text(UNITS.replace("stations = 30", "stations = 120"))
-    vibrissa("analytic", "case.toml", "--out", ".", cwd=tmp_path)
+    vibrissa("run", "case.toml", "--engine", "exact", "--out", ".", cwd=tmp_path)
     sweep = Readings.read(tmp_path / "analytic.parquet")
     rng = np.random.default_rng(1)
     columns = {"stage": sweep.values("foot_x") * 1e3 + 2.0}

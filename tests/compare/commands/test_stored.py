@@ -30,7 +30,7 @@ def test_the_report_of_a_run_again(tmp_path):
         '[profile]\nkind = "catenary"\na = 0.5\nc = -0.8\n' + limits
     )
     words = ("case.toml", "--stations", 30, "--segments", 8, "--out", "out")
-    done = vibrissa("run", *words, "--budget", cwd=tmp_path)
+    done = vibrissa("run", *words, "--budget", "--film", cwd=tmp_path)
     before = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
     for name in ("report.html", "readings.png"):
         (tmp_path / "out" / name).unlink()
@@ -106,10 +106,8 @@ def test_rigs_side_by_side(tmp_path, sweep):
     columns = ("foot_x=stage:mm", "force_x=Fx:mN", "force_y=Fy:mN", "moment_z=Mz:mN mm")
     words = [word for column in columns for word in ("--column", column)]
     files = ("engine.csv", "one.csv", "two.txt", "three.parquet")
-    done = vibrissa(
-        "side-by-side", "analytic.parquet", *files, *words, "--direction", "left", "--out", "out",
-        cwd=tmp_path,
-    )  # fmt: skip
+    words += ["--direction", "left", "--out", "out"]
+    done = vibrissa("compare", "analytic.parquet", *files, *words, cwd=tmp_path)
     assert "three.parquet" in done.stderr or "out of order" in done.stderr
     found = json.loads((tmp_path / "out" / "side-by-side.json").read_text())["comparisons"]
     assert [one["names"][1] for one in found[:4]] == ["engine", "one", "two", "three"]
@@ -120,11 +118,12 @@ def test_rigs_side_by_side(tmp_path, sweep):
     assert done.returncode in (0, 1)
 
 
-def test_an_engines_file_keeps_its_beam_beside_rigs(tmp_path, sweep):
-    sweep.write(tmp_path / "analytic.parquet")
+def test_an_engines_files_keep_their_beam(tmp_path, sweep):
+    for name in ("analytic", "one", "two"):
+        sweep.write(tmp_path / f"{name}.parquet")
     (tmp_path / "other.toml").write_text("[beam]\nlength = 7.0\n")
-    done = vibrissa(
-        "side-by-side", "analytic.parquet", "analytic.parquet", "--beam", "other.toml",
-        "--out", "out", cwd=tmp_path,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
+    words = ("compare", "analytic.parquet", "one.parquet", "two.parquet", "--out", "out")
+    assert vibrissa(*words, cwd=tmp_path).returncode == 0
+    done = vibrissa(*words, "--beam", "other.toml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "--beam = other.toml: must be beside a file that no engine wrote" in done.stderr

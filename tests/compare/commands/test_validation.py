@@ -78,7 +78,7 @@ def test_a_reference_that_is_a_file_takes_its_uncertainties_from_a_case(tmp_path
     solve_sweep(load_job(str(tmp_path / "case.toml")).case).write(tmp_path / "mine.parquet")
     rig(tmp_path / "rig.csv", 2.06e-6)
     for arguments, why in (
-        (("case.toml", "--uncertainty", "case.toml"), "state it in the case itself"),
+        (("case.toml", "--uncertainty", "case.toml"), "beside a reference that is a file"),
         (("mine.parquet", "--uncertainty", "bare.toml"), "add the table"),
         (("mine.parquet", "--budget", "budget.json"), "add --uncertainty"),
         (("mine.parquet", "--uncertainty", "case.toml", "--budget", "no.json"), "no.json"),

@@ -9,8 +9,7 @@ from analytic import InputError
 from analytic.space import solve_space
 from compare import compare_space, read_space
 from compare.align.frames import components
-from compare.read.case import load_job
-from compare.read.space import load_space, load_space_job
+from compare.read.case import load_job, load_space, load_space_job
 
 BALL = """
 [beam]
@@ -113,7 +112,9 @@ def test_a_planar_case_is_sent_to_its_command(tmp_path):
 
 def test_a_case_in_space_is_sent_to_its_command(tmp_path):
     (tmp_path / "ball.toml").write_text(BALL)
-    with pytest.raises(InputError, match=r"line 6: body = given.*vibrissa space"):
+    with pytest.raises(
+        InputError, match=r"body = given: must be left out in the plane; `vibrissa run`"
+    ):
         load_job(str(tmp_path / "ball.toml"))
 
 

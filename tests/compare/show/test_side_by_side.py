@@ -46,7 +46,7 @@ def test_command(exact, tmp_path):
     for name, share in (("near", 1e-3), ("far", 1e-2)):
         shifted(exact, share, 6.0).write(tmp_path / f"{name}.parquet")
     done = vibrissa(
-        "side-by-side", "exact.csv", "near.parquet", "far.parquet", "--out", "out", cwd=tmp_path
+        "compare", "exact.csv", "near.parquet", "far.parquet", "--out", "out", cwd=tmp_path
     )
     assert done.returncode == 1  # far is
     assert "far" in done.stdout
@@ -55,11 +55,11 @@ def test_command(exact, tmp_path):
     found = json.loads((tmp_path / "out/side-by-side.json").read_text())["comparisons"]
     assert [one["verdict"] for one in found] == ["agrees", "disagrees", "disagrees"]
     assert found[2]["names"] == ["near", "far"]
-    done = vibrissa("side-by-side", "parabola", "near.parquet", "--out", "out", cwd=tmp_path)
+    done = vibrissa("compare", "parabola", "near.parquet", "--out", "out", cwd=tmp_path)
     assert done.returncode == 0
-    done = vibrissa("side-by-side", "parabola", "no.parquet", "--out", "out", cwd=tmp_path)
+    done = vibrissa("compare", "parabola", "no.parquet", "--out", "out", cwd=tmp_path)
     assert done.returncode == 2
     assert "no.parquet" in done.stderr
-    twice = vibrissa("side-by-side", "parabola", "near.parquet", "near.parquet", cwd=tmp_path)
+    twice = vibrissa("compare", "parabola", "near.parquet", "near.parquet", cwd=tmp_path)
     assert twice.returncode == 2
     assert "each file once" in twice.stderr

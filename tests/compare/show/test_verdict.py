@@ -43,7 +43,7 @@ def test_readings_that_agree_beside_noise(exact, source):
     [
         ("measured, rig.csv", "check its units", ("refine", "budget")),
         ("mine", "refine one thing at a time", ("budget",)),
-        ("mujoco chain", "vibrissa budget CASE", ("refine", "check its units")),
+        ("mujoco chain", "vibrissa run CASE --budget", ("refine", "check its units")),
     ],
 )
 def test_advice_fits_the_source(exact, source, advice, others):

@@ -1,4 +1,4 @@
-"""``vibrissa study`` and ``vibrissa study-report`` as a user meets them."""
+"""``vibrissa study`` and ``vibrissa report`` as a user meets them."""
 
 import re
 import resource
@@ -130,7 +130,7 @@ def test_bad_input_in_one_line(folder, study):
 def test_a_simulated_study_and_its_report(folder, study, command):
     (folder / "grid.toml").write_text(SIMULATED)
     assert study().returncode == 0
-    done = command("study-report", "out")
+    done = command("report", "out")
     assert (done.returncode, done.stderr) == (0, "")
     page = (folder / "out" / "report.html").read_text()
     assert "Observed orders" in page
@@ -189,7 +189,7 @@ def test_no_scheduler_is_one_line(folder, study, address):
 
 
 def test_a_folder_without_a_study(command):
-    done = command("study-report", ".")
+    done = command("report", ".")
     assert done.returncode == 2
     assert "vibrissa study" in done.stderr
 
@@ -211,6 +211,6 @@ def test_shipped_studies_at_small_size(command, tmp_path, name):
     outcomes = set(runs["outcome"])
     assert "done" in outcomes <= allowed
     assert done.returncode == (0 if outcomes == {"done"} else 1), done.stderr
-    report = command("study-report", "out")
+    report = command("report", "out")
     assert report.returncode == 0, report.stderr
     assert (tmp_path / "out" / "report.html").exists()

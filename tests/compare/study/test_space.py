@@ -183,7 +183,7 @@ def test_the_command_the_rows_and_the_report(tmp_path, command):
     worst = rows.set_index(["mujoco.segments", "path.tangent.x"]).disagreement_moment_z_rms
     order = np.log2(worst[8] / worst[16])
     assert (order > 1.5).all()
-    done = command("study-report", "out")
+    done = command("report", "out")
     assert done.returncode == 0, done.stdout + done.stderr
     page = (tmp_path / "out" / "report.html").read_text()
     assert "falls from" in page

@@ -6,7 +6,8 @@ import mujoco  # noqa: F401
 import pint  # noqa: F401
 import pytest
 
-import compare.read.case_file
+import compare.read.case
+import compare.read.tables
 import compare.testing.gates
 import compare.testing.summary  # noqa: F401
 from analytic import named_case, solve_sweep  # noqa: F401

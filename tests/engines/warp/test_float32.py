@@ -92,7 +92,17 @@ def test_what_cannot_be_looked_at_is_a_line(case, settings, says):
 
 @pytest.mark.slow
 def test_the_command_says_where_it_loses_contacts(tmp_path):
-    command = ("float32", "parabola", "--stations", 20, "--segments", 20, "--out", "out")
+    command = (
+        "inspect",
+        "parabola",
+        "--float32",
+        "--stations",
+        20,
+        "--segments",
+        20,
+        "--out",
+        "out",
+    )
     done = vibrissa(*command, "--contact-stiffness", "1e5,1e9", cwd=tmp_path)
     assert done.returncode in (0, 1), done.stderr
     assert "loses contacts from" in done.stdout

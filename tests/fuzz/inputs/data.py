@@ -34,14 +34,19 @@ def data(dice: Dice) -> Trial:
         content = _text(dice)
     if dice.chance(0.2):
         content = dice.damaged(content)
-    files = {name: content, "good.csv": good_csv(), "beam.toml": b"[beam]\nlength = 1.0\n"}
+    files = {
+        name: content,
+        "good.csv": good_csv(),
+        "more.csv": good_csv(),
+        "beam.toml": b"[beam]\nlength = 1.0\n",
+    }
     words = dice.pick(
         ["reconstruct", name],
-        ["calibrate", dice.pick("parabola", "catenary"), name],
+        ["calibrate", name, dice.pick("parabola", "catenary")],
         ["compare", "good.csv", name],
         ["compare", name, "good.csv"],
-        ["side-by-side", "good.csv", name],
-        ["side-by-side", name, "good.csv"],
+        ["compare", "good.csv", name, "more.csv"],
+        ["compare", name, "good.csv", "more.csv"],
     )
     for spec in dice.some(COLUMNS, 2) if dice.chance(0.4) else []:
         words += ["--column", spec]
@@ -50,9 +55,9 @@ def data(dice: Dice) -> Trial:
     words += dice.some(("--direction=left", "--direction=right"), 1)
     if words[0] == "calibrate":
         words += ["--fit", ",".join(dice.some(FITTED, 2)) or dice.pick(*FITTED)]
-    if words[0] != "side-by-side":
+    if "more.csv" not in words:
         words += dice.some(("--noise=0.01", "--noise=0", "--noise=auto", "--noise=-1"), 1)
-    if words[0] == "compare":
+    if words[0] == "compare" and "more.csv" not in words:
         words += dice.some(("--offset=auto", "--offset=0.1", "--offset=1e300"), 1)
     return Trial("data", [*words, "--out", "out"], files)
 

@@ -27,7 +27,7 @@ def mesh(dice: Dice) -> Trial:
     for key in dice.some(("height", "scale", "axes", "hull", "tolerance"), 2):
         plain = {"hull": "true", "tolerance": "1e-2", "axes": '"xz"', "scale": "0.5"}
         text += f"{key} = {dice.pick(dice.value(), plain.get(key, '0.1'))}\n"
-    words = ["analytic", "case.toml", "--stations", "4", "--out", "out"]
+    words = ["run", "case.toml", "--engine", "exact", "--stations", "4", "--out", "out"]
     return Trial("mesh", words, {"case.toml": text.encode(errors="surrogateescape"), name: content})
 
 

@@ -27,12 +27,11 @@ def case(dice: Dice) -> Trial:
     for _ in range(dice.rng.integers(0, 4)):
         _spoil(dice, tables)
     text = dice.toml(tables).encode(errors="surrogateescape")
-    command = dice.pick("analytic", "analytic", "analytic", "simulate")
-    words = [command, "case.toml", "--out", "out", "--stations", dice.pick("4", "7")]
-    if command == "simulate":
-        words += ["--segments", "8"]
-    elif dice.chance(0.3):
-        words += ["--certified"]
+    words = ["run", "case.toml", "--out", "out", "--stations", dice.pick("4", "7")]
+    if dice.chance(0.25):
+        words += ["--sweep-only", "--segments", "8"]
+    else:
+        words += ["--engine", "exact", *dice.some(["--certified"], 1)]
     return Trial("case", words, {"case.toml": text, "body.stl": body()})
 
 
@@ -62,13 +61,15 @@ def toml(dice: Dice) -> Trial:
         content = text.encode(dice.pick("utf-16", "utf-8-sig", "utf-32"))
     if dice.chance(0.3):
         content = dice.damaged(content)
-    command = dice.pick(["analytic", "case.toml", "--stations", "4"],
+    command = dice.pick(["run", "case.toml", "--engine", "exact", "--stations", "4"],
                         ["study", "case.toml", "--dry-run"],
                         ["compare", "good.csv", "good.csv", "--tolerances", "case.toml"],
                         ["reconstruct", "good.csv", "--beam", "case.toml"],
-                        ["calibrate", "case.toml", "good.csv"],
-                        ["side-by-side", "case.toml", "good.csv"])  # fmt: skip
-    return Trial("toml", command, {"case.toml": content, "good.csv": good_csv()})
+                        ["calibrate", "good.csv", "case.toml"],
+                        ["compare", "case.toml", "good.csv", "more.csv"])  # fmt: skip
+    return Trial(
+        "toml", command, {"case.toml": content, "good.csv": good_csv(), "more.csv": good_csv()}
+    )
 
 
 def study(dice: Dice) -> Trial:

@@ -30,7 +30,7 @@ def options(dice: Dice) -> Trial:
     if dice.chance(0.1):
         words.append(dice.pick("--help", "--version", "--nonsense", *WORDS))
     # What would be right, and take long, must have one thing wrong at least.
-    if name in ("run", "simulate", "animate", "budget", "view"):
+    if name in ("run", "view"):
         words += ["--stations", dice.pick("1", "-5", "1e3", "99999999999999999999", "x")]
     if name == "study":
         words.append("--dry-run")
@@ -44,13 +44,14 @@ def written(dice: Dice) -> Trial:
         files[name] = dice.damaged(files[name])
     for name in dice.some(sorted(files), 1) if dice.chance(0.2) else []:
         del files[name]
-    words = dice.pick(["findings", "runs"], ["findings", "runs", "--out", "page"],
-                      ["study-report", "small"], ["study", "small/study.toml", "--dry-run"],
+    words = dice.pick(["report", "runs"], ["report", "runs", "--out", "page"],
+                      ["report", "small"], ["study", "small/study.toml", "--dry-run"],
                       ["compare", "runs/one/analytic.parquet", "runs/one/mujoco-chain.parquet"],
                       ["compare", "runs/one/written.csv", "runs/one/mujoco-chain.parquet"],
                       ["reconstruct", "runs/one/mujoco-chain.parquet"],
-                      ["calibrate", "parabola", "runs/one/mujoco-chain.parquet"],
+                      ["calibrate", "runs/one/mujoco-chain.parquet", "parabola"],
                       ["reconstruct", "runs/one/written.csv"],
                       ["report", "runs/one"],
-                      ["side-by-side", "catenary", "runs/one/mujoco-chain.parquet"])  # fmt: skip
+                      ["compare", "catenary", "runs/one/mujoco-chain.parquet",
+                       "runs/one/analytic.parquet"])  # fmt: skip
     return Trial("written", words, files)

@@ -160,15 +160,15 @@ def test_contacts_that_mujoco_leaves_out_are_an_error(vibrissa, monkeypatch):
         data.warning[mujoco.mjtWarning.mjWARN_CONTACTFULL].number += data.ncon > 0
 
     monkeypatch.setattr(mujoco, "mj_invConstraint", full)
-    code, errors = vibrissa("simulate", "parabola", "--stations", "20", "--out", ".")
+    code, errors = vibrissa("run", "parabola", "--sweep-only", "--stations", "20", "--out", ".")
     assert code == BAD_INPUT
     assert "out of memory" in errors[-1]
     assert "fewer segments" in errors[-1]
 
 
-@pytest.mark.parametrize("verb", ["simulate", "run"])
-def test_command_line_keeps_a_diverged_sweep(vibrissa, not_a_number, tmp_path, verb):
-    code, (kept, refused) = vibrissa(verb, "parabola", "--stations", "20", "--out", ".")
+@pytest.mark.parametrize("alone", [["--sweep-only"], []])
+def test_command_line_keeps_a_diverged_sweep(vibrissa, not_a_number, tmp_path, alone):
+    code, (kept, refused) = vibrissa("run", "parabola", *alone, "--stations", "20", "--out", ".")
     assert code == BAD_INPUT
     assert "stations in" in kept
     assert "diverged at station" in refused

@@ -223,7 +223,7 @@ def test_named_case_in_space_from_the_command_line(tmp_path):
     from compare.commands.main import app
 
     options = ["--spatial", "--segments", "10", "--stations", "20", "--out", str(tmp_path)]
-    app(["simulate", "tip-only", *options], standalone_mode=False)
+    app(["run", "tip-only", "--sweep-only", *options], standalone_mode=False)
     found = Readings.read(tmp_path / "mujoco-chain.parquet")
     case = named_case("tip-only")
     exact = find_events(case.profile, case.beam).out_of_plane.foot_x

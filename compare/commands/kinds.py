@@ -1,0 +1,58 @@
+"""For what an option holds: said where the option is, and asked before any work is done.
+
+An option that would be ignored is bad input.
+"""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import Any, get_type_hints
+
+import typer
+
+from analytic.problem.errors import InputError
+from compare.read.kinds import MODEL, MOTION, PLANE, SPACE
+
+IN_THE_PLANE = (PLANE, MOTION, MODEL)
+ANY_CASE = (*IN_THE_PLANE, SPACE)
+
+
+@dataclass(frozen=True)
+class For:
+    """What an option holds for: any of these kinds, and beside all of what else is named."""
+
+    kinds: tuple[str, ...]
+    beside: tuple[str, ...] = ()
+
+    def lacks(self, kind: str, others: Collection[str]) -> str | None:
+        """What would be allowed, if the option would be ignored."""
+        if kind not in self.kinds:
+            return f"left out but for {' or '.join(self.kinds)}"
+        missing = [one for one in self.beside if one not in others]
+        return f"beside {missing[0]}" if missing else None
+
+
+def require_use(context: typer.Context, kind: str, *others: str) -> None:
+    """Refuse options that would be ignored: of what kind it is, and what else is asked for."""
+    hints = get_type_hints(context.command.callback, include_extras=True)
+    given = {one.name: one for one in context.command.params if one.name and _given(context, one)}
+    asked = {*others, *(one.opts[0] for one in given.values())}
+    for name, parameter in given.items():
+        uses = [use for use in getattr(hints[name], "__metadata__", ()) if isinstance(use, For)]
+        lacks = [use.lacks(kind, asked) for use in uses]
+        if lacks and all(lacks):
+            is_option = parameter.param_type_name == "option"
+            raise InputError(
+                parameter.opts[0] if is_option else name.upper(),
+                _shown(context.params[name]),
+                str(lacks[-1]),
+                f"this is {kind}",
+            )
+
+
+def _given(context: typer.Context, parameter: Any) -> bool:  # noqa: ANN401  # typer's own
+    source = context.get_parameter_source(parameter.name)
+    return source is not None and source.name == "COMMANDLINE"
+
+
+def _shown(value: object) -> str:
+    return "given" if isinstance(value, bool) else str(value)

@@ -1,0 +1,80 @@
+"""The command ``list``: what there is to name in other commands."""
+
+from collections.abc import Callable, Iterator
+from typing import Annotated, Literal
+
+import typer
+
+from compare.commands.options import AGREES
+
+
+def list_what_there_is(
+    what: Annotated[
+        Literal["cases", "engines", "methods", "studies", "models"] | None,
+        typer.Argument(help="One of them; all if left out.", show_default=False),
+    ] = None,
+) -> int:
+    """List cases, engines, methods, studies or models."""
+    for name, lines in _LISTS.items():
+        if what is None:
+            typer.echo(f"{name}:")
+        if what in (None, name):
+            for line in lines():
+                typer.echo(line if what else f"  {line}")
+    return AGREES
+
+
+def _cases() -> Iterator[str]:
+    import numpy as np
+
+    from analytic.problem.named import NAMED_TABLES, named_case, named_contour
+    from analytic.problem.support import beyond_the_paper
+
+    for name in NAMED_TABLES:
+        profile = named_contour(name)
+        lowest = profile.at(profile.parameter(np.array([0.0])))
+        place = f"lowest at x = {lowest.xi[0]:g} L, y = {lowest.eta[0]:.4g} L"
+        case = named_case(name)
+        beyond = beyond_the_paper(case.beam, case.clamp_stiffness, case.friction)
+        parts = [place, *(f"{what} {value:g}" for what, value in beyond.items())]
+        yield f"{name:18}{profile.label:40}{'; '.join(parts)}"
+
+
+def _engines() -> Iterator[str]:
+    from engines import list_engines
+
+    yield f"{'exact':12}{'reference':14}the closed form"
+    for found in list_engines():
+        role = "" if found.engine is None else found.engine.role
+        yield f"{found.name:12}{role:14}{found.trouble or found.version or ''}"
+
+
+def _methods() -> Iterator[str]:
+    from analytic.from_clamp.earlier.methods import NAMES
+
+    yield from NAMES
+
+
+def _studies() -> Iterator[str]:
+    from compare.study.grid.file import load_study, shipped_studies
+
+    for name in shipped_studies():
+        study = load_study(name)
+        axes = ", ".join(" and ".join(axis.keys) for axis in study.axes)
+        yield f"{name:22}{study.case}: {axes}"
+
+
+def _models() -> Iterator[str]:
+    from mujoco_models import shipped_models
+
+    for name, path in shipped_models().items():
+        yield f"{name:22}{path}"
+
+
+_LISTS: dict[str, Callable[[], Iterator[str]]] = {
+    "cases": _cases,
+    "engines": _engines,
+    "methods": _methods,
+    "studies": _studies,
+    "models": _models,
+}

@@ -1,0 +1,96 @@
+"""A case, and what is to be done with it."""
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from analytic import Case
+from compare.judge.spatial import SpatialTolerances
+from compare.judge.tolerances import Tolerances
+from compare.read.kinds import MODEL, MOTION, PLANE, SPACE
+from engines.known import named_engines
+from mujoco_models.settings import Settings
+from mujoco_models.space.settings import SpatialSettings
+
+if TYPE_CHECKING:
+    from analytic.space import SpatialCase
+    from compare.validate.stated import Uncertainties
+    from mujoco_models.motion import Motion
+    from mujoco_models.own.names import OwnModel
+
+EXACT = "exact"
+"""What the closed form is called among the engines."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """A case in the plane, how it is to be simulated, how far models may disagree.
+
+    Attributes
+    ----------
+    case : Case
+        The problem.
+    settings : Settings
+        The numerics of MuJoCo.
+    tolerances : Tolerances
+        The limits of agreement.
+    motion : Motion or None
+        How the foot moves; None if MuJoCo's beam is at rest at every station.
+    uncertainties : Uncertainties or None
+        What is uncertain about the case; None if nothing is stated.
+    model : OwnModel or None
+        The user's own model, if that is to be swept; it is always in motion.
+    engines : tuple of str
+        Which engines sweep the case at rest; none: the closed form alone.
+    timeout : float
+        The longest that each of them may take [s].
+    """
+
+    case: Case
+    settings: Settings
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    motion: "Motion | None" = None
+    uncertainties: "Uncertainties | None" = None
+    model: "OwnModel | None" = None
+    engines: tuple[str, ...] = ("mujoco",)
+    timeout: float = 600.0
+
+    @property
+    def kind(self) -> str:
+        """At rest in the plane, in motion, or of a [model]."""
+        if self.model is not None:
+            return MODEL
+        return PLANE if self.motion is None else MOTION
+
+
+@dataclass(frozen=True)
+class SpaceJob:
+    """A case in space, how it is to be simulated, how far models may disagree.
+
+    Attributes
+    ----------
+    case : SpatialCase
+        The problem.
+    settings : SpatialSettings
+        The numerics of MuJoCo.
+    tolerances : SpatialTolerances
+        The limits of agreement.
+    engines : tuple of str
+        Which engines sweep the case; none: the closed form alone.
+    """
+
+    case: "SpatialCase"
+    settings: SpatialSettings = field(default_factory=SpatialSettings)
+    tolerances: SpatialTolerances = field(default_factory=SpatialTolerances)
+    engines: tuple[str, ...] = ("mujoco",)
+
+    @property
+    def kind(self) -> str:
+        """In space."""
+        return SPACE
+
+
+def engines_beside_exact(names: str) -> tuple[str, ...]:
+    """The engines of a list beside the closed form, called ``exact``; none if that is alone."""
+    listed = [name.strip() for name in names.split(",")]
+    others = [name for name in listed if name != EXACT]
+    return tuple(named_engines(",".join(others))) if others else ()

@@ -1,4 +1,0 @@
-"""Names of files that may hold readings."""
-
-TEXTS = (".csv", ".txt", ".tsv", ".dat", ".asc")
-TABLES = (".parquet", *TEXTS)
