@@ -3,8 +3,6 @@ from .errors import ClampError as ClampError
 from .errors import DivergedError as DivergedError
 from .inspect.measured import MeasuredBeam as MeasuredBeam
 from .motion import Motion as Motion
-from .own.names import OwnModel as OwnModel
-from .own.shipped import shipped_models as shipped_models
 from .settings import Settings as Settings
 from .simulate import inspect_model as inspect_model
 from .simulate import load_tip as load_tip
@@ -15,3 +13,5 @@ from .simulate import simulate_sweep as simulate_sweep
 from .simulate import simulate_there_and_back as simulate_there_and_back
 from .simulate import view_sweep as view_sweep
 from .space.settings import SpatialSettings as SpatialSettings
+from .user_model.names import OwnModel as OwnModel
+from .user_model.shipped import shipped_models as shipped_models

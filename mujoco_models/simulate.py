@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from analytic.space.problem.case import SpatialCase
     from analytic.space.problem.readings import SpatialReadings
     from mujoco_models.inspect.measured import MeasuredBeam
-    from mujoco_models.own.names import OwnModel
     from mujoco_models.space.settings import SpatialSettings
+    from mujoco_models.user_model.names import OwnModel
 
 
 def simulate_sweep(
@@ -187,7 +187,7 @@ def simulate_motion(
     DivergedError
         If the motion does not stay finite; it names the time and what to change.
     """
-    from mujoco_models.stepping.sweep import run_motion
+    from mujoco_models.dynamics.sweep import run_motion
 
     chosen, moved = settings or Settings(), motion or Motion()
 
@@ -229,7 +229,7 @@ def simulate_there_and_back(
     InputError, DivergedError
         As `simulate_motion` does.
     """
-    from mujoco_models.stepping.sweep import run_there_and_back
+    from mujoco_models.dynamics.sweep import run_there_and_back
 
     require("case", case, Case, "named_case('catenary') makes one")
     leftward = case if case.sweep.direction == "left" else case.mirrored()
@@ -360,7 +360,7 @@ def simulate_model(
     DivergedError
         If the motion does not stay finite.
     """
-    from mujoco_models.own.sweep import run_own
+    from mujoco_models.user_model.sweep import run_user_model
 
     moved, chosen = motion or Motion(), settings or Settings()
 
@@ -368,7 +368,7 @@ def simulate_model(
         keep(facing(case, found))
 
     return solve_either_way(
-        case, lambda leftward: run_own(leftward, model, moved, chosen, advance, keep_facing)
+        case, lambda leftward: run_user_model(leftward, model, moved, chosen, advance, keep_facing)
     )
 
 

@@ -22,7 +22,7 @@ from compare.explain.parts import (
 from compare.judge.tolerances import Tolerances
 from compare.measure.disagreement import rms
 from mujoco_models.motion import Motion
-from mujoco_models.own.names import OwnModel
+from mujoco_models.user_model.names import OwnModel
 
 OPTIONAL = ("undamped", "ours", "newton", "stiff")
 """Sweeps without which a budget has one part less."""

@@ -38,8 +38,8 @@ from compare.read.quantities import (
 from compare.read.toml import Place, TomlFile
 from compare.read.uncertainty import uncertainties_of
 from mujoco_models.motion import Motion
-from mujoco_models.own.names import ContactKind, OwnModel
-from mujoco_models.own.shipped import shipped_models
+from mujoco_models.user_model.names import ContactKind, OwnModel
+from mujoco_models.user_model.shipped import shipped_models
 from mujoco_models.settings import Settings
 
 

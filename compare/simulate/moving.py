@@ -20,8 +20,8 @@ from compare.simulate.workers import Workers, available_cores
 from mujoco_models.errors import DivergedError
 from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.motion import Motion
-from mujoco_models.own.names import OwnModel
 from mujoco_models.settings import Settings
+from mujoco_models.user_model.names import OwnModel
 
 _TRUSTED = 0.75  # of the stations; a sweep with fewer would cost the budget most of them
 

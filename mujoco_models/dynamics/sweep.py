@@ -20,14 +20,14 @@ from analytic.problem.readings import Readings
 from mujoco_models.beams.kinds import build
 from mujoco_models.beams.layout import bead_spacing
 from mujoco_models.beams.vibrissa import Vibrissa
+from mujoco_models.dynamics.model import MovingModel
+from mujoco_models.dynamics.moving import Moving
+from mujoco_models.dynamics.record import Record, Sample
 from mujoco_models.errors import DivergedError
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.kinds import place
 from mujoco_models.quiet import unlogged
 from mujoco_models.settings import Settings
-from mujoco_models.stepping.model import MovingModel
-from mujoco_models.stepping.moving import Moving
-from mujoco_models.stepping.record import Record, Sample
 
 
 def run_motion(

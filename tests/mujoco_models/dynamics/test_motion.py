@@ -8,7 +8,7 @@ import pytest
 from analytic import CLAMP_READINGS, InputError, Sweep, named_case, solve_sweep
 from compare import compare
 from mujoco_models import DivergedError, Motion, Settings, simulate_motion, simulate_sweep
-from mujoco_models.stepping.model import MovingModel
+from mujoco_models.dynamics.model import MovingModel
 
 CASE = replace(named_case("catenary"), sweep=Sweep(60))
 # Smooth and coarse: many steps in little time.

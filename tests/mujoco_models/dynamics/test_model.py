@@ -8,8 +8,8 @@ from scipy.linalg import eigh
 from analytic import Case, Sweep, circle, named_case
 from mujoco_models import Motion, Settings
 from mujoco_models.beams.kinds import build
+from mujoco_models.dynamics.model import MovingModel
 from mujoco_models.obstacles.kinds import place
-from mujoco_models.stepping.model import MovingModel
 
 FAR = Case(profile=circle(1.0, (0.0, 0.9)), sweep=Sweep(3, 5.0, 4.0), name="far")
 

@@ -22,9 +22,9 @@ from mujoco_models.motion import Motion
 from mujoco_models.obstacles.faceted import add_hull
 from mujoco_models.obstacles.prism import Prism
 from mujoco_models.obstacles.protocol import GEOM
-from mujoco_models.own.drive import drive_to
-from mujoco_models.own.names import OwnModel
-from mujoco_models.own.skin import Edges, Links, Skin
+from mujoco_models.user_model.drive import drive_to
+from mujoco_models.user_model.names import OwnModel
+from mujoco_models.user_model.skin import Edges, Links, Skin
 
 _HALF_DEPTH = 1.5  # L; as of all prisms
 _SPECK = 1e-4  # L
@@ -35,7 +35,7 @@ _IMPEDANCE = 0.9
 _ITERATIONS, _TOLERANCE = 500, 1e-12  # of Newton's method, which takes two or three
 
 
-class OwnModelInMotion:
+class UserModelInMotion:
     """A user's model and its state; in dimensionless numbers of the case and T1."""
 
     def __init__(

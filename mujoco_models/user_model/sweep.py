@@ -7,23 +7,23 @@ from dataclasses import asdict, replace
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
+from mujoco_models.dynamics.record import Record
+from mujoco_models.dynamics.sweep import start_of, sweep_moving
 from mujoco_models.inspect.load import load
 from mujoco_models.inspect.measure import hold, measure
 from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.inspect.parts import Names, Parts, find
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.prism import Prism
-from mujoco_models.own.model import OwnModelInMotion
-from mujoco_models.own.names import OwnModel
 from mujoco_models.quiet import unlogged
 from mujoco_models.settings import Settings
-from mujoco_models.stepping.record import Record
-from mujoco_models.stepping.sweep import start_of, sweep_moving
+from mujoco_models.user_model.model import UserModelInMotion
+from mujoco_models.user_model.names import OwnModel
 
 _ALIKE = 0.1  # relative; a length that differs by more is in other units, or of another vibrissa
 
 
-def run_own(
+def run_user_model(
     case: Case,
     own: OwnModel,
     motion: Motion,
@@ -47,7 +47,7 @@ def run_own(
         moved = replace(moved, contact_stiffness=min(max(stiffness, 1e3), 1e9))
     moved = replace(moved, timestep=own.timestep * moved.timestep)
     record = Record(case.foot_x / case.beam.length, motion.average)
-    in_motion = OwnModelInMotion(
+    in_motion = UserModelInMotion(
         own,
         held,
         measured,

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from mujoco_models.stepping.record import Record, Sample
+from mujoco_models.dynamics.record import Record, Sample
 
 
 def driven(record, x, clamp, touches=None):
