@@ -40,7 +40,7 @@ class Engine(Protocol):
         Parameters
         ----------
         case : Case
-            The problem, whichever way its foot moves; `solve_either_way` makes it one to the left.
+            The problem, whichever way its foot moves: `analytic.problem.mirror` turns it.
         settings : Settings
             Number of segments, contact stiffness and the like; what has no meaning for the engine
             it ignores.

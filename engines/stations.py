@@ -5,20 +5,17 @@ at a place, from their last state; the way from station to station, the snap-off
 form of the readings are the same for all of them, and here.
 """
 
-import platform
 import time
-from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
-import pandas as pd
 
 from analytic.problem.case import Case
-from analytic.problem.columns import COLUMNS
-from analytic.problem.mirror import solve_either_way
+from analytic.problem.mirror import facing, leftward
 from analytic.problem.readings import Readings
+from analytic.problem.recorder import Recorder
 
 _SMALLEST = 1e-6  # L; a step of the foot that small which leaves the branch is at its end
 _TURN = 0.35  # rad; a tip that turns farther in a step has left the branch
@@ -128,51 +125,36 @@ def sweep_stations(
     InputError
         As `rest` does.
     """
-    begun = time.process_time()
-
-    def swept(leftward: Case) -> Readings:
-        way, length = _Way(rest(leftward), free_row(leftward)), leftward.beam.length
-        way.foot_x = float(leftward.foot_x[0]) / length
-        rows, doubts = [], Counter[str]()
-        for target in (leftward.foot_x / length).tolist():
-            row, doubt = way.go_to(target)
-            doubts.update([doubt] if doubt else [])
-            rows.append(asdict(row))
-            advance()
-        table = pd.DataFrame(rows)
-        units = {
-            "force_x": leftward.beam.force_unit,
-            "force_y": leftward.beam.force_unit,
-            "moment_z": leftward.beam.moment_unit,
-            "residual": leftward.beam.moment_unit,
-            **dict.fromkeys(("contact_arc_length", "contact_x", "contact_y"), length),
-        }
-        for name, unit in units.items():
-            table[name] *= unit
-        table.insert(0, "foot_x", leftward.foot_x)
-        snap_off = None if way.snap_off is None else way.snap_off * length
-        provenance = {
-            **leftward.provenance(),
-            **about,
-            "python": platform.python_version(),
-            "seconds": round(time.process_time() - begun, 3),
-            "unsettled": dict(doubts),
-            "events": {"snap_off": snap_off},
-        }
-        return Readings(table[[*COLUMNS, "residual"]], leftward.beam, source, provenance)
-
-    return solve_either_way(case, swept)
+    begun, swept = time.process_time(), leftward(case)
+    stations = (swept.foot_x / swept.beam.length).tolist()
+    walk = _Walk(rest(swept), free_row(swept), stations[0])
+    unsettled: dict[str, int] = {}
+    recorder = Recorder(
+        swept,
+        source,
+        {**about, "unsettled": unsettled},
+        lambda: {"snap_off": walk.snap_off},
+        swept.foot_x,
+        begun=begun,
+    )
+    for target in stations:
+        row, doubt = walk.go_to(target)
+        if doubt:
+            unsettled[doubt] = unsettled.get(doubt, 0) + 1
+        recorder.rows.append(asdict(row))
+        advance()
+    return facing(case, recorder.readings())
 
 
-class _Way:
+class _Walk:
     """The vibrissa on its way: the last state on the branch."""
 
-    def __init__(self, rest: Rest, free: Row) -> None:
+    def __init__(self, rest: Rest, free: Row, foot_x: float) -> None:
         self._rest = rest
         self._last = self._free = free
         self._trail: list[tuple[float, ...]] = []  # foot position, clamp's readings, tip angle
         self._lost: str | None = None
-        self.foot_x = 0.0
+        self.foot_x = foot_x
         self.snap_off: float | None = None
 
     def go_to(self, target: float) -> tuple[Row, str | None]:

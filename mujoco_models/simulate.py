@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.errors import require
-from analytic.problem.mirror import facing, solve_either_way
+from analytic.problem.mirror import facing, keep_facing, leftward
 from analytic.problem.readings import Readings
 from mujoco_models.motion import Motion
 from mujoco_models.settings import Settings
@@ -84,12 +84,8 @@ def simulate_sweep(
     chosen = Settings() if settings is None else settings
     require("settings", chosen, Settings, "as Settings(beam='chain', segments=40)")
 
-    def keep_facing(found: Readings) -> None:
-        keep(facing(case, found))
-
-    return solve_either_way(
-        case, lambda leftward: run_sweep(leftward, chosen, advance, keep_facing)
-    )
+    found = run_sweep(leftward(case), chosen, advance, keep_facing(case, keep))
+    return facing(case, found)
 
 
 def simulate_space(
@@ -191,12 +187,8 @@ def simulate_motion(
 
     chosen, moved = settings or Settings(), motion or Motion()
 
-    def keep_facing(found: Readings) -> None:
-        keep(facing(case, found))
-
-    return solve_either_way(
-        case, lambda leftward: run_motion(leftward, moved, chosen, advance, keep_facing)
-    )
+    found = run_motion(leftward(case), moved, chosen, advance, keep_facing(case, keep))
+    return facing(case, found)
 
 
 def simulate_there_and_back(
@@ -231,15 +223,8 @@ def simulate_there_and_back(
     """
     from mujoco_models.dynamics.sweep import run_there_and_back
 
-    require("case", case, Case, "named_case('catenary') makes one")
-    leftward = case if case.sweep.direction == "left" else case.mirrored()
-    on, back = run_there_and_back(
-        leftward,
-        motion or Motion(),
-        settings or Settings(),
-        advance,
-        lambda found: keep(facing(case, found)),
-    )
+    moved, chosen = motion or Motion(), settings or Settings()
+    on, back = run_there_and_back(leftward(case), moved, chosen, advance, keep_facing(case, keep))
     return facing(case, on), facing(case, back)
 
 
@@ -364,12 +349,8 @@ def simulate_model(
 
     moved, chosen = motion or Motion(), settings or Settings()
 
-    def keep_facing(found: Readings) -> None:
-        keep(facing(case, found))
-
-    return solve_either_way(
-        case, lambda leftward: run_user_model(leftward, model, moved, chosen, advance, keep_facing)
-    )
+    found = run_user_model(leftward(case), model, moved, chosen, advance, keep_facing(case, keep))
+    return facing(case, found)
 
 
 def view_sweep(case: Case, settings: Settings | None = None) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from analytic.from_clamp.clamp_end import ClampEnd
 from analytic.problem.arrays import Floats
-from analytic.problem.columns import SENSED
+from analytic.problem.columns import SENSED, units
 from analytic.problem.readings import Readings
 from analytic.problem.support import is_plain
 from analytic.solver.elastica import frame, span_of_moment
@@ -33,9 +33,9 @@ class LocatedContact(NamedTuple):
 
 def dimensionless(readings: Readings) -> Floats:
     """The sensed columns over L, EI/L^2 and EI/L."""
-    beam = readings.beam
-    units = (beam.length, beam.force_unit, beam.force_unit, beam.moment_unit)
-    return np.array([readings.values(n) / u for n, u in zip(SENSED, units, strict=True)])
+    return np.array(
+        [readings.values(n) / u for n, u in zip(SENSED, units(readings.beam, SENSED), strict=True)]
+    )
 
 
 def sides(sensed: Floats) -> Floats:

@@ -8,7 +8,7 @@ import numpy as np
 from analytic.from_clamp.contact import LONGEST, UNLOADED, SweptVibrissa, dimensionless
 from analytic.from_clamp.noise import MEDIAN_OF_NORMAL, checked_noise, largest, reading_noise
 from analytic.problem.arrays import Booleans, Floats, Words
-from analytic.problem.columns import CLAMP_READINGS
+from analytic.problem.columns import CLAMP_READINGS, units
 from analytic.problem.readings import Readings
 
 _SIGMAS = 5.0  # standard deviations; a force of less is none, a miss of more is no noise
@@ -71,9 +71,9 @@ def judge_phases(readings: Readings, noise: Mapping[str, float] | None = None) -
     seen = np.array(list(reading_noise(readings).values()))
     given = {} if noise is None else checked_noise(noise)
     stated = np.array([given.get(name, 0.0) for name in CLAMP_READINGS])
-    units = np.array([readings.beam.force_unit] * 2 + [readings.beam.moment_unit])
+    unit = units(readings.beam, CLAMP_READINGS)
     magnitudes = np.array([largest(values) for values in sensed[1:]])
-    seen, stated = seen / units, stated / units
+    seen, stated = seen / unit, stated / unit
     known = np.maximum(seen, stated)
     noise_x, noise_y, noise_m = known if known.any() else _UNKNOWN * magnitudes
 

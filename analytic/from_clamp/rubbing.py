@@ -9,7 +9,7 @@ from analytic.from_clamp.contact import SweptVibrissa, dimensionless
 from analytic.from_clamp.noise import checked_noise, largest, reading_noise
 from analytic.from_clamp.phases import judge_phases
 from analytic.problem.arrays import Floats
-from analytic.problem.columns import CLAMP_READINGS
+from analytic.problem.columns import CLAMP_READINGS, units
 from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
 
@@ -97,10 +97,9 @@ def estimate_friction(
 
 def _spread(readings: Readings, noise: Mapping[str, float] | None) -> Floats:
     """Standard deviation of force and moment, dimensionless, shape (3,)."""
-    beam = readings.beam
-    units = np.array([beam.force_unit, beam.force_unit, beam.moment_unit])
     known = reading_noise(readings) if noise is None else checked_noise(noise)
-    spread = np.array([known.get(name, 0.0) for name in CLAMP_READINGS]) / units
+    stated = np.array([known.get(name, 0.0) for name in CLAMP_READINGS])
+    spread = stated / units(readings.beam, CLAMP_READINGS)
     least = np.array([_LEAST * largest(values) for values in dimensionless(readings)[1:]])
     return np.asarray(np.maximum(spread, least), dtype=float)
 

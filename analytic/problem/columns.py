@@ -1,4 +1,14 @@
-"""The columns of a sweep's readings, by name, and the words in two of them."""
+"""The columns of a sweep's readings: their names, units and signs, and the words in two of them."""
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+
+if TYPE_CHECKING:
+    from analytic.problem.beam import Beam
 
 CLAMP_READINGS = ("force_x", "force_y", "moment_z")
 SENSED = ("foot_x", *CLAMP_READINGS)
@@ -19,3 +29,41 @@ WORDS = {"phase": PHASES, "status": STATUSES}
 """The columns of words, with what may stand in them."""
 PHASE_NUMBER = {word: number for number, word in enumerate(PHASES)}
 STATUS_NUMBER = {word: number for number, word in enumerate(STATUSES)}
+
+
+class Column(NamedTuple):
+    """A column of numbers."""
+
+    dimension: Literal["length", "force", "moment", "force/length", "angle"]
+    odd: bool = False  # changes its sign in a mirror, x to -x
+
+
+SCHEMA = {
+    **dict.fromkeys(("foot_x", "contact_x"), Column("length", odd=True)),
+    **dict.fromkeys(("force_x", "force_x_raw"), Column("force", odd=True)),
+    **dict.fromkeys(("force_y", "force_y_raw"), Column("force")),
+    **dict.fromkeys(("moment_z", "moment_z_raw"), Column("moment", odd=True)),
+    "contact_angle": Column("angle", odd=True),
+    **dict.fromkeys(("contact_arc_length", "contact_y"), Column("length")),
+    **dict.fromkeys(("penetration", "out_of_plane"), Column("length")),
+    "residual": Column("moment"),
+    "sideways_stiffness": Column("force/length"),
+    # In space only, where there is no such mirror.
+    **dict.fromkeys(("travel", "foot_y", "foot_z", "contact_z"), Column("length")),
+    "force_z": Column("force"),
+    **dict.fromkeys(("moment_x", "moment_y"), Column("moment")),
+}
+"""What has a unit or a sign; all other columns are plain numbers that a mirror leaves alone."""
+ODD = tuple(name for name, column in SCHEMA.items() if column.odd)
+
+
+def units(beam: "Beam", names: Iterable[str]) -> Floats:
+    """What dimensionless columns are multiplied by, for L = EI = 1 to be a beam's units."""
+    sizes = {
+        "length": beam.length,
+        "force": beam.force_unit,
+        "moment": beam.moment_unit,
+        "force/length": beam.force_unit / beam.length,
+        "angle": 1.0,
+    }
+    return np.array([sizes[SCHEMA[name].dimension] if name in SCHEMA else 1.0 for name in names])

@@ -14,10 +14,18 @@ def solve_either_way(case: Case, solve: Callable[[Case], Readings]) -> Readings:
     Without friction and gravity a sweep to the right is the mirror image of a sweep to the left
     past the mirrored object, and nothing else has to be solved.
     """
+    return facing(case, solve(leftward(case)))
+
+
+def leftward(case: Case) -> Case:
+    """A case whose foot moves to the left: itself, or its mirror image."""
     require("case", case, Case, "named_case('catenary') makes one")
-    if case.sweep.direction == "left":
-        return solve(case)
-    return facing(case, solve(case.mirrored()))
+    return case if case.sweep.direction == "left" else case.mirrored()
+
+
+def keep_facing(case: Case, keep: Callable[[Readings], None]) -> Callable[[Readings], None]:
+    """What takes readings of the sweep to the left, and keeps them as those of a case."""
+    return lambda found: keep(facing(case, found))
 
 
 def facing(case: Case, found: Readings) -> Readings:

@@ -11,14 +11,10 @@ import pyarrow.compute as pc
 from numpy.typing import NDArray
 
 from analytic.problem.arrays import Booleans, Floats, Integers
-from analytic.problem.columns import COLUMNS, CONTACT, SENSED, WORDS
+from analytic.problem.columns import COLUMNS, CONTACT, ODD, SENSED, WORDS
 from analytic.problem.errors import InputError
 from analytic.problem.places import Place, row_number
 
-_ODD = (  # change sign in a mirror, averaged or not
-    *("foot_x", "force_x", "moment_z", "contact_angle", "contact_x"),
-    *("force_x_raw", "moment_z_raw"),
-)
 _TEXT_FIX = "fix the cell, or leave it empty where nothing was measured"
 
 
@@ -114,7 +110,7 @@ def mirrored_columns(columns: Mapping[str, Floats | Integers]) -> dict[str, Floa
 
 
 def _turned_over(columns: Any) -> dict[str, Any]:  # noqa: ANN401  # a table or a mapping of arrays
-    changed = {name: 0.0 - columns[name] for name in _ODD if name in columns}  # 0 never is -0
+    changed = {name: 0.0 - columns[name] for name in ODD if name in columns}  # 0 never is -0
     if "tip_angle" in columns:
         changed["tip_angle"] = np.pi - columns["tip_angle"]
     return changed

@@ -7,7 +7,7 @@ from importlib.metadata import version
 
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
-from analytic.problem.mirror import solve_either_way
+from analytic.problem.mirror import facing, leftward
 from analytic.problem.readings import Readings
 from engines.engine import Role
 from mujoco_models.settings import Settings
@@ -33,7 +33,7 @@ class _Drake:
             raise InputError(
                 "beam for drake", repr(kind), "'chain' in the plane", "take --beam chain"
             )
-        return solve_either_way(case, lambda leftward: _sweep(leftward, settings, advance))
+        return facing(case, _sweep(leftward(case), settings, advance))
 
 
 def _sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Readings:

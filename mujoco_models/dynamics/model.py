@@ -8,14 +8,13 @@ import numpy as np
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.errors import InputError
 from mujoco_models.beams.protocol import FOOT, Beam
-from mujoco_models.errors import DivergedError
+from mujoco_models.dynamics.moving import SteppedModel
 from mujoco_models.model.clamp import Clamp, by_sensors
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.model.lookout import Lookout, MujocoScene
 from mujoco_models.model.spec import assemble
-from mujoco_models.model.stiffness import stiffen, weights_in_last_step
+from mujoco_models.model.stiffness import impede, stiffen, weights_in_last_step
 from mujoco_models.model.surface import Surface
-from mujoco_models.model.warned import has_diverged
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.protocol import Obstacle
 
@@ -48,8 +47,8 @@ _CONES = {
 }
 
 
-class MovingModel:
-    """MuJoCo's model and state of a vibrissa in motion; L = EI = T1 = 1."""
+class MovingModel(SteppedModel):
+    """Our vibrissa in motion; L = EI = T1 = 1 in MuJoCo, too."""
 
     def __init__(
         self,
@@ -60,16 +59,15 @@ class MovingModel:
         foot_x: float,
     ) -> None:
         self._layout, self.obstacle, self._radius = beam.layout, obstacle, radius
-        self.model = _spec(beam, radius, obstacle, motion, foot_x).compile()
-        self.data = mujoco.MjData(self.model)
+        compiled = _spec(beam, radius, obstacle, motion, foot_x).compile()
+        implicit = motion.solref is None and motion.integrator == "discrete"
+        super().__init__(compiled, obstacle.label, 1.0, follows_inertia=implicit)
         links = len(beam.layout.joints)
         self._surface = Surface.of(self.model, links, obstacle.corners, radius)
         self._motion = motion
         self._set_contacts(motion)
         # Runge and Kutta's method looks for contacts on the way of a step, too.
         self._leaves_out = obstacle.upright and motion.integrator != "rk4"
-        self._follows_inertia = motion.solref is None and motion.integrator == "discrete"
-        self.time = 0.0
         scene = MujocoScene(self.model, self.data, self._surface.beads, obstacle)
         self._lookout = Lookout(scene, obstacle, radius, beam.layout)
         self._foot = self.model.body(FOOT).id
@@ -86,7 +84,7 @@ class MovingModel:
         else:
             model.geom_solref[geoms] = motion.solref
         model.geom_gap[geoms] = 0  # a contact that carries no force costs time
-        model.geom_solimp[geoms] = [motion.solimp, motion.solimp, 1e-3, 0.5, 2]
+        impede(model, geoms, motion.solimp)
         if motion.friction:
             self._check_step(motion, geoms)
             model.geom_condim[geoms] = 3
@@ -96,7 +94,7 @@ class MovingModel:
         stiffen(self.model, geoms, weight, self._motion.stiffness, self._motion.solimp)
 
     def _follow_inertia(self) -> None:
-        """Make contacts as stiff as stated with the inertia that MuJoCo took in the last step."""
+        """By the rows of MuJoCo's constraints."""
         friction = self._motion.friction or 0.0
         pairs, weight = weights_in_last_step(self.model, self.data, friction)
         # Of each pair, one is the beam's.
@@ -132,21 +130,13 @@ class MovingModel:
         return self._layout.tip_angle(self.data.qpos[1:])
 
     def step(self, speed: float) -> None:
-        """One step of MuJoCo's, at whose end the foot has a given speed to the left.
-
-        What the model reports afterwards is the state at the beginning of the step, as MuJoCo's
-        sensors do.
-        """
-        self.time = float(self.data.time)
+        """By the force on a heavy carriage that accelerates it so."""
+        self.time = self.now
         change = -speed - float(self.data.qvel[0])
         self.data.qfrc_applied[0] = _CARRIAGE * _MASS * change / self.model.opt.timestep
         if self._leaves_out:
             self._leave_out()
-        mujoco.mj_step(self.model, self.data)
-        if has_diverged(self.data):
-            raise DivergedError("MuJoCo's motion does not stay finite")
-        if self._follows_inertia and self.data.nefc:
-            self._follow_inertia()
+        self._advance()
         moved = self._positions() - self._seen
         if max(moved.max(), -moved.min()) > _AHEAD / 4:
             self._look()
@@ -183,16 +173,6 @@ class MovingModel:
         return by_sensors(self.data)
 
     @property
-    def now(self) -> float:
-        """Time of the present state [T1]."""
-        return float(self.data.time)
-
-    @property
-    def label(self) -> str:
-        """What the object is."""
-        return self.obstacle.label
-
-    @property
     def touches(self) -> bool:
         """Whether a contact is loaded."""
         if self.data.ncon == 0:
@@ -214,11 +194,7 @@ class MovingModel:
         """Kinetic energy, seen from the foot, over kinetic and elastic energy."""
         seen = self.data.qvel.copy()
         seen[0] += speed
-        product = np.zeros_like(seen)
-        mujoco.mj_mulM(self.model, self.data, product, seen)
-        kinetic = float(seen[1:] @ product[1:]) / 2
-        total = kinetic + float(self.data.energy[0])
-        return kinetic / total if total > 0 else 0.0
+        return self._share_of_kinetic(seen, slice(1, None), float(self.data.energy[0]))
 
 
 def _spec(

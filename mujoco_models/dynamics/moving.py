@@ -1,65 +1,76 @@
-"""What a sweep in motion asks of a model, ours or a user's."""
+"""A model in motion, ours or a user's: its steps, its time, and what its contacts take."""
 
-from typing import Any, Protocol
+from abc import ABC, abstractmethod
+from typing import Any
 
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats, Integers
+from mujoco_models.errors import DivergedError
 from mujoco_models.model.clamp import Clamp
+from mujoco_models.model.warned import has_diverged
 
 
-class Moving(Protocol):
-    """A model in motion; dimensionless, L = EI = T1 = 1.
+class SteppedModel(ABC):
+    """MuJoCo's model and its state; what it says is dimensionless, L = EI = T1 = 1."""
 
-    Attributes
-    ----------
-    time : float
-        Of the state that is reported: MuJoCo's sensors are of the beginning of a step [T1].
-    """
-
-    time: float
+    def __init__(
+        self, model: mujoco.MjModel, label: str, period: float, follows_inertia: bool
+    ) -> None:
+        self.model, self.data, self.label = model, mujoco.MjData(model), label
+        self._period = period  # T1 in the model's unit of time
+        self._follows_inertia = follows_inertia
+        # Of the state that is reported: MuJoCo's sensors are of the beginning of a step [T1].
+        self.time = 0.0
 
     @property
     def now(self) -> float:
         """Time of the present state [T1]."""
+        return float(self.data.time) / self._period
 
     @property
+    @abstractmethod
     def foot_x(self) -> float:
         """Where the foot is [L]."""
 
     @property
+    @abstractmethod
     def touches(self) -> bool:
         """Whether a contact is loaded."""
 
-    @property
-    def label(self) -> str:
-        """What the object is."""
-
-    def step(self, speed: float) -> None:
-        """One step, at whose end the foot has a speed to the left.
-
-        Parameters
-        ----------
-        speed : float
-            Of the foot [L/T1].
-        """
-
+    @abstractmethod
     def clamp(self) -> Clamp:
-        """The clamp's action on the vibrissa.
+        """The clamp's action on the vibrissa."""
 
-        Returns
-        -------
-        Clamp
-            At the foot [EI/L^2, EI/L].
-        """
-
+    @abstractmethod
     def state(self, speed: float) -> dict[str, Any]:
-        """What else there is to say of the state that is reported.
+        """What else there is to say of the state that is reported, by column."""
 
-        Parameters
-        ----------
-        speed : float
-            Of the foot [L/T1].
+    @abstractmethod
+    def step(self, speed: float) -> None:
+        """One step, at whose end the foot has a speed to the left [L/T1].
 
-        Returns
-        -------
-        dict
-            By column.
+        What the model reports afterwards is the state at the beginning of the step, as MuJoCo's
+        sensors do.
         """
+
+    @abstractmethod
+    def _follow_inertia(self) -> None:
+        """Make contacts as stiff as stated with the inertia that MuJoCo took in the last step."""
+
+    def _advance(self) -> None:
+        """One step of MuJoCo's."""
+        mujoco.mj_step(self.model, self.data)
+        if has_diverged(self.data):
+            raise DivergedError("the motion does not stay finite")
+        if self._follows_inertia and self.data.nefc:
+            self._follow_inertia()
+
+    def _share_of_kinetic(self, speeds: Floats, dofs: Integers | slice, elastic: float) -> float:
+        """Kinetic energy of the vibrissa's velocities over kinetic and elastic energy."""
+        product = np.zeros_like(speeds)
+        mujoco.mj_mulM(self.model, self.data, product, speeds)
+        kinetic = float(speeds[dofs] @ product[dofs]) / 2
+        total = kinetic + elastic
+        return kinetic / total if total > 0 else 0.0

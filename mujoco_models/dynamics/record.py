@@ -14,7 +14,7 @@ _APART = 0.05  # of a station's way; without contact there, the mean is off by a
 
 
 @dataclass(frozen=True)
-class Sample:
+class Step:
     """One step of MuJoCo's."""
 
     time: float  # since the start [T1]
@@ -23,7 +23,7 @@ class Sample:
     touches: bool  # whether a contact is loaded
 
 
-class Record:
+class StationMeans:
     """Means of the readings over the way round each station, and the raw ones at it.
 
     Between two steps the readings are taken to be linear in the foot's position, so that the means
@@ -37,13 +37,15 @@ class Record:
         self.first_touch: float | None = None
         self._lasting: float | None = None
         self._brief: float | None = None
-        self._last = Sample(0.0, math.inf, np.zeros(3), touches=False)
+        self._last = Step(0.0, math.inf, np.zeros(3), touches=False)
         self._begun, self._lost = 0.0, -math.inf
         self._pending: dict[str, Any] | None = None
         self._sum = np.zeros(3)
         self._losses = 0
         self._apart = 0.0  # L; without contact, once there was one
         self._held = False  # at the station itself
+        self._touched = False  # at a station so far
+        self._missed: list[dict[str, Any]] = []  # stations without contact since then
 
     @property
     def first(self) -> float:
@@ -55,7 +57,7 @@ class Record:
         """Whether all stations have been passed."""
         return len(self.rows) == len(self._stations)
 
-    def crosses(self, before: Sample, after: Sample) -> bool:
+    def crosses(self, before: Step, after: Step) -> bool:
         """Whether the next station lies between two steps."""
         return (
             not self.complete
@@ -63,7 +65,7 @@ class Record:
             and after.foot_x <= self._stations[len(self.rows)] < before.foot_x
         )
 
-    def note(self, before: Sample, after: Sample, state: dict[str, Any]) -> None:
+    def note(self, before: Step, after: Step, state: dict[str, Any]) -> None:
         """Keep the raw readings and the state at the station between two steps."""
         share = (before.foot_x - self._stations[len(self.rows)]) / (before.foot_x - after.foot_x)
         raw = before.clamp + share * (after.clamp - before.clamp)
@@ -74,7 +76,7 @@ class Record:
             **state,
         }
 
-    def take(self, before: Sample, after: Sample) -> bool:
+    def take(self, before: Step, after: Step) -> bool:
         """Add the way between two steps to the mean of the present station."""
         if before.touches != after.touches:
             self._losses += before.touches
@@ -106,7 +108,7 @@ class Record:
             return None
         return self._brief if self._lasting is None else self._lasting
 
-    def _follow(self, sample: Sample) -> None:
+    def _follow(self, sample: Step) -> None:
         """Note where contact is found and lost."""
         changed = sample.touches != self._last.touches
         self._last = sample
@@ -133,5 +135,15 @@ class Record:
         apart = self._held and self._apart > _APART * 2 * self._half
         if row["status"] == "ok" and (apart or self._losses > 1):
             row["status"] = "chattering"
+        self._mark_lost(row)
         self.rows.append(row)
         self._pending, self._sum, self._losses, self._apart = None, np.zeros(3), 0, 0.0
+
+    def _mark_lost(self, row: dict[str, Any]) -> None:
+        """Stations without contact between stations with one: it was lost, and found again."""
+        if row["phase"] != "free":
+            for missed in self._missed if self._touched else []:
+                missed["status"] = "lost"
+            self._missed, self._touched = [], True
+        elif row["status"] == "ok":
+            self._missed.append(row)

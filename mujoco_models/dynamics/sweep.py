@@ -1,28 +1,24 @@
 """The sweep in motion: steps of MuJoCo's, and its readings in the units of the case."""
 
 import math
-import platform
-import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, replace
 from importlib.metadata import version
 from typing import Any
 
 import mujoco
 import numpy as np
-import pandas as pd
-from threadpoolctl import threadpool_limits
 
 from analytic.problem.case import Case
-from analytic.problem.columns import COLUMNS
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
+from analytic.problem.recorder import DIVERGED, Recorder
 from mujoco_models.beams.kinds import build
 from mujoco_models.beams.layout import bead_spacing
 from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.dynamics.model import MovingModel
-from mujoco_models.dynamics.moving import Moving
-from mujoco_models.dynamics.record import Record, Sample
+from mujoco_models.dynamics.moving import SteppedModel
+from mujoco_models.dynamics.record import StationMeans, Step
 from mujoco_models.errors import DivergedError
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.kinds import place
@@ -38,8 +34,9 @@ def run_motion(
     keep: Callable[[Readings], None] = lambda _: None,
 ) -> Readings:
     """Sweep the beam to the left; see `mujoco_models.simulate_motion`."""
-    model, motion, record, about = _prepared(case, motion, settings)
-    return sweep_moving(model, case, motion, record, about, advance, keep)
+    model, motion, record = _prepared(case, motion, settings)
+    passes = Passes(model, case, motion, _source(settings), {"settings": asdict(settings)})
+    return passes.swept(record, passes.on, advance, keep)
 
 
 def run_there_and_back(
@@ -50,44 +47,33 @@ def run_there_and_back(
     keep: Callable[[Readings], None] = lambda _: None,
 ) -> tuple[Readings, Readings]:
     """Sweep the beam to the left and back; see `mujoco_models.simulate_there_and_back`."""
-    model, motion, record, about = _prepared(case, motion, settings)
-    way = _Way(model, case, motion, about)
-    on = way.swept(record, way.on, advance, keep)
-    way.let_go = on.snap_off is not None
+    model, motion, record = _prepared(case, motion, settings)
+    passes = Passes(model, case, motion, _source(settings), {"settings": asdict(settings)})
+    on = passes.swept(record, passes.on, advance, keep)
+    passes.let_go = on.snap_off is not None
     # As if it went on to the left past the mirrored stations.
-    returning = Record(-case.foot_x[::-1] / case.beam.length, motion.average)
-    return on, way.swept(returning, way.back, advance, keep, turn_at=way.turn_at)
+    returning = StationMeans(-case.foot_x[::-1] / case.beam.length, motion.average)
+    return on, passes.swept(returning, passes.back, advance, keep, turn_at=passes.turn_at)
 
 
 def _prepared(
     case: Case, motion: Motion, settings: Settings
-) -> tuple[MovingModel, Motion, Record, dict[str, Any]]:
+) -> tuple[MovingModel, Motion, StationMeans]:
     """The model at its start, the motion with the case's friction, and what takes its readings."""
     if motion.friction is None:
         motion = replace(motion, friction=case.friction)
-    record = Record(case.foot_x / case.beam.length, motion.average)
+    record = StationMeans(case.foot_x / case.beam.length, motion.average)
     model = _set_out(case, motion, settings, start_of(record, motion))
-    about = {"settings": asdict(settings), "source": f"mujoco {settings.beam} in motion"}
-    return model, motion, record, about
+    return model, motion, record
 
 
-def start_of(record: Record, motion: Motion) -> float:
+def start_of(record: StationMeans, motion: Motion) -> float:
     """Where the foot starts, to have its speed on the way to the first station."""
     return record.first + motion.speed * (motion.ramp / 2 + motion.timestep)
 
 
-def sweep_moving(
-    model: Moving,
-    case: Case,
-    motion: Motion,
-    record: Record,
-    about: dict[str, Any],
-    advance: Callable[[], None],
-    keep: Callable[[Readings], None],
-) -> Readings:
-    """Move a model past all stations."""
-    way = _Way(model, case, motion, about)
-    return way.swept(record, way.on, advance, keep)
+def _source(settings: Settings) -> str:
+    return f"mujoco {settings.beam} in motion"
 
 
 def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> MovingModel:
@@ -109,11 +95,19 @@ def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> Mo
     return MovingModel(beam, case.radius, obstacle, motion, start)
 
 
-class _Way:
-    """The foot's way past the stations, and back, and the sensors' filter on it."""
+class Passes:
+    """Passes of the foot by the stations, on and back, and the sensors' filter in them."""
 
-    def __init__(self, model: Moving, case: Case, motion: Motion, about: dict[str, Any]) -> None:
-        self._model, self._case, self._motion, self._about = model, case, motion, about
+    def __init__(
+        self,
+        model: SteppedModel,
+        case: Case,
+        motion: Motion,
+        source: str,
+        about: Mapping[str, Any],
+    ) -> None:
+        self._model, self._case, self._motion = model, case, motion
+        self._source, self._about = source, about
         self._filtered = np.array(model.clamp())
         self.let_go = False  # on the way on
         # The share of the difference that a filter of first order follows in a step.
@@ -126,7 +120,7 @@ class _Way:
         """Where the foot is when it has come to a stop, from where it is now [L]."""
         return self._model.foot_x - self._motion.speed * self._motion.ramp / 2
 
-    def on(self, record: Record, advance: Callable[[], None]) -> None:
+    def on(self, record: StationMeans, advance: Callable[[], None]) -> None:
         """To the left, from a soft start."""
         speed, ramp = self._motion.speed, self._motion.ramp
         begun = self._model.now
@@ -137,7 +131,7 @@ class _Way:
             advance,
         )
 
-    def back(self, record: Record, advance: Callable[[], None]) -> None:
+    def back(self, record: StationMeans, advance: Callable[[], None]) -> None:
         """To the right, turning round as softly."""
         speed, ramp = self._motion.speed, self._motion.ramp
         begun = self._model.now
@@ -150,7 +144,7 @@ class _Way:
 
     def _drive(
         self,
-        record: Record,
+        record: StationMeans,
         facing: float,
         speed_at: Callable[[float], float],
         advance: Callable[[], None],
@@ -158,13 +152,13 @@ class _Way:
         """Step until the foot has passed all stations, with positions as `facing` has them."""
         model, motion = self._model, self._motion
         touches = facing < 0 and model.touches
-        before = Sample(model.time, facing * model.foot_x, self._filtered, touches)
+        before = Step(model.time, facing * model.foot_x, self._filtered, touches)
         while not record.complete:
             speed = speed_at(model.now + motion.timestep)
             model.step(speed)
             change = np.array(model.clamp()) - self._filtered
             self._filtered = self._filtered + self._follows * change
-            after = Sample(model.time, facing * model.foot_x, self._filtered, model.touches)
+            after = Step(model.time, facing * model.foot_x, self._filtered, model.touches)
             while True:
                 if record.crosses(before, after):
                     record.note(before, after, model.state(speed))
@@ -175,73 +169,49 @@ class _Way:
 
     def swept(
         self,
-        record: Record,
-        go: Callable[[Record, Callable[[], None]], None],
+        record: StationMeans,
+        go: Callable[[StationMeans, Callable[[], None]], None],
         advance: Callable[[], None],
         keep: Callable[[Readings], None],
         turn_at: float | None = None,
     ) -> Readings:
         """The readings of one way; `turn_at` is where that back begins [L]."""
-        begun = time.process_time()
-        motion = self._motion
-        try:
-            with threadpool_limits(1), unlogged():
+        case, motion = self._case, self._motion
+        engine = f"MuJoCo {mujoco.__version__}, vibrissa-testbed {version('vibrissa-testbed')}"
+        about = {
+            "engine": engine,
+            **self._about,
+            "motion": asdict(motion),
+            "obstacle": self._model.label,
+        }
+        recorder = Recorder(
+            case,
+            self._source,
+            about,
+            lambda: self._events(record, turn_at),
+            case.foot_x if turn_at is None else case.foot_x[::-1],
+            record.rows,
+        )
+        with recorder.rescued(keep), unlogged():
+            try:
                 go(record, advance)
-        except BaseException as error:  # whatever it is, what there is must not be lost
-            if isinstance(error, DivergedError):
-                record.rows.append({"phase": "free", "status": "diverged"})
-            if len(record.rows) > 1:
-                keep(self._readings(record, begun, turn_at))
-            if isinstance(error, DivergedError):
+            except DivergedError as error:
+                record.rows.append(DIVERGED)
                 place_ = f"t = {self._model.time:.6g} T1"
                 remedy = (
                     f"shorten the time step ({motion.timestep:g} T1), add armature, "
                     "or soften contacts"
                 )
                 raise DivergedError(f"diverged at {place_}: {error}; {remedy}") from error
-            raise
-        return self._readings(record, begun, turn_at)
+        return recorder.readings()
 
-    def _readings(self, record: Record, begun: float, turn_at: float | None) -> Readings:
-        """In the units of the case's beam; the time stays in T1."""
-        case, table = self._case, pd.DataFrame(record.rows)
-        _mark_lost(table)
-        beam = case.beam
-        for name in ("force_x", "force_y", "moment_z"):
-            unit = beam.moment_unit if name == "moment_z" else beam.force_unit
-            table[[name, f"{name}_raw"]] *= unit
-        for name in ("contact_arc_length", "contact_x", "contact_y", "penetration"):
-            table[name] *= beam.length
-        passed = case.foot_x if turn_at is None else case.foot_x[::-1]
-        table.insert(0, "foot_x", passed[: len(table)])
-        places = {"first_contact": record.first_touch, "snap_off": record.last_touch}
-        if turn_at is not None:
-            left = None if record.last_touch is None else -record.last_touch
-            # Held when the foot turned, it is released where it first touched; else it has passed
-            # the object, comes to its other side and lets go there.
-            places = {"turn": turn_at, "snap_off": None, "release": left}
-            if self.let_go:
-                places |= {"snap_off": left, "release": None}
-        provenance = {
-            **case.provenance(),
-            "engine": f"MuJoCo {mujoco.__version__}, "
-            f"vibrissa-testbed {version('vibrissa-testbed')}",
-            "python": platform.python_version(),
-            **{name: value for name, value in self._about.items() if name != "source"},
-            "motion": asdict(self._motion),
-            "obstacle": self._model.label,
-            "seconds": round(time.process_time() - begun, 3),
-            "events": {n: None if x is None else x * beam.length for n, x in places.items()},
-        }
-        extra = [name for name in table if name not in COLUMNS]
-        return Readings(table[[*COLUMNS, *extra]], beam, self._about["source"], provenance)
-
-
-def _mark_lost(table: pd.DataFrame) -> None:
-    """Stations without contact between stations with one: it was lost, and found again."""
-    touches = np.flatnonzero(table["phase"] != "free")
-    if touches.size:
-        between = np.zeros(len(table), dtype=bool)
-        between[touches[0] : touches[-1]] = True
-        lost = between & (table["phase"] == "free") & (table["status"] == "ok")
-        table.loc[lost, "status"] = "lost"
+    def _events(self, record: StationMeans, turn_at: float | None) -> dict[str, float | None]:
+        """Foot positions of what has happened so far, by name [L]."""
+        last = record.last_touch
+        if turn_at is None:
+            return {"first_contact": record.first_touch, "snap_off": last}
+        left = None if last is None else -last
+        # Held when the foot turned, it is released where it first touched; else it has passed
+        # the object, comes to its other side and lets go there.
+        snap_off, release = (left, None) if self.let_go else (None, left)
+        return {"turn": turn_at, "snap_off": snap_off, "release": release}

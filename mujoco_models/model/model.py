@@ -16,6 +16,7 @@ from mujoco_models.model.search import Search
 from mujoco_models.model.sides import FUSED, Sides
 from mujoco_models.model.sliding import SlidingBeads
 from mujoco_models.model.spec import assemble, compiled
+from mujoco_models.model.stiffness import impede, stiffen
 from mujoco_models.model.surface import Surface
 from mujoco_models.model.warned import has_diverged
 from mujoco_models.obstacles.protocol import Obstacle
@@ -26,7 +27,6 @@ AT_REST = 1e-10  # of a coordinate, in a step: the motion has come to its end
 _FULL = np.array([mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL], int)
 ROUNDING = 1e-13  # L, of a contact's depth: that of its place, which all joints before it add to
 _DISTINCT = 1e-2  # of the largest; beads side by side share a load in ways that hardly differ
-_IMPEDANCE = 0.9  # MuJoCo's d; with the stiffness set below it cancels out of the law at rest
 
 
 class BeamModel:
@@ -59,16 +59,11 @@ class BeamModel:
         self.lookout = Lookout(scene, obstacle, radius, self.layout)
 
     def _set_contact_stiffness(self) -> None:
-        """The same stiffness at every contact, whatever the time step.
-
-        At rest MuJoCo's contact force is -k/((1 - d) A) times the distance, with solref = (-k, -b),
-        impedance d and A the body's `invweight0`: solved here for k.
-        """
+        """The same stiffness at every contact, whatever the time step."""
         geoms = np.concatenate([self._surface.beads, self._surface.sides])
         weight = self.model.body_invweight0[self.model.geom_bodyid[geoms], 0]
-        k = self.contact_stiffness * (1 - _IMPEDANCE) * weight
-        self.model.geom_solref[geoms] = np.column_stack([-k, -2 * np.sqrt(k)])
-        self.model.geom_solimp[geoms] = [_IMPEDANCE, _IMPEDANCE, 1e-3, 0.5, 2]
+        stiffen(self.model, geoms, weight, self.contact_stiffness)
+        impede(self.model, geoms)
 
     def imbalance(self, foot_x: float, angles: Floats) -> Floats:
         """Moment out of balance at each joint, at rest.

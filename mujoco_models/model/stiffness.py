@@ -1,13 +1,25 @@
-"""Contacts in motion that are as stiff as stated."""
+"""Contacts that are as stiff as stated, at rest and in motion."""
 
 import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 
+IMPEDANCE = 0.9
+"""MuJoCo's d, unless stated; with the stiffness it cancels out of the law at rest."""
+
+
+def impede(model: mujoco.MjModel, geoms: Integers, impedance: float = IMPEDANCE) -> None:
+    """Give contacts the same impedance at all depths."""
+    model.geom_solimp[geoms] = [impedance, impedance, 1e-3, 0.5, 2]
+
 
 def stiffen(
-    model: mujoco.MjModel, geoms: Integers, weight: Floats, stiffness: float, impedance: float
+    model: mujoco.MjModel,
+    geoms: Integers,
+    weight: Floats,
+    stiffness: float,
+    impedance: float = IMPEDANCE,
 ) -> None:
     """Make contacts critically damped, and as stiff as stated at rest.
 

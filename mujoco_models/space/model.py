@@ -12,11 +12,11 @@ from analytic.space.problem.bodies.polyhedron import Polyhedron
 from mujoco_models.beams.links import link_name
 from mujoco_models.beams.protocol import FOOT
 from mujoco_models.errors import DivergedError
+from mujoco_models.model.stiffness import impede, stiffen
 from mujoco_models.space.assembly import assembled
 from mujoco_models.space.beams import SpaceBeam
 from mujoco_models.space.bodies import GEOM, OUTLINE, Shape
 
-_IMPEDANCE = 0.9  # MuJoCo's d; with the stiffness set below it cancels out of the law at rest
 _THINNEST = 1e-4  # L; MuJoCo's least radius of a link's capsule
 _FOLLOWED, _SAME_NORMAL = 20, 1e-13  # rounds in which a cylinder finds the circle of curvature
 _FAR = 10.0  # L; beyond, MuJoCo need not say how far
@@ -89,9 +89,8 @@ class SpaceModel:
         """Whether the velocities of a joint turn about axes that it carries along."""
         self._anchors = np.unique(model.jnt_bodyid, return_index=True)[1][self.joint_of]
         weight = model.body_invweight0[self._links, 0]
-        k = contact_stiffness * (1 - _IMPEDANCE) * weight
-        model.geom_solref[self._beads] = np.column_stack([-k, -2 * np.sqrt(k)])
-        model.geom_solimp[self._beads] = [_IMPEDANCE, _IMPEDANCE, 1e-3, 0.5, 2]
+        stiffen(model, self._beads, weight, contact_stiffness)
+        impede(model, self._beads)
         self.straight = model.qpos0.copy()
 
     def _as_it_is_held(self, mesh: Polyhedron) -> Polyhedron:

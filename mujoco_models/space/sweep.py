@@ -13,6 +13,7 @@ import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from analytic.problem.arrays import Floats
+from analytic.problem.columns import units
 from analytic.problem.errors import InputError
 from analytic.space.problem.case import SpatialCase
 from analytic.space.problem.readings import (
@@ -39,11 +40,6 @@ _NUMBERS = (
     "discrepancy",
     "penetration",
 )
-_UNITS = {
-    "length": ("travel", *FOOT, *CONTACT_POINT, "contact_arc_length", "penetration"),
-    "force": FORCE,
-    "moment": (*MOMENT, "residual"),
-}
 
 
 def run_space(
@@ -170,9 +166,8 @@ def _readings(
 ) -> SpatialReadings:
     """In the units of the case's beam."""
     table, beam = pd.DataFrame(rows), case.beam
-    units = {"length": beam.length, "force": beam.force_unit, "moment": beam.moment_unit}
-    for kind, names in _UNITS.items():
-        table[list(names)] *= units[kind]
     order = ["travel", *FOOT, "phase", *FORCE, *MOMENT, *CONTACT_POINT, *NORMAL]
+    numbers = [name for name in (*order, *_NUMBERS) if name != "phase"]
+    table[numbers] *= units(beam, numbers)
     table = table[[*order, *_NUMBERS, "status"]]
     return SpatialReadings(table, beam, case.path.clamp_tangent, source, provenance)

@@ -12,17 +12,12 @@ from threadpoolctl import threadpool_limits
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
-from analytic.problem.columns import COLUMNS, WORDS
+from analytic.problem.columns import COLUMNS, WORDS, units
 from analytic.problem.readings import Readings
 from mujoco_models.errors import DivergedError
 from mujoco_models.sweep.walk import Model, Walk
 
 _DIVERGED = {"phase": "free", "status": "diverged"}  # the row of a station without numbers
-_UNITS = {
-    "force": ("force_x", "force_y"),
-    "moment": ("moment_z", "residual"),
-    "length": ("contact_arc_length", "contact_x", "contact_y", "penetration", "out_of_plane"),
-}
 
 
 @dataclass(frozen=True)
@@ -93,17 +88,14 @@ def _readings(
 
 def _columns(rows: list[dict[str, Any]], case: Case) -> dict[str, Floats | Integers]:
     """As `analytic.problem.table.as_table` takes them; a station without numbers has NaN."""
-    beam = case.beam
-    units = {"force": beam.force_unit, "moment": beam.moment_unit, "length": beam.length}
-    unit = {name: units[kind] for kind, names in _UNITS.items() for name in names}
-    unit["sideways_stiffness"] = beam.force_unit / beam.length
+    names = dict.fromkeys([*COLUMNS, *rows[0]])
     columns: dict[str, Floats | Integers] = {}
-    for name in dict.fromkeys([*COLUMNS, *rows[0]]):
+    for name, unit in zip(names, units(case.beam, names), strict=True):
         if name == "foot_x":
             columns[name] = case.foot_x[: len(rows)]
         elif name in WORDS:
             columns[name] = np.array([WORDS[name].index(row[name]) for row in rows])
         else:
             values = np.array([row.get(name, np.nan) for row in rows], dtype=float)
-            columns[name] = values * unit.get(name, 1.0)
+            columns[name] = values * unit
     return columns

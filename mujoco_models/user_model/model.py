@@ -8,6 +8,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError
+from mujoco_models.dynamics.moving import SteppedModel
 from mujoco_models.errors import DivergedError
 from mujoco_models.inspect.held import Held
 from mujoco_models.inspect.held_rod import HeldRod
@@ -16,8 +17,7 @@ from mujoco_models.inspect.measure import sweep_axes
 from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.model.clamp import Clamp
 from mujoco_models.model.contacts import NOWHERE
-from mujoco_models.model.stiffness import stiffen, weights_in_last_step
-from mujoco_models.model.warned import has_diverged
+from mujoco_models.model.stiffness import impede, stiffen, weights_in_last_step
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.faceted import add_hull
 from mujoco_models.obstacles.prism import Prism
@@ -31,12 +31,11 @@ _SPECK = 1e-4  # L
 _LAGS = 0.1, 0.5  # L, and of the way: farther behind the foot does not follow
 _WILD = 100.0  # EI/L^2 and EI/L; thirty times what a sweep takes
 _AT_TIP = 1e-3  # L
-_IMPEDANCE = 0.9
 _ITERATIONS, _TOLERANCE = 500, 1e-12  # of Newton's method, which takes two or three
 
 
-class UserModelInMotion:
-    """A user's model and its state; in dimensionless numbers of the case and T1."""
+class UserModelInMotion(SteppedModel):
+    """A user's model, in its own units."""
 
     def __init__(
         self,
@@ -48,11 +47,12 @@ class UserModelInMotion:
         motion: Motion,
         foot_x: float,
     ) -> None:
-        self._parts, self._beam, self._period = held.parts, beam, measured.period
+        self._parts, self._beam = held.parts, beam
         self._axes, self._start, self._origin = sweep_axes(held), foot_x, held.clamp
-        self.label = obstacle.label
-        self.model = self._with_object(own, obstacle)
-        self.data = mujoco.MjData(self.model)
+        ours = own.contact == "ours"
+        model = self._with_object(own, obstacle)
+        implicit = model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_DISCRETE)
+        super().__init__(model, obstacle.label, measured.period, ours and implicit)
         self._foot = self._parts.foot
         place, turn = self._pose(held.data)
         self._clamp = turn.T @ (held.clamp - place)
@@ -64,7 +64,6 @@ class UserModelInMotion:
         self._drive = drive_to(self.model, self._foot, -self._axes[0])
         self._stiffness = motion.stiffness * beam.base_rigidity / beam.length**3
         self._change(own, held)
-        ours = own.contact == "ours"
         if ours and self._parts.rod is not None:
             raise InputError(
                 "model.contact", "ours", "own, for a flex, all of whose edges have one solref",
@@ -72,12 +71,9 @@ class UserModelInMotion:
             )  # fmt: skip
         if ours:
             self._take_our_contacts()
-        implicit = self.model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_DISCRETE)
-        self._follows_inertia = ours and implicit
         self.model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
         self._dofs = held.dofs
         self._way = 0.0
-        self.time = 0.0
         mujoco.mj_forward(self.model, self.data)
         self._still = self._skin.elastic_energy()
 
@@ -134,21 +130,17 @@ class UserModelInMotion:
         geoms = np.array(sorted(self._geoms))
         weight = self.model.body_invweight0[self.model.geom_bodyid[geoms], 0]
         moved = weight > 0  # but for a piece that is fixed to the foot
-        stiffen(self.model, geoms[moved], weight[moved], self._stiffness, _IMPEDANCE)
-        self.model.geom_solimp[geoms[moved]] = [_IMPEDANCE, _IMPEDANCE, 1e-3, 0.5, 2]
+        stiffen(self.model, geoms[moved], weight[moved], self._stiffness)
+        impede(self.model, geoms[moved])
         self.model.geom_condim[geoms] = 1
 
     def _follow_inertia(self) -> None:
+        """Only where the object is touched."""
         pairs, weight = weights_in_last_step(self.model, self.data, friction=0.0)
         met = (pairs == self._object).any(axis=1) & (weight > 0)
         mine = self._is_mine[pairs] & met[:, None]
         weights = np.repeat(weight, mine.sum(axis=1))
-        stiffen(self.model, pairs[mine], weights, self._stiffness, _IMPEDANCE)
-
-    @property
-    def now(self) -> float:
-        """Time of the present state [T1]."""
-        return float(self.data.time) / self._period
+        stiffen(self.model, pairs[mine], weights, self._stiffness)
 
     @property
     def clamp_at(self) -> Floats:
@@ -163,16 +155,12 @@ class UserModelInMotion:
         return float(self._start + moved / self._beam.length)
 
     def step(self, speed: float) -> None:
-        """One step of MuJoCo's, at whose end the foot should have gone on at a given speed."""
+        """As far as the model's own drive follows."""
         self.time = self.now
         self._way += speed * self.model.opt.timestep / self._period
         unit = self._beam.length
         self._drive.move(self.data, self._way * unit, speed * unit / self._period)
-        mujoco.mj_step(self.model, self.data)
-        if has_diverged(self.data):
-            raise DivergedError("the model's motion does not stay finite")
-        if self._follows_inertia and self.data.nefc:
-            self._follow_inertia()
+        self._advance()
         behind = self._way - (self._start - self.foot_x)
         if abs(behind) > _LAGS[0] + _LAGS[1] * self._way:
             if np.abs(self.clamp()).max() > _WILD:
@@ -253,10 +241,7 @@ class UserModelInMotion:
         return float(np.arctan2(y, x))
 
     def _kinetic_share(self) -> float:
-        product = np.zeros(self.model.nv)
-        moving = np.zeros(self.model.nv)
-        moving[self._dofs] = self.data.qvel[self._dofs]
-        mujoco.mj_mulM(self.model, self.data, product, moving)
-        kinetic = float(moving @ product) / 2
-        total = kinetic + max(self._skin.elastic_energy() - self._still, 0.0)
-        return kinetic / total if total > 0 else 0.0
+        speeds = np.zeros(self.model.nv)
+        speeds[self._dofs] = self.data.qvel[self._dofs]
+        elastic = max(self._skin.elastic_energy() - self._still, 0.0)
+        return self._share_of_kinetic(speeds, self._dofs, elastic)

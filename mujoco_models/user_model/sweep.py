@@ -7,8 +7,8 @@ from dataclasses import asdict, replace
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
-from mujoco_models.dynamics.record import Record
-from mujoco_models.dynamics.sweep import start_of, sweep_moving
+from mujoco_models.dynamics.record import StationMeans
+from mujoco_models.dynamics.sweep import Passes, start_of
 from mujoco_models.inspect.load import load
 from mujoco_models.inspect.measure import hold, measure
 from mujoco_models.inspect.measured import MeasuredBeam
@@ -46,7 +46,7 @@ def run_user_model(
         stiffness = own.stiffness * moved.stiffness
         moved = replace(moved, contact_stiffness=min(max(stiffness, 1e3), 1e9))
     moved = replace(moved, timestep=own.timestep * moved.timestep)
-    record = Record(case.foot_x / case.beam.length, motion.average)
+    record = StationMeans(case.foot_x / case.beam.length, motion.average)
     in_motion = UserModelInMotion(
         own,
         held,
@@ -57,7 +57,6 @@ def run_user_model(
         start_of(record, moved),
     )
     about = {
-        "source": f"model {measured.model or own.file.stem}",
         "model": {**asdict(own), "file": str(own.file)},
         "measured": {
             "length": measured.length,
@@ -66,7 +65,9 @@ def run_user_model(
             "damping_ratio": measured.damping_ratio,
         },
     }
-    return sweep_moving(in_motion, case, moved, record, about, advance, keep)
+    source = f"model {measured.model or own.file.stem}"
+    passes = Passes(in_motion, case, moved, source, about)
+    return passes.swept(record, passes.on, advance, keep)
 
 
 def _check(case: Case, parts: Parts, measured: MeasuredBeam) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from analytic.from_clamp.noise import checked_noise, largest, reading_noise
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.case import Case
-from analytic.problem.columns import CLAMP_READINGS, SENSED
+from analytic.problem.columns import CLAMP_READINGS, SENSED, units
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
 
@@ -35,9 +35,7 @@ class Measured:
 def check_size(readings: Readings, case: Case) -> None:
     """Refuse readings that have no load, or are in other units than the case."""
     beam = case.beam
-    for name, unit in zip(
-        CLAMP_READINGS, (beam.force_unit, beam.force_unit, beam.moment_unit), strict=True
-    ):
+    for name, unit in zip(CLAMP_READINGS, units(beam, CLAMP_READINGS), strict=True):
         size = largest(readings.values(name)[readings.trusted]) / unit
         if size == 0:
             raise InputError(

@@ -5,20 +5,20 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from mujoco_models.dynamics.record import Record, Sample
+from mujoco_models.dynamics.record import StationMeans, Step
 
 
 def driven(record, x, clamp, touches=None):
     """The record of steps at the given foot positions."""
     touches = np.ones(len(x), dtype=bool) if touches is None else touches
     samples = [
-        Sample(float(i), *values)
+        Step(float(i), *values)
         for i, values in enumerate(zip(x.tolist(), clamp, touches.tolist(), strict=True))
     ]
     for before, after in pairwise(samples):
         while True:
             if record.crosses(before, after):
-                record.note(before, after, {"status": "ok"})
+                record.note(before, after, {"phase": "free", "status": "ok"})
             if not record.take(before, after):
                 break
     return record
@@ -28,7 +28,7 @@ def driven(record, x, clamp, touches=None):
 @pytest.mark.parametrize("average", [0.0, 0.3, 1.0])
 def test_a_straight_line_is_met_exactly(steps, average):
     stations = np.linspace(1, -1, 12)
-    record = Record(stations, average)
+    record = StationMeans(stations, average)
     x = np.linspace(record.first + 0.01, -1.2, steps)
     clamp = np.column_stack([3 * x + 1, -x, 0 * x + 2])
     driven(record, x, clamp)
@@ -41,7 +41,7 @@ def test_a_straight_line_is_met_exactly(steps, average):
 
 def test_the_mean_removes_a_ripple_that_the_raw_signal_has():
     stations = np.linspace(1, -1, 21)
-    record = Record(stations, 1.0)
+    record = StationMeans(stations, 1.0)
     x = np.linspace(record.first + 0.01, -1.2, 40_001)
     ripple = np.cos(2 * np.pi * x / 0.1 * 5)  # five periods from a station to the next
     driven(record, x, np.column_stack([ripple] * 3))
@@ -51,7 +51,7 @@ def test_the_mean_removes_a_ripple_that_the_raw_signal_has():
 
 def test_lost_contacts_are_counted_at_the_station_where_they_are_lost():
     stations = np.array([0.5, 0.0, -0.5])
-    record = Record(stations, 1.0)
+    record = StationMeans(stations, 1.0)
     x = np.linspace(record.first + 0.01, -1, 400)
     chatters = (x < 0.2) & (x > -0.2)
     touches = ~chatters | (np.arange(400) % 2 == 0)
@@ -63,7 +63,7 @@ def test_lost_contacts_are_counted_at_the_station_where_they_are_lost():
 def test_one_bounce_spoils_the_mean_of_its_station():
     """Contact is lost once: for 8 % of the second station's way, and the third's last two steps."""
     stations = np.array([1.0, 0.5, 0.0, -0.5])
-    record = Record(stations, 1.0)
+    record = StationMeans(stations, 1.0)
     x = np.linspace(record.first + 0.01, -1, 2001)
     away = ((x < 0.36) & (x > 0.32)) | ((x < -0.2475) & (x > -0.2495))
     driven(record, x, np.zeros((2001, 3)), ~away)
@@ -72,7 +72,7 @@ def test_one_bounce_spoils_the_mean_of_its_station():
 
 
 def test_the_last_contact_that_is_lost_is_the_snap_off():
-    record = Record(np.array([0.5, 0.0]), 0.0)
+    record = StationMeans(np.array([0.5, 0.0]), 0.0)
     x = np.linspace(0.6, -0.1, 71)
     touches = (x > 0.3) & ~((x < 0.42) & (x > 0.4))
     driven(record, x, np.zeros((71, 3)), touches)

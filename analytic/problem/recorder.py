@@ -1,0 +1,84 @@
+"""A sweep's rows as they come, and the readings that they are, also if it ends early."""
+
+import platform
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from analytic.problem.arrays import Floats, Integers
+from analytic.problem.case import Case
+from analytic.problem.columns import COLUMNS, WORDS, units
+from analytic.problem.errors import InputError
+from analytic.problem.readings import Readings
+
+DIVERGED = {"phase": "free", "status": "diverged"}
+"""The row of a station without numbers."""
+
+
+@dataclass
+class Recorder:
+    """Dimensionless rows, L = EI = 1, of a sweep to the left past the stations of a case."""
+
+    case: Case
+    source: str  # who produces the readings
+    # Of the provenance: ``engine``, with its version, ``settings`` and the like. It is read when
+    # the readings are made, so it may hold what is counted on the way.
+    about: Mapping[str, Any]
+    events: Callable[[], Mapping[str, float | None]]  # foot positions so far, by name [L]
+    foot_x: Floats  # shape (stations,); in the order in which they are passed [length]
+    rows: list[dict[str, Any]] = field(default_factory=list)
+    begun: float = field(default_factory=time.process_time)  # processor time [s]
+
+    @contextmanager
+    def rescued(self, keep: Callable[[Readings], None]) -> Iterator[None]:
+        """Hand over what there is when the work ends early, whatever ends it."""
+        try:
+            # The matrices are small: more threads only wait for each other, on a busy machine long.
+            with threadpool_limits(1):
+                yield
+        except BaseException:
+            if len(self.rows) > 1:
+                keep(self.readings())
+            raise
+
+    def readings(self) -> Readings:
+        """All rows, in the units of the case's beam."""
+        columns, beam = self._columns(), self.case.beam
+        events = {n: None if x is None else x * beam.length for n, x in self.events().items()}
+        provenance = {
+            **self.case.provenance(),
+            **self.about,
+            "python": platform.python_version(),
+            "seconds": round(time.process_time() - self.begun, 3),
+            "events": events,
+        }
+        if any(np.isinf(values).any() for values in columns.values()):
+            from analytic.problem.table import as_table  # slow to load
+
+            # Beyond the largest number in the case's units: an error says so.
+            return Readings(as_table(columns), beam, self.source, provenance)
+        return Readings.solved(columns, beam, self.source, lambda: provenance, events["snap_off"])
+
+    def _columns(self) -> dict[str, Floats | Integers]:
+        """As `analytic.problem.table.as_table` takes them; a station without numbers has NaN."""
+        names = [n for n in dict.fromkeys([*COLUMNS, *self.rows[0]]) if n != "foot_x"]
+        columns: dict[str, Floats | Integers] = {"foot_x": self.foot_x[: len(self.rows)]}
+        for name, unit in zip(names, units(self.case.beam, names), strict=True):
+            if name in WORDS:
+                columns[name] = np.array([_number(name, row[name]) for row in self.rows])
+            else:
+                values = np.array([row.get(name, np.nan) for row in self.rows], dtype=float)
+                columns[name] = values * unit
+        return columns
+
+
+def _number(column: str, word: str) -> int:
+    allowed = WORDS[column]
+    if word not in allowed:
+        raise InputError(f"column {column}", repr(word), f"one of {', '.join(allowed)}", "fix it")
+    return allowed.index(word)
