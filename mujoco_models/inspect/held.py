@@ -1,226 +1,85 @@
-"""The vibrissa of a user's model with its foot held: loads on it, and its states at rest."""
+"""The vibrissa of a user's model with its foot held: what chains of links and rods share."""
 
+from abc import ABC, abstractmethod
 from copy import copy
 
 import mujoco
 import numpy as np
-from scipy.linalg import eigh
 
 from analytic.problem.arrays import Floats, Integers
-from analytic.problem.errors import InputError
 from mujoco_models.inspect.bending import Bending
-from mujoco_models.inspect.parts import Parts, axis_of
-from mujoco_models.inspect.sensing import Sensing
+from mujoco_models.inspect.parts import Parts
 
-_HELD = 1e12  # times the mass of the vibrissa, as the inertia of whatever is held
-_STEP = 1e-6  # rad; MuJoCo's forces are smooth there, and exact to 1e-14 of their size
-_ITERATIONS = 100
-_LONGEST_TURN = 0.2  # rad, of any coordinate in an iteration
-_AT_REST = 1e-9  # of a joint's stiffness: rad by which it is out of balance
+_HEAVY = 1e12  # times the mass of the vibrissa, as the inertia of whatever is held
 
 
-class Held(Sensing):
+class HeldModel(ABC):
     """A model whose foot is held, without contacts and gravity, and loads on the tip."""
 
-    small = 1e-4
+    small: float  # EI/L^2 and EI/L; the loads by which sensors are probed
 
     def __init__(self, model: mujoco.MjModel, parts: Parts) -> None:
         self.model, self.parts = copy(model), parts
         self.gravity = np.array(model.opt.gravity)
         self.model.opt.gravity[:] = 0
         self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
-        self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS
-        self.model.opt.tolerance = 0
         self.cutoffs = np.array(model.sensor_cutoff)
         self.model.sensor_cutoff[:] = 0
         self.model.sensor_noise[:] = 0
         bends = np.isin(model.dof_bodyid, parts.chain)
         self.dofs: Integers = np.flatnonzero(bends)
-        mass = float(model.body_mass[list(parts.chain)].sum())
-        self.model.dof_armature[~bends] += _HELD * mass
+        self._masses = model.body_mass[list(parts.chain)]
+        self.model.dof_armature[self._held_dofs()] += _HEAVY * self._masses.sum()
         self.data = mujoco.MjData(self.model)
-        self._tip_body = parts.chain[-1]
         self._force, self._torque = np.zeros((2, 3))
-        self._slope = np.full((len(self.dofs), len(self.dofs)), np.nan)
-        self.set_back()
+
+    @abstractmethod
+    def _held_dofs(self) -> Integers:
+        """What is made too heavy to move."""
+
+    @property
+    @abstractmethod
+    def tip(self) -> Floats:
+        """Where the tip is, shape (3,)."""
+
+    @property
+    @abstractmethod
+    def clamp(self) -> Floats:
+        """Where the vibrissa begins, shape (3,)."""
+
+    @property
+    @abstractmethod
+    def joints(self) -> Floats:
+        """Where it bends, shape (n, 3)."""
+
+    @abstractmethod
+    def unload(self) -> None:
+        """Take loads away and put the vibrissa to rest as it is by itself."""
+
+    @abstractmethod
+    def rest(self) -> None:
+        """Let the vibrissa come to rest under its loads."""
+
+    @abstractmethod
+    def bending(self, axes: Floats) -> Bending:
+        """How it bends and vibrates about its state without loads."""
 
     def set_back(self) -> None:
         """Take loads away and put the model into its own first state."""
         mujoco.mj_resetData(self.model, self.data)
-        self._force[:], self._torque[:] = 0, 0
+        self.load(np.zeros(3), np.zeros(3))
         mujoco.mj_forward(self.model, self.data)
-        # The end of the last geom that is farther from the last joint.
-        ends = self._world(axis_of(self.model, self.parts.geoms[-1]), self._body(-1))
-        joint = self.data.xanchor[self.model.body_jntadr[self._tip_body]]
-        far = ends[int(np.argmax(np.linalg.norm(ends - joint, axis=1)))]
-        turn = self.data.xmat[self._tip_body].reshape(3, 3)
-        self.tip_in_body = turn.T @ (far - self.data.xpos[self._tip_body])
-
-    def _body(self, geom: int) -> int:
-        return int(self.model.geom_bodyid[self.parts.geoms[geom]])
-
-    def _world(self, points: Floats, body: int) -> Floats:
-        turn = self.data.xmat[body].reshape(3, 3)
-        return np.asarray(self.data.xpos[body] + points @ turn.T)
-
-    @property
-    def tip(self) -> Floats:
-        """Where the tip is, shape (3,)."""
-        return np.asarray(self._world(self.tip_in_body[None], self._tip_body)[0])
-
-    @property
-    def clamp(self) -> Floats:
-        """Where the vibrissa begins: the end of its first geom that is farther from the tip."""
-        ends = self._world(axis_of(self.model, self.parts.geoms[0]), self._body(0))
-        reach = np.linalg.norm(ends - self.tip, axis=1)
-        return np.asarray(ends[int(np.argmax(reach))])
-
-    @property
-    def joints(self) -> Floats:
-        """Where its bodies are hinged, shape (n_links, 3)."""
-        first = self.model.body_jntadr[list(self.parts.chain)]
-        return np.array(self.data.xanchor[first])
 
     def load(self, force: Floats, torque: Floats) -> None:
         """Load the tip."""
         self._force[:], self._torque[:] = force, torque
 
-    def evaluate(self) -> Floats:
-        """What is out of balance at rest."""
-        data = self.data
-        data.qvel[:] = 0
-        mujoco.mj_fwdPosition(self.model, data)  # where the tip is, before its load is put on it
-        moment = np.empty(3)
-        mujoco.mju_cross(moment, self.tip - data.xipos[self._tip_body], self._force)
-        data.xfrc_applied[self._tip_body, :3] = self._force
-        data.xfrc_applied[self._tip_body, 3:] = self._torque + moment
-        mujoco.mj_forwardSkip(self.model, data, int(mujoco.mjtStage.mjSTAGE_POS), 0)
-        return np.asarray((data.qfrc_smooth + data.qfrc_constraint)[self.dofs])
+    def sensed(self, sensor: int) -> Floats:
+        """What a sensor reads."""
+        first = self.model.sensor_adr[sensor]
+        return np.array(self.data.sensordata[first : first + 3])
 
-    def stiffness(self) -> Floats:
-        """How what is out of balance falls with each turn, at the present state."""
-        start = self.data.qpos.copy()
-        columns = []
-        for dof in self.dofs:
-            both = []
-            for sign in (1, -1):
-                turn = np.zeros(self.model.nv)
-                turn[dof] = sign * _STEP
-                self.data.qpos[:] = start
-                mujoco.mj_integratePos(self.model, self.data.qpos, turn, 1.0)
-                both.append(self.evaluate())
-            columns.append((both[1] - both[0]) / (2 * _STEP))
-        self.data.qpos[:] = start
-        self.evaluate()
-        return np.array(columns).T
-
-    def unload(self) -> None:
-        """Take loads away and put the vibrissa to rest as it is by itself."""
-        self.set_back()
-        self.rest()
-
-    def rest(self) -> None:
-        """Let the vibrissa come to rest under its loads, by Newton's method.
-
-        A slope serves as long as its steps halve what is out of balance, those of other loads too;
-        and they go on to where rounding stops them, since sensors are probed by small loads.
-        """
-        before = np.inf
-        for _ in range(_ITERATIONS):
-            residual = self.evaluate()
-            out = self._out_of_balance(residual)
-            if not out < before / 2:
-                if out < _AT_REST:
-                    return
-                self._slope = self._checked(self.stiffness())
-                out = self._out_of_balance(residual)
-            step = np.zeros(self.model.nv)
-            step[self.dofs] = np.linalg.solve(self._slope, residual)
-            step *= _LONGEST_TURN / max(np.abs(step).max(), _LONGEST_TURN)
-            mujoco.mj_integratePos(self.model, self.data.qpos, step, 1.0)
-            before = out
-        raise InputError(
-            "model",
-            f"out of balance by {out:.1e} rad",
-            "one that comes to rest with its foot held",
-            "look at its joints' limits and equality constraints",
-        )
-
-    def _out_of_balance(self, residual: Floats) -> float:
-        """By how much its joints would have to turn, at most [rad]; NaN without a slope yet."""
-        return float(np.abs(residual / np.diag(self._slope)).max())
-
-    def _checked(self, slope: Floats) -> Floats:
-        """A slope all of whose joints something holds, or raise InputError."""
-        if not np.isfinite(slope).all():
-            raise InputError(
-                "model", "with moments that are not finite", "one that has a state at rest",
-                "if it is a cable of MuJoCo 3 on a mocap body, put that on a slide: its plugin "
-                "reads the body's place before MuJoCo has written it",
-            )  # fmt: skip
-        scale = np.abs(np.diag(slope))
-        if not scale.min() > 1e-9 * scale.max():
-            body = self.model.dof_bodyid[self.dofs[int(np.argmin(scale))]]
-            name = mujoco.mj_id2name(self.model, mujoco.mjtObj.mjOBJ_BODY, int(body))
-            raise InputError(
-                f"body {name!r} of the vibrissa", "without a stiffness", "held by a spring",
-                "give its joint a stiffness, or the bodies an elasticity plugin",
-            )  # fmt: skip
-        return slope
-
-    def bending(self, axes: Floats) -> Bending:
-        """How it bends and vibrates about its present state, by its stiffness and inertia."""
-        stiffness = self.stiffness()
-        flexibility = np.linalg.inv(stiffness)
-        turns = self._turns(axes[2])
-        links = turns @ flexibility @ turns[-1]  # turns under a unit moment on the tip
-        way = axes[0] @ self._moves()
-        squares, modes = eigh(stiffness, self._inertia(armature=True))
-        bare = eigh(stiffness, self._inertia(armature=False), eigvals_only=True)
-        return Bending(
-            compliances=np.diff(links, prepend=0.0),
-            tip_compliance=float(way @ flexibility @ way),
-            squares=squares,
-            damping=np.einsum("im,ij,jm->m", modes, self._damping(), modes),
-            slowest_without_armature=float(bare[0]),
-        )
-
-    def _inertia(self, armature: bool) -> Floats:
-        """The mass matrix of the vibrissa on its held foot, shape (n, n)."""
-        unit = np.eye(self.model.nv)[self.dofs]
-        found = np.zeros_like(unit)
-        for row, turn in zip(found, unit, strict=True):
-            mujoco.mj_mulM(self.model, self.data, row, turn)
-        inertia = found[:, self.dofs]
-        if not armature:
-            inertia = inertia - np.diag(self.model.dof_armature[self.dofs])
-        return np.asarray(inertia)
-
-    def _damping(self) -> Floats:
-        """How the passive forces fall with each joint's speed, shape (n, n)."""
-        columns = []
-        for dof in self.dofs:
-            both = []
-            for sign in (1, -1):
-                self.data.qvel[:] = 0
-                self.data.qvel[dof] = sign * _STEP
-                mujoco.mj_forward(self.model, self.data)
-                both.append(self.data.qfrc_passive[self.dofs].copy())
-            columns.append((both[1] - both[0]) / (2 * _STEP))
-        self.evaluate()
-        return np.array(columns).T
-
-    def _turns(self, axis: Floats) -> Floats:
-        """How each link turns about an axis with the coordinates, shape (n_links, n)."""
-        rotation = np.zeros((3, self.model.nv))
-        rows = []
-        for body in self.parts.chain:
-            mujoco.mj_jacBody(self.model, self.data, None, rotation, body)
-            rows.append(axis @ rotation[:, self.dofs])
-        return np.array(rows)
-
-    def _moves(self) -> Floats:
-        """How the tip moves with the coordinates, shape (3, n)."""
-        way = np.zeros((3, self.model.nv))
-        mujoco.mj_jac(self.model, self.data, way, None, self.tip, self._tip_body)
-        return np.asarray(way[:, self.dofs])
+    def site(self, sensor: int) -> tuple[Floats, Floats]:
+        """Where the site of a sensor is, and how it is turned."""
+        site = self.model.sensor_objid[sensor]
+        return np.array(self.data.site_xpos[site]), self.data.site_xmat[site].reshape(3, 3).copy()

@@ -11,15 +11,14 @@ from copy import copy
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.bending import Bending
 from mujoco_models.inspect.drive import holders
+from mujoco_models.inspect.held import HeldModel
 from mujoco_models.inspect.parts import Parts
 from mujoco_models.inspect.rod import Rod
-from mujoco_models.inspect.sensing import Sensing
 
-_HELD = 1e12  # times its mass, as the inertia of whatever is held
 _FIRST = 1.8751040687119611**2  # omega L^2 sqrt(m/EI) of the first vibration of a cantilever
 _AT_REST = 1e-8  # L in 1/omega
 _SHORTEST, _LONGEST = 3.0, 600.0  # 1/omega to come to rest in
@@ -32,29 +31,17 @@ _TOLERANCE = 1e-16  # of MuJoCo's solver; with 0 it warns that it does not get t
 _ON_EDGE = 0.05  # of its length, by which a site may be aside of the first edge
 
 
-class HeldRod(Sensing):
-    """A rod whose foot is held, without contacts and gravity, and loads on its tip."""
+class HeldRod(HeldModel):
+    """A flex of dimension 1."""
 
     small = _TINY
 
     def __init__(self, model: mujoco.MjModel, parts: Parts, rod: Rod) -> None:
-        self.model, self.parts, self.rod = copy(model), parts, rod
-        self.gravity = np.array(model.opt.gravity)
-        self.model.opt.gravity[:] = 0
-        self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
+        self.rod = rod
+        super().__init__(model, parts)
         self.model.opt.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
         self.model.opt.solver = mujoco.mjtSolver.mjSOL_NEWTON
         self.model.opt.tolerance = _TOLERANCE
-        self.cutoffs = np.array(model.sensor_cutoff)
-        self.model.sensor_cutoff[:] = 0
-        self.model.sensor_noise[:] = 0
-        self.dofs = np.flatnonzero(np.isin(model.dof_bodyid, parts.chain))
-        self._masses = model.body_mass[list(parts.chain)]
-        # What is welded to the hand moves as far as its weld lets it.
-        free = model.jnt_type[model.dof_jntid] == int(mujoco.mjtJoint.mjJNT_FREE)
-        hand = np.isin(model.dof_bodyid, [*holders(model, parts.foot)])
-        self.model.dof_armature[hand & ~free] += _HELD * self._masses.sum()
-        self.data = mujoco.MjData(self.model)
         self._unloaded: mujoco.MjData | None = None  # at rest, once it is known
         welds = model.eq_type == int(mujoco.mjtEq.mjEQ_WELD)
         self._shortest = _FADES * float(model.eq_solref[welds, 0].max(initial=0.0))
@@ -69,11 +56,12 @@ class HeldRod(Sensing):
         self._stretch = self._measure_stretch()
         self._stiffen_edges()
 
-    def set_back(self) -> None:
-        """Take loads away and put the model into its own first state."""
-        mujoco.mj_resetData(self.model, self.data)
-        self._force, self._torque = np.zeros(3), np.zeros(3)
-        mujoco.mj_forward(self.model, self.data)
+    def _held_dofs(self) -> Integers:
+        """The hand's: what is welded to it moves as far as its weld lets it."""
+        model = self.model
+        free = model.jnt_type[model.dof_jntid] == int(mujoco.mjtJoint.mjJNT_FREE)
+        hand = np.isin(model.dof_bodyid, [*holders(model, self.parts.foot)])
+        return np.flatnonzero(hand & ~free)
 
     @property
     def vertices(self) -> Floats:
@@ -110,10 +98,6 @@ class HeldRod(Sensing):
             self.rest()
             self._unloaded = copy(self.data)
         mujoco.mj_copyData(self.data, self.model, self._unloaded)
-
-    def load(self, force: Floats, torque: Floats) -> None:
-        """Load the tip."""
-        self._force, self._torque = force, torque
 
     def rest(self) -> None:
         """Let the vibrissa come to rest under its loads, by steps of MuJoCo's."""
@@ -188,9 +172,11 @@ class HeldRod(Sensing):
         self.unload()
         start, slopes = self.tip, self._slopes(axes)
         moment = unit * self._length
-        self._put(np.zeros(3), moment * axes[2])
+        self.load(np.zeros(3), moment * axes[2])
+        self.rest()
         turned = self._slopes(axes) - slopes
-        self._put(unit * axes[0], np.zeros(3))
+        self.load(unit * axes[0], np.zeros(3))
+        self.rest()
         tip_compliance = float((self.tip - start) @ axes[0]) / unit
         compliances = np.diff(turned[1:], prepend=0.0) / moment
         self.unload()
@@ -210,10 +196,6 @@ class HeldRod(Sensing):
             slowest_without_armature=float(_vibrations(flexibility, self._masses)[0][0]),
             stretch=self._stretch,
         )
-
-    def _put(self, force: Floats, torque: Floats) -> None:
-        self.load(force, torque)
-        self.rest()
 
     def _slopes(self, axes: Floats) -> Floats:
         """Slope angles of its edges [rad]."""

@@ -9,7 +9,8 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.drive import drive_of, slides
-from mujoco_models.inspect.held import Held
+from mujoco_models.inspect.held import HeldModel
+from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.held_rod import HeldRod
 from mujoco_models.inspect.load import load
 from mujoco_models.inspect.measured import Joint, MeasuredBeam, Sensed
@@ -32,9 +33,9 @@ def inspect_model(path: Path, names: Names) -> MeasuredBeam:
         return measure(model, find(model, names), path)
 
 
-def hold(model: mujoco.MjModel, parts: Parts) -> Held | HeldRod:
+def hold(model: mujoco.MjModel, parts: Parts) -> HeldModel:
     """Hold the foot of a model."""
-    return Held(model, parts) if parts.rod is None else HeldRod(model, parts, parts.rod)
+    return HeldChain(model, parts) if parts.rod is None else HeldRod(model, parts, parts.rod)
 
 
 def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
@@ -93,7 +94,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     )
 
 
-def sweep_axes(held: Held | HeldRod) -> Floats:
+def sweep_axes(held: HeldModel) -> Floats:
     """The axes of the sweep in the world frame."""
     model, data = held.model, held.data
     nodes = np.vstack([held.clamp, held.joints, held.tip])
@@ -111,12 +112,17 @@ def sweep_axes(held: Held | HeldRod) -> Floats:
     )
     z = hinges[0] if planar else _normal(held, np.reshape(hinges, (-1, 3)), y)
     z = _aside(z[None], y)[0]
+    if np.linalg.norm(z) < _ACROSS:
+        raise InputError(
+            "hinges of the vibrissa", "along it", "across it, so that it bends",
+            "turn the axes of its joints",
+        )  # fmt: skip
     z = z / np.linalg.norm(z)
     z = z if z[int(np.argmax(np.abs(z)))] > 0 else -z
     return np.array([np.cross(y, z), y, z])
 
 
-def _normal(held: Held | HeldRod, hinges: Floats, y: Floats) -> Floats:
+def _normal(held: HeldModel, hinges: Floats, y: Floats) -> Floats:
     """Of the plane of the sweep where its hinges leave it open: by a slide, a hinge, a sensor."""
     for joint in slides(held.model, held.parts.foot):
         way = held.data.xaxis[joint]
@@ -135,7 +141,7 @@ def _across(y: Floats) -> Floats:
     return np.array([0.0, 0.0, 1.0]) if abs(y[2]) < 0.5 else np.array([0.0, 1.0, 0.0])
 
 
-def _planar(held: Held | HeldRod, z: Floats) -> bool:
+def _planar(held: HeldModel, z: Floats) -> bool:
     """Whether nothing of it can leave the plane of the sweep."""
     joints = np.flatnonzero(np.isin(held.model.jnt_bodyid, held.parts.chain))
     kinds, across = held.model.jnt_type[joints], np.abs(held.data.xaxis[joints] @ z)
@@ -172,7 +178,7 @@ def _check_constraints(model: mujoco.MjModel, parts: Parts) -> None:
 
 
 def _joints(
-    held: Held | HeldRod, s: Floats, compliance: Floats, nodes: Floats, axes: Floats
+    held: HeldModel, s: Floats, compliance: Floats, nodes: Floats, axes: Floats
 ) -> tuple[Joint, ...]:
     length = float(np.linalg.norm(np.diff(nodes, axis=0), axis=1).sum())
     bounds = np.concatenate([[0.0], (s[1:] + s[:-1]) / 2, [length]])
@@ -191,7 +197,7 @@ def _joints(
     )
 
 
-def _bent(held: Held | HeldRod, axes: Floats, unit: float) -> tuple[Floats, Floats]:
+def _bent(held: HeldModel, axes: Floats, unit: float) -> tuple[Floats, Floats]:
     """Tip displacements under forces across the beam, ever larger ones."""
     start = held.tip
     loads = unit * np.array(_LOADS)
@@ -205,7 +211,7 @@ def _bent(held: Held | HeldRod, axes: Floats, unit: float) -> tuple[Floats, Floa
     return loads, np.array(bent)
 
 
-def _sag(held: Held | HeldRod) -> float:
+def _sag(held: HeldModel) -> float:
     """How far gravity moves the tip."""
     start = held.tip
     held.model.opt.gravity[:] = held.gravity
@@ -216,9 +222,7 @@ def _sag(held: Held | HeldRod) -> float:
     return sag
 
 
-def _sensed(
-    held: Held | HeldRod, axes: Floats, rigidity: float, length: float
-) -> list[Sensed | None]:
+def _sensed(held: HeldModel, axes: Floats, rigidity: float, length: float) -> list[Sensed | None]:
     """The readings of both sensors of small forces and moments on the tip, one after the other."""
     sensors = held.parts.force, held.parts.torque
     if sensors == (None, None):
@@ -244,7 +248,7 @@ def _sensed(
 
 
 def _seen(
-    held: Held | HeldRod,
+    held: HeldModel,
     sensor: int,
     axes: Floats,
     arm: Floats,
@@ -265,7 +269,7 @@ def _seen(
     return Sensed(name, turned, offset, lever, _feels_contacts(held, sensor), cutoff)
 
 
-def _feels_contacts(held: Held | HeldRod, sensor: int) -> bool:
+def _feels_contacts(held: HeldModel, sensor: int) -> bool:
     """MuJoCo does not count those of a flex among the forces on the bodies of its vertices."""
     model = held.model
     body = int(model.site_bodyid[model.sensor_objid[sensor]])

@@ -10,7 +10,8 @@ from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError
 from mujoco_models.dynamics.moving import SteppedModel
 from mujoco_models.errors import DivergedError
-from mujoco_models.inspect.held import Held
+from mujoco_models.inspect.held import HeldModel
+from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.held_rod import HeldRod
 from mujoco_models.inspect.load import spec_of
 from mujoco_models.inspect.measure import sweep_axes
@@ -40,7 +41,7 @@ class UserModelInMotion(SteppedModel):
     def __init__(
         self,
         own: OwnModel,
-        held: Held | HeldRod,
+        held: HeldModel,
         measured: MeasuredBeam,
         beam: Beam,
         obstacle: Prism,
@@ -101,11 +102,12 @@ class UserModelInMotion(SteppedModel):
                 f"rename what clashes ({said})",
             ) from error
 
-    def _skin_of(self, held: Held | HeldRod, measured: MeasuredBeam) -> Skin:
+    def _skin_of(self, held: HeldModel, measured: MeasuredBeam) -> Skin:
         nodes = np.append([joint.s for joint in measured.joints], measured.length)
         if isinstance(held, HeldRod):
             compliances = np.array([joint.compliance for joint in measured.joints])
             return Edges(self.model, self.data, held.rod, nodes, compliances)
+        assert isinstance(held, HeldChain)
         chain, tip = held.parts.chain, held.tip_in_body
         return Links(self.model, self.data, chain, self._geoms, nodes, tip)
 
@@ -117,7 +119,7 @@ class UserModelInMotion(SteppedModel):
     def _pose(self, data: mujoco.MjData) -> tuple[Floats, Floats]:
         return np.array(data.xpos[self._parts.foot]), data.xmat[self._parts.foot].reshape(3, 3)
 
-    def _change(self, own: OwnModel, held: Held | HeldRod) -> None:
+    def _change(self, own: OwnModel, held: HeldModel) -> None:
         option = self.model.opt
         option.timestep *= own.timestep
         self.model.dof_damping[held.dofs] *= own.damping

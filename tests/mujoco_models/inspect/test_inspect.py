@@ -245,3 +245,19 @@ def test_what_is_no_model(tmp_path):
         with pytest.raises(InputError) as caught:
             inspect_model(path)
         assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "said"),
+    [(-1.0, "'whisker5' of the vibrissa = pushed away"), (1e300, "'whisker5' .* = so stiff")],
+)
+def test_a_joint_without_a_usable_stiffness_is_named(tmp_path, stiffness, said):
+    with pytest.raises(InputError, match=said):
+        inspect_model(Chain(stiffer={5: stiffness}).write(tmp_path))
+
+
+def test_hinges_along_the_vibrissa_do_not_let_it_bend(tmp_path):
+    path = Chain().write(tmp_path)
+    path.write_text(path.read_text().replace('axis="0 0 1"', 'axis="0 1 0"'))
+    with pytest.raises(InputError, match="hinges of the vibrissa = along it"):
+        inspect_model(path)

@@ -1,0 +1,226 @@
+"""A chain of a user's model with its foot held: its states at rest, by Newton's method."""
+
+import mujoco
+import numpy as np
+from scipy.linalg import eigh
+
+from analytic.problem.arrays import Floats, Integers
+from analytic.problem.errors import InputError
+from mujoco_models.inspect.bending import Bending
+from mujoco_models.inspect.held import HeldModel
+from mujoco_models.inspect.parts import Parts, axis_of
+
+_STEP = 1e-6  # rad; MuJoCo's forces are smooth there, and exact to 1e-14 of their size
+_ITERATIONS = 100
+_LONGEST_TURN = 0.2  # rad, of any coordinate in an iteration
+_SOFTEST = 1e-9  # of the stiffest joint; what is softer, nothing holds
+_AT_REST = 1e-9  # of a joint's stiffness: rad by which it is out of balance
+
+
+class HeldChain(HeldModel):
+    """Links on hinges or balls."""
+
+    small = 1e-4
+
+    def __init__(self, model: mujoco.MjModel, parts: Parts) -> None:
+        super().__init__(model, parts)
+        self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS
+        self.model.opt.tolerance = 0
+        self._tip_body = parts.chain[-1]
+        self._slope = np.full((len(self.dofs), len(self.dofs)), np.nan)
+        self.set_back()
+
+    def _held_dofs(self) -> Integers:
+        """All that is not the vibrissa's."""
+        return np.setdiff1d(np.arange(self.model.nv), self.dofs)
+
+    def set_back(self) -> None:
+        """And find the tip again."""
+        super().set_back()
+        # The end of the last geom that is farther from the last joint.
+        ends = self._world(axis_of(self.model, self.parts.geoms[-1]), self._body(-1))
+        joint = self.data.xanchor[self.model.body_jntadr[self._tip_body]]
+        far = ends[int(np.argmax(np.linalg.norm(ends - joint, axis=1)))]
+        turn = self.data.xmat[self._tip_body].reshape(3, 3)
+        self.tip_in_body = turn.T @ (far - self.data.xpos[self._tip_body])
+
+    def _body(self, geom: int) -> int:
+        return int(self.model.geom_bodyid[self.parts.geoms[geom]])
+
+    def _world(self, points: Floats, body: int) -> Floats:
+        turn = self.data.xmat[body].reshape(3, 3)
+        return np.asarray(self.data.xpos[body] + points @ turn.T)
+
+    @property
+    def tip(self) -> Floats:
+        """Where the tip is, shape (3,)."""
+        return np.asarray(self._world(self.tip_in_body[None], self._tip_body)[0])
+
+    @property
+    def clamp(self) -> Floats:
+        """Where the vibrissa begins: the end of its first geom that is farther from the tip."""
+        ends = self._world(axis_of(self.model, self.parts.geoms[0]), self._body(0))
+        reach = np.linalg.norm(ends - self.tip, axis=1)
+        return np.asarray(ends[int(np.argmax(reach))])
+
+    @property
+    def joints(self) -> Floats:
+        """Where its bodies are hinged, shape (n_links, 3)."""
+        first = self.model.body_jntadr[list(self.parts.chain)]
+        return np.array(self.data.xanchor[first])
+
+    def evaluate(self) -> Floats:
+        """What is out of balance at rest."""
+        data = self.data
+        data.qvel[:] = 0
+        mujoco.mj_fwdPosition(self.model, data)  # where the tip is, before its load is put on it
+        moment = np.empty(3)
+        mujoco.mju_cross(moment, self.tip - data.xipos[self._tip_body], self._force)
+        data.xfrc_applied[self._tip_body, :3] = self._force
+        data.xfrc_applied[self._tip_body, 3:] = self._torque + moment
+        mujoco.mj_forwardSkip(self.model, data, int(mujoco.mjtStage.mjSTAGE_POS), 0)
+        return np.asarray((data.qfrc_smooth + data.qfrc_constraint)[self.dofs])
+
+    def stiffness(self) -> Floats:
+        """How what is out of balance falls with each turn, at the present state."""
+        start = self.data.qpos.copy()
+        columns = []
+        for dof in self.dofs:
+            both = []
+            for sign in (1, -1):
+                turn = np.zeros(self.model.nv)
+                turn[dof] = sign * _STEP
+                self.data.qpos[:] = start
+                mujoco.mj_integratePos(self.model, self.data.qpos, turn, 1.0)
+                both.append(self.evaluate())
+            columns.append((both[1] - both[0]) / (2 * _STEP))
+        self.data.qpos[:] = start
+        self.evaluate()
+        return np.array(columns).T
+
+    def unload(self) -> None:
+        """Take loads away and put the vibrissa to rest as it is by itself."""
+        self.set_back()
+        self.rest()
+
+    def rest(self) -> None:
+        """Let the vibrissa come to rest under its loads, by Newton's method.
+
+        A slope serves as long as its steps halve what is out of balance, those of other loads too;
+        and they go on to where rounding stops them, since sensors are probed by small loads.
+        """
+        before = np.inf
+        for _ in range(_ITERATIONS):
+            residual = self.evaluate()
+            out = self._out_of_balance(residual)
+            if not out < before / 2:
+                if out < _AT_REST:
+                    return
+                self._slope = self._checked(self.stiffness())
+                out = self._out_of_balance(residual)
+            step = np.zeros(self.model.nv)
+            step[self.dofs] = np.linalg.solve(self._slope, residual)
+            step *= _LONGEST_TURN / max(np.abs(step).max(), _LONGEST_TURN)
+            mujoco.mj_integratePos(self.model, self.data.qpos, step, 1.0)
+            before = out
+        raise InputError(
+            "model",
+            f"out of balance by {out:.1e} rad",
+            "one that comes to rest with its foot held",
+            "look at its joints' limits and equality constraints",
+        )
+
+    def _out_of_balance(self, residual: Floats) -> float:
+        """By how much its joints would have to turn, at most [rad]; NaN without a slope yet."""
+        return float(np.abs(residual / np.diag(self._slope)).max())
+
+    def _checked(self, slope: Floats) -> Floats:
+        """A slope all of whose joints something holds, or raise InputError."""
+        if not np.isfinite(slope).all():
+            raise InputError(
+                "model", "with moments that are not finite", "one that has a state at rest",
+                "if it is a cable of MuJoCo 3 on a mocap body, put that on a slide: its plugin "
+                "reads the body's place before MuJoCo has written it",
+            )  # fmt: skip
+        scale = np.abs(np.diag(slope))
+        least, most = int(np.argmin(scale)), int(np.argmax(scale))
+        if _SOFTEST * scale[most] > np.median(scale) > 0:
+            raise InputError(
+                self._body_of(most), "so stiff that the others are nothing beside it",
+                "less than 1e9 times as stiff as they are", "correct its joint's stiffness",
+            )  # fmt: skip
+        if not scale[least] > _SOFTEST * scale[most]:
+            raise InputError(
+                self._body_of(least), "without a stiffness", "held by a spring",
+                "give its joint a stiffness, or the bodies an elasticity plugin",
+            )  # fmt: skip
+        return slope
+
+    def _body_of(self, dof: int) -> str:
+        """What an error calls the body of one of the vibrissa's coordinates."""
+        body = int(self.model.dof_bodyid[self.dofs[dof]])
+        name = mujoco.mj_id2name(self.model, mujoco.mjtObj.mjOBJ_BODY, body)
+        return f"body {name!r} of the vibrissa"
+
+    def bending(self, axes: Floats) -> Bending:
+        """How it bends and vibrates about its present state, by its stiffness and inertia."""
+        stiffness = self.stiffness()
+        flexibility = np.linalg.inv(stiffness)
+        turns = self._turns(axes[2])
+        links = turns @ flexibility @ turns[-1]  # turns under a unit moment on the tip
+        way = axes[0] @ self._moves()
+        squares, modes = eigh(stiffness, self._inertia(armature=True))
+        if not squares[0] > 0:
+            raise InputError(
+                self._body_of(int(np.argmax(np.abs(modes[:, 0])))),
+                "pushed away from its place by its own spring", "held there",
+                "give its joint a positive stiffness",
+            )  # fmt: skip
+        bare = eigh(stiffness, self._inertia(armature=False), eigvals_only=True)
+        return Bending(
+            compliances=np.diff(links, prepend=0.0),
+            tip_compliance=float(way @ flexibility @ way),
+            squares=squares,
+            damping=np.einsum("im,ij,jm->m", modes, self._damping(), modes),
+            slowest_without_armature=float(bare[0]),
+        )
+
+    def _inertia(self, armature: bool) -> Floats:
+        """The mass matrix of the vibrissa on its held foot, shape (n, n)."""
+        unit = np.eye(self.model.nv)[self.dofs]
+        found = np.zeros_like(unit)
+        for row, turn in zip(found, unit, strict=True):
+            mujoco.mj_mulM(self.model, self.data, row, turn)
+        inertia = found[:, self.dofs]
+        if not armature:
+            inertia = inertia - np.diag(self.model.dof_armature[self.dofs])
+        return np.asarray(inertia)
+
+    def _damping(self) -> Floats:
+        """How the passive forces fall with each joint's speed, shape (n, n)."""
+        columns = []
+        for dof in self.dofs:
+            both = []
+            for sign in (1, -1):
+                self.data.qvel[:] = 0
+                self.data.qvel[dof] = sign * _STEP
+                mujoco.mj_forward(self.model, self.data)
+                both.append(self.data.qfrc_passive[self.dofs].copy())
+            columns.append((both[1] - both[0]) / (2 * _STEP))
+        self.evaluate()
+        return np.array(columns).T
+
+    def _turns(self, axis: Floats) -> Floats:
+        """How each link turns about an axis with the coordinates, shape (n_links, n)."""
+        rotation = np.zeros((3, self.model.nv))
+        rows = []
+        for body in self.parts.chain:
+            mujoco.mj_jacBody(self.model, self.data, None, rotation, body)
+            rows.append(axis @ rotation[:, self.dofs])
+        return np.array(rows)
+
+    def _moves(self) -> Floats:
+        """How the tip moves with the coordinates, shape (3, n)."""
+        way = np.zeros((3, self.model.nv))
+        mujoco.mj_jac(self.model, self.data, way, None, self.tip, self._tip_body)
+        return np.asarray(way[:, self.dofs])
