@@ -1,5 +1,7 @@
 """What MuJoCo Warp, in single precision, says of a configuration that MuJoCo brought to rest."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass
 
@@ -12,7 +14,6 @@ from analytic.problem.arrays import Floats
 from mujoco_models.model.model import BeamModel
 from mujoco_models.obstacles.protocol import GEOM
 
-warp.config.log_level = warp.LOG_ERROR  # not a line for each kernel that is compiled
 _CONTACTS, _ROWS = 256, 256  # that Warp has room for; the beads that are near are fewer
 
 
@@ -27,6 +28,17 @@ class Evaluated:
     imbalance: float  # largest moment out of balance at a joint [EI/L]
 
 
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Not a line for each kernel that is compiled."""
+    before, warp.config.log_level = warp.config.log_level, warp.LOG_ERROR
+    try:
+        yield
+    finally:
+        warp.config.log_level = before
+
+
+@_quiet()
 def evaluate(model: BeamModel) -> Evaluated:
     """Evaluate the configuration that a model of MuJoCo's is in, at rest.
 
