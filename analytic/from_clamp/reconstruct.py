@@ -21,7 +21,7 @@ from analytic.from_clamp.noise import checked_noise
 from analytic.from_clamp.phases import Judgement, judge_phases
 from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.beam import Beam
-from analytic.problem.columns import SENSED
+from analytic.problem.columns import SENSED, units
 from analytic.problem.errors import InputError, require
 from analytic.problem.readings import Readings
 from analytic.problem.table import mirrored_table
@@ -242,8 +242,7 @@ def _uncertainty(
 ) -> Floats:
     """Radius that covers 95 % of the contact points of readings that differ by noise [L]."""
     beam = readings.beam
-    units = (beam.length, beam.force_unit, beam.force_unit, beam.moment_unit)
-    spread = np.array([noise.get(n, 0.0) / u for n, u in zip(SENSED, units, strict=True)])
+    spread = np.array([noise.get(name, 0.0) for name in SENSED]) / units(beam, SENSED)
     held = SweptVibrissa.of(readings)
     sensed = dimensionless(readings)[:, loaded]
     # Noise does not turn the paper's vibrissa to its other side.

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from analytic.space import SpatialCase
     from compare.validate.stated import Uncertainties
     from mujoco_models.motion import Motion
-    from mujoco_models.own.names import OwnModel
+    from mujoco_models.user_model.names import OwnModel
 
 EXACT = "exact"
 """What the closed form is called among the engines."""

@@ -38,9 +38,9 @@ from compare.read.quantities import (
 from compare.read.toml import Place, TomlFile
 from compare.read.uncertainty import uncertainties_of
 from mujoco_models.motion import Motion
+from mujoco_models.settings import Settings
 from mujoco_models.user_model.names import ContactKind, OwnModel
 from mujoco_models.user_model.shipped import shipped_models
-from mujoco_models.settings import Settings
 
 
 class BeamTable(Table):

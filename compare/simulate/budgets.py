@@ -14,9 +14,9 @@ from compare.simulate.controlled import budget_at_rest
 from compare.simulate.dispatch import simulate, softened
 from compare.simulate.moving import budget_in_motion, budget_of_model
 from mujoco_models.motion import Motion
-from mujoco_models.own.names import OwnModel
 from mujoco_models.settings import Settings
 from mujoco_models.space.settings import SpatialSettings
+from mujoco_models.user_model.names import OwnModel
 
 _SPLIT = 3  # sweeps in space: the one in question, another number of segments, another stiffness
 
