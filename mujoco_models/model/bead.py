@@ -251,10 +251,16 @@ class BeadModel:
         """The clamp's action on the vibrissa, by MuJoCo's sensors."""
         return clamp.by_sensors(self.data)
 
-    def contact_place(self) -> tuple[float, float, float]:
-        """Where MuJoCo has the contact, between the two surfaces, and how deep it is."""
+    def contact_place(self, place: Place, touch: Touch) -> tuple[float, float, float]:
+        """Where MuJoCo has the contact, between the two surfaces, and how deep it is.
+
+        Where rounding leaves it none, that is by its distance.
+        """
         contact = self.data.contact
-        return float(contact.pos[0, 0]), float(contact.pos[0, 1]), float(-contact.dist[0])
+        if self.data.ncon:
+            return float(contact.pos[0, 0]), float(contact.pos[0, 1]), float(-contact.dist[0])
+        (nx, ny), out = touch.normal, place.radius + touch.distance / 2
+        return place.x - out * nx, place.y - out * ny, -touch.distance
 
     def discrepancy(self) -> float:
         """By how much three accounts of the clamp differ, see `clamp.discrepancy`."""

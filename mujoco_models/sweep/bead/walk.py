@@ -164,7 +164,7 @@ class BeadWalk:
             imbalance = model.evaluate(None, 1.0, None)
         else:
             imbalance = model.evaluate(held.state.link, held.state.s, held.place)
-            x, y, depth = model.contact_place()
+            x, y, depth = model.contact_place(held.place, held.touch)
             tip = held.state.s == 1.0 and not held.state.sliding
             row = {
                 "phase": "tip" if tip else "tangent",
