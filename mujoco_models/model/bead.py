@@ -196,14 +196,6 @@ class BeadModel:
             link -= max(1, int((distance - max(best, 0.0)) / self.longest))
         return best, found, at
 
-    def deepest_beyond(self, place: Place, touch: Touch) -> float:
-        """How far from the obstacle all of the beam is at least, by the line through a contact."""
-        nx, ny = touch.normal
-        heights = self.joints[:, 0] * nx + self.joints[:, 1] * ny
-        tip = self.at(len(self.ends) - 1, 1.0)
-        least = min(float(heights.min()), tip.x * nx + tip.y * ny)
-        return touch.distance + least - (place.x * nx + place.y * ny)
-
     def evaluate(self, link: int | None, s: float, place: Place | None) -> float:
         """Let MuJoCo evaluate all its forces on what has been placed, with a bead on a link.
 

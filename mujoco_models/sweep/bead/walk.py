@@ -21,6 +21,7 @@ _SHORTER, _LONGER = 4.0, 2.0  # times the step where no neighbour is found, and 
 _BRANCH = 0.25  # rad; a link that turns farther in a step has left the branch
 _SHIFT = 0.25  # rad; a contact whose slope jumps by more has left the branch
 _LOOSE = 1e-2  # EI/L^2; a contact that ends with less has faded, it has not snapped off
+_DEEPER = 1e-9  # L; past the named cases and polygons the two distances are equal to 4e-16
 _EVALUATIONS = 5000  # that a station may take
 _RIGHT = -0.05  # cosine of the normal with the way across, below which a contact is on the right
 
@@ -149,6 +150,10 @@ class BeadWalk:
         nx, ny = found.touch.normal
         return nx * math.cos(found.place.heading) + ny * math.sin(found.place.heading) > _RIGHT
 
+    def _touches_again(self, held: Settled) -> bool:
+        """Whether another part of the beam is deeper in the object than the one bead."""
+        return self.model.nearest()[0] < held.touch.distance - _DEEPER
+
     def _doubt(self) -> str | None:
         """What is wrong with the state at a station."""
         model, s = self.model, None if self._held is None else self._held.state.s
@@ -177,13 +182,15 @@ class BeadWalk:
         if self.doubt is None and imbalance > self._tolerance:
             self.doubt = "out of balance"
         row |= {
+            "status": "ok" if self.doubt is None else "unsettled",
             **model.clamp()._asdict(),
             "tip_angle": model.layout.tip_angle(angles),
-            "status": "ok" if self.doubt is None else "unsettled",
             "residual": imbalance,
             "discrepancy": model.discrepancy(),
             "extension": model.extension(),
         }
+        if self.doubt is None and held is not None and self._touches_again(held):
+            row |= {**NOWHERE, "status": "touches again"}
         out_of_balance = len(angles) * imbalance  # of which the sensors feel the sum
         if self.doubt is None and row["discrepancy"] > _DISCREPANCY + out_of_balance:
             raise ClampError(self._at, row["discrepancy"], _DISCREPANCY)

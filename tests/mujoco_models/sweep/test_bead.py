@@ -20,6 +20,7 @@ from analytic import (
 from mujoco_models import Settings, simulate_sweep
 from mujoco_models.sweep.bead.contour import Bead, Smooth, Way, contour_of
 from mujoco_models.sweep.sweep import with_one_bead
+from tests.mujoco_models.sweep.test_beyond_the_paper import case_of
 
 ONE = Settings(touch="bead", segments=20)
 BOWED = [[-1, 0.4], [0, 0.3999], [1, 0.4], [1, 2], [-1, 2]]
@@ -130,3 +131,13 @@ def test_the_turn_of_a_bead_on_a_circle():
     assert isinstance(contour, Smooth)
     found = contour.turn(Bead(0.1, 0.0, 0.0, 0.005), Way(0.01, -0.5))
     assert found.by == pytest.approx(0.01 / 1.505, rel=1e-9)
+
+
+def test_what_else_touches_is_noticed():
+    """A vibrissa curved towards the object: just where the closed form has two contacts."""
+    case = case_of("catenary", 0.5, stations=40)
+    table = simulate_sweep(case, Settings(segments=20, contour_points=800, touch="bead")).table
+    again = table["status"] == "touches again"
+    assert again.sum() > 10
+    assert (again == (solve_sweep(case).table["status"] == "touches again")).all()
+    assert table.loc[again, "contact_x"].isna().all()
