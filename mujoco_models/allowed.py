@@ -11,7 +11,8 @@ from analytic.problem.errors import InputError
 BeamKind: TypeAlias = Literal["chain", "rod", "cable"]
 ClampKind: TypeAlias = Literal["second-order", "naive"]
 ObstacleKind: TypeAlias = Literal["mesh", "primitive"]
-BEAMS, CLAMPS, OBSTACLES = map(get_args, (BeamKind, ClampKind, ObstacleKind))
+TouchKind: TypeAlias = Literal["bead", "beads"]
+BEAMS, CLAMPS, OBSTACLES, TOUCHES = map(get_args, (BeamKind, ClampKind, ObstacleKind, TouchKind))
 CONTACT_STIFFNESSES = 1e3, 1e9  # EI/L^3; the least and the largest
 
 

@@ -35,13 +35,15 @@ class Corners:
         return cls(np.zeros((0, 2, 3)), np.zeros((0, 2)), 0.0)
 
     @classmethod
-    def of(cls, vertices: Floats, edges: Floats, radius: float) -> "Corners":
-        """Those of a polygon, if one is sharp."""
-        run, rise = np.diff(vertices, axis=0).T
-        angles = np.concatenate([[-np.pi / 2], np.arctan2(rise, run), [np.pi / 2]])
+    def of(
+        cls, vertices: Floats, edges: Floats, radius: float, ends: tuple[bool, bool]
+    ) -> "Corners":
+        """Those of a polygon, if one is sharp; its ends only where the object itself ends."""
+        angles = _angles(vertices)
         turn = np.diff(angles)
         between = turn[1:-1]
-        if between.sum() > _STRAIGHT and between.max() < SHARP:
+        bowed = between.sum() > _STRAIGHT and between.max() < SHARP
+        if bowed and not ends_sharp(vertices, ends):
             return cls.none()
         sharp = turn > _TURN
         bisector = ((angles[1:] + angles[:-1]) / 2)[sharp]
@@ -71,6 +73,17 @@ class Corners:
                 conaffinity=0,
                 condim=1,
             )
+
+
+def ends_sharp(vertices: Floats, ends: tuple[bool, bool]) -> bool:
+    """Whether a polygon has a sharp corner where the object itself ends."""
+    return bool((np.diff(_angles(vertices))[[0, -1]] > SHARP)[list(ends)].any())
+
+
+def _angles(vertices: Floats) -> Floats:
+    """Slope angles of the facets, and upright ones before and after them."""
+    run, rise = np.diff(vertices, axis=0).T
+    return np.concatenate([[-np.pi / 2], np.arctan2(rise, run), [np.pi / 2]])
 
 
 def upright(vertices: Floats, half_length: float) -> Floats:

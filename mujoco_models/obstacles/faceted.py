@@ -49,6 +49,16 @@ class Faceted(Obstacle):
         return angles
 
     @property
+    def section(self) -> Floats:
+        """The vertices as MuJoCo has them near the contact."""
+        return self.vertices
+
+    @property
+    def lean(self) -> Floats:
+        """How far along x and y the edge at each vertex goes by its way along z, shape (n, 2)."""
+        return np.zeros_like(self.vertices)
+
+    @property
     def largest_curvature(self) -> float:
         """The largest mean curvature [1/L]."""
         return float(self._curvature.max())
@@ -204,6 +214,13 @@ def touchable(case: Case) -> tuple[float, float]:
     low, high = case.centreline.at(np.array(case.reach)).alpha
     upright = np.pi / 2 - 1e-9
     return (-TOP if low < -upright else float(low), TOP if high > upright else float(high))
+
+
+def own_ends(case: Case) -> tuple[bool, bool]:
+    """Whether the object itself ends on the left and on the right, not the reach of the tip."""
+    last, first = case.reach
+    left, right = (case.centreline.at(np.array([last, first])).eta <= 1 - 1e-9).tolist()
+    return left, right
 
 
 def add_hull(spec: mujoco.MjSpec, vertices: Floats, inner: Floats, size: float) -> None:

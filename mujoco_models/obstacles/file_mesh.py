@@ -15,7 +15,7 @@ from analytic.problem.case import Case
 from analytic.problem.contours.solid import ConvexMesh
 from analytic.problem.errors import InputError
 from mujoco_models.obstacles.corners import Corners, upright
-from mujoco_models.obstacles.faceted import Faceted, add_hull, touchable
+from mujoco_models.obstacles.faceted import Faceted, add_hull, own_ends, touchable
 
 _MOST_VERTICES = 50_000  # the hull of a round body takes MuJoCo half a second then
 _SAME_PLACE = 1e-7  # L
@@ -52,7 +52,7 @@ class FileMesh(Faceted):
         body = case.profile.scaled(1 / case.beam.length)
         last, first = case.reach
         super().__init__(body.outline(last, first, 0), touchable(case))
-        self._solid, self._corner_radius = solid, corner_radius
+        self._solid, self._corner_radius, self._ends = solid, corner_radius, own_ends(case)
 
     @property
     def label(self) -> str:
@@ -78,7 +78,21 @@ class FileMesh(Faceted):
     @cached_property
     def corners(self) -> Corners:
         """Where the mesh's own edges cross the plane of the sweep."""
-        return Corners.of(self.vertices, self._edges, self._corner_radius)
+        return Corners.of(self.vertices, self._edges, self._corner_radius, self._ends)
+
+    @cached_property
+    def section(self) -> Floats:
+        """With the vertices above its ends: the mesh goes on there, upright or leaning."""
+        crossing = np.vstack([self._crossing[0], self.vertices])
+        around = crossing[ConvexHull(crossing).vertices]  # counterclockwise
+        first, last = (int(np.hypot(*(around - end).T).argmin()) for end in self.vertices[[0, -1]])
+        return np.vstack([around[first - 1], self.vertices, around[(last + 1) % len(around)]])
+
+    @property
+    def lean(self) -> Floats:
+        """Of the mesh's own edges."""
+        edge = self._edges[:, 1] - self._edges[:, 0]
+        return np.pad(edge[:, :2] / edge[:, 2:], ((1, 1), (0, 0)), "edge")
 
     def across(self, slope: Floats) -> Floats:
         """Of the edges at corners; facets that are smooth to beads turn with the contour."""
@@ -95,6 +109,17 @@ class FileMesh(Faceted):
 
         A vertex of the mesh that lies in the plane itself is a point: a speck of an edge.
         """
+        crossing, begin, end = self._crossing
+        edges = upright(self.vertices, _SPECK_OF_EDGE)
+        if len(crossing):
+            distance, nearest = KDTree(crossing).query(self.vertices)
+            found = np.flatnonzero(np.asarray(distance) < _SAME_PLACE)
+            edges[found] = np.stack([begin, end], axis=1)[np.asarray(nearest)[found]]
+        return edges
+
+    @cached_property
+    def _crossing(self) -> tuple[Floats, Floats, Floats]:
+        """Where edges of the mesh cross the plane, and where they begin and end [L]."""
         vertices = self._solid.vertices
         triangles = np.asarray(ConvexHull(vertices).simplices)
         pairs = np.sort(
@@ -105,13 +130,7 @@ class FileMesh(Faceted):
         across = begin[:, 2] * end[:, 2] < 0
         begin, end = begin[across], end[across]
         share = begin[:, 2] / (begin[:, 2] - end[:, 2])
-        crossing = begin[:, :2] + share[:, None] * (end - begin)[:, :2]
-        edges = upright(self.vertices, _SPECK_OF_EDGE)
-        if len(crossing):
-            distance, nearest = KDTree(crossing).query(self.vertices)
-            found = np.flatnonzero(np.asarray(distance) < _SAME_PLACE)
-            edges[found] = np.stack([begin, end], axis=1)[np.asarray(nearest)[found]]
-        return edges
+        return begin[:, :2] + share[:, None] * (end - begin)[:, :2], begin, end
 
     def show(self, model: mujoco.MjModel, geom: int, window: int) -> None:
         """There is only one."""

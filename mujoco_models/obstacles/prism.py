@@ -16,8 +16,8 @@ import numpy as np
 from analytic.problem.arrays import Complexes, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.contours.polygon import Polygon
-from mujoco_models.obstacles.corners import Corners, upright
-from mujoco_models.obstacles.faceted import Faceted, touchable
+from mujoco_models.obstacles.corners import Corners, ends_sharp, upright
+from mujoco_models.obstacles.faceted import Faceted, own_ends, touchable
 from mujoco_models.obstacles.window import HALF_DEPTH, add_room, write_prism
 from mujoco_models.settings import Settings
 
@@ -44,10 +44,11 @@ class Prism(Faceted):
         exact: bool,
         radius: float,
         corner_radius: float,
+        ends: tuple[bool, bool] = (False, False),
     ) -> None:
         super().__init__(vertices, slopes)
         self._exact, self._corner_radius = exact, corner_radius
-        self._radius = radius
+        self._radius, self._ends = radius, ends
 
     @classmethod
     def of(cls, case: Case, points: int, corner_radius: float = Settings.corner_radius) -> "Prism":
@@ -61,12 +62,13 @@ class Prism(Faceted):
         body = case.profile.scaled(1 / case.beam.length)
         inscribed = body.outline(last, first, points)
         ends = case.centreline.at(np.array([last, first]))
-        cut = ends.eta > 1 - 1e-9  # by the reach of the tip; else the object ends there itself
+        own = own_ends(case)
+        cut = ~np.array(own)
         heading = np.column_stack([np.cos(ends.alpha), np.sin(ends.alpha)])
         beyond = inscribed[[0, -1]] + _BEYOND * heading * [[-1], [1]]
         vertices = np.concatenate([beyond[:1][cut[:1]], inscribed, beyond[1:][cut[1:]]])
         exact = isinstance(body, Polygon)
-        return cls(vertices, touchable(case), exact, case.radius, corner_radius)
+        return cls(vertices, touchable(case), exact, case.radius, corner_radius, own)
 
     @property
     def label(self) -> str:
@@ -91,17 +93,28 @@ class Prism(Faceted):
         return float((np.minimum(length[1:], length[:-1]) * turn).max()) / 8
 
     @property
+    def section(self) -> Floats:
+        """On their grid."""
+        return self._gridded
+
+    @property
     def windows(self) -> int:  # type: ignore[override]
         """As many as there are centres."""
         return len(self._centres)
 
     @cached_property
     def corners(self) -> Corners:
-        """Those of a polygon; one that is inscribed in a smooth contour has none of its own."""
-        if not self._exact:
-            return Corners.none()
+        """Those of a polygon; one that is inscribed in a smooth contour has its ends at most."""
         edges = upright(self.vertices, HALF_DEPTH)
-        return Corners.of(self.vertices, edges, self._corner_radius)
+        corners = Corners.of(self.vertices, edges, self._corner_radius, self._ends)
+        if self._exact or self._ends_sharp:
+            return corners
+        return Corners.none()
+
+    @property
+    def _ends_sharp(self) -> bool:
+        """Whether the object ends within reach, with a corner."""
+        return ends_sharp(self.vertices, self._ends)
 
     def gap(self, window: int, points: Floats) -> tuple[Floats, Floats] | None:
         """From the facets about the nearest one; sharp corners are touched by links, not points.

@@ -5,7 +5,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -15,9 +15,39 @@ from analytic.problem.case import Case
 from analytic.problem.columns import COLUMNS, WORDS, units
 from analytic.problem.readings import Readings
 from mujoco_models.errors import DivergedError
-from mujoco_models.sweep.walk import Model, Walk
 
 _DIVERGED = {"phase": "free", "status": "diverged"}  # the row of a station without numbers
+
+
+class Steps(Protocol):
+    """A walk from station to station."""
+
+    model: Any
+    """Its ``obstacle`` has a label."""
+    doubt: str | None
+    """What is wrong with the state at the last station."""
+
+    @property
+    def events(self) -> dict[str, float | None]:
+        """Foot positions of what happened on the way [L]."""
+
+    def go_to(self, target: float) -> None:
+        """Go on to a station.
+
+        Parameters
+        ----------
+        target : float
+            Foot position [L].
+        """
+
+    def row(self) -> dict[str, Any]:
+        """The readings there.
+
+        Returns
+        -------
+        dict
+            By column; dimensionless.
+        """
 
 
 @dataclass(frozen=True)
@@ -31,7 +61,7 @@ class Account:
 
 def follow(
     case: Case,
-    walk: Walk[Model],
+    walk: Steps,
     account: Account,
     advance: Callable[[], None] = lambda: None,
     keep: Callable[[Readings], None] = lambda _: None,
@@ -61,7 +91,7 @@ def follow(
 
 def _readings(
     case: Case,
-    walk: Walk[Model],
+    walk: Steps,
     rows: list[dict[str, Any]],
     doubts: Counter[str],
     account: Account,

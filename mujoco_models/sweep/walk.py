@@ -11,6 +11,7 @@ from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import NOWHERE
 from mujoco_models.model.stance import Stance
 from mujoco_models.sweep.descent import descend
+from mujoco_models.sweep.first_cell import near_clamp
 from mujoco_models.sweep.forecast import forecast
 from mujoco_models.sweep.minimum import minimum
 from mujoco_models.sweep.numerics import Numerics
@@ -80,11 +81,19 @@ class Walk(Generic[Model]):
         self.doubt = self._advance(target, self.model.evaluations + self._budget)
         if self.doubt is None:
             self._budget = min(2 * self._budget, numerics.budget)
-            self._shown, self.doubt = self._state, self._lost
+            self._shown, self.doubt = self._state, self._lost or self._near_clamp()
         else:
             self._budget = max(self._budget // 2, numerics.least_budget)
             # The readings are those of the nearest that there is to a state at rest.
             self._shown = self._relax(target, self._guess(target))
+
+    def _near_clamp(self) -> str | None:
+        """Whether the contact is too near to the clamp for the segments."""
+        model = self.model
+        contacts = model.contacts()
+        s = float(contacts.arc_length[contacts.loaded].min()) if contacts.loaded.any() else None
+        radius = float(model.lookout.radii[0])
+        return near_clamp(model.layout, model.obstacle, radius, self._foot_x, s)
 
     def _advance(self, target: float, limit: int) -> str | None:
         """Go to `target`; why not, if that is not possible."""
