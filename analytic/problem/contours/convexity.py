@@ -17,6 +17,8 @@ _SHORT = 1e-4  # rad, of the fine chords: waves of a larger period are seen one 
 _SLACK = 1e-9  # rad
 _ROUNDING = 8 * np.finfo(float).eps  # of a difference of two coordinates, relative to their size
 _SEQUENCE = np.arange(1, _FINE + 1) * ((np.sqrt(5) - 1) / 2) % 1  # of the golden section
+_EDGE = 1e-4  # of the size; y = x^4, the flattest point of use, moves by 1e-5 in one rounding
+_HALVINGS = 50  # from the long chords down to rounding
 _LEAST_SIZE = 1e-10  # of the distance from the origin; below, rounding would be seen as corners
 
 
@@ -57,6 +59,8 @@ def check_convex(
     _check_chords(long[:-1], long[1:], np.diff(x[:n]), np.diff(y[:n]), place, label, corners=True)
     dx, dy = (values[n + places.size :] - values[n : n + places.size] for values in (x, y))
     _check_chords(short, short + turn, dx, dy, place, label, corners=False)
+    if not known:
+        _check_bowed(xi, eta, long, np.hypot(np.diff(x[:n]), np.diff(y[:n])), size, label)
     if radius is not None:
         middle = short + turn / 2
         stated = _values(radius, middle, "radius_of_curvature", label)
@@ -126,6 +130,29 @@ def _check_chords(
             f"{label}, which does not move between alpha = {begin[i]:.6g} and {end[i]:.6g} rad",
             "strictly convex without corners",
             "round the corner, or use a polygon",
+        )
+
+
+def _check_bowed(
+    xi: Coordinate, eta: Coordinate, alpha: Floats, length: Floats, size: float, label: str
+) -> None:
+    """Refuse a straight edge: a chord that stays long as its ends' angles come together."""
+    long = length > _EDGE * size
+    low, high = alpha[:-1][long], alpha[1:][long]
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        x, y = (curve(np.concatenate([low, middle, high])).reshape(3, -1) for curve in (xi, eta))
+        first, second = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
+        low, high = np.where(first > second, low, middle), np.where(first > second, middle, high)
+    edge = np.maximum(first, second) > _EDGE * size
+    if edge.any():
+        i = int(np.argmax(edge))
+        ends = f"({x[0, i]:.6g}, {y[0, i]:.6g}) and ({x[2, i]:.6g}, {y[2, i]:.6g})"
+        raise InputError(
+            "profile",
+            f"{label}, straight between {ends} at alpha = {low[i]:.6g} rad",
+            "strictly convex, without straight edges",
+            "bow the edge, or use a polygon, which may have them",
         )
 
 

@@ -225,3 +225,32 @@ def test_numbers_of_numpy_are_numbers():
     case = Case(Beam(np.float32(1), np.int64(1)), circle(np.float64(1), np.array([0, 0.4])))
     assert case.beam == Beam()
     assert Sweep(stations=np.int64(50)).stations == 50
+
+
+@given(
+    alpha=st.floats(-1.3, 1.3),
+    length=st.floats(1e-3, 10.0),
+    radius=st.floats(0.05, 1.0),
+)
+def test_a_straight_edge_is_refused(alpha, length, radius):
+    """Round on both sides of it: two points with one slope angle, between which no place is."""
+
+    def along(t):
+        return length * (t > alpha)
+
+    with pytest.raises(InputError, match="straight between"):
+        Profile(
+            xi=lambda t: radius * np.sin(t) + along(t) * np.cos(alpha),
+            eta=lambda t: 1 - radius * np.cos(t) + along(t) * np.sin(alpha),
+            alpha_range=(-1.4, 1.4),
+        )
+
+
+@pytest.mark.parametrize("power", [3, 4, 5])
+def test_what_is_flat_in_one_point_is_no_straight_edge(power):
+    def x(t):
+        slope = np.tan(t)
+        return np.sign(slope) * (np.abs(slope) / power) ** (1 / (power - 1))
+
+    flat = Profile(xi=x, eta=lambda t: 0.5 + np.abs(x(t)) ** power, alpha_range=(-1.2, 1.2))
+    assert flat.place(np.zeros(1))[1] == 0.5
