@@ -17,6 +17,7 @@ from compare.explain.parts import (
     Shared,
     by_reading,
     common_stations,
+    observed_order,
     parts_of,
     root_of_squares,
     with_unexplained,
@@ -41,7 +42,7 @@ REFINED = ("stiff", "two", "four")
 """The sweeps that differ in their segments alone, each with twice those of the one before."""
 UNRESOLVED = 5e-5
 """What may stay unexplained in any case, of a reading's largest magnitude."""
-_ORDERS = (1.0, 2.0)  # what a chain can have: of a naive clamp, and of one at mid-cell
+_LEAST_ORDER = 1.0  # of a naive clamp; two of one at mid-cell
 _LEFT, _UNSURE = 0.1, 1 / 3
 """What may stay unexplained of a disagreement that counts as explained, and how uncertain it is."""
 
@@ -95,7 +96,9 @@ def budget(
     run = {name: shared.signal(readings) for name, readings in runs.items()}
     signatures = {name: shared.off(varied) for name, varied in variations.items()}
     base, beam = runs["base"], exact.beam
-    order = _order(run["stiff"] - run["two"], run["two"] - run["four"])
+    order = observed_order(
+        run["stiff"] - run["two"], run["two"] - run["four"], nominal=2.0, least=_LEAST_ORDER
+    )
     contact = exact.values("contact_arc_length")[kept] / beam.length
     tangent = (exact.table["phase"] == "tangent").to_numpy()[kept] & np.isfinite(contact)
     power: Floats = 0.5 ** (order * np.arange(3.0))
@@ -177,13 +180,6 @@ def largest_rms(
     window = (Tolerances() if tolerances is None else tolerances).snap_off_window
     kept = common_stations(exact, [candidate], window)
     return float(rms(Shared(exact, kept).off(candidate)).max())
-
-
-def _order(coarse: Floats, fine: Floats) -> float:
-    """Observed order of convergence, within what it can be."""
-    with np.errstate(divide="ignore"):
-        observed = np.log2(np.linalg.norm(coarse) / np.linalg.norm(fine))
-    return float(np.clip(observed, *_ORDERS))
 
 
 def _joints(runs: Mapping[str, Readings]) -> list[Floats] | None:

@@ -15,6 +15,7 @@ from compare.explain.parts import (
     Shared,
     by_reading,
     common_stations,
+    observed_order,
     parts_of,
     root_of_squares,
     with_unexplained,
@@ -39,7 +40,7 @@ PARTS = (
 )
 THREE_SPEEDS = ("quarter", "half", "base", "double", "fourfold")
 """The three sweeps of a budget that differ in speed are next to each other here, slowest first."""
-_ORDERS = (0.5, 2.0)  # in the speed: of the dampers' moment one, of inertia two, of bounces less
+_LEAST_ORDER = 0.5  # in the speed: of the dampers' moment one, of inertia two, of bounces less
 _SLOW = 0.02  # L/T1; a quarter of it takes minutes, and says no more of the limit
 _STIFFER = 4  # times the contact stiffness, which half a time step stands as well
 _LEFT = 0.1  # of the disagreement; what may stay unexplained
@@ -127,9 +128,7 @@ def motion_budget(
     slow, middle, fast = (run[name] for name in THREE_SPEEDS if name in run)
     last = run["quarter" if "quarter" in run else "fourfold"]
     coarse, fine = fast - middle, middle - slow
-    with np.errstate(divide="ignore", invalid="ignore"):
-        observed = np.log2(np.linalg.norm(coarse) / np.linalg.norm(fine))
-    order = float(np.clip(np.nan_to_num(observed, nan=1.0), *_ORDERS))
+    order = observed_order(coarse, fine, nominal=1.0, least=_LEAST_ORDER)
     limit = slow - fine / (2**order - 1)
     signals = {"rate": run["base"] - limit}
     unsure = {"rate": SAFETY * rms(slow - limit)}

@@ -85,6 +85,16 @@ def parts_of(
     }
 
 
+def observed_order(coarse: Floats, fine: Floats, nominal: float, least: float) -> float:
+    """Order of convergence of two refinements by a factor of two, within what it can be.
+
+    Nominal where neither changes anything.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        observed = np.log2(np.linalg.norm(coarse) / np.linalg.norm(fine))
+    return float(np.clip(np.nan_to_num(observed, nan=nominal), least, 2.0))
+
+
 def by_reading(signals: Floats) -> dict[str, float]:
     """The root mean square of each reading."""
     return dict(zip(CLAMP_READINGS, rms(signals).tolist(), strict=True))

@@ -213,3 +213,10 @@ def test_the_window_before_the_snap_off_is_left_out():
 
 def test_the_largest_disagreement_is_of_the_three_readings():
     assert largest_rms(EXACT, at_rest(softness=SIZE)["base"]) == pytest.approx(2 * SIZE, 1e-4)
+
+
+def test_sweeps_that_refining_does_not_change_have_no_discretisation():
+    found = split(discretisation=0.0, facets=SIZE)
+    assert found.order == 2.0
+    np.testing.assert_allclose(of(found, "discretisation"), 0, atol=1e-12)
+    np.testing.assert_allclose(of(found, "facets"), SIZE * SIZES, rtol=1e-9)
