@@ -145,7 +145,7 @@ def test_every_command_runs_elsewhere(environment, tmp_path):
         for (code, command), (ended, said) in zip(asked, ends, strict=True):
             assert ended == code, f"{command}\n{said}"
             assert "Traceback" not in said
-    for written in ("runs/mine/report.html", "page/README.md", "grid/report.html"):
+    for written in ("runs/mine/report.html", "page/report.html", "grid/report.html"):
         assert (tmp_path / written).exists()
 
 

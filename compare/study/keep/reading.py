@@ -13,7 +13,25 @@ from compare.study.keep.table import tables
 
 
 def read_rows(folder: Path, warn: Warn) -> pd.DataFrame:
-    """Read a row a run of all that is stored of a study, also while it is under way."""
+    """Read all that is stored of a study, also while it is under way.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the study.
+    warn : callable
+        Takes a line about anything that is wrong with what is stored.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a run.
+
+    Raises
+    ------
+    InputError
+        If there is no study in `folder`.
+    """
     if not (folder / NAME).is_file():
         raise InputError("DIR", folder, "the folder of a study", "`vibrissa study` makes one")
     found = pa.concat_tables(tables(read(folder, warn), read_plan(folder)))

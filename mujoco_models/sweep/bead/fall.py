@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
-from scipy.optimize import nnls
 
 from analytic.problem.arrays import Floats
 from mujoco_models.model.bead import BeadModel, Place, Touch
@@ -97,6 +96,8 @@ def _turns(
     model: BeadModel, angles: Floats, near: list[_Near], pressing: dict[int, float], inertia: float
 ) -> tuple[Floats, Floats, float]:
     """Of the links in a step, the forces that keep them off, and the inertia that it took."""
+    from scipy.optimize import nnls  # slow to load, and few sweeps fall
+
     count = len(angles)
     springs = model.stiffness(angles)
     own, beside = np.diag(springs), -springs[1:]

@@ -17,7 +17,7 @@ import os, sys, time
 from compare.simulate.workers import Workers
 
 def busy(seconds):
-    print(os.getpid(), flush=True)
+    os.write(1, f"{os.getpid()}\\n".encode())  # whole, beside another worker's
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         pass
