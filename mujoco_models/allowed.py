@@ -11,8 +11,7 @@ from analytic.problem.errors import InputError
 BeamKind: TypeAlias = Literal["chain", "rod", "cable"]
 ClampKind: TypeAlias = Literal["second-order", "naive"]
 ObstacleKind: TypeAlias = Literal["mesh", "primitive"]
-TouchKind: TypeAlias = Literal["bead", "beads"]
-BEAMS, CLAMPS, OBSTACLES, TOUCHES = map(get_args, (BeamKind, ClampKind, ObstacleKind, TouchKind))
+BEAMS, CLAMPS, OBSTACLES = map(get_args, (BeamKind, ClampKind, ObstacleKind))
 CONTACT_STIFFNESSES = 1e3, 1e9  # EI/L^3; the least and the largest
 
 

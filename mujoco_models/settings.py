@@ -10,11 +10,9 @@ from mujoco_models.allowed import (
     CLAMPS,
     CONTACT_STIFFNESSES,
     OBSTACLES,
-    TOUCHES,
     BeamKind,
     ClampKind,
     ObstacleKind,
-    TouchKind,
     check_number,
     check_word,
 )
@@ -46,9 +44,6 @@ class Settings:
         ``"primitive"``: a cylinder that osculates the contour where the vibrissa touches.
     tolerance : float
         A station has settled when no joint is out of balance by more than this [EI/L].
-    touch : str
-        How a chain or another beam in the plane touches at rest: with one ``"bead"`` that slides
-        along it, or with many fixed ``"beads"``, as it does in motion.
     planar : bool
         Whether the beam stays in the plane of the sweep, as in the theory, or may leave it.
 
@@ -68,24 +63,18 @@ class Settings:
     clamp: ClampKind = "second-order"
     obstacle: ObstacleKind = "mesh"
     tolerance: StrictFloat = 1e-8
-    touch: TouchKind = "beads"
     planar: StrictBool = True
 
     def __post_init__(self) -> None:
         check_word("mujoco.beam", self.beam, BEAMS)
         check_word("mujoco.clamp", self.clamp, CLAMPS)
         check_word("mujoco.obstacle", self.obstacle, OBSTACLES)
-        check_word("mujoco.touch", self.touch, TOUCHES)
         if not isinstance(self.planar, bool):
             raise InputError(
                 "mujoco.planar",
                 repr(self.planar),
                 "true or false",
                 "false lets the beam leave the plane",
-            )
-        if self.touch == "bead" and not self.planar:
-            raise InputError(
-                "mujoco.touch", "'bead'", "'beads' out of the plane", "leave it out, or planar too"
             )
         check_number("mujoco.segments", self.segments, 2, 1000, "40 is usual", whole=True)
         points = self.contour_points

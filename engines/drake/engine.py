@@ -38,8 +38,7 @@ class _Drake:
 
 def _sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Readings:
     from engines.drake.chain import DrakeChain  # Drake is imported only where it is used
-    from mujoco_models.sweep.follow import Account, follow
-    from mujoco_models.sweep.sweep import parts
+    from mujoco_models.sweep.sweep import follow, parts
     from mujoco_models.sweep.walk import Walk
 
     begun = time.process_time()
@@ -50,7 +49,7 @@ def _sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Readi
         "engine": f"Drake {version('drake')}, vibrissa-testbed {version('vibrissa-testbed')}",
         "settings": asdict(settings),
     }
-    return follow(case, walk, Account("drake chain", about, begun), advance)
+    return follow(case, walk, "drake chain", about, begun, advance)
 
 
 ENGINE = _Drake()

@@ -1,9 +1,11 @@
 """A sweep in MuJoCo: from case and settings to a walk through all stations."""
 
 import time
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from importlib.metadata import version
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -11,20 +13,19 @@ import numpy as np
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
+from analytic.problem.recorder import DIVERGED, Recorder
 from mujoco_models.beams.kinds import build
 from mujoco_models.beams.layout import bead_spacing
 from mujoco_models.beams.protocol import Beam
 from mujoco_models.beams.vibrissa import Vibrissa
-from mujoco_models.model.bead import BeadModel
+from mujoco_models.errors import DivergedError
 from mujoco_models.model.model import BeamModel
 from mujoco_models.obstacles.kinds import place
 from mujoco_models.obstacles.protocol import Obstacle
 from mujoco_models.settings import Settings
-from mujoco_models.sweep.bead.walk import BeadWalk
-from mujoco_models.sweep.follow import Account, follow
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.spatial_walk import SpatialWalk
-from mujoco_models.sweep.walk import Walk
+from mujoco_models.sweep.walk import Model, Walk
 
 
 def run_sweep(
@@ -36,14 +37,41 @@ def run_sweep(
 ) -> Readings:
     """Sweep the beam to the left; see `mujoco_models.simulate_sweep`."""
     begun = time.process_time()
-    alone = settings.touch == "bead"
-    walk = with_one_bead(case, settings) if alone else set_out(case, settings, numerics)
+    walk = set_out(case, settings, numerics)
     about = {
         "engine": f"MuJoCo {mujoco.__version__}, vibrissa-testbed {version('vibrissa-testbed')}",
         "settings": asdict(settings),
         "joints": walk.model.layout.joints.tolist(),
     }
-    return follow(case, walk, Account(f"mujoco {settings.beam}", about, begun), advance, keep)
+    return follow(case, walk, f"mujoco {settings.beam}", about, begun, advance, keep)
+
+
+def follow(
+    case: Case,
+    walk: Walk[Model],
+    source: str,
+    about: Mapping[str, Any],
+    begun: float,
+    advance: Callable[[], None] = lambda: None,
+    keep: Callable[[Readings], None] = lambda _: None,
+) -> Readings:
+    """Go to all stations, one after the other."""
+    doubts: Counter[str] = Counter()
+    about = {**about, "obstacle": walk.model.obstacle.label, "unsettled": doubts}
+    recorder = Recorder(case, source, about, lambda: walk.events, case.foot_x, begun=begun)
+    rows, count = recorder.rows, len(case.foot_x)
+    with recorder.rescued(keep):
+        for number, target in enumerate(case.foot_x / case.beam.length, start=1):
+            try:
+                walk.go_to(float(target))
+                doubts.update([walk.doubt] if walk.doubt else [])
+                rows.append(walk.row())
+            except DivergedError as error:
+                rows.append(DIVERGED)
+                place_ = f"station {number} of {count}, foot_x = {target:.6g} L"
+                raise DivergedError(f"diverged at {place_}: {error}") from error
+            advance()
+    return recorder.readings()
 
 
 def set_out(case: Case, settings: Settings, numerics: Numerics | None = None) -> Walk[BeamModel]:
@@ -54,27 +82,8 @@ def set_out(case: Case, settings: Settings, numerics: Numerics | None = None) ->
     return kind(model, float(case.foot_x[0]) / case.beam.length, settings.tolerance, numerics)
 
 
-def with_one_bead(case: Case, settings: Settings) -> BeadWalk:
-    """The same with one bead that slides along the beam."""
-    _require_at_rest(case, "MuJoCo")
-    beam = build(settings, np.inf, Vibrissa.of(case.beam, case.clamp_stiffness))
-    model = BeadModel(beam, case.radius, place(case, settings), settings.contact_stiffness)
-    return BeadWalk(model, float(case.foot_x[0]) / case.beam.length, settings.tolerance)
-
-
 def parts(case: Case, settings: Settings, engine: str = "MuJoCo") -> tuple[Beam, Obstacle]:
     """The beam and the obstacle, before an engine makes a model of them."""
-    _require_at_rest(case, engine)
-    obstacle = place(case, settings)
-    spacing = np.inf
-    if len(obstacle.corners) == 0:
-        thinnest = case.beam.unloaded.tip_radius
-        spacing = bead_spacing(settings.segments, thinnest, obstacle.largest_curvature)
-    return build(settings, spacing, Vibrissa.of(case.beam, case.clamp_stiffness)), obstacle
-
-
-def _require_at_rest(case: Case, engine: str) -> None:
-    """Refuse what no engine has at rest."""
     if case.friction != 0:
         raise InputError(
             "friction",
@@ -84,3 +93,9 @@ def _require_at_rest(case: Case, engine: str) -> None:
         )
     if case.radius == 0:
         raise InputError("beam.radius", 0, f"positive for {engine}", "it cannot collide a line")
+    obstacle = place(case, settings)
+    spacing = np.inf
+    if len(obstacle.corners) == 0:
+        thinnest = case.beam.unloaded.tip_radius
+        spacing = bead_spacing(settings.segments, thinnest, obstacle.largest_curvature)
+    return build(settings, spacing, Vibrissa.of(case.beam, case.clamp_stiffness)), obstacle

@@ -11,7 +11,6 @@ from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import NOWHERE
 from mujoco_models.model.stance import Stance
 from mujoco_models.sweep.descent import descend
-from mujoco_models.sweep.first_cell import near_clamp
 from mujoco_models.sweep.forecast import forecast
 from mujoco_models.sweep.minimum import minimum
 from mujoco_models.sweep.numerics import Numerics
@@ -25,6 +24,8 @@ _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
 _SAME_PLACE = 1e-12
 _DEEP = 0.25  # of the radius; two sweeps of 390 were lost past polygons, at 0.5 of it and more
 _LITTLE = 1e-3  # of a step; a contact of 5e7 EI/L^3 is not lost then, and rest is 1e-5 of it
+_PLACES = 9  # of the rigid part at the clamp that are looked at
+_OVERLOOKED = 1e-6  # L; how deep they may be in the obstacle
 _PACE = 0.8  # of the largest shift of a contact: what is left is for its rate to grow
 # What may follow one state at rest without a snap-off.
 _NEIGHBOURS = {
@@ -89,11 +90,18 @@ class Walk(Generic[Model]):
 
     def _near_clamp(self) -> str | None:
         """Whether the contact is too near to the clamp for the segments."""
-        model = self.model
-        contacts = model.contacts()
-        s = float(contacts.arc_length[contacts.loaded].min()) if contacts.loaded.any() else None
-        radius = float(model.lookout.radii[0])
-        return near_clamp(model.layout, model.obstacle, radius, self._foot_x, s)
+        model, layout, contacts = self.model, self.model.layout, self.model.contacts()
+        first = int(layout.clamp_turns)
+        begin = float(layout.joints[first])
+        nearest = contacts.arc_length[contacts.loaded].min(initial=1.0)
+        if nearest < begin + float(layout.lengths[first]) / 2:
+            return "the contact is in the first cell from the clamp, which is too coarse"
+        rigid = np.column_stack([np.full(_PLACES, self._foot_x), np.linspace(0, begin, _PLACES)])
+        deep = float(model.lookout.radii[0]) - _OVERLOOKED
+        near = () if layout.clamp_turns else model.obstacle.near(rigid, deep)
+        if any(model.obstacle.clearance(rigid[i])[0] < deep for i in near):
+            return "the object is in the rigid half of the first cell from the clamp"
+        return None
 
     def _advance(self, target: float, limit: int) -> str | None:
         """Go to `target`; why not, if that is not possible."""
