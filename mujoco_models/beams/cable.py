@@ -11,9 +11,8 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from mujoco_models.beams.coordinates import Balls
 from mujoco_models.beams.layout import Layout, turned, vertices
-from mujoco_models.beams.links import about_z
+from mujoco_models.beams.links import Balls, about_z
 from mujoco_models.beams.protocol import FOOT, Furnish, bare
 from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.settings import Settings

@@ -12,6 +12,7 @@ from mujoco_models.beams.layout import Layout
 # places of mocap bodies are known, and its stiffness is then off, or not a number, at random.
 FOOT = "foot"
 Furnish = Callable[[mujoco.MjsBody, int], None]
+"""Given each link's body and number, adds what the link carries."""
 
 
 def bare(body: mujoco.MjsBody, link: int) -> None:
@@ -22,110 +23,31 @@ class Beam(Protocol):
     """One of MuJoCo's models of a slender beam.
 
     Dimensionless: L = EI = 1. Undeformed it stands along y on a fixed body called `FOOT`, and a
-    configuration in the plane of the sweep is stated by the angles of its joints, whatever MuJoCo's
-    own coordinates are. All its links are rigid, so it keeps its length.
+    configuration in the plane of the sweep is stated by the angles of its joints, shape
+    (n_joints,), whatever MuJoCo's own coordinates are. All its links are rigid, so it keeps its
+    length.
     """
 
     layout: Layout
     """Where its joints and beads are."""
 
     def spec(self, radius: float, furnish: Furnish = bare) -> mujoco.MjSpec:
-        """The foot and the beam on it, with all collisions off.
-
-        Parameters
-        ----------
-        radius : float
-            Of the vibrissa [L].
-        furnish : callable, optional
-            Given each link's body and number, adds what the link carries.
-
-        Returns
-        -------
-        mujoco.MjSpec
-            Not yet compiled.
-        """
+        """The foot and the beam of a radius [L] on it, with all collisions off."""
 
     def body(self, spec: mujoco.MjSpec, link: int) -> mujoco.MjsBody:
-        """The body that moves with a link.
-
-        Parameters
-        ----------
-        spec : mujoco.MjSpec
-            Made by `spec`.
-        link : int
-            Number of the link.
-
-        Returns
-        -------
-        mujoco.MjsBody
-            The link's.
-        """
+        """The body of that spec that moves with a link."""
 
     def within(self, link: int, s: Floats) -> Floats:
-        """Where on the body of a link arc lengths are.
-
-        Parameters
-        ----------
-        link : int
-            Number of the link.
-        s : array, shape (n,)
-            Arc lengths [L].
-
-        Returns
-        -------
-        array, shape (n, 3)
-            In the body's frame [L].
-        """
+        """Where on the body of a link arc lengths are, in its frame, shape (n, 3) [L]."""
 
     def place(self, data: mujoco.MjData, angles: Floats) -> None:
-        """Set MuJoCo's coordinates.
-
-        Parameters
-        ----------
-        data : mujoco.MjData
-            Changed in place.
-        angles : array, shape (n_joints,)
-            Joint angles [rad].
-        """
+        """Set MuJoCo's coordinates."""
 
     def angles(self, data: mujoco.MjData) -> Floats:
-        """Joint angles of MuJoCo's coordinates.
-
-        Parameters
-        ----------
-        data : mujoco.MjData
-            A planar configuration.
-
-        Returns
-        -------
-        array, shape (n_joints,)
-            Joint angles [rad].
-        """
+        """Joint angles of MuJoCo's coordinates, in a planar configuration [rad]."""
 
     def moments(self, force: Floats) -> Floats:
-        """Moment about z at each joint.
-
-        Parameters
-        ----------
-        force : array, shape (nv,)
-            A generalised force of MuJoCo's.
-
-        Returns
-        -------
-        array, shape (n_joints,)
-            Moments [EI/L].
-        """
+        """Moment about z at each joint, of a generalised force of MuJoCo's [EI/L]."""
 
     def stiffness(self, angles: Floats) -> Floats:
-        """Derivative of each joint's elastic moment by its angle.
-
-        Parameters
-        ----------
-        angles : array, shape (n_joints,)
-            Joint angles [rad].
-
-        Returns
-        -------
-        array, shape (n_joints,)
-            Stiffnesses [EI/L].
-        """
+        """Derivative of each joint's elastic moment by its angle [EI/L]."""

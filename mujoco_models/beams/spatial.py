@@ -11,8 +11,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from mujoco_models.beams.chain import Chain
-from mujoco_models.beams.coordinates import Balls
-from mujoco_models.beams.links import link_name
+from mujoco_models.beams.links import Balls, HingedLinks, link_name
 from mujoco_models.beams.protocol import Furnish, bare
 from mujoco_models.beams.rod import Rod
 
@@ -32,21 +31,17 @@ class SpatialChain(Balls, Chain):
         return spec
 
 
-class SpatialRod(Rod):
-    """The rod with a universal joint for every hinge.
-
-    A one-dimensional flex knows its vertices only and cannot resist twisting. Universal joints do
-    not let it twist at all, and put no link's axis out of reach.
-    """
+class UniversalLinks(HingedLinks):
+    """Links on two hinges each, about z and about the x axis that the first one turns."""
 
     def spec(self, radius: float, furnish: Furnish = bare) -> mujoco.MjSpec:
-        """The links with a second hinge each, about the x axis that the first one turns."""
+        """The links, with a second hinge as stiff as the first."""
         spec = super().spec(radius, furnish)
         for i, joint in enumerate(tuple(spec.joints)):
-            body = spec.body(link_name(i))
-            body.add_joint(
+            second = spec.body(link_name(i)).add_joint(
                 type=mujoco.mjtJoint.mjJNT_HINGE, axis=[1, 0, 0], armature=joint.armature
             )
+            second.stiffness[0] = joint.stiffness[0]
         return spec
 
     def place(self, data: mujoco.MjData, angles: Floats) -> None:
@@ -61,3 +56,11 @@ class SpatialRod(Rod):
     def moments(self, force: Floats) -> Floats:
         """The moments at the first hinges."""
         return force[0::2]
+
+
+class SpatialRod(UniversalLinks, Rod):
+    """The rod with a universal joint for every hinge.
+
+    A one-dimensional flex knows its vertices only and cannot resist twisting. Universal joints do
+    not let it twist at all, and put no link's axis out of reach.
+    """

@@ -49,16 +49,6 @@ class Faceted(Obstacle):
         return angles
 
     @property
-    def section(self) -> Floats:
-        """The vertices as MuJoCo has them near the contact."""
-        return self.vertices
-
-    @property
-    def lean(self) -> Floats:
-        """How far along x and y the edge at each vertex goes by its way along z, shape (n, 2)."""
-        return np.zeros_like(self.vertices)
-
-    @property
     def largest_curvature(self) -> float:
         """The largest mean curvature [1/L]."""
         return float(self._curvature.max())

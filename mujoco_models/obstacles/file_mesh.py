@@ -80,20 +80,6 @@ class FileMesh(Faceted):
         """Where the mesh's own edges cross the plane of the sweep."""
         return Corners.of(self.vertices, self._edges, self._corner_radius, self._ends)
 
-    @cached_property
-    def section(self) -> Floats:
-        """With the vertices above its ends: the mesh goes on there, upright or leaning."""
-        crossing = np.vstack([self._crossing[0], self.vertices])
-        around = crossing[ConvexHull(crossing).vertices]  # counterclockwise
-        first, last = (int(np.hypot(*(around - end).T).argmin()) for end in self.vertices[[0, -1]])
-        return np.vstack([around[first - 1], self.vertices, around[(last + 1) % len(around)]])
-
-    @property
-    def lean(self) -> Floats:
-        """Of the mesh's own edges."""
-        edge = self._edges[:, 1] - self._edges[:, 0]
-        return np.pad(edge[:, :2] / edge[:, 2:], ((1, 1), (0, 0)), "edge")
-
     def across(self, slope: Floats) -> Floats:
         """Of the edges at corners; facets that are smooth to beads turn with the contour."""
         if len(self.corners) == 0:

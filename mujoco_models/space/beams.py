@@ -18,9 +18,8 @@ from analytic.problem.arrays import Floats
 from mujoco_models.beams.available import require
 from mujoco_models.beams.chain import Chain
 from mujoco_models.beams.layout import Layout
-from mujoco_models.beams.links import link_name
 from mujoco_models.beams.protocol import Furnish, bare
-from mujoco_models.beams.spatial import SpatialChain, SpatialRod
+from mujoco_models.beams.spatial import SpatialChain, SpatialRod, UniversalLinks
 from mujoco_models.settings import Settings
 from mujoco_models.space.settings import SpatialSettings
 
@@ -41,51 +40,16 @@ class SpaceBeam(Protocol):
         """Of joints that bend alike in all directions; None of others."""
 
     def spec(self, radius: float, furnish: Furnish = bare) -> mujoco.MjSpec:
-        """The foot and the beam on it, with all collisions off.
-
-        Parameters
-        ----------
-        radius : float
-            Of the vibrissa [L].
-        furnish : callable, optional
-            Given each link's body and number, adds what the link carries.
-
-        Returns
-        -------
-        mujoco.MjSpec
-            Not yet compiled.
-        """
+        """The foot and the beam of a radius [L] on it, with all collisions off."""
 
     def blocks(self, configuration: Floats) -> Floats:
-        """Second derivative of each joint's energy.
-
-        Parameters
-        ----------
-        configuration : array, shape (nq,)
-            MuJoCo's coordinates.
-
-        Returns
-        -------
-        array, shape (n_joints, d, d)
-            By the d velocities of a joint, symmetric [EI/L].
-        """
+        """Second derivative of each joint's energy by its d velocities, shape (n_joints, d, d)."""
 
     def bent(self, frame: Floats, side: Floats, angles: Floats) -> Floats:
-        """The configuration whose links lie in a plane with the clamp, without twist.
+        """MuJoCo's coordinates where the links lie in a plane with the clamp, without twist.
 
-        Parameters
-        ----------
-        frame : array, shape (3, 3)
-            The foot's axes in the world, in columns; the second one is the clamp's tangent.
-        side : array, shape (3,)
-            Unit vector across that, to which the links turn.
-        angles : array, shape (n_joints,)
-            Of the links from the clamp's tangent [rad].
-
-        Returns
-        -------
-        array, shape (nq,)
-            MuJoCo's coordinates.
+        They turn by angles from the clamp's tangent, the second column of the foot's frame, to a
+        side across it.
         """
 
 
@@ -158,23 +122,13 @@ class Universal:
         return np.array(found)
 
 
-class UniversalChain(Universal, Chain):
+class UniversalChain(Universal, UniversalLinks, Chain):
     """Balls' springs at two hinges each, which resist a turn about both a little more."""
 
     @property
     def law(self) -> Law | None:
         """None: they resist a turn about both axes a little more than one about either."""
         return None
-
-    def spec(self, radius: float, furnish: Furnish = bare) -> mujoco.MjSpec:
-        """The links with a second hinge and spring each."""
-        spec = super().spec(radius, furnish)
-        for i, joint in enumerate(tuple(spec.joints)):
-            second = spec.body(link_name(i)).add_joint(
-                type=mujoco.mjtJoint.mjJNT_HINGE, axis=[1, 0, 0], armature=joint.armature
-            )
-            second.stiffness[0] = joint.stiffness[0]
-        return spec
 
     def blocks(self, configuration: Floats) -> Floats:
         """Of k (a^2 + b^2)/2."""

@@ -76,15 +76,6 @@ class Numerics:
     facet_shift: float = 0.1
     # A contact at a slope angle nearer than this to that of a facet is on the facet [rad].
     same_facet: float = 1e-3
-    # Newton's method that stops at less than this out of balance, over 1 + the load, has hardly
-    # left the branch, but jumps from facet to facet, or from bead to bead: a descent ends that
-    # [EI/L]. At a hundredth of it, the tips of needles take steps ten times as short.
-    flicker: float = 1e-4
-    # Newton steps with MuJoCo's own derivative, where a descent does not end that.
-    refinements: int = 4
-    # The turn that the derivative is taken by [rad]: short of the depth of a contact over the
-    # beam's length, 1e-7, and far above rounding.
-    difference: float = 1e-8
     # A snap-off is confirmed if the beam is carried off with the foot so far beyond the last state
     # at rest [L]: the most by which a wrong stiffness of the solver can displace it.
     confirm_step: float = 1e-4
@@ -97,12 +88,8 @@ class Numerics:
     # What the steps of a descent begin with, in units of each joint's stiffness; it changes until
     # they are as gentle as that.
     inertia: float = 100.0
-    # The most steps of a descent that decides, and of one that ends a flicker. 60 are usual; past
-    # many corners it takes more.
+    # The most steps of a descent. 60 are usual; past many corners it takes more.
     descent_steps: int = 1000
-    # The most steps of a descent that decides, and of one that ends a flicker. 60 are usual; past
-    # many corners it takes more.
-    flicker_steps: int = 100
     # So many steps of a descent in a row without a load, and the beam is free.
     unloaded_steps: int = 20
     fallen: float = 1e-10  # A step of a descent that is shorter than this has come to rest [rad]

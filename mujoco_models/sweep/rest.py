@@ -103,28 +103,6 @@ def _largest(moments: Floats) -> float:
     return float(np.abs(moments).max())
 
 
-def refine(model: Balance, foot_x: float, start: State, numerics: Numerics) -> State:
-    """Newton's method with the differences of MuJoCo's moments, from a state that nearly rests.
-
-    What `relax` knows of the stiffness of beam and contact takes no part in it.
-    """
-    angles, count = start.angles, len(start.angles)
-    best = replace(start, imbalance=np.inf)
-    for _ in range(numerics.refinements):
-        moments = model.imbalance(foot_x, angles)
-        imbalance = float(np.abs(moments).max())
-        if imbalance >= best.imbalance:
-            break
-        best = State(angles, start.forces, imbalance)
-        derivative = np.empty((count, count))
-        for i, turn in enumerate(numerics.difference * np.eye(count)):
-            derivative[:, i] = model.imbalance(foot_x, angles + turn) - moments
-        step: Floats = np.linalg.lstsq(derivative / numerics.difference, -moments)[0].astype(float)
-        turn = turned(step, np.zeros(count))
-        angles = angles + step * min(1.0, numerics.largest_turn / max(turn, 1e-300))
-    return best
-
-
 def around(model: Balance, loaded: dict[int, float], reach: int) -> frozenset[int]:
     """The loaded beads, and as many on either side; all past corners, where they are few."""
     count = len(model.layout.beads)

@@ -14,7 +14,7 @@ from mujoco_models.sweep.descent import descend
 from mujoco_models.sweep.forecast import forecast
 from mujoco_models.sweep.minimum import minimum
 from mujoco_models.sweep.numerics import Numerics
-from mujoco_models.sweep.rest import refine, relax
+from mujoco_models.sweep.rest import relax
 from mujoco_models.sweep.state import State, turned
 from mujoco_models.sweep.walls import Walls
 
@@ -172,7 +172,7 @@ class Walk(Generic[Model]):
         ahead = target - self._foot_x
         foot_x = self._foot_x + np.copysign(min(abs(ahead), numerics.confirm_step), ahead)
         gone = descend(self.model, foot_x, last, numerics, numerics.descent_steps)
-        rest = self._thoroughly(foot_x, gone)
+        rest = self._relax(foot_x, gone)
         if not rest.settled:
             return self._lost_from(last)
         let_go = last.stance is Stance.NEAR and rest.stance in (Stance.FAR, Stance.PASSED)
@@ -207,9 +207,7 @@ class Walk(Generic[Model]):
 
     def _near_rest(self, foot_x: float) -> State:
         """From the last state on; what stops a short step, a descent decides."""
-        short = abs(foot_x - self._foot_x) < self._numerics.confirm_step
-        go = self._relax if short else self._thoroughly
-        state = go(foot_x, self._forecast(foot_x), leave=self._state)
+        state = self._relax(foot_x, self._forecast(foot_x), leave=self._state)
         if not self._leaves_its_facet(state):
             return state
         # It may have jumped there in a long step, while it is at rest on its own facet, too.
@@ -251,18 +249,6 @@ class Walk(Generic[Model]):
             return state
         # A bead that slides past a joint may not come to rest; one that stays leans a little.
         return relax(model, foot_x, start, self._tolerance, numerics, leave=leave, held=True)
-
-    def _thoroughly(self, foot_x: float, start: State, leave: State | None = None) -> State:
-        """At rest, if Newton's method gets there, or a descent, or Newton's with differences."""
-        model, numerics = self.model, self._numerics
-        state = self._relax(foot_x, start, leave)
-        flicker = numerics.flicker * (1 + self._state.load)
-        if not state.settled and self._tolerance <= state.imbalance < flicker:
-            near = descend(model, foot_x, state, numerics, numerics.flicker_steps)
-            state = self._relax(foot_x, near)
-        if not state.settled and self._tolerance <= state.imbalance < flicker:
-            state = self._relax(foot_x, refine(model, foot_x, state, numerics))
-        return state
 
     def _forecast(self, foot_x: float) -> State:
         """Where the beam should come to rest, by the solver's own picture or as it went so far."""

@@ -41,7 +41,7 @@ def test_a_thin_vibrissa_is_no_trouble():
     assert found.snap_off == pytest.approx(solve_sweep(case).snap_off, abs=2e-3)
 
 
-@pytest.mark.parametrize("segments", [3, 4, 5, 6])
+@pytest.mark.parametrize("segments", [pytest.param(3, marks=pytest.mark.slow), 4, 6])
 def test_what_is_too_near_to_the_clamp_is_not_ok(segments):
     low = Case(profile=circle(0.05, (0.0, 0.06)), sweep=Sweep(12))
     found = simulate_sweep(low, Settings(segments=segments))
