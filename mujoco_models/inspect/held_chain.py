@@ -1,5 +1,7 @@
 """A chain of a user's model with its foot held: its states at rest, by Newton's method."""
 
+from collections.abc import Callable
+
 import mujoco
 import numpy as np
 from scipy.linalg import eigh
@@ -84,19 +86,34 @@ class HeldChain(HeldModel):
     def stiffness(self) -> Floats:
         """How what is out of balance falls with each turn, at the present state."""
         start = self.data.qpos.copy()
-        columns = []
-        for dof in self.dofs:
-            both = []
-            for sign in (1, -1):
-                turn = np.zeros(self.model.nv)
-                turn[dof] = sign * _STEP
-                self.data.qpos[:] = start
-                mujoco.mj_integratePos(self.model, self.data.qpos, turn, 1.0)
-                both.append(self.evaluate())
-            columns.append((both[1] - both[0]) / (2 * _STEP))
+
+        def turned(turn: Floats) -> Floats:
+            self.data.qpos[:] = start
+            mujoco.mj_integratePos(self.model, self.data.qpos, turn, 1.0)
+            return self.evaluate()
+
+        slope = self._slope_of(turned)
         self.data.qpos[:] = start
         self.evaluate()
-        return np.array(columns).T
+        return slope
+
+    def _damping(self) -> Floats:
+        """How the passive forces fall with each joint's speed, shape (n, n)."""
+
+        def moving(speed: Floats) -> Floats:
+            self.data.qvel[:] = speed
+            mujoco.mj_forward(self.model, self.data)
+            return np.array(self.data.qfrc_passive[self.dofs])
+
+        slope = self._slope_of(moving)
+        self.evaluate()
+        return slope
+
+    def _slope_of(self, force: Callable[[Floats], Floats]) -> Floats:
+        """How a force falls with each coordinate's change, by central differences."""
+        steps = _STEP * np.eye(self.model.nv)[self.dofs]
+        both = [(force(step), force(-step)) for step in steps]
+        return np.array([(behind - ahead) / (2 * _STEP) for ahead, behind in both]).T
 
     def unload(self) -> None:
         """Take loads away and put the vibrissa to rest as it is by itself."""
@@ -158,8 +175,7 @@ class HeldChain(HeldModel):
 
     def _body_of(self, dof: int) -> str:
         """What an error calls the body of one of the vibrissa's coordinates."""
-        body = int(self.model.dof_bodyid[self.dofs[dof]])
-        name = mujoco.mj_id2name(self.model, mujoco.mjtObj.mjOBJ_BODY, body)
+        name = self.model.body(self.model.dof_bodyid[self.dofs[dof]]).name
         return f"body {name!r} of the vibrissa"
 
     def bending(self, axes: Floats) -> Bending:
@@ -191,24 +207,8 @@ class HeldChain(HeldModel):
         found = np.zeros_like(unit)
         for row, turn in zip(found, unit, strict=True):
             mujoco.mj_mulM(self.model, self.data, row, turn)
-        inertia = found[:, self.dofs]
-        if not armature:
-            inertia = inertia - np.diag(self.model.dof_armature[self.dofs])
-        return np.asarray(inertia)
-
-    def _damping(self) -> Floats:
-        """How the passive forces fall with each joint's speed, shape (n, n)."""
-        columns = []
-        for dof in self.dofs:
-            both = []
-            for sign in (1, -1):
-                self.data.qvel[:] = 0
-                self.data.qvel[dof] = sign * _STEP
-                mujoco.mj_forward(self.model, self.data)
-                both.append(self.data.qfrc_passive[self.dofs].copy())
-            columns.append((both[1] - both[0]) / (2 * _STEP))
-        self.evaluate()
-        return np.array(columns).T
+        own = 0.0 if armature else np.diag(self.model.dof_armature[self.dofs])
+        return np.asarray(found[:, self.dofs] - own)
 
     def _turns(self, axis: Floats) -> Floats:
         """How each link turns about an axis with the coordinates, shape (n_links, n)."""

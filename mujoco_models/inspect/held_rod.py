@@ -43,7 +43,7 @@ class HeldRod(HeldModel):
         self.model.opt.solver = mujoco.mjtSolver.mjSOL_NEWTON
         self.model.opt.tolerance = _TOLERANCE
         self._unloaded: mujoco.MjData | None = None  # at rest, once it is known
-        welds = model.eq_type == int(mujoco.mjtEq.mjEQ_WELD)
+        welds = model.eq_type == mujoco.mjtEq.mjEQ_WELD
         self._shortest = _FADES * float(model.eq_solref[welds, 0].max(initial=0.0))
         self.set_back()
         self._length = float(np.linalg.norm(np.diff(self.vertices, axis=0), axis=1).sum())
@@ -59,7 +59,7 @@ class HeldRod(HeldModel):
     def _held_dofs(self) -> Integers:
         """The hand's: what is welded to it moves as far as its weld lets it."""
         model = self.model
-        free = model.jnt_type[model.dof_jntid] == int(mujoco.mjtJoint.mjJNT_FREE)
+        free = model.jnt_type[model.dof_jntid] == mujoco.mjtJoint.mjJNT_FREE
         hand = np.isin(model.dof_bodyid, [*holders(model, self.parts.foot)])
         return np.flatnonzero(hand & ~free)
 
@@ -221,7 +221,7 @@ class HeldRod(HeldModel):
 
     def _stiffen_edges(self) -> None:
         """Take the stretch away, so that what bends shows by itself."""
-        mine = self.model.eq_type == int(mujoco.mjtEq.mjEQ_FLEX)
+        mine = self.model.eq_type == mujoco.mjtEq.mjEQ_FLEX
         mine &= self.model.eq_obj1id == self.rod.flex
         self.model.eq_solref[mine] = [2 * self.model.opt.timestep, 1]
         self.model.eq_solimp[mine] = [_HARD, _HARD, 1e-3, 0.5, 2]

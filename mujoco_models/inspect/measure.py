@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
-from mujoco_models.inspect.drive import drive_of, slides
+from mujoco_models.inspect.drive import bodies_of_constraint, drive_of, joints_of, slides
 from mujoco_models.inspect.held import HeldModel
 from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.held_rod import HeldRod
@@ -61,7 +61,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     loads, bent = _bent(held, axes, tip_rigidity / length**2)
     return MeasuredBeam(
         model=_model_name(model),
-        foot=_name(model, mujoco.mjtObj.mjOBJ_BODY, parts.foot),
+        foot=model.body(parts.foot).name,
         drive=drive_of(model, parts.foot, -axes[0]),
         length=length,
         joints=joints,
@@ -104,8 +104,8 @@ def sweep_axes(held: HeldModel) -> Floats:
     hinges = [
         data.xaxis[j]
         for body in held.parts.chain
-        for j in range(model.body_jntadr[body], model.body_jntadr[body] + model.body_jntnum[body])
-        if model.jnt_type[j] == int(mujoco.mjtJoint.mjJNT_HINGE)
+        for j in joints_of(model, body)
+        if model.jnt_type[j] == mujoco.mjtJoint.mjJNT_HINGE
     ]
     planar = len(hinges) == len(held.dofs) and bool(
         (np.linalg.norm(np.cross(hinges[0], hinges), axis=1) < 1e-6).all()
@@ -145,8 +145,8 @@ def _planar(held: HeldModel, z: Floats) -> bool:
     """Whether nothing of it can leave the plane of the sweep."""
     joints = np.flatnonzero(np.isin(held.model.jnt_bodyid, held.parts.chain))
     kinds, across = held.model.jnt_type[joints], np.abs(held.data.xaxis[joints] @ z)
-    hinges = (kinds == int(mujoco.mjtJoint.mjJNT_HINGE)) & (across > 1 - _ALONG)
-    slides_ = (kinds == int(mujoco.mjtJoint.mjJNT_SLIDE)) & (across < _ALONG)
+    hinges = (kinds == mujoco.mjtJoint.mjJNT_HINGE) & (across > 1 - _ALONG)
+    slides_ = (kinds == mujoco.mjtJoint.mjJNT_SLIDE) & (across < _ALONG)
     return bool((hinges | slides_).all())
 
 
@@ -162,16 +162,9 @@ def _linear(model: mujoco.MjModel, parts: Parts) -> bool:
 def _check_constraints(model: mujoco.MjModel, parts: Parts) -> None:
     """Raise InputError where an equality constraint holds the vibrissa beside its springs."""
     for i in np.flatnonzero(model.eq_active0).tolist():
-        ends, kind = [int(model.eq_obj1id[i]), int(model.eq_obj2id[i])], int(model.eq_type[i])
-        if kind == int(mujoco.mjtEq.mjEQ_JOINT):
-            ends = [int(model.jnt_bodyid[joint]) for joint in ends if joint >= 0]
-        elif model.eq_objtype[i] == int(mujoco.mjtObj.mjOBJ_SITE):
-            ends = [int(model.site_bodyid[site]) for site in ends]
-        elif model.eq_objtype[i] != int(mujoco.mjtObj.mjOBJ_BODY):
-            continue
-        for body in set(ends).intersection(parts.chain):
+        for body in set(bodies_of_constraint(model, i)).intersection(parts.chain):
             raise InputError(
-                f"body {_name(model, mujoco.mjtObj.mjOBJ_BODY, body)!r} of the vibrissa",
+                f"body {model.body(body).name!r} of the vibrissa",
                 "held by an equality constraint", "one that springs alone hold",
                 "remove the constraint, or set active=\"false\"",
             )  # fmt: skip
@@ -186,8 +179,7 @@ def _joints(
     slopes = np.arctan2(-ways @ axes[0], ways @ axes[1])
     angles = np.diff(np.unwrap(slopes), prepend=0.0)
     names = [
-        _name(held.model, mujoco.mjtObj.mjOBJ_BODY, body) or f"body {body}"
-        for body in held.parts.chain
+        held.model.body(body).name or f"body {body}" for body in held.parts.chain
     ]
     return tuple(
         Joint(name, float(at), float(cell), float(c), float(angle))
@@ -256,13 +248,13 @@ def _seen(
     by_moment: Floats,
 ) -> Sensed:
     """What a sensor is by its readings of forces and of moments, in columns; at rest."""
-    is_force = held.model.sensor_type[sensor] == int(mujoco.mjtSensor.mjSENS_FORCE)
+    is_force = held.model.sensor_type[sensor] == mujoco.mjtSensor.mjSENS_FORCE
     turned = by_force if is_force else by_moment
     # Of the moment of a force on the tip about the sensor: M = r x F gives r, by columns of skew.
     skew = np.zeros((3, 3)) if is_force else np.linalg.pinv(turned) @ by_force
     seen = np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
     place, _ = held.site(sensor)
-    name = _name(held.model, mujoco.mjtObj.mjOBJ_SENSOR, sensor)
+    name = held.model.sensor(sensor).name
     offset = axes @ (place - held.clamp)
     lever = offset if is_force else arm - seen
     cutoff = held.cutoffs[sensor] or np.inf
@@ -293,14 +285,10 @@ def _stable_step(model: mujoco.MjModel, squares: Floats, damping: Floats) -> flo
     rate c decays if w^2 dt^2 < 4 + 2 c dt (Jury's criterion); Runge and Kutta's fourth order, with
     the dampers explicit too, if w dt and c dt are below 2.78.
     """
-    if model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_RK4):
+    if model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4:
         return float(2.78 / max(np.sqrt(squares.max()), damping.max()))
     return float(((damping + np.hypot(damping, 2 * np.sqrt(squares))) / squares).min())
 
 
 def _model_name(model: mujoco.MjModel) -> str:
     return bytes(model.names[: model.names.find(b"\0")]).decode(errors="replace")
-
-
-def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:
-    return mujoco.mj_id2name(model, kind, number) or ""

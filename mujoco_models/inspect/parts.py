@@ -56,7 +56,8 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
     rods = flexes(model)
     chains = [*_chains(model), *rods]
     if names.foot is not None:
-        foot = _named(model, "--foot", names.foot, mujoco.mjtObj.mjOBJ_BODY)
+        known = [model.body(i).name for i in range(model.nbody)]
+        foot = _named("--foot", names.foot, "body", known)
         chains = [chain for chain in chains if foot in _holders(model, chain[0])]
     if asked is not None:
         bodies = set(model.geom_bodyid[asked].tolist())
@@ -72,8 +73,8 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
     likely = [chain for chain in chains if 2 * len(chain) > longest]
     if len(likely) > 1:
         shown = ", ".join(
-            f"{len(chain)} links from {_name(model, mujoco.mjtObj.mjOBJ_BODY, chain[0])!r} on "
-            f"{_name(model, mujoco.mjtObj.mjOBJ_BODY, int(model.body_parentid[chain[0]]))!r}"
+            f"{len(chain)} links from {model.body(chain[0]).name!r} on "
+            f"{model.body(model.body_parentid[chain[0]]).name!r}"
             for chain in likely[:4]
         )
         raise InputError(
@@ -91,14 +92,13 @@ def find(model: mujoco.MjModel, names: Names) -> Parts:
     if rod is not None:
         bodies |= {*holders_of(model, holders[-1])}
     added = (None, None) if names.site is None else (FORCE, TORQUE)
-    sensors = [
+    force, torque = (
         _sensor(model, option, name, kind, bodies)
         for option, name, kind in (
             ("--force", names.force or added[0], mujoco.mjtSensor.mjSENS_FORCE),
             ("--torque", names.torque or added[1], mujoco.mjtSensor.mjSENS_TORQUE),
         )
-    ]
-    force, torque = sensors
+    )
     return Parts(holders[-1], chain, tuple(geoms), force, torque, rod)
 
 
@@ -144,25 +144,16 @@ def radius_of(model: mujoco.MjModel, geom: int) -> float:
 
 def _chains(model: mujoco.MjModel) -> list[Chain]:
     """Rows of bodies that bend, none part of a longer one."""
-    driven = {
-        int(model.actuator_trnid[i, 0])
-        for i in range(model.nu)
-        if model.actuator_trntype[i] == int(mujoco.mjtTrn.mjTRN_JOINT)
-    }
-    bending = {
-        body
-        for body in range(1, model.nbody)
-        for joint in range(
-            model.body_jntadr[body], model.body_jntadr[body] + model.body_jntnum[body]
-        )
-        if int(model.jnt_type[joint]) in _BENDS and joint not in driven
-    }
-    outer = [b for b in bending if not bending.intersection(_children(model, b))]
+    driven = model.actuator_trnid[model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT, 0]
+    bends = np.isin(model.jnt_type, _BENDS)
+    bends[driven] = False
+    bending = {*model.jnt_bodyid[bends].tolist()}
+    inner = {*model.body_parentid[[*bending]].tolist()}
     chains = []
-    for body in sorted(outer):
+    for body in sorted(bending - inner):
         row = [body]
-        while int(model.body_parentid[row[-1]]) in bending:
-            row.append(int(model.body_parentid[row[-1]]))
+        while (parent := int(model.body_parentid[row[-1]])) in bending:
+            row.append(parent)
         if len(row) >= _FEWEST:
             chains.append(tuple(reversed(row)))
     return chains
@@ -174,10 +165,6 @@ def _holders(model: mujoco.MjModel, link: int) -> list[int]:
     while model.body_jntnum[found[-1]] == 0 and model.body_parentid[found[-1]] != 0:
         found.append(int(model.body_parentid[found[-1]]))
     return found
-
-
-def _children(model: mujoco.MjModel, body: int) -> list[int]:
-    return [int(b) for b in np.flatnonzero(model.body_parentid == body) if b != body]
 
 
 def _along(model: mujoco.MjModel, foot: int, chain: Chain) -> list[int]:
@@ -194,7 +181,7 @@ def _along(model: mujoco.MjModel, foot: int, chain: Chain) -> list[int]:
     origin = model.body_pos[chain[0]]
     rigid = []
     for geom in np.flatnonzero(model.geom_bodyid == foot).tolist():
-        if foot == 0 or int(model.geom_type[geom]) not in _SLENDER:
+        if foot == 0 or model.geom_type[geom] not in _SLENDER:
             continue
         off = axis_of(model, geom) - origin
         aside = off - np.outer(off @ direction, direction)
@@ -211,13 +198,11 @@ def _touchable(model: mujoco.MjModel, body: int) -> list[int]:
 
 
 def _geoms(model: mujoco.MjModel, text: str) -> list[int]:
-    known = {_name(model, mujoco.mjtObj.mjOBJ_GEOM, i): i for i in range(model.ngeom)}
+    known = [model.geom(i).name for i in range(model.ngeom)]
     found: set[int] = set()
     for pattern in filter(None, (part.strip() for part in text.split(","))):
-        fitting = {i for name, i in known.items() if fnmatchcase(name, pattern)}
-        if not fitting:
-            raise _unknown("--geoms", pattern, "geom", [*known])
-        found |= fitting
+        fitting = {i for i, name in enumerate(known) if fnmatchcase(name, pattern)}
+        found |= fitting or {_named("--geoms", pattern, "geom", known)}
     return sorted(found)
 
 
@@ -228,44 +213,30 @@ def _sensor(
     kind: mujoco.mjtSensor,
     bodies: set[int],
 ) -> int | None:
-    word = option.removeprefix("--")
+    word, known = option.removeprefix("--"), [model.sensor(i).name for i in range(model.nsensor)]
     if name is not None:
-        sensor = _named(model, option, name, mujoco.mjtObj.mjOBJ_SENSOR)
-        if model.sensor_type[sensor] != int(kind):
+        sensor = _named(option, name, "sensor", known)
+        if model.sensor_type[sensor] != kind:
             raise InputError(option, repr(name), f"a {word} sensor", f"it is no <{word}>")
         return sensor
     found = [
-        i
-        for i in range(model.nsensor)
-        if model.sensor_type[i] == int(kind)
-        and int(model.site_bodyid[model.sensor_objid[i]]) in bodies
+        int(i)
+        for i in np.flatnonzero(model.sensor_type == kind)
+        if model.site_bodyid[model.sensor_objid[i]] in bodies
     ]
     if len(found) > 1:
-        shown = ", ".join(repr(_name(model, mujoco.mjtObj.mjOBJ_SENSOR, i)) for i in found[:6])
+        shown = ", ".join(repr(known[i]) for i in found[:6])
         raise InputError("model", f"with {len(found)} {word} sensors ({shown})",
                          "with one at the clamp", f"say which with {option}")  # fmt: skip
     return found[0] if found else None
 
 
-def _named(model: mujoco.MjModel, option: str, name: str, kind: mujoco.mjtObj) -> int:
-    found = mujoco.mj_name2id(model, kind, name)
-    if found < 0:
-        count = {
-            mujoco.mjtObj.mjOBJ_BODY: model.nbody,
-            mujoco.mjtObj.mjOBJ_SENSOR: model.nsensor,
-        }[kind]
-        word = "body" if kind == mujoco.mjtObj.mjOBJ_BODY else "sensor"
-        raise _unknown(option, name, word, [_name(model, kind, i) for i in range(count)])
-    return int(found)
-
-
-def _unknown(option: str, name: str, what: str, known: list[str]) -> InputError:
+def _named(option: str, name: str, what: str, known: list[str]) -> int:
+    """Number of what has that name."""
+    if name in known:
+        return known.index(name)
     names = [one for one in known if one]
     near = difflib.get_close_matches(name, names, n=1)
-    shown = ", ".join(names[:12]) + (" ..." if len(names) > 12 else "")
-    remedy = f"did you mean {near[0]}?" if near else f"it has {shown or 'none with a name'}"
-    return InputError(option, repr(name), f"the name of a {what} of the model", remedy)
-
-
-def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:
-    return mujoco.mj_id2name(model, kind, number) or ""
+    shown = ", ".join(names[:12]) or "none with a name"
+    remedy = f"did you mean {near[0]}?" if near else f"it has {shown}"
+    raise InputError(option, repr(name), f"the name of a {what} of the model", remedy)

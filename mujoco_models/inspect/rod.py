@@ -27,7 +27,7 @@ class Rod:
 
 def flexes(model: mujoco.MjModel) -> dict[Chain, int]:
     """Flexes of dimension 1 on vertices that slide."""
-    slides = model.jnt_bodyid[model.jnt_type == int(mujoco.mjtJoint.mjJNT_SLIDE)]
+    slides = model.jnt_bodyid[model.jnt_type == mujoco.mjtJoint.mjJNT_SLIDE]
     found = {}
     for flex in np.flatnonzero(np.asarray(model.flex_dim) == 1).tolist():
         bodies = _bodies(model, flex)
