@@ -8,8 +8,7 @@ from scipy.linalg import eigh
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.errors import InputError
-from mujoco_models.inspect.bending import Bending
-from mujoco_models.inspect.held import HeldModel
+from mujoco_models.inspect.held import Bending, HeldModel
 from mujoco_models.inspect.parts import Parts, axis_of
 
 _STEP = 1e-6  # rad; MuJoCo's forces are smooth there, and exact to 1e-14 of their size

@@ -13,9 +13,8 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.errors import InputError
-from mujoco_models.inspect.bending import Bending
 from mujoco_models.inspect.drive import holders
-from mujoco_models.inspect.held import HeldModel
+from mujoco_models.inspect.held import Bending, HeldModel
 from mujoco_models.inspect.parts import Parts
 from mujoco_models.inspect.rod import Rod
 

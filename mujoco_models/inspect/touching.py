@@ -1,6 +1,7 @@
 """What of a user's vibrissa can touch an object: geoms, or the edges of a flex."""
 
 from collections.abc import Iterator
+from typing import Any, Literal, NamedTuple
 
 import mujoco
 import numpy as np
@@ -20,9 +21,12 @@ def touching(
     probe: Probe | None,
 ) -> tuple[Geom, ...]:
     """All that can touch, from the clamp to the tip."""
-    if parts.rod is not None:
-        return tuple(_edges(model, parts.rod, data, frame, probe))
-    return tuple(_geoms(model, parts, data, frame, probe))
+    return tuple(
+        _geom(model, piece, frame, probe)
+        for piece in (
+            _links(model, parts, data) if parts.rod is None else _edges(model, parts.rod, data)
+        )
+    )
 
 
 def thickness(model: mujoco.MjModel, parts: Parts) -> float:
@@ -32,74 +36,62 @@ def thickness(model: mujoco.MjModel, parts: Parts) -> float:
     return radius_of(model, parts.geoms[-1])
 
 
-def _geoms(
-    model: mujoco.MjModel,
-    parts: Parts,
-    data: mujoco.MjData,
-    frame: tuple[Floats, Floats],
-    probe: Probe | None,
-) -> Iterator[Geom]:
-    clamp, axes = frame
+class _Piece(NamedTuple):
+    """A geom or an edge; fields of MuJoCo's model begin with its kind."""
+
+    name: str
+    kind: Literal["geom", "flex"]
+    number: int
+    ends: Floats  # of its axis, shape (2, 3)
+    radius: float
+    weight: float  # the acceleration by a unit of force; 0 if it cannot move
+
+
+def _links(model: mujoco.MjModel, parts: Parts, data: mujoco.MjData) -> Iterator[_Piece]:
     for number in parts.geoms:
         body = int(model.geom_bodyid[number])
-        turn = data.xmat[body].reshape(3, 3)
-        ends = data.xpos[body] + axis_of(model, number) @ turn.T
-        start, end = sorted(((ends - clamp) @ axes[1]).tolist())
-        weight = float(model.body_invweight0[body, 0])  # 0 if it cannot move
-        if weight and probe is not None:
-            radius = radius_of(model, number)
-            weight = probe.weight(number, ends.mean(axis=0), axes[0], radius) or weight
-        stiffness, time_constant = _stiffness(
-            model, model.geom_solref[number], model.geom_solimp[number], weight
-        )
-        yield Geom(
-            name_of_geom(model, number),
-            start,
-            end,
-            radius_of(model, number),
-            _meets(model, model.geom_contype[number], model.geom_conaffinity[number]),
-            stiffness,
-            time_constant,
-            float(model.geom_friction[number, 0]) if model.geom_condim[number] > 1 else 0.0,
-            float(model.geom_margin[number] - model.geom_gap[number]),
-        )
+        ends = data.xpos[body] + axis_of(model, number) @ data.xmat[body].reshape(3, 3).T
+        weight = float(model.body_invweight0[body, 0])
+        name, radius = name_of_geom(model, number), radius_of(model, number)
+        yield _Piece(name, "geom", number, ends, radius, weight)
 
 
-def _edges(
-    model: mujoco.MjModel,
-    rod: Rod,
-    data: mujoco.MjData,
-    frame: tuple[Floats, Floats],
-    probe: Probe | None,
-) -> Iterator[Geom]:
-    (clamp, axes), flex = frame, rod.flex
+def _edges(model: mujoco.MjModel, rod: Rod, data: mujoco.MjData) -> Iterator[_Piece]:
     vertices = data.flexvert_xpos[list(rod.vertices)]
     bodies = model.flex_vertbodyid[list(rod.vertices)]
-    radius = float(model.flex_radius[flex])
-    meets = _meets(model, model.flex_contype[flex], model.flex_conaffinity[flex])
-    margin = float(model.flex_margin[flex] - model.flex_gap[flex])
-    friction = float(model.flex_friction[flex, 0]) if model.flex_condim[flex] > 1 else 0.0
-    for i, (ends, pair) in enumerate(zip(_pairs(vertices), _pairs(bodies), strict=True)):
-        start, end = sorted(((ends - clamp) @ axes[1]).tolist())
+    radius = float(model.flex_radius[rod.flex])
+    for i in range(len(vertices) - 1):
         # Each vertex takes half of a force on the middle, and moves half as far as the middle.
-        weight = float(model.body_invweight0[pair, 0].sum()) / 4 if i else 0.0
-        if weight and probe is not None:
-            weight = probe.weight(-1, ends.mean(axis=0), axes[0], radius) or weight
-        stiffness, time_constant = _stiffness(
-            model, model.flex_solref[flex], model.flex_solimp[flex], weight
-        )
-        name = f"edge {i}"
-        yield Geom(name, start, end, radius, meets, stiffness, time_constant, friction, margin)
+        weight = float(model.body_invweight0[bodies[i : i + 2], 0].sum()) / 4 if i else 0.0
+        yield _Piece(f"edge {i}", "flex", rod.flex, vertices[i : i + 2], radius, weight)
 
 
-def _meets(model: mujoco.MjModel, contype: int, conaffinity: int) -> bool:
-    """Whether it collides with an object that has MuJoCo's default contype and conaffinity."""
+def _geom(
+    model: mujoco.MjModel, piece: _Piece, frame: tuple[Floats, Floats], probe: Probe | None
+) -> Geom:
+    (clamp, axes), weight = frame, piece.weight
+
+    def stated(field: str) -> Any:  # noqa: ANN401  # whatever MuJoCo's field holds
+        return getattr(model, f"{piece.kind}_{field}")[piece.number]
+
+    if weight and probe is not None:
+        geom = piece.number if piece.kind == "geom" else -1
+        middle = piece.ends.mean(axis=0)
+        weight = probe.weight(geom, middle, axes[0], piece.radius) or weight
+    start, end = sorted(((piece.ends - clamp) @ axes[1]).tolist())
+    stiffness, time_constant = _stiffness(model, stated("solref"), stated("solimp"), weight)
     none_does = model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
-    return not none_does and bool((contype & 1) | (conaffinity & 1))
-
-
-def _pairs(values: Floats) -> Floats:
-    return np.stack([values[:-1], values[1:]], axis=1)
+    return Geom(
+        name=piece.name,
+        start=start,
+        end=end,
+        radius=piece.radius,
+        meets=not none_does and bool((stated("contype") | stated("conaffinity")) & 1),
+        stiffness=stiffness,
+        time_constant=time_constant,
+        friction=float(stated("friction")[0]) if stated("condim") > 1 else 0.0,
+        margin=float(stated("margin") - stated("gap")),
+    )
 
 
 def _stiffness(
@@ -123,9 +115,8 @@ def name_of_geom(model: mujoco.MjModel, number: int) -> str:
     """Of a geom, or of what has none."""
     if number < 0:
         return "the flex"
-    own = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_GEOM, number)
-    body = int(model.geom_bodyid[number])
-    return own or mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, body) or f"geom {number}"
+    own, body = model.geom(number).name, model.body(model.geom_bodyid[number]).name
+    return own or body or f"geom {number}"
 
 
 def self_contacts(model: mujoco.MjModel, parts: Parts) -> tuple[str, ...]:
