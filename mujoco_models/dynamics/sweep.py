@@ -35,8 +35,7 @@ def run_motion(
 ) -> Readings:
     """Sweep the beam to the left; see `mujoco_models.simulate_motion`."""
     model, motion, record = _prepared(case, motion, settings)
-    passes = Passes(model, case, motion, _source(settings), {"settings": asdict(settings)})
-    return passes.swept(record, passes.on, advance, keep)
+    return _passes(model, case, motion, settings).swept(record, advance, keep)
 
 
 def run_there_and_back(
@@ -48,12 +47,11 @@ def run_there_and_back(
 ) -> tuple[Readings, Readings]:
     """Sweep the beam to the left and back; see `mujoco_models.simulate_there_and_back`."""
     model, motion, record = _prepared(case, motion, settings)
-    passes = Passes(model, case, motion, _source(settings), {"settings": asdict(settings)})
-    on = passes.swept(record, passes.on, advance, keep)
-    passes.let_go = on.snap_off is not None
+    passes = _passes(model, case, motion, settings)
+    on = passes.swept(record, advance, keep)
     # As if it went on to the left past the mirrored stations.
     returning = StationMeans(-case.foot_x[::-1] / case.beam.length, motion.average)
-    return on, passes.swept(returning, passes.back, advance, keep, turn_at=passes.turn_at)
+    return on, passes.swept(returning, advance, keep, back=True)
 
 
 def _prepared(
@@ -72,8 +70,9 @@ def start_of(record: StationMeans, motion: Motion) -> float:
     return record.first + motion.speed * (motion.ramp / 2 + motion.timestep)
 
 
-def _source(settings: Settings) -> str:
-    return f"mujoco {settings.beam} in motion"
+def _passes(model: MovingModel, case: Case, motion: Motion, settings: Settings) -> "Passes":
+    source = f"mujoco {settings.beam} in motion"
+    return Passes(model, case, motion, source, {"settings": asdict(settings)})
 
 
 def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> MovingModel:
@@ -109,52 +108,24 @@ class Passes:
         self._model, self._case, self._motion = model, case, motion
         self._source, self._about = source, about
         self._filtered = np.array(model.clamp())
-        self.let_go = False  # on the way on
+        self._let_go = False  # on the way on
         # The share of the difference that a filter of first order follows in a step.
         self._follows = 1.0
         if motion.cutoff is not None:
             self._follows = -math.expm1(-2 * math.pi * motion.cutoff * motion.timestep)
 
-    @property
-    def turn_at(self) -> float:
-        """Where the foot is when it has come to a stop, from where it is now [L]."""
-        return self._model.foot_x - self._motion.speed * self._motion.ramp / 2
+    def _drive(self, record: StationMeans, back: bool, advance: Callable[[], None]) -> None:
+        """Step until the foot has passed all stations; it starts, or turns round, softly.
 
-    def on(self, record: StationMeans, advance: Callable[[], None]) -> None:
-        """To the left, from a soft start."""
-        speed, ramp = self._motion.speed, self._motion.ramp
-        begun = self._model.now
-        self._drive(
-            record,
-            1.0,
-            lambda now: speed * (min(1.0, (now - begun) / ramp) if ramp > 0 else 1.0),
-            advance,
-        )
-
-    def back(self, record: StationMeans, advance: Callable[[], None]) -> None:
-        """To the right, turning round as softly."""
-        speed, ramp = self._motion.speed, self._motion.ramp
-        begun = self._model.now
-        self._drive(
-            record,
-            -1.0,
-            lambda now: speed * (max(-1.0, 1 - (now - begun) / ramp) if ramp > 0 else -1.0),
-            advance,
-        )
-
-    def _drive(
-        self,
-        record: StationMeans,
-        facing: float,
-        speed_at: Callable[[float], float],
-        advance: Callable[[], None],
-    ) -> None:
-        """Step until the foot has passed all stations, with positions as `facing` has them."""
-        model, motion = self._model, self._motion
-        touches = facing < 0 and model.touches
+        On its way back all is as if it went on to the left, at positions of the other sign.
+        """
+        model, motion, begun = self._model, self._motion, self._model.now
+        facing, touches = (-1.0, model.touches) if back else (1.0, False)
         before = Step(model.time, facing * model.foot_x, self._filtered, touches)
         while not record.complete:
-            speed = speed_at(model.now + motion.timestep)
+            passed = model.now + motion.timestep - begun
+            ramps = passed / motion.ramp if motion.ramp > 0 else math.inf
+            speed = motion.speed * (max(-1.0, 1 - ramps) if back else min(1.0, ramps))
             model.step(speed)
             change = np.array(model.clamp()) - self._filtered
             self._filtered = self._filtered + self._follows * change
@@ -170,16 +141,16 @@ class Passes:
     def swept(
         self,
         record: StationMeans,
-        go: Callable[[StationMeans, Callable[[], None]], None],
         advance: Callable[[], None],
         keep: Callable[[Readings], None],
-        turn_at: float | None = None,
+        back: bool = False,
     ) -> Readings:
-        """The readings of one way; `turn_at` is where that back begins [L]."""
+        """The readings of the way on, to the left, or of that back."""
         case, motion = self._case, self._motion
-        engine = f"MuJoCo {mujoco.__version__}, vibrissa-testbed {version('vibrissa-testbed')}"
+        turn_at = self._model.foot_x - motion.speed * motion.ramp / 2 if back else None
+        own = version("vibrissa-testbed")
         about = {
-            "engine": engine,
+            "engine": f"MuJoCo {mujoco.__version__}, vibrissa-testbed {own}",
             **self._about,
             "motion": asdict(motion),
             "obstacle": self._model.label,
@@ -189,29 +160,29 @@ class Passes:
             self._source,
             about,
             lambda: self._events(record, turn_at),
-            case.foot_x if turn_at is None else case.foot_x[::-1],
+            case.foot_x[::-1] if back else case.foot_x,
             record.rows,
         )
         with recorder.rescued(keep), unlogged():
             try:
-                go(record, advance)
+                self._drive(record, back, advance)
             except DivergedError as error:
                 record.rows.append(DIVERGED)
-                place_ = f"t = {self._model.time:.6g} T1"
-                remedy = (
-                    f"shorten the time step ({motion.timestep:g} T1), add armature, "
-                    "or soften contacts"
-                )
-                raise DivergedError(f"diverged at {place_}: {error}; {remedy}") from error
-        return recorder.readings()
+                raise DivergedError(
+                    f"diverged at t = {self._model.time:.6g} T1: {error}; shorten the time step "
+                    f"({motion.timestep:g} T1), add armature, or soften contacts"
+                ) from error
+        readings = recorder.readings()
+        self._let_go = record.last_touch is not None
+        return readings
 
     def _events(self, record: StationMeans, turn_at: float | None) -> dict[str, float | None]:
-        """Foot positions of what has happened so far, by name [L]."""
+        """Foot positions of what has happened so far, by name [L]; `turn_at` on the way back."""
         last = record.last_touch
         if turn_at is None:
             return {"first_contact": record.first_touch, "snap_off": last}
         left = None if last is None else -last
         # Held when the foot turned, it is released where it first touched; else it has passed
         # the object, comes to its other side and lets go there.
-        snap_off, release = (left, None) if self.let_go else (None, left)
+        snap_off, release = (left, None) if self._let_go else (None, left)
         return {"turn": turn_at, "snap_off": snap_off, "release": release}

@@ -178,9 +178,7 @@ def _joints(
     ways = np.diff(nodes, axis=0)[1:]
     slopes = np.arctan2(-ways @ axes[0], ways @ axes[1])
     angles = np.diff(np.unwrap(slopes), prepend=0.0)
-    names = [
-        held.model.body(body).name or f"body {body}" for body in held.parts.chain
-    ]
+    names = [held.model.body(body).name or f"body {body}" for body in held.parts.chain]
     return tuple(
         Joint(name, float(at), float(cell), float(c), float(angle))
         for name, at, cell, c, angle in zip(

@@ -161,7 +161,7 @@ class UserModelInMotion(SteppedModel):
         self.time = self.now
         self._way += speed * self.model.opt.timestep / self._period
         unit = self._beam.length
-        self._drive.move(self.data, self._way * unit, speed * unit / self._period)
+        self._drive(self.data, self._way * unit, speed * unit / self._period)
         self._advance()
         behind = self._way - (self._start - self.foot_x)
         if abs(behind) > _LAGS[0] + _LAGS[1] * self._way:

@@ -67,7 +67,7 @@ def run_user_model(
     }
     source = f"model {measured.model or own.file.stem}"
     passes = Passes(in_motion, case, moved, source, about)
-    return passes.swept(record, passes.on, advance, keep)
+    return passes.swept(record, advance, keep)
 
 
 def _check(case: Case, parts: Parts, measured: MeasuredBeam) -> None:
