@@ -60,7 +60,6 @@ def study(
     from compare.study.keep.store import Store
     from compare.study.work.crews import dask_crew, local_crew
     from compare.study.work.execute import carry_out
-    from compare.study.work.recipe import Recipe
 
     folder = out or Path("results") / plan.study.name
     crew = local_crew(cores) if scheduler is None else dask_crew(scheduler)
@@ -73,7 +72,7 @@ def study(
         if count:
             with (
                 progress(plan.study.name, count) as advance,
-                closing(carry_out(todo, Recipe.of(plan.study), crew)) as results,
+                closing(carry_out(todo, plan.study.recipe, crew)) as results,
             ):
                 for result in results:
                     store.add(result)

@@ -10,14 +10,14 @@ from rich.console import Console
 
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan, PlannedRun
+from compare.study.grid.study import Study
 from compare.study.work.crews import local_crew
 from compare.study.work.execute import carry_out
 from compare.study.work.perform import Result
-from compare.study.work.recipe import Recipe
 from tests.compare.study.studies import EVENTS_ONLY, vibrissa
 
 
-def spin(recipe: Recipe, run: PlannedRun) -> Result:
+def spin(recipe: Study, run: PlannedRun) -> Result:
     """A run of a fifth of a second of work."""
     end = time.process_time() + 0.2
     while time.process_time() < end:
@@ -25,7 +25,7 @@ def spin(recipe: Recipe, run: PlannedRun) -> Result:
     return nothing(recipe, run)
 
 
-def nothing(recipe: Recipe, run: PlannedRun) -> Result:
+def nothing(recipe: Study, run: PlannedRun) -> Result:
     return Result({"run": run.id, "outcome": "done"})
 
 
@@ -58,8 +58,8 @@ def _plan(path: Path, runs: int) -> Plan:
     return Plan.of(load_study(str(path)))
 
 
-def _seconds(plan: Plan, workers: int, perform: Callable[[Recipe, PlannedRun], Result]) -> float:
+def _seconds(plan: Plan, workers: int, perform: Callable[[Study, PlannedRun], Result]) -> float:
     begin = time.perf_counter()
     crew = replace(local_crew(workers), perform=perform, together=None)
-    assert sum(1 for _ in carry_out(plan, Recipe.of(plan.study), crew)) == len(plan)
+    assert sum(1 for _ in carry_out(plan, plan.study.recipe, crew)) == len(plan)
     return time.perf_counter() - begin

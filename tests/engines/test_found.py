@@ -12,7 +12,6 @@ from compare.simulate import many
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
 from compare.study.work.perform import perform
-from compare.study.work.recipe import Recipe
 from engines import find_engine, list_engines, sweep_apart
 from engines.known import named_engines
 from mujoco_models import Settings
@@ -221,7 +220,7 @@ def test_an_engine_is_an_axis_of_a_study(odd_engines, tmp_path):
     """
     (tmp_path / "study.toml").write_text(textwrap.dedent(text))
     plan = Plan.of(load_study(str(tmp_path / "study.toml")))
-    rows = [perform(Recipe.of(plan.study), run).row for run in plan]
+    rows = [perform(plan.study.recipe, run).row for run in plan]
     assert [row["outcome"] for row in rows] == ["done", "failed", "bad-input", "bad-input"]
     assert rows[0]["disagreement_force_y_rms"] < 1e-2
     assert "no luck" in rows[1]["reason"]

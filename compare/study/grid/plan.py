@@ -10,6 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 from pydantic import TypeAdapter
 
 from analytic import InputError
@@ -150,13 +151,10 @@ class Plan:
         """
         if not 0 <= index < len(self):
             raise IndexError(index)
-        found: list[tuple[Axis, int]] = []
-        for axis in reversed(self._axes):
-            index, place = divmod(index, len(axis.points))
-            found.append((axis, place))
+        places = np.unravel_index(index, [len(axis.points) for axis in self._axes])
         return {
             key: value
-            for axis, place in reversed(found)
+            for axis, place in zip(self._axes, places, strict=True)
             for key, value in zip(axis.keys, axis.points[place], strict=True)
         }
 

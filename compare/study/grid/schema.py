@@ -6,8 +6,7 @@ from pydantic import Field
 
 from compare.read.quantities import FileName, Table
 from compare.study.grid.axes import Sample
-from compare.study.grid.estimator import Estimator
-from compare.study.grid.sensor import SensorNoise
+from compare.study.grid.instrument import Estimator, SensorNoise
 from compare.study.grid.study import Record
 
 CASE_TABLES = (

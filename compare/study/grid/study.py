@@ -1,7 +1,7 @@
 """What a study is, once its file has been checked."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
 from compare.read.quantities import validated
@@ -9,8 +9,7 @@ from compare.read.space import SpaceFile
 from compare.read.tables import CaseFile
 from compare.read.toml import Place
 from compare.study.grid.axes import Axis
-from compare.study.grid.estimator import Estimator
-from compare.study.grid.sensor import SensorNoise
+from compare.study.grid.instrument import Estimator, SensorNoise
 
 Record: TypeAlias = Literal["events", "disagreement", "reconstruction"]
 RECORDS: tuple[Record, ...] = ("events", "disagreement", "reconstruction")
@@ -58,6 +57,16 @@ class Study:
     def in_space(self) -> bool:
         """Whether its sweeps are in space."""
         return "body.kind" in self.base
+
+    @property
+    def events_only(self) -> bool:
+        """Whether nothing has to be swept in the plane."""
+        return set(self.record) == {"events"} and not self.beams
+
+    @property
+    def recipe(self) -> "Study":
+        """What all runs have in common, without what varies: small, it travels with every run."""
+        return replace(self, axes=())
 
     @property
     def crossed(self) -> tuple[Axis, ...]:

@@ -10,9 +10,9 @@ from pebble import ProcessExpired
 from analytic import InputError
 from compare.simulate.workers import Workers
 from compare.study.grid.plan import PlannedRun
+from compare.study.grid.study import Study
 from compare.study.work.execute import Crew, Task
 from compare.study.work.perform import Outcome, Result, perform, perform_alone, perform_together
-from compare.study.work.recipe import Recipe
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -26,16 +26,16 @@ def local_crew(workers: int) -> Crew:
     os.environ |= dict.fromkeys(_THREADS, "1")  # read by the libraries when they are imported
     pool = Workers(workers, ("compare.study.work.perform",))
 
-    def submit(task: Task, recipe: Recipe, runs: tuple[PlannedRun, ...]) -> Future[list[Result]]:
+    def submit(task: Task, study: Study, runs: tuple[PlannedRun, ...]) -> Future[list[Result]]:
         # The run itself asks the time between stations; a stuck one is ended with its worker.
-        return pool.submit(task, recipe, runs, timeout=1.1 * recipe.timeout + 1)
+        return pool.submit(task, study, runs, timeout=1.1 * study.timeout + 1)
 
     return Crew(submit, perform, 2 * workers + 1, _local_ending, pool.end, perform_together)
 
 
-def _local_ending(error: BaseException, recipe: Recipe) -> tuple[Outcome, str]:
+def _local_ending(error: BaseException, study: Study) -> tuple[Outcome, str]:
     if isinstance(error, TimeoutError):
-        return "timeout", f"stuck for {recipe.timeout:g} s; its worker was ended"
+        return "timeout", f"stuck for {study.timeout:g} s; its worker was ended"
     if isinstance(error, ProcessExpired):
         return "failed", "its worker process died, twice"
     raise error
@@ -65,7 +65,7 @@ def dask_crew(address: str) -> Crew:
 
     executor = client.get_executor(pure=False)
 
-    def ending(error: BaseException, recipe: Recipe) -> tuple[Outcome, str]:
+    def ending(error: BaseException, study: Study) -> tuple[Outcome, str]:
         if isinstance(error, KilledWorker):
             return "failed", "its workers died, one after the other"
         raise _gone(address) from error

@@ -4,7 +4,6 @@ from statistics import mean
 
 from compare.study.grid.plan import Plan
 from compare.study.work.perform import perform
-from compare.study.work.recipe import Recipe
 
 _PROBES = 3  # runs that are done to see how long one takes
 _BYTES_A_ROW = 1500  # in both files
@@ -13,14 +12,14 @@ _BYTES_A_STATION = 100  # of kept readings, in either engine
 
 def estimate(plan: Plan, workers: int) -> str:
     """Estimate a study's time and size; a few runs, spread over the plan, are timed."""
-    recipe = Recipe.of(plan.study)
+    study = plan.study
     last = len(plan) - 1
     probes = sorted({round(i * last / (_PROBES - 1)) for i in range(_PROBES)})
-    rows = [perform(recipe, plan[index]).row for index in probes]
+    rows = [perform(study, plan[index]).row for index in probes]
     seconds = mean(row["seconds"] for row in rows) * len(plan) / workers
     stations = (
-        plan.study.base["path.stations" if plan.study.in_space else "sweep.stations"]
-        if plan.study.keep_readings
+        study.base["path.stations" if study.in_space else "sweep.stations"]
+        if study.keep_readings
         else 0
     )
     size = len(plan) * (_BYTES_A_ROW + 2 * stations * _BYTES_A_STATION)

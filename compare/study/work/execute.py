@@ -8,12 +8,12 @@ from itertools import islice
 from typing import TypeAlias
 
 from compare.study.grid.plan import PlannedRun
+from compare.study.grid.study import Study
 from compare.study.work.perform import Outcome, Result, lost
-from compare.study.work.recipe import Recipe
 
-Perform: TypeAlias = Callable[[Recipe, PlannedRun], Result]
-Together: TypeAlias = Callable[[Recipe, Sequence[PlannedRun]], list[Result]]
-Task: TypeAlias = Callable[[Recipe, tuple[PlannedRun, ...]], list[Result]]
+Perform: TypeAlias = Callable[[Study, PlannedRun], Result]
+Together: TypeAlias = Callable[[Study, Sequence[PlannedRun]], list[Result]]
+Task: TypeAlias = Callable[[Study, tuple[PlannedRun, ...]], list[Result]]
 _BATCH = 32  # runs in closed form: a tenth of a second of work, and done singly if they fail
 
 
@@ -21,19 +21,19 @@ _BATCH = 32  # runs in closed form: a tenth of a second of work, and done singly
 class Crew:
     """Who does the runs."""
 
-    submit: Callable[[Task, Recipe, tuple[PlannedRun, ...]], Future[list[Result]]]
+    submit: Callable[[Task, Study, tuple[PlannedRun, ...]], Future[list[Result]]]
     perform: Perform  # what a worker does with a run
     ahead: int  # how many tasks are handed out at once; memory is that of so many
     # Outcome and reason of an exception that is not the run's own; or it raises.
-    ending: Callable[[BaseException, Recipe], tuple[Outcome, str]]
+    ending: Callable[[BaseException, Study], tuple[Outcome, str]]
     end: Callable[[], None]
     # What a worker does with some runs in closed form at once; one by one if not given.
     together: Together | None = None
 
 
-def carry_out(runs: Iterable[PlannedRun], recipe: Recipe, crew: Crew) -> Generator[Result]:
+def carry_out(runs: Iterable[PlannedRun], study: Study, crew: Crew) -> Generator[Result]:
     """Do runs. One that costs its worker is tried once more, alone."""
-    together = None if recipe.simulate else crew.together
+    together = None if study.beams else crew.together
     fresh, again = iter(runs), deque[PlannedRun]()
     suspects: set[str] = set()
     under_way: dict[Future[list[Result]], tuple[PlannedRun, ...]] = {}
@@ -46,7 +46,7 @@ def carry_out(runs: Iterable[PlannedRun], recipe: Recipe, crew: Crew) -> Generat
             task = _Task(crew.perform, together)
             some = tuple(islice(fresh, _BATCH if together else 1))
         if some:
-            under_way[crew.submit(task, recipe, some)] = some
+            under_way[crew.submit(task, study, some)] = some
         return bool(some)
 
     try:
@@ -60,7 +60,7 @@ def carry_out(runs: Iterable[PlannedRun], recipe: Recipe, crew: Crew) -> Generat
                 try:
                     results = future.result()
                 except BaseException as error:
-                    outcome, reason = crew.ending(error, recipe)
+                    outcome, reason = crew.ending(error, study)
                 else:
                     yield from results
                     continue
@@ -83,7 +83,7 @@ class _Task:
     perform: Perform
     together: Together | None = None
 
-    def __call__(self, recipe: Recipe, runs: tuple[PlannedRun, ...]) -> list[Result]:
+    def __call__(self, study: Study, runs: tuple[PlannedRun, ...]) -> list[Result]:
         if self.together is not None:
-            return self.together(recipe, runs)
-        return [self.perform(recipe, run) for run in runs]
+            return self.together(study, runs)
+        return [self.perform(study, run) for run in runs]

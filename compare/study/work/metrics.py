@@ -1,16 +1,39 @@
 """What a study records of a run: plain numbers, by name."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
 from analytic import CLAMP_READINGS, Direction, Events, Readings, find_events
+from analytic.space import SpatialReadings, reconstruct_space
+from analytic.space.problem.readings import CONTACT_POINT
+from compare.align.frames import COMPONENTS
 from compare.measure.methods import contacts_by
 from compare.read.tables import Physics
 from compare.sense.transitions import TRANSITIONS
 from compare.study.grid.study import Record
 
 _EVENTS = ("first_contact", "phase_b_start", "phase_b_end", "snap_off")
+_EVENTS_IN_SPACE = {"touch": "touch", "slip_off": "slip-off", "release": "release"}
+_RECONSTRUCTION = dict.fromkeys(
+    ("reconstruction_rms", "reconstruction_max", "reconstruction_share"), "double"
+)
+
+
+def _disagreement(readings: Iterable[str], places: Iterable[str]) -> dict[str, str]:
+    """Columns of `Judged.metrics`."""
+    return {
+        **{f"disagreement_{name}_{kind}": "double" for name in readings for kind in ("rms", "max")},
+        "agrees": "bool",
+        "phase_agreement": "double",
+        "stations_compared": "int64",
+        **{
+            f"{place}_{part}": "double"
+            for place in places
+            for part in ("reference", "candidate", "difference")
+        },
+    }
+
 
 COLUMNS: Mapping[Record, Mapping[str, str]] = {
     "events": {
@@ -18,29 +41,22 @@ COLUMNS: Mapping[Record, Mapping[str, str]] = {
         "contact_length_minimum": "double",
         **{f"event_{name}": "double" for name in _EVENTS},
     },
-    "disagreement": {
-        **{
-            f"disagreement_{name}_{kind}": "double"
-            for name in CLAMP_READINGS
-            for kind in ("rms", "max")
-        },
-        "agrees": "bool",
-        "phase_agreement": "double",
-        "stations_compared": "int64",
-        **{
-            f"{place}_{part}": "double"
-            for place in (*(f"transition_{name}" for name in TRANSITIONS), "snap_off")
-            for part in ("reference", "candidate", "difference")
-        },
-    },
-    "reconstruction": {
-        "reconstruction_rms": "double",
-        "reconstruction_max": "double",
-        "reconstruction_share": "double",
-    },
+    "disagreement": _disagreement(
+        CLAMP_READINGS, (*(f"transition_{name}" for name in TRANSITIONS), "snap_off")
+    ),
+    "reconstruction": _RECONSTRUCTION,
 }
-"""Columns of a row by what is recorded, with their Arrow types; those of a
-disagreement are `Judged.metrics`."""
+"""Columns of a row by what is recorded, with their Arrow types."""
+COLUMNS_IN_SPACE: Mapping[Record, Mapping[str, str]] = {
+    "events": {
+        **{f"event_{name}": "double" for name in _EVENTS_IN_SPACE},
+        "hops": "int64",
+        "stations_touching": "int64",
+    },
+    "disagreement": _disagreement(COMPONENTS, _EVENTS_IN_SPACE) | {"contact_rms": "double"},
+    "reconstruction": _RECONSTRUCTION,
+}
+"""The same in space."""
 
 
 def find(physics: Physics, direction: Direction = "left") -> Events:
@@ -69,19 +85,34 @@ def events(
     }
 
 
+def events_in_space(found: SpatialReadings) -> dict[str, float | int | None]:
+    """Say where a sweep in space first touches and first leaves."""
+    known = [(event["kind"], float(event["travel"])) for event in found.provenance["events"]]
+    return {
+        **{
+            f"event_{name}": next((at for kind, at in known if kind == word), None)
+            for name, word in _EVENTS_IN_SPACE.items()
+        },
+        "hops": sum(kind == "hop" for kind, _ in known),
+        "stations_touching": int(found.touching.sum()),
+    }
+
+
 def reconstruction(
-    candidate: Readings, method: str = "elastica", noise: float = 0.0
+    candidate: Readings | SpatialReadings, method: str = "elastica", noise: float = 0.0
 ) -> dict[str, float | None]:
     """Measure how far the contact points that the clamp shows are from the true ones."""
-    touching = candidate.trusted & np.isfinite(candidate.values("contact_x"))
-    found = contacts_by(candidate, method, noise)
-    miss = np.hypot(
-        found["contact_x"].to_numpy() - candidate.values("contact_x"),
-        found["contact_y"].to_numpy() - candidate.values("contact_y"),
-    )[touching]
-    miss = miss[np.isfinite(miss)] / candidate.beam.length
+    names = [*CONTACT_POINT]
+    if isinstance(candidate, SpatialReadings):
+        found = reconstruct_space(candidate)
+    else:
+        names, found = names[:2], contacts_by(candidate, method, noise)
+    true, seen = (table[names].to_numpy(dtype=float) for table in (candidate.table, found))
+    touching = candidate.trusted & np.isfinite(true).all(axis=1)
+    miss = np.linalg.norm(seen - true, axis=1)[touching] / candidate.beam.length
+    miss = miss[np.isfinite(miss)]
     if miss.size == 0:
-        return dict.fromkeys(COLUMNS["reconstruction"])
+        return dict.fromkeys(_RECONSTRUCTION)
     return {
         "reconstruction_rms": float(np.sqrt(np.mean(miss**2))),
         "reconstruction_max": float(miss.max()),

@@ -19,14 +19,12 @@ from analytic.space import SpatialReadings, solve_space
 from compare.comparison import compare
 from compare.judge.tolerances import Tolerances
 from compare.read.space import SpaceFile
+from compare.read.tables import CaseFile
 from compare.simulate.dispatch import simulate
 from compare.study.grid.axes import Value
-from compare.study.grid.estimator import Estimator
 from compare.study.grid.plan import PlannedRun
-from compare.study.grid.sensor import SensorNoise
 from compare.study.grid.study import RECORDS, Study, case_file
-from compare.study.work import in_space, metrics
-from compare.study.work.recipe import Recipe
+from compare.study.work import metrics
 from compare.study.work.together import Known, known_of
 from mujoco_models import DivergedError
 
@@ -49,7 +47,7 @@ RECORDED = {
     **_IDENTITY,
     **{
         name: kind
-        for columns_of in (metrics.COLUMNS, in_space.COLUMNS)
+        for columns_of in (metrics.COLUMNS, metrics.COLUMNS_IN_SPACE)
         for record in RECORDS
         for name, kind in columns_of[record].items()
     },
@@ -80,36 +78,36 @@ def columns(study: Study) -> dict[str, str]:
             kinds = {types[type(value)] for value in values}
             found[key] = kinds.pop() if len(kinds) == 1 else "double"
     for record in study.record:
-        found |= (in_space if study.in_space else metrics).COLUMNS[record]
+        found |= (metrics.COLUMNS_IN_SPACE if study.in_space else metrics.COLUMNS)[record]
     return found | {"seed": "int64"} | _ABOUT
 
 
-def perform(recipe: Recipe, run: PlannedRun) -> Result:
+def perform(study: Study, run: PlannedRun) -> Result:
     """Do one run. Whatever goes wrong becomes its outcome; nothing is raised."""
-    return _performed(recipe, run, Known())
+    return _performed(study, run, Known())
 
 
-def perform_together(recipe: Recipe, runs: Sequence[PlannedRun]) -> list[Result]:
+def perform_together(study: Study, runs: Sequence[PlannedRun]) -> list[Result]:
     """Do runs in closed form, what they have in common at once.
 
     A process that does nothing else is asked for: one that hangs is ended, and all of its runs are
     to be done one by one, by `perform_alone`.
     """
-    with _end_of_process(1.1 * recipe.timeout + 1):
+    with _end_of_process(1.1 * study.timeout + 1):
         begin = time.perf_counter()
-        known = known_of(recipe, [run.parameters for run in runs])
+        known = known_of(study, [run.parameters for run in runs])
         share = (time.perf_counter() - begin) / len(runs)
-        return [_performed(recipe, run, one, share) for run, one in zip(runs, known, strict=True)]
+        return [_performed(study, run, one, share) for run, one in zip(runs, known, strict=True)]
 
 
-def _performed(recipe: Recipe, run: PlannedRun, known: Known, spent: float = 0.0) -> Result:
+def _performed(study: Study, run: PlannedRun, known: Known, spent: float = 0.0) -> Result:
     begin = time.perf_counter() - spent
     row: Row = {"run": run.id, "outcome": "done", "reason": "", **run.parameters, **_system()}
     readings: dict[str, Readings | SpatialReadings] = {}
     try:
-        row |= _measure(recipe, run.parameters, readings, known)
+        row |= _measure(study, run.parameters, readings, known)
     except _TimeIsUp:
-        row |= {"outcome": "timeout", "reason": f"not finished after {recipe.timeout:g} s"}
+        row |= {"outcome": "timeout", "reason": f"not finished after {study.timeout:g} s"}
     except InputError as error:
         row |= {"outcome": "bad-input", "reason": str(error)}
     except DivergedError as error:
@@ -117,16 +115,16 @@ def _performed(recipe: Recipe, run: PlannedRun, known: Known, spent: float = 0.0
     except Exception as error:
         row |= {"outcome": "failed", "reason": _one_line(error)}
     row["seconds"] = time.perf_counter() - begin
-    return Result(row, readings if recipe.keep_readings else {})
+    return Result(row, readings if study.keep_readings else {})
 
 
-def perform_alone(recipe: Recipe, run: PlannedRun) -> Result:
+def perform_alone(study: Study, run: PlannedRun) -> Result:
     """Do one run in a process that does nothing else: a run that hangs ends the process.
 
     `perform` asks the time between stations, which ends a slow run but not a stuck one.
     """
-    with _end_of_process(1.1 * recipe.timeout + 1):
-        return perform(recipe, run)
+    with _end_of_process(1.1 * study.timeout + 1):
+        return perform(study, run)
 
 
 def lost(run: PlannedRun, outcome: Outcome, reason: str) -> Result:
@@ -135,29 +133,30 @@ def lost(run: PlannedRun, outcome: Outcome, reason: str) -> Result:
 
 
 def _measure(
-    recipe: Recipe,
+    study: Study,
     parameters: dict[str, Value],
     readings: dict[str, Readings | SpatialReadings],
     known: Known,
 ) -> Row:
-    file, noise, estimator = known.file or case_file({**recipe.base, **parameters})
-    if isinstance(file, SpaceFile):
-        return _measure_in_space(recipe, file, noise, estimator, readings)
+    file, noise, estimator = known.file or case_file({**study.base, **parameters})
     row: Row = {"seed": noise.seed}
-    if "events" in recipe.record:
+    if study.in_space and "reconstruction" in study.record and estimator.method != "elastica":
+        raise InputError(
+            "reconstruction.method", estimator.method, "elastica in space", "leave it out"
+        )
+    if isinstance(file, CaseFile) and "events" in study.record:
         physics, direction = file.physics(Path()), file.sweep.direction
         events = known.events or metrics.find(physics, direction)
         row |= metrics.events(events, physics.beam.length, direction)
-    if recipe.events_only:
+    if isinstance(file, CaseFile) and study.events_only:
         return row
-    case = file.case(Path(), "run")
-    reference = known.reference or solve_sweep(case)
+    reference = known.reference or _solved(file)
+    if isinstance(reference, SpatialReadings) and "events" in study.record:
+        row |= metrics.events_in_space(reference)
     simulated = reference
-    if recipe.simulate:
+    if study.beams:
         begin = time.perf_counter()
-        deadline = _deadline(begin + recipe.timeout)
-        motion = None if file.motion is None else file.motion.build(case.beam)
-        simulated = simulate(case, file.mujoco, motion, None, file.engine.name, deadline)
+        simulated = _simulated(file, _deadline(begin + study.timeout))
         row["seconds_candidate"] = time.perf_counter() - begin
         row |= _trust(simulated)
     candidate = noise.add_to(simulated)
@@ -166,47 +165,27 @@ def _measure(
         readings["candidate"] = candidate
     if row.get("outcome") == "diverged":
         return row
-    if "disagreement" in recipe.record:
+    if "disagreement" in study.record:
         row |= compare(reference, candidate).metrics()
-    if "reconstruction" in recipe.record:
+    if "reconstruction" in study.record:
         row |= metrics.reconstruction(candidate, estimator.method, noise.relative)
     return row
 
 
-def _measure_in_space(
-    recipe: Recipe,
-    file: SpaceFile,
-    noise: SensorNoise,
-    estimator: Estimator,
-    readings: dict[str, Readings | SpatialReadings],
-) -> Row:
-    row: Row = {"seed": noise.seed}
+def _solved(file: CaseFile | SpaceFile) -> Readings | SpatialReadings:
+    if isinstance(file, SpaceFile):
+        return solve_space(file.case(Path(), "run"))
+    return solve_sweep(file.case(Path(), "run"))
+
+
+def _simulated(
+    file: CaseFile | SpaceFile, advance: Callable[[], None]
+) -> Readings | SpatialReadings:
+    if isinstance(file, SpaceFile):
+        return simulate(file.case(Path(), "run"), file.mujoco, advance=advance)
     case = file.case(Path(), "run")
-    reference = simulated = solve_space(case)
-    if "events" in recipe.record:
-        row |= in_space.events(reference)
-    if recipe.events_only:
-        return row
-    if recipe.simulate:
-        begin = time.perf_counter()
-        simulated = simulate(case, file.mujoco, advance=_deadline(begin + recipe.timeout))
-        row["seconds_candidate"] = time.perf_counter() - begin
-        row |= _trust(simulated)
-    candidate = in_space.with_noise(simulated, noise.relative, noise.seed)
-    readings["analytic"] = reference
-    if candidate is not reference:
-        readings["candidate"] = candidate
-    if row.get("outcome") == "diverged":
-        return row
-    if "disagreement" in recipe.record:
-        row |= compare(reference, candidate).metrics()
-    if "reconstruction" in recipe.record:
-        if estimator.method != "elastica":
-            raise InputError(
-                "reconstruction.method", estimator.method, "elastica in space", "leave it out"
-            )
-        row |= in_space.reconstruction(candidate)
-    return row
+    motion = None if file.motion is None else file.motion.build(case.beam)
+    return simulate(case, file.mujoco, motion, None, file.engine.name, advance)
 
 
 def _trust(simulated: Readings | SpatialReadings) -> Row:

@@ -8,10 +8,8 @@ from analytic import Beam, Contour, Events, Readings, find_many_events, solve_sw
 from analytic.problem.support import is_plain
 from compare.read.tables import CaseFile
 from compare.study.grid.axes import Value
-from compare.study.grid.estimator import Estimator
-from compare.study.grid.sensor import SensorNoise
-from compare.study.grid.study import case_file
-from compare.study.work.recipe import Recipe
+from compare.study.grid.instrument import Estimator, SensorNoise
+from compare.study.grid.study import Study, case_file
 
 
 @dataclass(frozen=True)
@@ -24,21 +22,21 @@ class Known:
     reference: Readings | None = None  # the closed form's sweep
 
 
-def known_of(recipe: Recipe, parameters: Sequence[dict[str, Value]]) -> list[Known]:
+def known_of(study: Study, parameters: Sequence[dict[str, Value]]) -> list[Known]:
     """Read the cases of runs, and find the events of all and solve the sweeps of all at once."""
-    if recipe.in_space:
+    if study.in_space:
         return [Known() for _ in parameters]
-    known = [_read(recipe, one) for one in parameters]
-    if "events" in recipe.record:
+    known = [_read(study, one) for one in parameters]
+    if "events" in study.record:
         known = _with_events(known)
-    if not recipe.events_only:
+    if not study.events_only:
         known = _with_sweeps(known)
     return known
 
 
-def _read(recipe: Recipe, parameters: dict[str, Value]) -> Known:
+def _read(study: Study, parameters: dict[str, Value]) -> Known:
     try:
-        file, noise, estimator = case_file({**recipe.base, **parameters})
+        file, noise, estimator = case_file({**study.base, **parameters})
         return Known((file, noise, estimator)) if isinstance(file, CaseFile) else Known()
     except Exception:  # the run will say
         return Known()
@@ -60,19 +58,11 @@ def _with_events(known: list[Known]) -> list[Known]:
                 which.append(i)
         except Exception:  # the run will say
             continue
-    found_of = dict(zip(which, _events(profiles, beams), strict=True))
-    return [replace(one, events=found_of.get(i)) for i, one in enumerate(known)]
-
-
-def _events(profiles: list[Contour], beams: list[Beam]) -> list[Events | None]:
-    """The events of all; if one of them fails, of either half, down to the one that does."""
     try:
-        return [*find_many_events(profiles, beams)]
-    except Exception:  # the run will say
-        half = len(beams) // 2
-        if half == 0:
-            return [None]
-        return _events(profiles[:half], beams[:half]) + _events(profiles[half:], beams[half:])
+        found_of = dict(zip(which, find_many_events(profiles, beams), strict=True))
+    except Exception:  # the run that has none will say
+        return known
+    return [replace(one, events=found_of.get(i)) for i, one in enumerate(known)]
 
 
 def _with_sweeps(known: list[Known]) -> list[Known]:

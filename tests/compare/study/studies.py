@@ -10,7 +10,6 @@ import pytest
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
 from compare.study.keep.reading import read_rows
-from compare.study.work.recipe import Recipe
 
 EVENTS_ONLY = """
 [study]
@@ -38,7 +37,7 @@ def planned(folder: Path, text: str) -> Plan:
 def only(plan):
     """The recipe and the only run of a plan."""
     (run,) = plan
-    return Recipe.of(plan.study), run
+    return plan.study.recipe, run
 
 
 def vibrissa(*arguments, cwd, **options) -> subprocess.CompletedProcess:

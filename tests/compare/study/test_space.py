@@ -13,7 +13,6 @@ from compare import compare_space
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
 from compare.study.work.perform import perform, perform_together
-from compare.study.work.recipe import Recipe
 from mujoco_models import SpatialSettings, simulate_space
 
 LEANING = """
@@ -59,7 +58,7 @@ def case_of(tangent_x, height=0.0, turn=0.0, y=1.4, points=((1.6, 0.3), (-1.6, 0
 def test_a_row_of_the_closed_form_is_what_the_library_finds(plan_of):
     plan = plan_of(LEANING)
     assert len(plan) == 16
-    recipe = Recipe.of(plan.study)
+    recipe = plan.study.recipe
     rows = [result.row for result in perform_together(recipe, list(plan)[4:7])]
     for run, row in zip(list(plan)[4:7], rows, strict=True):
         at = run.parameters
@@ -81,7 +80,7 @@ def test_a_row_of_the_closed_form_is_what_the_library_finds(plan_of):
 def test_a_row_of_mujoco_is_what_the_library_finds(plan_of):
     plan = plan_of(SIMULATED)
     run = list(plan)[1]
-    row = perform(Recipe.of(plan.study), run).row
+    row = perform(plan.study.recipe, run).row
     assert row["outcome"] == "done", row["reason"]
     case = case_of(run.parameters["path.tangent.x"], points=((1.1, 0.3), (-0.3, 0.3)), n=12)
     segments = run.parameters["mujoco.segments"]
@@ -102,7 +101,7 @@ def test_noise_is_that_of_six_components(plan_of):
     text = LEANING.replace("[body]", "[noise]\nrelative = 0.01\n[body]", 1)
     text = text.replace('["events", "reconstruction"]', '["disagreement"]')
     plan = plan_of(text)
-    row = perform(Recipe.of(plan.study), plan[0]).row
+    row = perform(plan.study.recipe, plan[0]).row
     found = [
         row[f"disagreement_{kind}_{axis}_rms"] for kind in ("force", "moment") for axis in "xyz"
     ]
@@ -169,7 +168,7 @@ stations = 10
     study = load_study(str(path))
     (axis,) = study.axes
     assert axis.points == ((0.068,), (0.07,))
-    row = perform(Recipe.of(study), Plan.of(study)[0]).row
+    row = perform(study.recipe, Plan.of(study)[0]).row
     assert row["outcome"] == "done", row["reason"]
 
 

@@ -11,7 +11,6 @@ from compare.show.report import write_report
 from compare.study import Plan, load_study
 from compare.study.keep.store import Store
 from compare.study.work.perform import perform
-from compare.study.work.recipe import Recipe
 
 STATIONS = 40
 PROFILES = (
@@ -76,7 +75,7 @@ def outputs() -> tuple[tuple[str, bytes], ...]:
         plan = Plan.of(load_study(str(place / "small/study.toml")))
         with Store(place / "small", plan, print) as store:
             for run in plan:
-                store.add(perform(Recipe.of(plan.study), run))
+                store.add(perform(plan.study.recipe, run))
         return tuple(
             (str(path.relative_to(place)), path.read_bytes())
             for path in sorted(place.rglob("*"))

@@ -13,7 +13,6 @@ from compare.commands.main import main
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
 from compare.study.work.perform import perform
-from compare.study.work.recipe import Recipe
 from mujoco_models import DivergedError, Settings, simulate_sweep
 from mujoco_models.model.model import BeamModel
 
@@ -181,7 +180,7 @@ def test_a_study_calls_it_diverged(not_a_number, tmp_path):
     (tmp_path / "grid.toml").write_text(STUDY)
     plan = Plan.of(load_study(str(tmp_path / "grid.toml")))
     (run,) = plan
-    row = perform(Recipe.of(plan.study), run).row
+    row = perform(plan.study.recipe, run).row
     assert row["outcome"] == "diverged"
     assert "station" in row["reason"]
 

@@ -13,7 +13,6 @@ from compare.study.keep.database import NAME
 from compare.study.keep.reading import read_plan, read_rows
 from compare.study.keep.store import PLAN_FILE, TABLE_FILE, Store
 from compare.study.work.perform import perform
-from compare.study.work.recipe import Recipe
 from tests.compare.study.studies import EVENTS_ONLY, planned
 
 
@@ -48,7 +47,7 @@ def plan(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def stored(plan):
-    recipe = Recipe.of(plan.study)
+    recipe = plan.study.recipe
     return {run.id: perform(recipe, run) for run in plan}
 
 

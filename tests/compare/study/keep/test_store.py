@@ -15,7 +15,6 @@ from compare.study.keep.database import NAME, Database
 from compare.study.keep.reading import read_rows
 from compare.study.keep.store import TABLE_FILE, Store
 from compare.study.work.perform import Result, perform
-from compare.study.work.recipe import Recipe
 from tests.compare.study.studies import EVENTS_ONLY
 
 
@@ -31,7 +30,7 @@ def plan(plan_of):
 
 @pytest.fixture
 def stored(plan):
-    recipe = Recipe.of(plan.study)
+    recipe = plan.study.recipe
     return [perform(recipe, run) for run, _ in zip(plan, range(6), strict=False)]
 
 
@@ -110,7 +109,7 @@ def test_two_processes_write_at_once(tmp_path, plan, stored, warned):
 def test_a_new_axis_adds_a_column(tmp_path, plan, plan_of, stored, warned):
     fill(tmp_path, plan, stored[:1], warned)
     wider = plan_of(EVENTS_ONLY + "profile.c = [-0.8, -0.7]\n")
-    recipe = Recipe.of(wider.study)
+    recipe = wider.study.recipe
     fill(tmp_path, wider, [perform(recipe, next(iter(wider)))], warned)
     frame = pd.read_parquet(tmp_path / TABLE_FILE)
     # The same problem, though it is one of a larger study: one run.

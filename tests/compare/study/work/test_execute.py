@@ -12,7 +12,6 @@ import pytest
 from compare.study.work.crews import local_crew
 from compare.study.work.execute import Crew, carry_out
 from compare.study.work.perform import Result, perform
-from compare.study.work.recipe import Recipe
 from tests.compare.study.studies import EVENTS_ONLY
 
 
@@ -58,7 +57,7 @@ def plan(plan_of):
 
 
 def test_any_executor_gives_the_same_rows(plan):
-    recipe = Recipe.of(plan.study)
+    recipe = plan.study.recipe
     tables = []
     for hired in (in_a_thread(perform, 3), crew(perform)):
         rows = [result.row for result in carry_out(plan, recipe, hired)]
@@ -75,21 +74,21 @@ def test_runs_are_made_as_they_are_needed(plan):
             made.append(run)
             yield run
 
-    results = carry_out(watched(), Recipe.of(plan.study), in_a_thread(quick))
+    results = carry_out(watched(), plan.study.recipe, in_a_thread(quick))
     next(results)
     assert len(made) <= 6
     results.close()
 
 
 def test_a_killed_worker_costs_nothing(plan, tmp_path):
-    recipe = Recipe({"mark": str(tmp_path / "mark")}, False, ("events",), False, 10)
+    recipe = replace(plan.study.recipe, base={"mark": str(tmp_path / "mark")}, timeout=10)
     rows = [result.row for result in carry_out(plan, recipe, crew(killed_once))]
     assert {row["run"] for row in rows} == {run.id for run in plan}
     assert {row["outcome"] for row in rows} == {"done"}
 
 
 def test_a_run_that_kills_its_workers_is_the_only_one_given_up(plan):
-    rows = [result.row for result in carry_out(plan, Recipe.of(plan.study), crew(deadly))]
+    rows = [result.row for result in carry_out(plan, plan.study.recipe, crew(deadly))]
     assert len(rows) == len(plan)
     (bad,) = [row for row in rows if row["outcome"] != "done"]
     assert bad["outcome"] == "failed"
@@ -97,7 +96,7 @@ def test_a_run_that_kills_its_workers_is_the_only_one_given_up(plan):
 
 
 def test_a_stuck_run_is_ended(plan):
-    recipe = Recipe(plan.study.base, False, ("events",), False, 0.2)
+    recipe = replace(plan.study.recipe, timeout=0.2)
     rows = [result.row for result in carry_out(plan, recipe, crew(stuck))]
     assert len(rows) == len(plan)
     (bad,) = [row for row in rows if row["outcome"] != "done"]

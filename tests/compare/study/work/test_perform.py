@@ -17,10 +17,9 @@ from analytic import (
     solve_sweep,
 )
 from compare import compare
-from compare.study.grid.sensor import SensorNoise
+from compare.study.grid.instrument import SensorNoise
 from compare.study.work import perform as running
 from compare.study.work.perform import perform
-from compare.study.work.recipe import Recipe
 from mujoco_models import Settings, simulate_sweep
 from tests.compare.study.studies import ONE_SIMULATION, only
 
@@ -50,7 +49,7 @@ def test_events_are_those_of_the_whole_case(plan_of):
         axes.sweep.direction = ["left", "right"]
     """)
     for run in plan:
-        row = perform(Recipe.of(plan.study), run).row
+        row = perform(plan.study.recipe, run).row
         case = Case(
             Beam(natural_curvature=-0.3),
             catenary(0.5, -0.8),
@@ -77,7 +76,7 @@ def test_reconstruction_is_exact_without_noise_and_gets_worse_with_it(plan_of):
         study = { case = "catenary", beams = [], record = ["reconstruction"] }
         axes.noise.relative = [0.0, 1e-5, 1e-4, 1e-3]
     """)
-    errors = [perform(Recipe.of(plan.study), run).row["reconstruction_rms"] for run in plan]
+    errors = [perform(plan.study.recipe, run).row["reconstruction_rms"] for run in plan]
     assert errors[0] < 1e-9
     assert (np.diff(errors) > 0).all()
 

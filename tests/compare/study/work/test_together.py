@@ -3,7 +3,6 @@
 import pytest
 
 from compare.study.work.perform import perform, perform_together
-from compare.study.work.recipe import Recipe
 from tests.compare.study.studies import planned
 
 EVENTS = """
@@ -24,7 +23,7 @@ noise.relative = 0.01
 @pytest.mark.parametrize("text", [EVENTS, SWEEPS], ids=["events", "sweeps"])
 def test_rows_are_those_of_runs_one_by_one(tmp_path, text):
     plan = planned(tmp_path, text)
-    recipe, runs = Recipe.of(plan.study), list(plan)
+    recipe, runs = plan.study.recipe, list(plan)
     together = [result.row for result in perform_together(recipe, runs)]
     alone = [perform(recipe, run).row for run in runs]
     assert {row["outcome"] for row in alone} == {"done", "bad-input"}
