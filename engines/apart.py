@@ -3,10 +3,9 @@
 import math
 from dataclasses import dataclass
 from multiprocessing import get_context
-from multiprocessing.connection import Connection
-from multiprocessing.context import SpawnProcess
 
 import numpy as np
+from pebble import ProcessExpired, ProcessPool
 
 from analytic.problem.case import Case
 from analytic.problem.columns import CLAMP_READINGS, SENSED
@@ -17,7 +16,6 @@ from mujoco_models.settings import Settings
 
 TIMEOUT = 600.0
 """Seconds that a sweep may take unless something else is said: a slow engine needs one or two."""
-_GRACE = 5.0  # s, to end a process before it is killed
 
 
 @dataclass(frozen=True)
@@ -59,46 +57,35 @@ def sweep_apart(name: str, case: Case, settings: Settings, timeout: float = TIME
         Also if the engine is missing, refuses the case, raises, hangs, dies, or returns what are
         no readings of this case.
     """
-    context = get_context("spawn")
-    here, there = context.Pipe(duplex=False)
-    work = context.Process(target=_sweep, args=(there, name, case, settings), daemon=True)
+    pool = ProcessPool(1, context=get_context("spawn"))
     try:
-        work.start()
-        there.close()  # so that a process that dies closes the pipe
-        if not here.poll(timeout):
-            return Outcome(name, trouble=f"not finished after {timeout:g} s")
-        found: Readings | str = here.recv()
-    except EOFError:
-        work.join(_GRACE)
-        return Outcome(name, trouble=f"its process ended without a word, code {work.exitcode}")
+        found = pool.schedule(_sweep, (name, case, settings), timeout=timeout).result()
+    except TimeoutError:
+        return Outcome(name, trouble=f"not finished after {timeout:g} s")
+    except ProcessExpired as error:
+        return Outcome(name, trouble=f"its process ended without a word, code {error.exitcode}")
+    except Exception as error:  # what it found cannot be sent
+        return Outcome(name, trouble=_one_line(error))
     finally:
-        _end(work)
-        here.close()
+        pool.stop()  # type: ignore[no-untyped-call]
+        pool.join()
     if isinstance(found, str):
         return Outcome(name, trouble=found)
     return Outcome(name, found)
 
 
-def _end(work: SpawnProcess) -> None:
-    if work.pid is None:
-        return
-    work.join(0.1)
-    if work.is_alive():
-        work.terminate()
-        work.join(_GRACE)
-    if work.is_alive():
-        work.kill()
-        work.join()
-
-
-def _sweep(to: Connection, name: str, case: Case, settings: Settings) -> None:
+def _sweep(name: str, case: Case, settings: Settings) -> Readings | str:
     """In the other process: readings, or a line that says why there are none."""
     try:
-        to.send(checked(find_engine(name).sweep(case, settings), case))
+        return checked(find_engine(name).sweep(case, settings), case)
     except InputError as error:
-        to.send(str(error))
+        return str(error)
     except BaseException as error:  # an engine may raise, or exit
-        to.send(" ".join(f"{type(error).__name__}: {error}".split())[:400])
+        return _one_line(error)
+
+
+def _one_line(error: BaseException) -> str:
+    return " ".join(f"{type(error).__name__}: {error}".split())[:400]
 
 
 def checked(found: object, case: Case) -> Readings:

@@ -6,6 +6,8 @@ is what the rest solver asks of MuJoCo, `mujoco_models.model.balance.Balance`, s
 in the same way, and what is left between their readings is the difference of two implementations.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from pydrake.geometry import Convex, Cylinder, Shape
 from pydrake.math import RigidTransform, RollPitchYaw
@@ -24,7 +26,7 @@ from pydrake.systems.framework import DiagramBuilder
 
 from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.errors import InputError
-from engines.drake.touch import Beads, ByDistance, OwnLaw, Touch, material
+from engines.drake.touch import Beads, CompliantContact, DistanceContact, material
 from mujoco_models.beams.layout import OF_CURVATURE
 from mujoco_models.beams.protocol import Beam
 from mujoco_models.errors import DivergedError
@@ -60,8 +62,9 @@ class DrakeChain:
         self._context = self._plant.GetMyMutableContextFromRoot(self._root)
         self._springs = MultibodyForces(self._plant)
         self._angles = np.zeros(self._plant.num_positions())
-        self._foot_x, self._contacts = 0.0, _nothing()
+        self._foot_x = 0.0
         self._read_places()
+        self._contacts = self._at_beads([])
         self.lookout = Lookout(self, obstacle, radius, self.layout)
 
     def _assemble(self) -> None:
@@ -91,9 +94,12 @@ class DrakeChain:
         self._object = plant.RegisterCollisionGeometry(
             thing, RigidTransform(), self._shape(0)[0], "object", matter
         )
-        self._touch: Touch = ByDistance(plant, self._beads, self.contact_stiffness)
+        self._contact: CompliantContact | DistanceContact
         if isinstance(self.obstacle, Primitive) and len(places) <= _SPHERES:
-            self._touch = OwnLaw(plant, self._geometry, self._beads, self._object, thing, matter)
+            scene, spheres = self._geometry, self._beads
+            self._contact = CompliantContact(plant, scene, spheres, self._object, thing, matter)
+        else:
+            self._contact = DistanceContact(plant, self._beads, self.contact_stiffness)
         plant.Finalize()
         self._order = np.array([joint.position_start() for joint in joints])
 
@@ -118,7 +124,7 @@ class DrakeChain:
 
     def collide(self, beads: frozenset[int]) -> None:
         """By the way it touches."""
-        self._touch.collide(self._root, beads)
+        self._contact.collide(self._root, beads)
 
     def imbalance(self, foot_x: float, angles: Floats) -> Floats:
         """Drake's springs and contacts."""
@@ -133,7 +139,7 @@ class DrakeChain:
         self._contacts = self._find_contacts()
         plant.CalcForceElementsContribution(context, self._springs)
         self._elastic = np.array(self._springs.generalized_forces())[self._order]
-        moments = self._elastic + self._touch.moments(context, self._contacts)[self._order]
+        moments = self._elastic + self._contact.moments(context, self._contacts)[self._order]
         if not np.isfinite(moments).all():
             raise DivergedError("Drake's moments at the joints are not finite")
         self._moments: Floats = np.asarray(moments)
@@ -157,13 +163,24 @@ class DrakeChain:
         """The watched beads within the gap, by Drake's distances."""
         near = self.obstacle.near(self._places, self._radius + CONTACT_GAP).tolist()
         beads = [i for i in near if i in self.lookout.watched]
-        if not beads:
-            return _nothing()
         query = self._plant.get_geometry_query_input_port().Eval(self._context)
-        found = [self._touch.gap(query, i, self._places[i]) for i in beads]
-        outward, distance = np.array([x for x, _ in found])[:, :2], np.array([d for _, d in found])
-        normal = outward / np.hypot(*outward.T)[:, None]
-        return _of_beads(np.array(beads), self, normal, distance)
+        return self._at_beads(beads, [self._contact.gap(query, i, self._places[i]) for i in beads])
+
+    def _at_beads(self, beads: list[int], gaps: Sequence[tuple[Floats, float]] = ()) -> Contacts:
+        """Contacts of beads by normal and distance, none of a link's side."""
+        number, no = np.array(beads, dtype=int), np.zeros(len(beads), dtype=bool)
+        outward = np.array([x[:2] for x, _ in gaps]).reshape(-1, 2)
+        return Contacts(
+            touch=number,
+            link=self.layout.links[number],
+            on_side=no,
+            point=self.bead_positions(number),
+            arc_length=self.layout.beads[number],
+            normal=outward / np.hypot(*outward.T)[:, None],
+            distance=np.array([distance for _, distance in gaps]),
+            fused=no,
+            passed=False,
+        )
 
     def contacts(self) -> Contacts:
         """Of the last evaluated configuration."""
@@ -213,7 +230,7 @@ class DrakeChain:
 
     def discrepancy(self) -> float:
         """By how much the weld's reaction differs from the contacts and from the first spring."""
-        wrench = self._touch.wrench(self._context, self._contacts, self._foot_x)
+        wrench = self._contact.wrench(self._context, self._contacts, self._foot_x)
         required = clamp.Clamp(*(-wrench).tolist())
         first = float(self._elastic[0])
         return clamp.discrepancy(self.clamp(), required, self.layout.base[0], first)
@@ -233,29 +250,6 @@ def _moved(plant: MultibodyPlant, name: str) -> tuple[FixedOffsetFrame, RigidBod
     body = plant.AddRigidBody(f"{name} body", _UNIT)
     weld = WeldJoint(f"{name} weld", frame, body.body_frame(), RigidTransform())
     return frame, body, plant.AddJoint(weld)
-
-
-def _nothing() -> Contacts:
-    """No contact."""
-    none, no, nowhere = np.zeros(0), np.zeros(0, dtype=bool), np.zeros((0, 2))
-    number = np.zeros(0, dtype=int)
-    return Contacts(number, number, no, nowhere, none, nowhere, none, no, passed=False)
-
-
-def _of_beads(beads: Integers, chain: DrakeChain, normal: Floats, distance: Floats) -> Contacts:
-    """Contacts of beads, none of a link's side."""
-    layout, no = chain.layout, np.zeros(len(beads), dtype=bool)
-    return Contacts(
-        beads,
-        layout.links[beads],
-        no,
-        chain.bead_positions(beads),
-        layout.beads[beads],
-        normal,
-        distance,
-        no,
-        passed=False,
-    )
 
 
 def _check(beam: Beam, obstacle: Obstacle) -> None:

@@ -8,8 +8,6 @@ the spheres' centres are asked for that, and the force, stiffness times depth, i
 links as an external one: distance, levers and the clamp's reaction are Drake's still.
 """
 
-from typing import Protocol
-
 import numpy as np
 from pydrake.common.value import Value
 from pydrake.geometry import (
@@ -49,77 +47,8 @@ class Beads:
         return self.links[int(self.carriers[bead])]
 
 
-class Touch(Protocol):
-    """A way to touch."""
-
-    def collide(self, root: Context, beads: frozenset[int]) -> None:
-        """Let these beads, and no others, touch the obstacle.
-
-        Parameters
-        ----------
-        root : Context
-            The diagram's.
-        beads : frozenset of int
-            Their numbers.
-        """
-
-    def gap(self, query: QueryObject, bead: int, point: Floats) -> tuple[Floats, float]:
-        """How far a bead is from the obstacle.
-
-        Parameters
-        ----------
-        query : QueryObject
-            Of the configuration asked for.
-        bead : int
-            Its number.
-        point : array, shape (2,)
-            Where its centre is [L].
-
-        Returns
-        -------
-        outward : array, shape (3,)
-            The obstacle's normal there.
-        distance : float
-            Of the surfaces; negative if it touches [L].
-        """
-
-    def moments(self, context: Context, contacts: Contacts) -> Floats:
-        """Generalised forces of the contacts.
-
-        Parameters
-        ----------
-        context : Context
-            The plant's, in the configuration asked for.
-        contacts : Contacts
-            Of that configuration.
-
-        Returns
-        -------
-        array, shape (n_velocities,)
-            In Drake's order [EI/L].
-        """
-
-    def wrench(self, context: Context, contacts: Contacts, foot_x: float) -> Floats:
-        """Forces on the beam, and their moment about the foot.
-
-        Parameters
-        ----------
-        context : Context
-            The plant's.
-        contacts : Contacts
-            Of its configuration.
-        foot_x : float
-            Foot position [L].
-
-        Returns
-        -------
-        array, shape (3,)
-            force_x, force_y and moment_z [EI/L^2, EI/L].
-        """
-
-
-class OwnLaw:
-    """Drake's own compliant point contact between spheres and obstacle; see `Touch`."""
+class CompliantContact:
+    """Drake's own compliant point contact between spheres and obstacle."""
 
     def __init__(
         self,
@@ -148,7 +77,7 @@ class OwnLaw:
         filters.Apply(CollisionFilterDeclaration().ExcludeWithin(self._all))
 
     def collide(self, root: Context, beads: frozenset[int]) -> None:
-        """By filters on pairs."""
+        """Let these beads, and no others, touch the obstacle, by filters on pairs."""
         filters = self._scene.collision_filter_manager(
             self._scene.GetMyMutableContextFromRoot(root)
         )
@@ -158,19 +87,19 @@ class OwnLaw:
             filters.Apply(allowed)
 
     def gap(self, query: QueryObject, bead: int, point: Floats) -> tuple[Floats, float]:
-        """By Drake's distance of the two."""
+        """The obstacle's normal at a bead and how far that is, by Drake's distance of the two."""
         pair = query.ComputeSignedDistancePairClosestPoints(self._beads[bead], self._id)
         outward = np.asarray(pair.nhat_BA_W)  # in whichever order Drake has them
         return outward if pair.id_B == self._id else -outward, float(pair.distance)
 
     def moments(self, context: Context, contacts: Contacts) -> Floats:
-        """Drake's generalised contact forces."""
+        """Drake's generalised contact forces, in its own order [EI/L]."""
         instance = self._obstacle.model_instance()
         port = self._plant.get_generalized_contact_forces_output_port(instance)
         return np.array(port.Eval(context))
 
     def wrench(self, context: Context, contacts: Contacts, foot_x: float) -> Floats:
-        """The sum of Drake's contact results."""
+        """Forces on the beam and their moment about the foot: the sum of Drake's results."""
         found = self._plant.get_contact_results_output_port().Eval(context)
         total = np.zeros(3)
         for i in range(found.num_point_pair_contacts()):
@@ -182,8 +111,8 @@ class OwnLaw:
         return total
 
 
-class ByDistance:
-    """Stiffness times the depth that Drake's distances have, as external forces; see `Touch`."""
+class DistanceContact:
+    """Stiffness times the depth that Drake's distances have, as external forces."""
 
     def __init__(self, plant: MultibodyPlant, beads: Beads, stiffness: float) -> None:
         self._plant, self._beads, self._stiffness = plant, beads, stiffness

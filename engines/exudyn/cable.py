@@ -6,6 +6,8 @@ without friction, so that the joint's force is normal to the cable. The foot sta
 moves, which is the same. Dimensionless: L = EI = 1.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -31,8 +33,8 @@ class LostError(Exception):
     """Exudyn's solver found no cable at rest."""
 
 
-class Held(NamedTuple):
-    """What the cable is held by."""
+class Hold(NamedTuple):
+    """How the cable is held, by which of the two joints."""
 
     slides: bool  # by the sliding joint, otherwise at its tip
     arc_length: float  # where along the cable [L]
@@ -45,9 +47,8 @@ class Cable:
     """A cable of `elements` elements, and a point where it is held."""
 
     def __init__(self, elements: int, vibrissa: Vibrissa) -> None:
-        exudyn.config.printToConsole = False  # a step that fails is halved
         tip, along = vibrissa.at(np.array(1.0)), vibrissa.rest.at(np.array(1.0))[2]
-        self.held = Held(False, 1.0, tip, np.array([np.cos(along), np.sin(along)]))
+        self.held = Hold(False, 1.0, tip, np.array([np.cos(along), np.sin(along)]))
         self.beyond = False
         self._container = exudyn.SystemContainer()
         self._system = self._container.AddSystem()
@@ -150,11 +151,11 @@ class Cable:
                 )
             )
 
-    def state(self) -> tuple[Held, list[Floats]]:
+    def state(self) -> tuple[Hold, list[Floats]]:
         """How it is held, and its shape."""
         return self.held, [np.array(part) for part in self._system.systemData.GetSystemState()]
 
-    def go_back(self, state: tuple[Held, list[Floats]]) -> None:
+    def go_back(self, state: tuple[Hold, list[Floats]]) -> None:
         """Start from there."""
         held, solver = state
         self._system.systemData.SetSystemState(solver, configuration=_START)
@@ -168,7 +169,7 @@ class Cable:
         """Be held by the sliding joint."""
         self._hold(self.held._replace(slides=True, arc_length=arc_length, point=point))
 
-    def _hold(self, held: Held) -> None:
+    def _hold(self, held: Hold) -> None:
         self.held, self.beyond = held, False
         self._system.SetObjectParameter(self._revolute, "activeConnector", not held.slides)
         self._system.SetObjectParameter(self._sliding, "activeConnector", held.slides)
@@ -213,7 +214,8 @@ class Cable:
                 mbs.systemData.SetDataCoordinates([element, s], when)
             self.held = held._replace(arc_length=s)
         try:
-            mbs.SolveStatic(self._settings, updateInitialValues=True)
+            with _quiet():
+                mbs.SolveStatic(self._settings, updateInitialValues=True)
         except exudyn.SolverError as error:
             raise LostError from error
         if not held.slides:
@@ -227,6 +229,16 @@ class Cable:
         coordinates = np.array([self._system.GetNodeOutput(i, _COORDINATES) for i in self._nodes])
         both = coordinates + self._upright
         return both[:, :2], both[:, 2:]
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Not a line for each step that fails: it is halved."""
+    before, exudyn.config.printToConsole = exudyn.config.printToConsole, False
+    try:
+        yield
+    finally:
+        exudyn.config.printToConsole = before
 
 
 def _settings() -> exudyn.SimulationSettings:

@@ -33,7 +33,7 @@ _POINTS = 400  # of the contour, whose tangents show whether the cable has gone 
 _INSIDE = 1e-4  # L; ten times a turn of the contour between these
 
 
-class Contact:
+class CableOnContour:
     """A cable, a contour and where they touch; see `engines.stations.Rest`."""
 
     def __init__(self, case: Case, elements: int) -> None:

@@ -41,9 +41,9 @@ class _Exudyn:
         }
 
         def rest(leftward: Case) -> Rest:
-            from engines.exudyn.contact import Contact  # Exudyn is imported only where it is used
+            from engines.exudyn.contact import CableOnContour  # imports Exudyn
 
-            return Contact(leftward, settings.segments)
+            return CableOnContour(leftward, settings.segments)
 
         with threadpool_limits(1):
             return sweep_stations(case, rest, "exudyn ANCF cable", about, advance)
