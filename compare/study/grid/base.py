@@ -5,27 +5,23 @@ from dataclasses import asdict
 from functools import partial
 from typing import Any
 
-from pydantic import ValidationError
-
 from analytic import NAMED_TABLES, InputError
-from compare.read.complaints import complaint, shown
-from compare.read.quantities import Table
-from compare.read.space import SpaceFile
-from compare.read.tables import CaseFile
+from compare.read.complaints import shown
 from compare.read.toml import TomlFile
 from compare.study.grid.axes import Value
-from compare.study.grid.schema import CASE_TABLES, StudyFile
+from compare.study.grid.schema import RUN_TABLES, StudyFile
 from compare.study.grid.study import (
     BEAM,
     COMPONENTS_OF,
     MESHES,
-    checked_case,
+    PlanarRun,
+    SpatialRun,
+    checked_run,
     flatten,
     replaced,
 )
 from engines.known import named_engines
 
-_VARIED = (*CASE_TABLES, "noise", "reconstruction")
 _KEYS = {
     "clamp_stiffness": ["support", "rotational_stiffness"],
     "friction": ["contact", "friction"],
@@ -39,12 +35,8 @@ class Base:
     def __init__(self, file: TomlFile, content: StudyFile) -> None:
         self._file = file
         self._folder = file.path.parent
-        self._own: dict[str, Table] = {
-            "noise": content.noise,
-            "reconstruction": content.reconstruction,
-        }
         self._tables = self._overlaid(content)
-        checked = checked_case(self._tables, file.place)
+        checked = checked_run(self._tables, file.place)
         try:
             self._built(checked)
         except InputError as error:
@@ -55,8 +47,8 @@ class Base:
             keys = [table, key] if key and table in self._tables else default
             where = file.place(_KEYS.get(named, keys))
             raise InputError(where, "unusable", "usable", str(error)) from error
-        tables = _plain(checked) | {n: own.model_dump() for n, own in self._own.items()}
-        self.values = {key: value for key, value in flatten(tables).items() if value is not None}
+        flat = flatten(_plain(checked))
+        self.values = {key: value for key, value in flat.items() if value is not None}
         for mesh in MESHES:
             if mesh in self.values:
                 self.values[mesh] = self._path(self.values[mesh])
@@ -67,12 +59,12 @@ class Base:
         table, *inner = key.split(".")
         component = inner[1:]
         if (
-            table not in _VARIED
+            table not in RUN_TABLES
             or not 1 <= len(inner) <= 2
             or (component and component[0] not in COMPONENTS_OF)
         ):
             raise InputError(
-                where, "an axis", f"a key of {', '.join(_VARIED)}",
+                where, "an axis", f"a key of {', '.join(RUN_TABLES)}",
                 "write it as in a case file, as beam.radius; path.tangent.x of what has x, y, z",
             )  # fmt: skip
         if component and len(self._components(table, inner[0])) != len(COMPONENTS_OF):
@@ -103,16 +95,9 @@ class Base:
 
     def _tried(self, table: str, key: str, value: object, place: Sequence[str]) -> object:
         """What the base case holds with `value` for a key."""
-        if table in self._own:
-            own = self._own[table]
-            try:
-                varied = type(own).model_validate(own.model_dump() | {key: value})
-            except ValidationError as error:
-                raise complaint(error, type(own), self._file.place, place[:-1]) from error
-            return varied.model_dump()[key]
         where = self._file.place(place)
         changed = {**self._tables, table: {**self._tables.get(table, {}), key: value}}
-        checked = checked_case(changed, partial(_at, where))
+        checked = checked_run(changed, partial(_at, where))
         try:
             self._built(checked)
         except InputError as error:
@@ -127,9 +112,9 @@ class Base:
         given = self._tables.get(table, {}).get(key, self.values.get(f"{table}.{key}"))
         return given if isinstance(given, list | tuple) else ()
 
-    def _built(self, case: CaseFile | SpaceFile) -> None:
+    def _built(self, case: PlanarRun | SpatialRun) -> None:
         """Raise if the parts of a case cannot be made."""
-        if isinstance(case, SpaceFile):
+        if isinstance(case, SpatialRun):
             case.case(self._folder, "study")
             return
         case.physics(self._folder)
@@ -141,7 +126,7 @@ class Base:
 
     def _overlaid(self, content: StudyFile) -> dict[str, Any]:
         """The base case's tables with the study's own over them."""
-        own: Mapping[str, dict[str, Any]] = content.model_dump(include=set(CASE_TABLES))
+        own: Mapping[str, dict[str, Any]] = content.model_dump(include=set(RUN_TABLES))
         own = {name: table for name, table in own.items() if table}
         case = content.study.case
         if case is None:
@@ -150,12 +135,12 @@ class Base:
             base: dict[str, Any] = {k: dict(v) for k, v in NAMED_TABLES[case].items()}
         elif case.endswith(".toml"):
             file = TomlFile.read(self._folder / case, "case file")
-            found = checked_case(file.tables, file.place)  # errors are on its own lines
-            if isinstance(found, CaseFile) and found.model is not None:
+            found = checked_run(file.tables, file.place)  # errors are on its own lines
+            if isinstance(found, PlanarRun) and found.model is not None:
                 raise InputError(
                     file.place(["model"]), "of a study", "left out", "a study sweeps our models"
                 )
-            base = {name: table for name, table in file.tables.items() if name in CASE_TABLES}
+            base = {name: table for name, table in file.tables.items() if name in RUN_TABLES}
         else:
             raise InputError(
                 self._file.place(["study", "case"]),
@@ -170,10 +155,10 @@ class Base:
         return str((self._folder / name).resolve())
 
 
-def _plain(case: CaseFile | SpaceFile) -> dict[str, Any]:
+def _plain(case: PlanarRun | SpatialRun) -> dict[str, Any]:
     """The tables of a case as plain numbers and words, a motion in natural units."""
-    tables = case.model_dump(include={*CASE_TABLES} - {"motion"})
-    if isinstance(case, SpaceFile):
+    tables = case.model_dump(include={*RUN_TABLES} - {"motion"})
+    if isinstance(case, SpatialRun):
         return {name: table for name, table in tables.items() if table is not None}
     if case.motion is not None:
         tables["motion"] = asdict(case.motion.build(case.beam.build()))

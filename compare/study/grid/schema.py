@@ -6,11 +6,11 @@ from pydantic import Field
 
 from compare.read.quantities import FileName, Table
 from compare.study.grid.axes import Sample
-from compare.study.grid.instrument import Estimator, SensorNoise
 from compare.study.grid.study import Record
 
-CASE_TABLES = (
+RUN_TABLES = (
     "beam", "support", "contact", "profile", "sweep", "mujoco", "motion", "engine", "body", "path",
+    "noise", "reconstruction",
 )  # fmt: skip
 # A day: no sweep of this project takes so long, and the alarm that ends a run must not overflow.
 _LONGEST = 86_400.0
@@ -29,13 +29,13 @@ class StudyTable(Table):
 
 
 class StudyFile(Table):
-    """A whole study file; the tables of the case are checked as those of a case file are."""
+    """A whole study file; those of a run are checked as those of a case file are."""
 
     study: StudyTable = StudyTable()
     axes: Annotated[dict[str, Any], Field(min_length=1)] | None = None
     sample: Sample | None = None
-    noise: SensorNoise = SensorNoise()
-    reconstruction: Estimator = Estimator()
+    noise: dict[str, Any] = Field(default_factory=dict)
+    reconstruction: dict[str, Any] = Field(default_factory=dict)
     beam: dict[str, Any] = Field(default_factory=dict)
     support: dict[str, Any] = Field(default_factory=dict)
     contact: dict[str, Any] = Field(default_factory=dict)

@@ -92,23 +92,35 @@ def flatten(tables: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     }
 
 
-def case_file(parameters: Mapping[str, Any]) -> tuple[CaseFile | SpaceFile, SensorNoise, Estimator]:
-    """Read the case, the noise and the method from dotted keys."""
+class PlanarRun(CaseFile):
+    """What a run in the plane needs beside its case."""
+
+    noise: SensorNoise = SensorNoise()
+    reconstruction: Estimator = Estimator()
+
+
+class SpatialRun(SpaceFile):
+    """What a run in space needs beside its case."""
+
+    noise: SensorNoise = SensorNoise()
+    reconstruction: Estimator = Estimator()
+
+
+def run_of(parameters: Mapping[str, Any]) -> PlanarRun | SpatialRun:
+    """Read a run from dotted keys."""
     tables: dict[str, dict[str, Any]] = {}
     for dotted, value in parameters.items():
         name, key, *component = dotted.split(".")
         table = tables.setdefault(name, {})
         table[key] = replaced(table[key], component[0], value) if component else value
-    noise = SensorNoise(**tables.pop("noise", {}))
-    estimator = Estimator(**tables.pop("reconstruction", {}))
-    return checked_case(tables, ".".join), noise, estimator
+    return checked_run(tables, ".".join)
 
 
-def checked_case(tables: Mapping[str, Any], place: Place) -> CaseFile | SpaceFile:
-    """The case of some tables, in space if it has a body."""
+def checked_run(tables: Mapping[str, Any], place: Place) -> PlanarRun | SpatialRun:
+    """The run of some tables, in space if it has a body."""
     if "body" in tables:
-        return validated(SpaceFile, tables, place)
-    return validated(CaseFile, tables, place)
+        return validated(SpatialRun, tables, place)
+    return validated(PlanarRun, tables, place)
 
 
 def replaced(values: Sequence[Any], component: str, value: object) -> list[Any]:

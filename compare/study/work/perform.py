@@ -18,12 +18,10 @@ from analytic import InputError, Readings, solve_sweep
 from analytic.space import SpatialReadings, solve_space
 from compare.comparison import compare
 from compare.judge.tolerances import Tolerances
-from compare.read.space import SpaceFile
-from compare.read.tables import CaseFile
 from compare.simulate.dispatch import simulate
 from compare.study.grid.axes import Value
 from compare.study.grid.plan import PlannedRun
-from compare.study.grid.study import RECORDS, Study, case_file
+from compare.study.grid.study import RECORDS, PlanarRun, SpatialRun, Study, run_of
 from compare.study.work import metrics
 from compare.study.work.together import Known, known_of
 from mujoco_models import DivergedError
@@ -138,28 +136,27 @@ def _measure(
     readings: dict[str, Readings | SpatialReadings],
     known: Known,
 ) -> Row:
-    file, noise, estimator = known.file or case_file({**study.base, **parameters})
-    row: Row = {"seed": noise.seed}
-    if study.in_space and "reconstruction" in study.record and estimator.method != "elastica":
-        raise InputError(
-            "reconstruction.method", estimator.method, "elastica in space", "leave it out"
-        )
-    if isinstance(file, CaseFile) and "events" in study.record:
-        physics, direction = file.physics(Path()), file.sweep.direction
+    run = known.run or run_of({**study.base, **parameters})
+    row: Row = {"seed": run.noise.seed}
+    method = run.reconstruction.method
+    if study.in_space and "reconstruction" in study.record and method != "elastica":
+        raise InputError("reconstruction.method", method, "elastica in space", "leave it out")
+    if isinstance(run, PlanarRun) and "events" in study.record:
+        physics, direction = run.physics(Path()), run.sweep.direction
         events = known.events or metrics.find(physics, direction)
         row |= metrics.events(events, physics.beam.length, direction)
-    if isinstance(file, CaseFile) and study.events_only:
+    if isinstance(run, PlanarRun) and study.events_only:
         return row
-    reference = known.reference or _solved(file)
+    reference = known.reference or _solved(run)
     if isinstance(reference, SpatialReadings) and "events" in study.record:
         row |= metrics.events_in_space(reference)
     simulated = reference
     if study.beams:
         begin = time.perf_counter()
-        simulated = _simulated(file, _deadline(begin + study.timeout))
+        simulated = _simulated(run, _deadline(begin + study.timeout))
         row["seconds_candidate"] = time.perf_counter() - begin
         row |= _trust(simulated)
-    candidate = noise.add_to(simulated)
+    candidate = run.noise.add_to(simulated)
     readings["analytic"] = reference
     if candidate is not reference:
         readings["candidate"] = candidate
@@ -168,24 +165,24 @@ def _measure(
     if "disagreement" in study.record:
         row |= compare(reference, candidate).metrics()
     if "reconstruction" in study.record:
-        row |= metrics.reconstruction(candidate, estimator.method, noise.relative)
+        row |= metrics.reconstruction(candidate, method, run.noise.relative)
     return row
 
 
-def _solved(file: CaseFile | SpaceFile) -> Readings | SpatialReadings:
-    if isinstance(file, SpaceFile):
-        return solve_space(file.case(Path(), "run"))
-    return solve_sweep(file.case(Path(), "run"))
+def _solved(run: PlanarRun | SpatialRun) -> Readings | SpatialReadings:
+    if isinstance(run, SpatialRun):
+        return solve_space(run.case(Path(), "run"))
+    return solve_sweep(run.case(Path(), "run"))
 
 
 def _simulated(
-    file: CaseFile | SpaceFile, advance: Callable[[], None]
+    run: PlanarRun | SpatialRun, advance: Callable[[], None]
 ) -> Readings | SpatialReadings:
-    if isinstance(file, SpaceFile):
-        return simulate(file.case(Path(), "run"), file.mujoco, advance=advance)
-    case = file.case(Path(), "run")
-    motion = None if file.motion is None else file.motion.build(case.beam)
-    return simulate(case, file.mujoco, motion, None, file.engine.name, advance)
+    if isinstance(run, SpatialRun):
+        return simulate(run.case(Path(), "run"), run.mujoco, advance=advance)
+    case = run.case(Path(), "run")
+    motion = None if run.motion is None else run.motion.build(case.beam)
+    return simulate(case, run.mujoco, motion, None, run.engine.name, advance)
 
 
 def _trust(simulated: Readings | SpatialReadings) -> Row:

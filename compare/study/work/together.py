@@ -6,18 +6,15 @@ from pathlib import Path
 
 from analytic import Beam, Contour, Events, Readings, find_many_events, solve_sweeps
 from analytic.problem.support import is_plain
-from compare.read.tables import CaseFile
 from compare.study.grid.axes import Value
-from compare.study.grid.instrument import Estimator, SensorNoise
-from compare.study.grid.study import Study, case_file
+from compare.study.grid.study import PlanarRun, Study, run_of
 
 
 @dataclass(frozen=True)
 class Known:
     """What is known of a run; what is None, the run finds itself, with its error if any."""
 
-    # Its case, noise and method, as `case_file` reads them.
-    file: tuple[CaseFile, SensorNoise, Estimator] | None = None
+    run: PlanarRun | None = None
     events: Events | None = None  # of its sweep, of the mirrored one if the foot moves to the right
     reference: Readings | None = None  # the closed form's sweep
 
@@ -36,8 +33,8 @@ def known_of(study: Study, parameters: Sequence[dict[str, Value]]) -> list[Known
 
 def _read(study: Study, parameters: dict[str, Value]) -> Known:
     try:
-        file, noise, estimator = case_file({**study.base, **parameters})
-        return Known((file, noise, estimator)) if isinstance(file, CaseFile) else Known()
+        run = run_of({**study.base, **parameters})
+        return Known(run if isinstance(run, PlanarRun) else None)
     except Exception:  # the run will say
         return Known()
 
@@ -47,12 +44,12 @@ def _with_events(known: list[Known]) -> list[Known]:
     profiles: list[Contour] = []
     beams: list[Beam] = []
     for i, one in enumerate(known):
-        if one.file is None:
+        if one.run is None:
             continue
         try:
-            beam, profile, stiffness, friction = one.file[0].physics(Path())
+            beam, profile, stiffness, friction = one.run.physics(Path())
             if is_plain(beam, stiffness, friction):
-                mirrored = one.file[0].sweep.direction == "right"
+                mirrored = one.run.sweep.direction == "right"
                 profiles.append(profile.mirrored() if mirrored else profile)
                 beams.append(beam)
                 which.append(i)
@@ -68,9 +65,9 @@ def _with_events(known: list[Known]) -> list[Known]:
 def _with_sweeps(known: list[Known]) -> list[Known]:
     cases = {}
     for i, one in enumerate(known):
-        if one.file is not None:
+        if one.run is not None:
             try:
-                cases[i] = one.file[0].case(Path(), "run")
+                cases[i] = one.run.case(Path(), "run")
             except Exception:  # the run will say
                 continue
     solved = dict(zip(cases, solve_sweeps(cases.values()), strict=True))

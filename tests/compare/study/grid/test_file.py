@@ -8,7 +8,7 @@ import pytest
 from analytic import CASE_NAMES, InputError, named_case
 from compare.study.grid.file import load_study, shipped_studies
 from compare.study.grid.plan import Plan
-from compare.study.grid.study import case_file
+from compare.study.grid.study import run_of
 from compare.study.work.perform import columns
 from tests.compare.study.studies import EVENTS_ONLY
 
@@ -85,8 +85,8 @@ def test_named_cases_are_those_of_the_command_line(tmp_path):
     for name in CASE_NAMES:
         path = tmp_path / "named.toml"
         path.write_text(f'study.case = "{name}"\nstudy.beams = []')
-        file, *_ = case_file(load_study(str(path)).base)
-        assert file.case(tmp_path, name).digest == named_case(name).digest
+        run = run_of(load_study(str(path)).base)
+        assert run.case(tmp_path, name).digest == named_case(name).digest
 
 
 def test_a_run_keeps_its_id_wherever_its_numbers_stand(plan_of):
