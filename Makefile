@@ -65,7 +65,7 @@ wheel: develop   ## dist/*.whl
 fuzz: develop    ## bad input to all commands; ARGS="N SEED"
 	$(BIN)/python -m tests.fuzz.inputs $(or $(ARGS),10000 1)
 
-bench: develop   ## speed, side by side on one core; ARGS="ratios limits analytic mujoco space stepping exudyn engines study", or million
+bench: develop   ## speed, side by side on one core; ARGS="ratios limits analytic mujoco space stepping engines study", or million
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench $(ARGS)
 
 net: develop     ## some 280 sweeps of this checkout, held against those that another one made in OLD

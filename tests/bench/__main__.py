@@ -4,11 +4,8 @@ import sys
 
 from tests.bench import (
     analytic_speed,
-    engines_speed,
-    exudyn_speed,
     limits,
-    million,
-    mujoco_speed,
+    models_speed,
     plain_stepping,
     ratios,
     space_speed,
@@ -19,14 +16,13 @@ PARTS = {
     "ratios": ratios.main,
     "limits": limits.main,
     "analytic": analytic_speed.main,
-    "mujoco": mujoco_speed.main,
+    "mujoco": models_speed.beams,
     "space": space_speed.main,
     "stepping": plain_stepping.main,
-    "exudyn": exudyn_speed.main,
-    "engines": engines_speed.main,
+    "engines": models_speed.engines,
     "study": study_speed.main,
 }
-LONG = {"million": million.main}
+LONG = {"million": analytic_speed.million}
 """Half an hour of one core or more: only if asked for by name."""
 
 if __name__ == "__main__":  # the studies start processes of their own

@@ -1,5 +1,7 @@
-"""The closed forms against the paper's shooting and collocation, and their memory."""
+"""The closed forms against the paper's shooting and collocation, their memory, and many sweeps."""
 
+import resource
+import sys
 import time
 import tracemalloc
 from collections.abc import Iterator
@@ -21,30 +23,11 @@ from analytic import (
     solve_sweeps,
 )
 from analytic.checks import boundary_value_problem, tip_angle_by_shooting
-from tests.bench.timing import seconds
+from tests.bench.timing import least_seconds
 
 THIN = Beam(radius=0.0)
-COUNT = 100_000
-
-
-def varied(count: int) -> Iterator[Case]:
-    """Vibrissae past catenaries and circles, none like another.
-
-    Parameters
-    ----------
-    count : int
-        How many.
-
-    Yields
-    ------
-    Case
-        Of 200 stations.
-    """
-    numbers = np.random.default_rng(0)
-    for i in range(count):
-        width, size, radius = numbers.uniform((0.3, 0.7, 1e-3), (0.8, 2.0, 1e-2))
-        profile = circle(size, (0.0, 0.4)) if i % 2 else catenary(width, -0.8)
-        yield Case(Beam(radius=radius), profile)
+COUNT, SWEEPS = 100_000, 1_000_000
+_MIB = 2**20 if sys.platform == "darwin" else 2**10  # the unit of `ru_maxrss`
 
 
 def main(quick: bool) -> None:
@@ -52,59 +35,36 @@ def main(quick: bool) -> None:
     profile = catenary(0.5, -0.8)
     tangent = np.deg2rad(np.linspace(-14, 30, many))
     tip = np.deg2rad(np.linspace(-31, -15, many))
-    rates = {
-        "Phase B, arrays": many / seconds(lambda: solve_contact(profile, tangent, THIN)),
-        "Phase A, arrays": many / seconds(lambda: solve_contact(profile, tip, THIN)),
-    }
     one = solve_contact(profile, [np.deg2rad(-24)], THIN).iloc[0]
     other = solve_contact(profile, [0.0], THIN).iloc[0]
     alpha, eta = one["contact_angle"], one["contact_y"]
-    rates["Phase A, the paper's shooting (1e-12)"] = 1 / seconds(
-        lambda: tip_angle_by_shooting(alpha, eta)
-    )
-    rates["Phase A, solve_bvp (1e-10)"] = 1 / seconds(
-        lambda: boundary_value_problem(alpha, eta, False)
-    )
-    rates["Phase B, solve_bvp (1e-10)"] = 1 / seconds(
-        lambda: boundary_value_problem(0.0, other["contact_y"], True)
-    )
+    seconds = {
+        "Phase B, arrays": least_seconds(lambda: solve_contact(profile, tangent, THIN)) / many,
+        "Phase A, arrays": least_seconds(lambda: solve_contact(profile, tip, THIN)) / many,
+        "Phase A, the paper's shooting (1e-12)": least_seconds(
+            lambda: tip_angle_by_shooting(alpha, eta)
+        ),
+        "Phase A, solve_bvp (1e-10)": least_seconds(
+            lambda: boundary_value_problem(alpha, eta, False)
+        ),
+        "Phase B, solve_bvp (1e-10)": least_seconds(
+            lambda: boundary_value_problem(0.0, other["contact_y"], True)
+        ),
+    }
     table = Table(
         "one contact",
         "contacts/s",
         "closed form is faster by",
         title=f"Analytic solver; arrays of {many:,}",
     )
-    for name, rate in rates.items():
-        own = rates[f"{name[:7]}, arrays"]
-        table.add_row(name, f"{rate:,.0f}", f"{own / rate:,.0f}")
-    console = Console()
+    for name, took in seconds.items():
+        table.add_row(name, f"{1 / took:,.0f}", f"{took / seconds[f'{name[:7]}, arrays']:,.0f}")
+    console, case = Console(), named_case("catenary")
     console.print(table)
-
-    case = named_case("catenary")
-    sweep = seconds(lambda: solve_sweep(case))
-    console.print(f"200-station sweep, its events located on the way: {1e3 * sweep:.1f} ms")
-    some = 64 if quick else 10_000
-    begin, last = time.process_time(), 0.0
-    tracemalloc.start()
-    for done, found in enumerate(solve_sweeps(varied(some)), 1):
-        assert isinstance(found, Readings), found
-        if done == some // 10:
-            last = tracemalloc.get_traced_memory()[1]
-            tracemalloc.stop()
-            begin = time.process_time()
-    taken = (time.process_time() - begin) / (some - some // 10)
-    console.print(
-        f"{some:,} such sweeps by solve_sweeps, their cases made on the way: "
-        f"{1e3 * taken:.1f} ms each on one core, {last / 1e6:.0f} MB at the most"
-    )
     real = Case(Beam(natural_curvature=-0.3), profile, clamp_stiffness=8.0, friction=0.2)
-    rate = many / seconds(
-        lambda: solve_contact(profile, tangent, real.beam, clamp_stiffness=8.0, friction=0.2)
-    )
-    console.print(f"Phase B with friction, elastic clamp and natural curvature: {rate:,.0f}/s")
-    ratio = seconds(lambda: solve_sweep(real)) / sweep
-    console.print(f"the sweep of such a vibrissa takes {ratio:.1f} times as long")
-    events = seconds(lambda: find_events(case.profile, case.beam))
+    ratio = least_seconds(lambda: solve_sweep(real)) / least_seconds(lambda: solve_sweep(case))
+    console.print(f"a sweep with friction, elastic clamp and natural curvature: {ratio:.1f} times")
+    events = least_seconds(lambda: find_events(case.profile, case.beam))
     console.print(f"its events alone, with the readings there: {1e3 * events:.1f} ms")
     for count in (many // 10, many):
         angles = np.deg2rad(np.linspace(-31, 30, count))
@@ -115,3 +75,30 @@ def main(quick: bool) -> None:
         console.print(
             f"memory for {count:,} contacts: {peak / count:.0f} bytes a contact at its peak"
         )
+
+
+def million(quick: bool) -> None:
+    """A million sweeps to the end, in flat memory: what they took after 10^2, 10^3 and so on."""
+    count = SWEEPS // 10_000 if quick else SWEEPS
+    begin, following, snap_offs = time.process_time(), 100, 0
+    for done, found in enumerate(solve_sweeps(varied(count)), 1):
+        assert isinstance(found, Readings), found
+        snap_offs += found.snap_off is not None
+        if done == following:
+            taken = time.process_time() - begin
+            peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / _MIB
+            print(
+                f"{done:,} sweeps, {snap_offs:,} of them with a snap-off: {taken:,.1f} s of one "
+                f"core, {1e3 * taken / done:.2f} ms each; {peak:.0f} MiB at the most so far",
+                flush=True,
+            )
+            following *= 10
+
+
+def varied(count: int) -> Iterator[Case]:
+    """Vibrissae of 200 stations past catenaries and circles, none like another."""
+    numbers = np.random.default_rng(0)
+    for i in range(count):
+        width, size, radius = numbers.uniform((0.3, 0.7, 1e-3), (0.8, 2.0, 1e-2))
+        profile = circle(size, (0.0, 0.4)) if i % 2 else catenary(width, -0.8)
+        yield Case(Beam(radius=radius), profile)

@@ -5,15 +5,10 @@ import time
 from collections.abc import Callable
 
 
-def seconds(call: Callable[[], object], repeats: int = 5) -> float:
-    """The least wall time of `repeats` calls [s]."""
+def least_seconds(call: Callable[[], object], repeats: int = 5) -> float:
+    """The least CPU time of `repeats` calls after a first one [s]."""
     call()
-    best = float("inf")
-    for _ in range(repeats):
-        start = time.perf_counter()
-        call()
-        best = min(best, time.perf_counter() - start)
-    return best
+    return min(cpu_seconds(call) for _ in range(repeats))
 
 
 def cpu_seconds(call: Callable[[], object]) -> float:
