@@ -10,11 +10,11 @@ import sys
 import time
 import traceback
 import warnings
-from collections import Counter
 from collections.abc import Callable
 from typing import TypeAlias
 
 import numpy as np
+import pandas as pd
 from scipy.optimize import brentq
 from scipy.spatial import ConvexHull
 
@@ -362,38 +362,24 @@ def where(error: Exception) -> str:
     return f"{type(error).__name__} in {last.name}, line {last.lineno}"
 
 
-def campaign(number: int, seed: int) -> tuple[Counter, dict[str, list[str]]]:
-    """Counts of outcomes by kind, and who shows each fault."""
-    counts: Counter = Counter()
-    examples: dict[str, list[str]] = {}
-    kinds = list(KINDS)
+def main(number: int, seed: int) -> None:
+    """Do trials; prints the outcomes by kind, and who shows each fault."""
+    kinds, rows = list(KINDS), []
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        for i in range(number):
-            kind = kinds[i % len(kinds)]
-            outcome, found = trial(kind, seed * 1_000_000 + i)
-            counts[kind, outcome if not (outcome == "solved" and found) else "at fault"] += 1
-            for fault in found:
+        for i in range(seed * 1_000_000, seed * 1_000_000 + number):
+            outcome, found = trial(kinds[i % len(kinds)], i)
+            for fault in found or [""]:
+                at_fault = fault and outcome == "solved"
                 short = fault if outcome == "refused" else fault.split(" by ")[0]
-                examples.setdefault(f"{outcome}: {short}", []).append(
-                    f"{kind} {seed * 1_000_000 + i}: {fault}"
-                )
-    return counts, examples
-
-
-def main(number: int, seed: int) -> None:
-    begin = time.process_time()
-    counts, examples = campaign(number, seed)
-    outcomes = ("solved", "at fault", "exception", "refused")
-    print(f"{'kind':16}" + "".join(f"{name:>11}" for name in outcomes))
-    for kind in KINDS:
-        print(f"{kind:16}" + "".join(f"{counts[kind, name]:11}" for name in outcomes))
-    print(f"{'all':16}" + "".join(f"{sum(counts[k, n] for k in KINDS):11}" for n in outcomes))
-    for fault, who in sorted(examples.items(), key=lambda item: -len(item[1])):
-        print(f"{len(who):6} {fault}")
-        if not fault.startswith("refused"):
-            print("".join(f"         {line}\n" for line in who[:4]), end="")
-    print(f"{time.process_time() - begin:.0f} s of CPU")
+                rows.append((kinds[i % len(kinds)], i, "at fault" if at_fault else outcome, short))
+    table = pd.DataFrame(rows, columns=["kind", "seed", "outcome", "fault"])
+    each = table.drop_duplicates("seed")
+    print(pd.crosstab(each["kind"], each["outcome"], margins=True))
+    for (outcome, fault), who in table[table["fault"] != ""].groupby(["outcome", "fault"]):
+        some = "" if outcome == "refused" else who[["kind", "seed"]].head(4).to_string(header=False)
+        print(f"{len(who):6} {outcome}: {fault}\n{some}")
+    print(f"{time.process_time():.0f} s of CPU")
 
 
 if __name__ == "__main__":

@@ -117,15 +117,14 @@ def judge(exact: SpatialReadings, found: SpatialReadings, seconds: float) -> Out
     both = exact.trusted & found.trusted & clear
     off = np.zeros(len(travel))
     rms = 0.0
+    touching = both & (exact.touching | found.touching)
     for names in (FORCE, MOMENT):
         one, other = exact.values(*names), found.values(*names)
         scale = np.nanmax(np.abs(one)) or 1.0  # a way may pass beside the body
         error = np.abs(other - one) / scale
         off = np.fmax(off, np.where(both, error.max(axis=1), 0.0))
-        if both.any():
-            touching = both & (exact.touching | found.touching)
-            if touching.any():
-                rms = max(rms, float(np.sqrt((error[touching] ** 2).mean(axis=0)).max()))
+        if touching.any():
+            rms = max(rms, float(np.sqrt((error[touching] ** 2).mean(axis=0)).max()))
     wrong = off > _OFF
     lost = both & (exact.touching != found.touching)
     slips = [events(r, "slip-off") for r in (exact, found)]
@@ -162,27 +161,18 @@ def main(count: int, seed: int, kind: str | None = None, segments: int = 40) -> 
                 f"{_said(exact)} | {_said(found)}; {outcome.statuses} {' '.join(outcome.flags)}",
                 flush=True,
             )
-    for flag in FLAGS:
-        print(f"{flag:10} {sum(flag in o.flags for o in outcomes)} of {len(outcomes)}")
+    print({flag: sum(flag in o.flags for o in outcomes) for flag in FLAGS}, "of", len(outcomes))
     print(f"wrong and ok: {sum(o.wrong for o in outcomes)} stations")
     print(f"largest rms {max(o.rms for o in outcomes):.1e}")
     print(f"median {np.median([o.milliseconds for o in outcomes]):.1f} ms a station")
-    total = Counter()
-    for outcome in outcomes:
-        total.update(outcome.statuses)
-    print(dict(total))
+    print(dict(sum((Counter(o.statuses) for o in outcomes), Counter())))
     return outcomes
 
 
 def _said(readings: SpatialReadings) -> str:
     """Its events but those that are on every way."""
-    hops = len(events(readings, "hop"))
-    said = [
-        f"{e['kind']} {e['travel']:.4f}"
-        for e in readings.provenance["events"]
-        if e["kind"] in ("slip-off", "release")
-    ]
-    return f"{hops} hops {' '.join(said)}"
+    left = (f"{x} {at:.4f}" for x in ("slip-off", "release") for at in events(readings, x))
+    return f"{len(events(readings, 'hop'))} hops {' '.join(left)}"
 
 
 if __name__ == "__main__":
