@@ -1,10 +1,8 @@
 """Many trials, counted."""
 
-import gc
 from collections import Counter
 from collections.abc import Iterable
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 from tests.fuzz.inputs import data, meshes, models, tables, words
@@ -16,7 +14,6 @@ KINDS = {
     words.written: 2, tables.toml: 1, models.model: 2, models.rig: 2,
 }  # fmt: skip
 """Makers of trials, and how often each is asked."""
-OWN_PROCESS = 40  # every so manyth trial is done in a process of its own
 
 
 def trial(seed: int, number: int) -> Trial:
@@ -25,15 +22,13 @@ def trial(seed: int, number: int) -> Trial:
     return [*KINDS][dice.rng.choice(len(weights), p=weights / weights.sum())](dice)
 
 
-def campaign(
-    numbers: Iterable[int], seed: int, processes: bool = False, show: bool = False
-) -> tuple[Counter, list[str]]:
+def campaign(numbers: Iterable[int], seed: int, show: bool = False) -> tuple[Counter, list[str]]:
     """Do trials; counts by class and exit code, and a line for each that ended badly."""
     counts: Counter = Counter()
     bad = []
     for number in numbers:
         made = trial(seed, number)
-        outcome = perform(made, processes or number % OWN_PROCESS == OWN_PROCESS - 1)
+        outcome = perform(made)
         counts[made.kind, str(outcome.code)[:20]] += 1
         if outcome.faults:
             bad.append(f"{number} {made.kind}: {'; '.join(outcome.faults)}: {made}"[:400])
@@ -42,7 +37,4 @@ def campaign(
             print(f"    {outcome.error[-300:]!a}", *outcome.faults, sep="; ", flush=True)
         if number % 500 == 499:
             print(f"{counts.total()} done, the last is number {number}", flush=True)
-        if number % 50 == 0:
-            plt.close("all")
-            gc.collect()
     return counts, bad
