@@ -1,6 +1,5 @@
 """The vibrissa of a user's model with its foot held: what chains of links and rods share."""
 
-from abc import ABC, abstractmethod
 from copy import copy
 from dataclasses import dataclass
 
@@ -33,12 +32,13 @@ class Bending:
     stretch: float = 0.0
 
 
-class HeldModel(ABC):
+class HeldModel:
     """A model whose foot is held, without contacts and gravity, and loads on the tip."""
 
     small: float  # EI/L^2 and EI/L; the loads by which sensors are probed
 
-    def __init__(self, model: mujoco.MjModel, parts: Parts) -> None:
+    def __init__(self, model: mujoco.MjModel, parts: Parts, heavy: Integers) -> None:
+        """With what is not to move made too heavy for that."""
         self.model, self.parts = copy(model), parts
         self.gravity = np.array(model.opt.gravity)
         self.model.opt.gravity[:] = 0
@@ -46,43 +46,11 @@ class HeldModel(ABC):
         self.cutoffs = np.array(model.sensor_cutoff)
         self.model.sensor_cutoff[:] = 0
         self.model.sensor_noise[:] = 0
-        bends = np.isin(model.dof_bodyid, parts.chain)
-        self.dofs: Integers = np.flatnonzero(bends)
+        self.dofs: Integers = np.flatnonzero(np.isin(model.dof_bodyid, parts.chain))
         self._masses = model.body_mass[list(parts.chain)]
-        self.model.dof_armature[self._held_dofs()] += _HEAVY * self._masses.sum()
+        self.model.dof_armature[heavy] += _HEAVY * self._masses.sum()
         self.data = mujoco.MjData(self.model)
         self._force, self._torque = np.zeros((2, 3))
-
-    @abstractmethod
-    def _held_dofs(self) -> Integers:
-        """What is made too heavy to move."""
-
-    @property
-    @abstractmethod
-    def tip(self) -> Floats:
-        """Where the tip is, shape (3,)."""
-
-    @property
-    @abstractmethod
-    def clamp(self) -> Floats:
-        """Where the vibrissa begins, shape (3,)."""
-
-    @property
-    @abstractmethod
-    def joints(self) -> Floats:
-        """Where it bends, shape (n, 3)."""
-
-    @abstractmethod
-    def unload(self) -> None:
-        """Take loads away and put the vibrissa to rest as it is by itself."""
-
-    @abstractmethod
-    def rest(self) -> None:
-        """Let the vibrissa come to rest under its loads."""
-
-    @abstractmethod
-    def bending(self, axes: Floats) -> Bending:
-        """How it bends and vibrates about its state without loads."""
 
     def set_back(self) -> None:
         """Take loads away and put the model into its own first state."""
@@ -103,3 +71,8 @@ class HeldModel(ABC):
         """Where the site of a sensor is, and how it is turned."""
         site = self.model.sensor_objid[sensor]
         return np.array(self.data.site_xpos[site]), self.data.site_xmat[site].reshape(3, 3).copy()
+
+
+def lengths(points: Floats) -> Floats:
+    """Of the line through points, piece by piece."""
+    return np.asarray(np.linalg.norm(np.diff(points, axis=0), axis=1))

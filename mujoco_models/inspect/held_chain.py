@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from scipy.linalg import eigh
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.held import Bending, HeldModel
 from mujoco_models.inspect.parts import Parts, axis_of
@@ -24,16 +24,12 @@ class HeldChain(HeldModel):
     small = 1e-4
 
     def __init__(self, model: mujoco.MjModel, parts: Parts) -> None:
-        super().__init__(model, parts)
+        super().__init__(model, parts, np.flatnonzero(~np.isin(model.dof_bodyid, parts.chain)))
         self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS
         self.model.opt.tolerance = 0
         self._tip_body = parts.chain[-1]
         self._slope = np.full((len(self.dofs), len(self.dofs)), np.nan)
         self.set_back()
-
-    def _held_dofs(self) -> Integers:
-        """All that is not the vibrissa's."""
-        return np.setdiff1d(np.arange(self.model.nv), self.dofs)
 
     def set_back(self) -> None:
         """And find the tip again."""

@@ -11,10 +11,10 @@ from copy import copy
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.drive import holders
-from mujoco_models.inspect.held import Bending, HeldModel
+from mujoco_models.inspect.held import Bending, HeldModel, lengths
 from mujoco_models.inspect.parts import Parts
 from mujoco_models.inspect.rod import Rod
 
@@ -37,7 +37,10 @@ class HeldRod(HeldModel):
 
     def __init__(self, model: mujoco.MjModel, parts: Parts, rod: Rod) -> None:
         self.rod = rod
-        super().__init__(model, parts)
+        # The hand is: what is welded to it moves as far as its weld lets it.
+        free = model.jnt_type[model.dof_jntid] == mujoco.mjtJoint.mjJNT_FREE
+        hand = np.isin(model.dof_bodyid, [*holders(model, parts.foot)])
+        super().__init__(model, parts, np.flatnonzero(hand & ~free))
         self.model.opt.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
         self.model.opt.solver = mujoco.mjtSolver.mjSOL_NEWTON
         self.model.opt.tolerance = _TOLERANCE
@@ -45,7 +48,7 @@ class HeldRod(HeldModel):
         welds = model.eq_type == mujoco.mjtEq.mjEQ_WELD
         self._shortest = _FADES * float(model.eq_solref[welds, 0].max(initial=0.0))
         self.set_back()
-        self._length = float(np.linalg.norm(np.diff(self.vertices, axis=0), axis=1).sum())
+        self._length = float(lengths(self.vertices).sum())
         self._rigidity = self._nominal_rigidity()
         mass = self._masses.sum() / self._length
         self._omega = _FIRST / self._length**2 * math.sqrt(self._rigidity / mass)
@@ -54,13 +57,6 @@ class HeldRod(HeldModel):
         self.model.dof_damping[self.dofs] += 2 * self._omega * of_vertex
         self._stretch = self._measure_stretch()
         self._stiffen_edges()
-
-    def _held_dofs(self) -> Integers:
-        """The hand's: what is welded to it moves as far as its weld lets it."""
-        model = self.model
-        free = model.jnt_type[model.dof_jntid] == mujoco.mjtJoint.mjJNT_FREE
-        hand = np.isin(model.dof_bodyid, [*holders(model, self.parts.foot)])
-        return np.flatnonzero(hand & ~free)
 
     @property
     def vertices(self) -> Floats:
@@ -141,7 +137,7 @@ class HeldRod(HeldModel):
     def _nominal_rigidity(self) -> float:
         """EI by the force on the tip of MuJoCo's where the rod is bent to an arc."""
         vertices = self.vertices
-        s = np.append(0, np.cumsum(np.linalg.norm(np.diff(vertices, axis=0), axis=1)))[2:]
+        s = np.append(0, np.cumsum(lengths(vertices)))[2:]
         along = (vertices[1] - vertices[0]) / np.linalg.norm(vertices[1] - vertices[0])
         ways = np.cross(along, np.cross(self._slides(), along))
         across = ways[int(np.argmax(np.linalg.norm(ways, axis=1)))]
@@ -179,7 +175,7 @@ class HeldRod(HeldModel):
         tip_compliance = float((self.tip - start) @ axes[0]) / unit
         compliances = np.diff(turned[1:], prepend=0.0) / moment
         self.unload()
-        s = np.append(0, np.cumsum(np.linalg.norm(np.diff(self.vertices, axis=0), axis=1)))
+        s = np.append(0, np.cumsum(lengths(self.vertices)))
         arms = np.maximum(s[2:, None] - s[1:-1], 0)
         flexibility = (arms * compliances) @ arms.T
         dofs = self.model.body_dofadr[list(self.parts.chain)]
@@ -208,10 +204,10 @@ class HeldRod(HeldModel):
         stretch = 0.0
         for share in (_TINY, 1.0):
             self.set_back()
-            before = np.linalg.norm(np.diff(self.vertices, axis=0), axis=1)
+            before = lengths(self.vertices)
             self.load(share * natural, np.zeros(3))
             self._settles(_PULLED)
-            after = np.linalg.norm(np.diff(self.vertices, axis=0), axis=1)
+            after = lengths(self.vertices)
             stretch = float((after / before - 1).max()) / share
             if stretch > _TINY:
                 break

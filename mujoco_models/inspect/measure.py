@@ -1,7 +1,7 @@
 """Measure the beam that a user's model is: stiffness, mass, clamp, sensors, contacts."""
 
 from pathlib import Path
-from typing import cast
+from typing import TypeAlias, cast
 
 import mujoco
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.drive import bodies_of_constraint, drive_of, joints_of, slides
-from mujoco_models.inspect.held import HeldModel
+from mujoco_models.inspect.held import lengths
 from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.held_rod import HeldRod
 from mujoco_models.inspect.load import load
@@ -33,7 +33,10 @@ def inspect_model(path: Path, names: Names) -> MeasuredBeam:
         return measure(model, find(model, names), path)
 
 
-def hold(model: mujoco.MjModel, parts: Parts) -> HeldModel:
+Held: TypeAlias = HeldChain | HeldRod
+
+
+def hold(model: mujoco.MjModel, parts: Parts) -> Held:
     """Hold the foot of a model."""
     return HeldChain(model, parts) if parts.rod is None else HeldRod(model, parts, parts.rod)
 
@@ -50,7 +53,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     held.unload()
     axes = sweep_axes(held)
     nodes = np.vstack([held.clamp, held.joints, held.tip])
-    s = np.cumsum(np.linalg.norm(np.diff(nodes, axis=0), axis=1))
+    s = np.cumsum(lengths(nodes))
     length = float(s[-1])
     bending = held.bending(axes)
     squares, damping = bending.squares, bending.damping
@@ -94,7 +97,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     )
 
 
-def sweep_axes(held: HeldModel) -> Floats:
+def sweep_axes(held: Held) -> Floats:
     """The axes of the sweep in the world frame."""
     model, data = held.model, held.data
     nodes = np.vstack([held.clamp, held.joints, held.tip])
@@ -122,7 +125,7 @@ def sweep_axes(held: HeldModel) -> Floats:
     return np.array([np.cross(y, z), y, z])
 
 
-def _normal(held: HeldModel, hinges: Floats, y: Floats) -> Floats:
+def _normal(held: Held, hinges: Floats, y: Floats) -> Floats:
     """Of the plane of the sweep where its hinges leave it open: by a slide, a hinge, a sensor."""
     for joint in slides(held.model, held.parts.foot):
         way = held.data.xaxis[joint]
@@ -141,7 +144,7 @@ def _across(y: Floats) -> Floats:
     return np.array([0.0, 0.0, 1.0]) if abs(y[2]) < 0.5 else np.array([0.0, 1.0, 0.0])
 
 
-def _planar(held: HeldModel, z: Floats) -> bool:
+def _planar(held: Held, z: Floats) -> bool:
     """Whether nothing of it can leave the plane of the sweep."""
     joints = np.flatnonzero(np.isin(held.model.jnt_bodyid, held.parts.chain))
     kinds, across = held.model.jnt_type[joints], np.abs(held.data.xaxis[joints] @ z)
@@ -171,9 +174,9 @@ def _check_constraints(model: mujoco.MjModel, parts: Parts) -> None:
 
 
 def _joints(
-    held: HeldModel, s: Floats, compliance: Floats, nodes: Floats, axes: Floats
+    held: Held, s: Floats, compliance: Floats, nodes: Floats, axes: Floats
 ) -> tuple[Joint, ...]:
-    length = float(np.linalg.norm(np.diff(nodes, axis=0), axis=1).sum())
+    length = float(lengths(nodes).sum())
     bounds = np.concatenate([[0.0], (s[1:] + s[:-1]) / 2, [length]])
     ways = np.diff(nodes, axis=0)[1:]
     slopes = np.arctan2(-ways @ axes[0], ways @ axes[1])
@@ -187,7 +190,7 @@ def _joints(
     )
 
 
-def _bent(held: HeldModel, axes: Floats, unit: float) -> tuple[Floats, Floats]:
+def _bent(held: Held, axes: Floats, unit: float) -> tuple[Floats, Floats]:
     """Tip displacements under forces across the beam, ever larger ones."""
     start = held.tip
     loads = unit * np.array(_LOADS)
@@ -201,7 +204,7 @@ def _bent(held: HeldModel, axes: Floats, unit: float) -> tuple[Floats, Floats]:
     return loads, np.array(bent)
 
 
-def _sag(held: HeldModel) -> float:
+def _sag(held: Held) -> float:
     """How far gravity moves the tip."""
     start = held.tip
     held.model.opt.gravity[:] = held.gravity
@@ -212,7 +215,7 @@ def _sag(held: HeldModel) -> float:
     return sag
 
 
-def _sensed(held: HeldModel, axes: Floats, rigidity: float, length: float) -> list[Sensed | None]:
+def _sensed(held: Held, axes: Floats, rigidity: float, length: float) -> list[Sensed | None]:
     """The readings of both sensors of small forces and moments on the tip, one after the other."""
     sensors = held.parts.force, held.parts.torque
     if sensors == (None, None):
@@ -238,7 +241,7 @@ def _sensed(held: HeldModel, axes: Floats, rigidity: float, length: float) -> li
 
 
 def _seen(
-    held: HeldModel,
+    held: Held,
     sensor: int,
     axes: Floats,
     arm: Floats,
@@ -259,7 +262,7 @@ def _seen(
     return Sensed(name, turned, offset, lever, _feels_contacts(held, sensor), cutoff)
 
 
-def _feels_contacts(held: HeldModel, sensor: int) -> bool:
+def _feels_contacts(held: Held, sensor: int) -> bool:
     """MuJoCo does not count those of a flex among the forces on the bodies of its vertices."""
     model = held.model
     body = int(model.site_bodyid[model.sensor_objid[sensor]])

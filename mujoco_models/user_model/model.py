@@ -10,11 +10,9 @@ from analytic.problem.beam import Beam
 from analytic.problem.errors import InputError
 from mujoco_models.dynamics.moving import SteppedModel
 from mujoco_models.errors import DivergedError
-from mujoco_models.inspect.held import HeldModel
-from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.held_rod import HeldRod
 from mujoco_models.inspect.load import spec_of
-from mujoco_models.inspect.measure import sweep_axes
+from mujoco_models.inspect.measure import Held, sweep_axes
 from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.model.clamp import Clamp
 from mujoco_models.model.contacts import NOWHERE
@@ -25,7 +23,7 @@ from mujoco_models.obstacles.prism import Prism
 from mujoco_models.obstacles.protocol import GEOM
 from mujoco_models.user_model.drive import drive_to
 from mujoco_models.user_model.names import OwnModel
-from mujoco_models.user_model.skin import Edges, Links, Skin
+from mujoco_models.user_model.skin import Edges, Links
 
 _HALF_DEPTH = 1.5  # L; as of all prisms
 _SPECK = 1e-4  # L
@@ -41,7 +39,7 @@ class UserModelInMotion(SteppedModel):
     def __init__(
         self,
         own: OwnModel,
-        held: HeldModel,
+        held: Held,
         measured: MeasuredBeam,
         beam: Beam,
         obstacle: Prism,
@@ -102,12 +100,11 @@ class UserModelInMotion(SteppedModel):
                 f"rename what clashes ({said})",
             ) from error
 
-    def _skin_of(self, held: HeldModel, measured: MeasuredBeam) -> Skin:
+    def _skin_of(self, held: Held, measured: MeasuredBeam) -> Edges | Links:
         nodes = np.append([joint.s for joint in measured.joints], measured.length)
         if isinstance(held, HeldRod):
             compliances = np.array([joint.compliance for joint in measured.joints])
             return Edges(self.model, self.data, held.rod, nodes, compliances)
-        assert isinstance(held, HeldChain)
         chain, tip = held.parts.chain, held.tip_in_body
         return Links(self.model, self.data, chain, self._geoms, nodes, tip)
 
@@ -119,7 +116,7 @@ class UserModelInMotion(SteppedModel):
     def _pose(self, data: mujoco.MjData) -> tuple[Floats, Floats]:
         return np.array(data.xpos[self._parts.foot]), data.xmat[self._parts.foot].reshape(3, 3)
 
-    def _change(self, own: OwnModel, held: HeldModel) -> None:
+    def _change(self, own: OwnModel, held: Held) -> None:
         option = self.model.opt
         option.timestep *= own.timestep
         self.model.dof_damping[held.dofs] *= own.damping

@@ -1,7 +1,5 @@
 """Where on a user's vibrissa a contact is: on the geom of a link, or on an edge of a flex."""
 
-from abc import ABC, abstractmethod
-
 import mujoco
 import numpy as np
 
@@ -10,27 +8,7 @@ from mujoco_models.inspect.parts import radius_of
 from mujoco_models.inspect.rod import Rod
 
 
-class Skin(ABC):
-    """What of the vibrissa touches, in a model with the case's object."""
-
-    @abstractmethod
-    def has(self, contact: int) -> bool:
-        """Whether a contact is one of the vibrissa's."""
-
-    @abstractmethod
-    def arc_length(self, contact: int, inward: Floats) -> float:
-        """Of the point of the axis that is nearest to a contact."""
-
-    @abstractmethod
-    def tip_direction(self) -> Floats:
-        """Of the last link or edge."""
-
-    @abstractmethod
-    def elastic_energy(self) -> float:
-        """Of the whole model."""
-
-
-class Links(Skin):
+class Links:
     """Geoms on bodies with hinges."""
 
     def __init__(
@@ -46,7 +24,7 @@ class Links(Skin):
         self._geoms, self._nodes, self._tip = geoms, nodes, tip
 
     def has(self, contact: int) -> bool:
-        """As of its geoms."""
+        """Whether a contact is one of the vibrissa's geoms."""
         return not self._geoms.isdisjoint(self._data.contact.geom[contact].tolist())
 
     def arc_length(self, contact: int, inward: Floats) -> float:
@@ -84,7 +62,7 @@ class Links(Skin):
         return np.asarray(way / np.linalg.norm(way))
 
 
-class Edges(Skin):
+class Edges:
     """A flex."""
 
     def __init__(
@@ -99,7 +77,7 @@ class Edges(Skin):
         self._nodes, self._compliances = nodes, compliances
 
     def has(self, contact: int) -> bool:
-        """As of its flex."""
+        """Whether a contact is one of its flex."""
         return self._rod.flex in self._data.contact.flex[contact].tolist()
 
     def arc_length(self, contact: int, inward: Floats) -> float:

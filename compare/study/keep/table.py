@@ -16,38 +16,25 @@ _AT_ONCE = 5000  # rows in memory
 
 
 def tables(rows: Iterable[Row], plan: Plan) -> Iterator[pa.Table]:
-    """The plan's rows, some thousand at a time; at least one table, maybe empty."""
+    """The plan's rows, some thousand at a time; the first table is empty."""
     schema = pa.schema(
         [(name, pa.type_for_alias(kind)) for name, kind in columns(plan.study).items()]
     )
+    yield schema.empty_table()
     number_of = {run.id: number for number, run in enumerate(plan)}
-    axes = [key for axis in plan.study.crossed for key in axis.keys]
     wanted = (row for row in rows if row["run"] in number_of)
-    some = list(islice(wanted, _AT_ONCE))
-    while True:
+    while some := list(islice(wanted, _AT_ONCE)):
         # A row that was done for another plan may lack some of this one's axes.
-        complete = [
-            row
-            if all(axis in row for axis in axes)
-            else {**row, **plan.parameters(number_of[row["run"]])}
-            for row in some
-        ]
-        arrays = [pa.array([row.get(name) for row in complete], kind)
-                  for name, kind in zip(schema.names, schema.types, strict=True)]  # fmt: skip
-        yield pa.Table.from_arrays(arrays, schema=schema)
-        some = list(islice(wanted, _AT_ONCE))
-        if not some:
-            return
+        whole = [{**plan.parameters(number_of[row["run"]]), **row} for row in some]
+        yield pa.Table.from_pylist(whole, schema)
 
 
 def write_table(path: Path, rows: Iterable[Row], plan: Plan) -> None:
     """Write the plan's rows as a Parquet file, whole or not at all."""
     found = tables(rows, plan)
-    first = next(found)
     with (
         whole_file(path) as unfinished,
-        pq.ParquetWriter(unfinished, first.schema, compression="zstd") as writer,
+        pq.ParquetWriter(unfinished, next(found).schema, compression="zstd") as writer,
     ):
-        writer.write_table(first)
         for table in found:
             writer.write_table(table)
