@@ -13,7 +13,6 @@ from mujoco_models.model.clamp import Clamp, by_sensors
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.model.lookout import Lookout, MujocoScene
 from mujoco_models.model.spec import assemble
-from mujoco_models.model.stiffness import impede, stiffen, weights_in_last_step
 from mujoco_models.model.surface import Surface
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.protocol import Obstacle
@@ -64,7 +63,6 @@ class MovingModel(SteppedModel):
         super().__init__(compiled, obstacle.label, 1.0, follows_inertia=implicit)
         links = len(beam.layout.joints)
         self._surface = Surface.of(self.model, links, obstacle.corners, radius)
-        self._motion = motion
         self._set_contacts(motion)
         # Runge and Kutta's method looks for contacts on the way of a step, too.
         self._leaves_out = obstacle.upright and motion.integrator != "rk4"
@@ -79,26 +77,16 @@ class MovingModel(SteppedModel):
         """As `BeamModel` does, or MuJoCo's own parameters."""
         model = self.model
         geoms = np.concatenate([self._surface.beads, self._surface.sides])
-        if motion.solref is None:
-            self._stiffen(geoms, model.body_invweight0[model.geom_bodyid[geoms], 0])
-        else:
+        self._is_mine = np.isin(np.arange(model.ngeom), geoms)
+        self._is_object = ~self._surface.moves
+        self._set_stiffness(motion.stiffness, motion.solimp, motion.friction or 0.0)
+        if motion.solref is not None:
             model.geom_solref[geoms] = motion.solref
         model.geom_gap[geoms] = 0  # a contact that carries no force costs time
-        impede(model, geoms, motion.solimp)
         if motion.friction:
             self._check_step(motion, geoms)
             model.geom_condim[geoms] = 3
             model.geom_friction[geoms, 0] = motion.friction
-
-    def _stiffen(self, geoms: Integers, weight: Floats) -> None:
-        stiffen(self.model, geoms, weight, self._motion.stiffness, self._motion.solimp)
-
-    def _follow_inertia(self) -> None:
-        """By the rows of MuJoCo's constraints."""
-        friction = self._motion.friction or 0.0
-        pairs, weight = weights_in_last_step(self.model, self.data, friction)
-        # Of each pair, one is the beam's.
-        self._stiffen(pairs[self._surface.moves[pairs]], weight)
 
     def _check_step(self, motion: Motion, geoms: Integers) -> None:
         """Raise InputError for a step in which MuJoCo's friction overshoots.

@@ -6,14 +6,18 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from analytic.problem.arrays import Floats, Integers
+from analytic.problem.arrays import Booleans, Floats, Integers
 from mujoco_models.errors import DivergedError
 from mujoco_models.model.clamp import Clamp
+from mujoco_models.model.stiffness import impede, stiffen, weights_in_last_step
 from mujoco_models.model.warned import has_diverged
 
 
 class SteppedModel(ABC):
     """MuJoCo's model and its state; what it says is dimensionless, L = EI = T1 = 1."""
+
+    _is_mine: Booleans  # which geoms are the vibrissa's
+    _is_object: Booleans  # which are the object's
 
     def __init__(
         self, model: mujoco.MjModel, label: str, period: float, follows_inertia: bool
@@ -55,10 +59,6 @@ class SteppedModel(ABC):
         sensors do.
         """
 
-    @abstractmethod
-    def _follow_inertia(self) -> None:
-        """Make contacts as stiff as stated with the inertia that MuJoCo took in the last step."""
-
     def _advance(self) -> None:
         """One step of MuJoCo's."""
         mujoco.mj_step(self.model, self.data)
@@ -66,6 +66,22 @@ class SteppedModel(ABC):
             raise DivergedError("the motion does not stay finite")
         if self._follows_inertia and self.data.nefc:
             self._follow_inertia()
+
+    def _set_stiffness(self, stiffness: float, impedance: float, friction: float = 0.0) -> None:
+        """Force over penetration of contacts with the object; what may move is as stiff now."""
+        self._stiffness, self._impedance, self._friction = stiffness, impedance, friction
+        geoms = np.flatnonzero(self._is_mine)
+        weight = self.model.body_invweight0[self.model.geom_bodyid[geoms], 0]
+        stiffen(self.model, geoms[weight > 0], weight[weight > 0], stiffness, impedance)
+        impede(self.model, geoms[weight > 0], impedance)
+
+    def _follow_inertia(self) -> None:
+        """Make contacts as stiff as stated with the inertia that MuJoCo took in the last step."""
+        pairs, weight = weights_in_last_step(self.model, self.data, self._friction)
+        met = self._is_object[pairs].any(axis=1) & (weight > 0)
+        mine = self._is_mine[pairs] & met[:, None]
+        weights = np.repeat(weight, mine.sum(axis=1))
+        stiffen(self.model, pairs[mine], weights, self._stiffness, self._impedance)
 
     def _share_of_kinetic(self, speeds: Floats, dofs: Integers | slice, elastic: float) -> float:
         """Kinetic energy of the vibrissa's velocities over kinetic and elastic energy."""

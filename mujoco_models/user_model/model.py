@@ -16,7 +16,7 @@ from mujoco_models.inspect.measure import Held, sweep_axes
 from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.model.clamp import Clamp
 from mujoco_models.model.contacts import NOWHERE
-from mujoco_models.model.stiffness import impede, stiffen, weights_in_last_step
+from mujoco_models.model.stiffness import IMPEDANCE
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.faceted import add_hull
 from mujoco_models.obstacles.prism import Prism
@@ -59,17 +59,18 @@ class UserModelInMotion(SteppedModel):
         # The object is one more geom of the world, and the world's come first.
         self._geoms = frozenset(g + (g >= self._object) for g in self._parts.geoms)
         self._is_mine = np.isin(np.arange(self.model.ngeom), [*self._geoms])
+        self._is_object = np.arange(self.model.ngeom) == self._object
         self._skin = self._skin_of(held, measured)
         self._drive = drive_to(self.model, self._foot, -self._axes[0])
-        self._stiffness = motion.stiffness * beam.base_rigidity / beam.length**3
         self._change(own, held)
         if ours and self._parts.rod is not None:
             raise InputError(
                 "model.contact", "ours", "own, for a flex, all of whose edges have one solref",
                 "state solref and solimp in its <contact>",
             )  # fmt: skip
-        if ours:
-            self._take_our_contacts()
+        if ours:  # frictionless, and as stiff at every geom
+            self._set_stiffness(motion.stiffness * beam.base_rigidity / beam.length**3, IMPEDANCE)
+            self.model.geom_condim[self._is_mine] = 1
         self.model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
         self._dofs = held.dofs
         self._way = 0.0
@@ -123,23 +124,6 @@ class UserModelInMotion(SteppedModel):
         if own.solver == "newton":
             option.solver = mujoco.mjtSolver.mjSOL_NEWTON
             option.iterations, option.tolerance = _ITERATIONS, _TOLERANCE
-
-    def _take_our_contacts(self) -> None:
-        """Frictionless, and as stiff at every geom."""
-        geoms = np.array(sorted(self._geoms))
-        weight = self.model.body_invweight0[self.model.geom_bodyid[geoms], 0]
-        moved = weight > 0  # but for a piece that is fixed to the foot
-        stiffen(self.model, geoms[moved], weight[moved], self._stiffness)
-        impede(self.model, geoms[moved])
-        self.model.geom_condim[geoms] = 1
-
-    def _follow_inertia(self) -> None:
-        """Only where the object is touched."""
-        pairs, weight = weights_in_last_step(self.model, self.data, friction=0.0)
-        met = (pairs == self._object).any(axis=1) & (weight > 0)
-        mine = self._is_mine[pairs] & met[:, None]
-        weights = np.repeat(weight, mine.sum(axis=1))
-        stiffen(self.model, pairs[mine], weights, self._stiffness)
 
     @property
     def clamp_at(self) -> Floats:
