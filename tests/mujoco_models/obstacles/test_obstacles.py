@@ -294,3 +294,32 @@ def test_a_line_that_turns_passes_from_vertex_to_vertex_without_a_jump():
     # On either side of its slope angle it lies on the facet, and on no other one.
     flat = np.array([prism.support(slope) for slope in prism.facet_angles])
     assert flat == pytest.approx((prism.vertices[1:] + prism.vertices[:-1]) / 2, abs=1e-12)
+
+
+NEEDLE = Case(Beam(radius=0.002), ellipse((0.09, 3.2), (0.0, 0.25)), Sweep(stations=40))
+
+
+def test_the_nearest_facet_of_a_needle():
+    """Beside a tip that is sharper than a bead: against all facets, one by one."""
+    obstacle = Prism.of(NEEDLE, 1600)
+    low = obstacle.lowest
+    draw = np.random.default_rng(3)
+    out = np.array([np.sin(a := draw.uniform(-1.2, 1.2, 400)), -np.cos(a)]).T
+    points = low + 0.004 * draw.uniform(0.2, 2, (400, 1)) * out
+    begin, run = obstacle.vertices[:-1], np.diff(obstacle.vertices, axis=0)
+    off = points[:, None] - begin
+    along = np.clip((off * run).sum(axis=2) / (run**2).sum(axis=1), 0, 1)
+    exact = np.hypot(*np.moveaxis(off - along[..., None] * run, 2, 0)).min(axis=1)
+    window = obstacle.window_of(float(obstacle.place(np.zeros(1))[0]))
+    found, _ = obstacle.gap(window, points)
+    np.testing.assert_allclose(found, exact, atol=1e-9)  # single precision from the tip on
+
+
+def test_the_distance_of_a_needle_from_far_away():
+    """Far off, what rounds vertices is more than what one facet is nearer than the next one."""
+    obstacle = Prism.of(NEEDLE, 1600)
+    draw = np.random.default_rng(4)
+    points = np.column_stack([draw.uniform(-0.3, 0.3, 200), draw.uniform(0, 0.24, 200)])
+    exact = [obstacle.clearance(point)[0] for point in points]
+    for window in range(0, obstacle.windows, 10):
+        np.testing.assert_allclose(obstacle.gap(window, points)[0], exact, atol=1e-6)
