@@ -128,16 +128,12 @@ class Contacts(NamedTuple):
             "penetration": float(-weight @ depth),
         }
 
-    @property
-    def apart(self) -> float:
-        """The longest stretch of the beam between neighbouring loaded contacts [L]."""
-        return float(np.diff(np.sort(self.arc_length[self.loaded])).max(initial=0.0))
-
     def touch_twice(self, layout: Layout) -> bool:
         """Whether a vibrissa that is curved at rest touches in two places."""
         if layout.vibrissa.is_straight:
             return False
-        return self.apart > max(_APART, _LINKS * float(layout.lengths.max()))
+        apart = np.diff(np.sort(self.arc_length[self.loaded])).max(initial=0.0)
+        return bool(apart > max(_APART, _LINKS * float(layout.lengths.max())))
 
     @property
     def slope(self) -> Floats:

@@ -40,10 +40,15 @@ def assemble(beam: Beam, radius: float, obstacle: Obstacle) -> mujoco.MjSpec:
     if len(obstacle.corners):
         obstacle.corners.add_to(spec)
         _let_links_collide(beam, spec)
+    add_clamp_sensors(spec)
+    return spec
+
+
+def add_clamp_sensors(spec: mujoco.MjSpec) -> None:
+    """Add a force and a torque sensor at the foot."""
     spec.body(FOOT).add_site(name="clamp")
     for kind in (mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE):
         spec.add_sensor(type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="clamp")
-    return spec
 
 
 def _let_links_collide(beam: Beam, spec: mujoco.MjSpec) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from mujoco_models.beams.links import link_name
 from mujoco_models.beams.protocol import FOOT
-from mujoco_models.model.spec import add_options, compiled
+from mujoco_models.model.spec import add_clamp_sensors, add_options, compiled
 
 _CCD_ITERATIONS = 500  # of MuJoCo's search for the nearest point of an ellipsoid: 35 leave 1e-5
 
@@ -17,8 +17,7 @@ def assembled(spec: mujoco.MjSpec, links: int, tangent: Floats, radius: float) -
     """Beam and body with a bead on each link, clamp sensors, and a foot along its tangent."""
     add_options(spec)
     spec.option.ccd_iterations = _CCD_ITERATIONS
-    foot = spec.body(FOOT)
-    foot.quat = _to(tangent)
+    spec.body(FOOT).quat = _to(tangent)
     for i in range(links):
         body = spec.body(link_name(i))
         (side,) = (g for g in body.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE)
@@ -34,9 +33,7 @@ def assembled(spec: mujoco.MjSpec, links: int, tangent: Floats, radius: float) -
             density=0,
             priority=1,
         )
-    foot.add_site(name="clamp")
-    for kind in (mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE):
-        spec.add_sensor(type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="clamp")
+    add_clamp_sensors(spec)
     return compiled(spec)
 
 

@@ -17,7 +17,6 @@ from mujoco_models.space.assembly import assembled
 from mujoco_models.space.beams import SpaceBeam
 from mujoco_models.space.bodies import GEOM, OUTLINE, Shape
 
-_THINNEST = 1e-4  # L; MuJoCo's least radius of a link's capsule
 _FOLLOWED, _SAME_NORMAL = 20, 1e-13  # rounds in which a cylinder finds the circle of curvature
 _FAR = 10.0  # L; beyond, MuJoCo need not say how far
 

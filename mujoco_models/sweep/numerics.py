@@ -53,14 +53,11 @@ class Numerics:
     # What rounding makes of a facet's normal [rad]. Above a facet's turn, every corner would be
     # taken for flat, and Newton's method would not settle on it.
     same_normal: float = 1e-9
-    # Beads beyond the loaded ones that take part in collisions, and that must do so. With fewer,
+    # Beads beyond the loaded ones that take part in collisions. With fewer,
     # the load moves on to a bead that does not collide, and steps are repeated; the state at rest
     # is checked against all beads.
     ahead: int = 4
-    # Beads beyond the loaded ones that take part in collisions, and that must do so. With fewer,
-    # the load moves on to a bead that does not collide, and steps are repeated; the state at rest
-    # is checked against all beads.
-    margin: int = 2
+    margin: int = 2  # and those that must do so
     # A link that turns farther than this from one state at rest to the next has left the branch
     # [rad]. Too large, and a jump to another branch passes for a step; too small, and every step of
     # the foot is halved. From 0.1 to 0.7 nothing changes.

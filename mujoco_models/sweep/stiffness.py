@@ -57,7 +57,7 @@ class Stiffness:
         """The turns with an addition of this level, if it makes the stiffness positive definite."""
         shift = _LEAST_SHIFT * len(self.springs) * 2.0 ** (level - 1) if level else 0.0
         count = len(rows) - len(self.directions)
-        if len(self.weights) > len(self.springs):
+        if len(self.springs) < max(len(self.weights), _LEAST_COUNT):
             return self._solved_whole(shift, rows[:count])
         turns, negative = self._tridiagonal(shift, rows.T)
         if len(self.weights) == 0:
@@ -72,7 +72,7 @@ class Stiffness:
         return np.asarray((plain - low @ met).T)
 
     def _solved_whole(self, shift: float, moments: Floats) -> Floats | None:
-        """The same where contacts outnumber links: of low rank is then nothing."""
+        """The same where contacts outnumber links, or links are hardly any."""
         diagonal, beside = self._bands(shift)
         whole = np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1)
         whole += (self.directions.T * self.weights) @ self.directions
@@ -89,10 +89,6 @@ class Stiffness:
     def _tridiagonal(self, shift: float, moments: Floats) -> tuple[Floats, int]:
         """What the tridiagonal part makes of moments, and how many negative eigenvalues it has."""
         diagonal, beside = self._bands(shift)
-        if len(diagonal) < _LEAST_COUNT:
-            whole = np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1)
-            negative = int((np.linalg.eigvalsh(whole) < 0).sum())
-            return np.linalg.solve(whole, moments).astype(float), negative
         *factors, failed = dpttrf(diagonal, beside)
         if not failed:
             return np.asarray(dpttrs(*factors, moments)[0]), 0
