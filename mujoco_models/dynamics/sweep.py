@@ -34,8 +34,8 @@ def run_motion(
     keep: Callable[[Readings], None] = lambda _: None,
 ) -> Readings:
     """Sweep the beam to the left; see `mujoco_models.simulate_motion`."""
-    model, motion, record = _prepared(case, motion, settings)
-    return _passes(model, case, motion, settings).swept(record, advance, keep)
+    passes, record = _prepared(case, motion, settings)
+    return passes.swept(record, advance, keep)
 
 
 def run_there_and_back(
@@ -46,33 +46,26 @@ def run_there_and_back(
     keep: Callable[[Readings], None] = lambda _: None,
 ) -> tuple[Readings, Readings]:
     """Sweep the beam to the left and back; see `mujoco_models.simulate_there_and_back`."""
-    model, motion, record = _prepared(case, motion, settings)
-    passes = _passes(model, case, motion, settings)
+    passes, record = _prepared(case, motion, settings)
     on = passes.swept(record, advance, keep)
     # As if it went on to the left past the mirrored stations.
     returning = StationMeans(-case.foot_x[::-1] / case.beam.length, motion.average)
     return on, passes.swept(returning, advance, keep, back=True)
 
 
-def _prepared(
-    case: Case, motion: Motion, settings: Settings
-) -> tuple[MovingModel, Motion, StationMeans]:
-    """The model at its start, the motion with the case's friction, and what takes its readings."""
+def _prepared(case: Case, motion: Motion, settings: Settings) -> tuple["Passes", StationMeans]:
+    """The model at its start, with the case's friction, and what takes its readings."""
     if motion.friction is None:
         motion = replace(motion, friction=case.friction)
     record = StationMeans(case.foot_x / case.beam.length, motion.average)
     model = _set_out(case, motion, settings, start_of(record, motion))
-    return model, motion, record
+    source, about = f"mujoco {settings.beam} in motion", {"settings": asdict(settings)}
+    return Passes(model, case, motion, source, about), record
 
 
 def start_of(record: StationMeans, motion: Motion) -> float:
     """Where the foot starts, to have its speed on the way to the first station."""
     return record.first + motion.speed * (motion.ramp / 2 + motion.timestep)
-
-
-def _passes(model: MovingModel, case: Case, motion: Motion, settings: Settings) -> "Passes":
-    source = f"mujoco {settings.beam} in motion"
-    return Passes(model, case, motion, source, {"settings": asdict(settings)})
 
 
 def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> MovingModel:

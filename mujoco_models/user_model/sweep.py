@@ -12,7 +12,7 @@ from mujoco_models.dynamics.sweep import Passes, start_of
 from mujoco_models.inspect.load import load
 from mujoco_models.inspect.measure import hold, measure
 from mujoco_models.inspect.measured import MeasuredBeam
-from mujoco_models.inspect.parts import Names, Parts, find
+from mujoco_models.inspect.parts import Names, find
 from mujoco_models.motion import Motion
 from mujoco_models.obstacles.prism import Prism
 from mujoco_models.quiet import unlogged
@@ -38,7 +38,7 @@ def run_user_model(
         measured = measure(model, parts, own.file)
         held = hold(model, parts)
         held.unload()
-    _check(case, parts, measured)
+    _check(case, measured)
     moved = replace(
         motion, timestep=measured.timestep / measured.period, integrator=measured.integrator
     )
@@ -70,7 +70,7 @@ def run_user_model(
     return passes.swept(record, advance, keep)
 
 
-def _check(case: Case, parts: Parts, measured: MeasuredBeam) -> None:
+def _check(case: Case, measured: MeasuredBeam) -> None:
     ratio = measured.length / case.beam.length
     if abs(ratio - 1) > _ALIKE:
         guess = (
@@ -84,16 +84,15 @@ def _check(case: Case, parts: Parts, measured: MeasuredBeam) -> None:
             f"that of the case, {case.beam.length:.6g}, but for a tenth",
             guess,
         )
-    for word, sensor in (("force", parts.force), ("torque", parts.torque)):
-        if sensor is None:
+    for word, sensed in (("force", measured.force), ("torque", measured.torque)):
+        if sensed is None:
             raise InputError(
                 f"{word} sensor of the model",
                 "missing",
                 "one at the clamp",
                 f"add a site there and <{word} site=.../>, or name the sensor or a site",
             )
-    for word, sensed in (("force", measured.force), ("torque", measured.torque)):
-        if sensed is not None and not sensed.feels_contacts:
+        if not sensed.feels_contacts:
             raise InputError(
                 f"{word} sensor of the model",
                 f"{sensed.name!r}, which reads nothing of a flex's contacts",

@@ -21,7 +21,7 @@ from compare.judge.tolerances import Tolerances
 from compare.simulate.dispatch import simulate
 from compare.study.grid.axes import Value
 from compare.study.grid.plan import PlannedRun
-from compare.study.grid.study import RECORDS, PlanarRun, SpatialRun, Study, run_of
+from compare.study.grid.study import PlanarRun, SpatialRun, Study, run_of
 from compare.study.work import metrics
 from compare.study.work.together import Known, known_of
 from mujoco_models import DivergedError
@@ -41,18 +41,6 @@ _ABOUT = {
 # Of the stations; in motion the first contact and the last bounce, whatever the settings.
 _BOUNCES = 0.1
 _IDENTITY = {"run": "string", "outcome": "string", "reason": "string"}
-RECORDED = {
-    **_IDENTITY,
-    **{
-        name: kind
-        for columns_of in (metrics.COLUMNS, metrics.COLUMNS_IN_SPACE)
-        for record in RECORDS
-        for name, kind in columns_of[record].items()
-    },
-    "seed": "int64",
-    **_ABOUT,
-}
-"""Arrow types of all columns that a row may have besides its parameters."""
 
 
 @dataclass(frozen=True)
