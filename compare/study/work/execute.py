@@ -1,9 +1,10 @@
 """Runs done by a crew, a few ahead of those that are collected."""
 
 from collections import deque
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
+from functools import partial
 from itertools import islice
 from typing import TypeAlias
 
@@ -12,7 +13,6 @@ from compare.study.grid.study import Study
 from compare.study.work.perform import Outcome, Result, lost
 
 Perform: TypeAlias = Callable[[Study, PlannedRun], Result]
-Together: TypeAlias = Callable[[Study, Sequence[PlannedRun]], list[Result]]
 Task: TypeAlias = Callable[[Study, tuple[PlannedRun, ...]], list[Result]]
 _BATCH = 32  # runs in closed form: a tenth of a second of work, and done singly if they fail
 
@@ -28,7 +28,7 @@ class Crew:
     ending: Callable[[BaseException, Study], tuple[Outcome, str]]
     end: Callable[[], None]
     # What a worker does with some runs in closed form at once; one by one if not given.
-    together: Together | None = None
+    together: Task | None = None
 
 
 def carry_out(runs: Iterable[PlannedRun], study: Study, crew: Crew) -> Generator[Result]:
@@ -38,13 +38,17 @@ def carry_out(runs: Iterable[PlannedRun], study: Study, crew: Crew) -> Generator
     suspects: set[str] = set()
     under_way: dict[Future[list[Result]], tuple[PlannedRun, ...]] = {}
 
+    alone = partial(_one_by_one, crew.perform)
+
     def start() -> bool:
+        task: Task = alone
         some: tuple[PlannedRun, ...]
         if again:
-            task, some = _Task(crew.perform), (again.popleft(),)
+            some = (again.popleft(),)
+        elif together is None:
+            some = tuple(islice(fresh, 1))
         else:
-            task = _Task(crew.perform, together)
-            some = tuple(islice(fresh, _BATCH if together else 1))
+            task, some = together, tuple(islice(fresh, _BATCH))
         if some:
             under_way[crew.submit(task, study, some)] = some
         return bool(some)
@@ -76,14 +80,5 @@ def carry_out(runs: Iterable[PlannedRun], study: Study, crew: Crew) -> Generator
         crew.end()
 
 
-@dataclass(frozen=True)
-class _Task:
-    """What is sent to a worker: runs at once, or one by one."""
-
-    perform: Perform
-    together: Together | None = None
-
-    def __call__(self, study: Study, runs: tuple[PlannedRun, ...]) -> list[Result]:
-        if self.together is not None:
-            return self.together(study, runs)
-        return [self.perform(study, run) for run in runs]
+def _one_by_one(perform: Perform, study: Study, runs: tuple[PlannedRun, ...]) -> list[Result]:
+    return [perform(study, run) for run in runs]
