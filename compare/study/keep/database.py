@@ -28,9 +28,10 @@ _LAYOUT = "CREATE TABLE IF NOT EXISTS runs (run PRIMARY KEY, done, content, chec
 class Database:
     """A table with a row a run."""
 
-    def __init__(self, folder: Path, warn: Warn) -> None:
+    def __init__(self, folder: Path, warn: Warn, is_first: bool = False) -> None:
+        """`is_first`: no study was here yet, so that a file may be one that is just being made."""
         self.path = folder / NAME
-        damaged = self.path.exists() and not _is_sound(self.path)
+        damaged = self.path.exists() and not _is_sound(self.path, is_first)
         aside = _set_aside(self.path, warn) if damaged else None
         self._connection = _connect(self.path)
         self._connection.execute("PRAGMA journal_mode = WAL")
@@ -125,18 +126,18 @@ def _transaction(connection: sqlite3.Connection) -> Iterator[None]:
         connection.execute("COMMIT")
 
 
-def _is_sound(path: Path) -> bool:
+def _is_sound(path: Path, may_be_empty: bool) -> bool:
     try:
         with closing(_connect(path)) as connection:
             (found,) = connection.execute("PRAGMA integrity_check(1)").fetchone()
-            (layout,) = connection.execute("SELECT sql FROM sqlite_master WHERE name = 'runs'")
-            return (found, *layout) == ("ok", _LAYOUT.replace("IF NOT EXISTS ", ""))
-    except ValueError:  # no such table, or more than one
-        return False
+            layout = connection.execute("SELECT sql FROM sqlite_master WHERE name = 'runs'")
+            made = [sql for (sql,) in layout]
     except sqlite3.DatabaseError as error:
         if error.sqlite_errorcode not in _DAMAGE:  # it cannot be opened or is in use
             raise
         return False
+    expected = [_LAYOUT.replace("IF NOT EXISTS ", "")]
+    return found == "ok" and (made == expected or (may_be_empty and not made))
 
 
 def _set_aside(path: Path, warn: Warn) -> Path:

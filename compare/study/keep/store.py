@@ -33,8 +33,9 @@ class Store:
         with _in_one_line(folder):
             folder.mkdir(parents=True, exist_ok=True)
             file = folder / PLAN_FILE
-            self._is_new = not file.is_file() or file.read_bytes() != described
-            self._database = Database(folder, warn)
+            is_first = not file.is_file()
+            self._is_new = is_first or file.read_bytes() != described
+            self._database = Database(folder, warn, is_first)
             write_whole(file, described)
             done = self._database.done()
         self._done = {run.id for run in plan if run.id in done}

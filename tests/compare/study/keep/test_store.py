@@ -5,6 +5,7 @@ import multiprocessing
 import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 from pathlib import Path
 
 import pandas as pd
@@ -121,6 +122,15 @@ def test_a_file_where_the_folder_should_be(tmp_path, plan, warned):
     (tmp_path / "out").write_text("")
     with pytest.raises(InputError, match="--out"):
         Store(tmp_path / "out", plan, warned.append)
+
+
+def test_a_file_that_another_leader_is_just_making_is_not_damaged(tmp_path, plan, warned):
+    """It has no table yet."""
+    with closing(sqlite3.connect(tmp_path / NAME)) as other:
+        other.execute("PRAGMA journal_mode = WAL")
+        with Store(tmp_path, plan, warned.append) as store:
+            assert not store.done()
+    assert not warned
 
 
 def test_rows_come_back_as_they_were(tmp_path, warned):
