@@ -10,7 +10,7 @@ from compare.comparison import Comparison, compare
 from compare.comparison_in_space import SpatialComparison, compare_space
 from compare.explain.split_space import Parts
 from compare.read.run_folder import StoredSpatialRun, read_run
-from compare.show import report, spatial
+from compare.show import report
 from compare.show.document import Film
 from compare.show.html import html
 from compare.show.runs import runs_document
@@ -78,7 +78,7 @@ def _of_a_run(folder: Path, place: Path) -> Report:
         found = compare_space(
             stored.reference, stored.candidate, stored.tolerances, frame=stored.frame
         )
-        page = spatial.write_spatial_report(found, stored.body, place, stored.parts, film)
+        page = report.write_spatial_report(found, stored.body, place, stored.parts, film)
         return Report(page, found, stored.parts)
     comparison = compare(stored.reference, stored.candidate, stored.tolerances)
     comparison = replace(comparison, validation=stored.validation)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from compare.align.frames import Frame
-    from compare.show.report import Film
+    from compare.show.document import Film
 
 Draw = Callable[[Path, int, Callable[[], None]], object]
 """Draws a film into a folder, of so many frames, and says when one is done."""
@@ -28,7 +28,7 @@ class Asked:
     def film(self, draw: Draw, folder: Path) -> "Film | None":
         """The film, if there is to be one; an older one would be of other sweeps."""
         from compare.commands.terminal import progress
-        from compare.show.report import Film
+        from compare.show.document import Film
 
         if self.frames is None:
             (folder / "animation.gif").unlink(missing_ok=True)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from compare.comparison_in_space import SpatialComparison
     from compare.explain.split_space import Parts
     from compare.read.job import SpaceJob
-    from compare.show.report import Film
+    from compare.show.document import Film
     from mujoco_models import SpatialSettings
 
 
@@ -173,7 +173,7 @@ def compare_in_space(
             wrench_complaint,
         )
         from compare.comparison_in_space import compare_space
-        from compare.show.report import Film
+        from compare.show.document import Film
 
         body = None
         if isinstance(reference, Path):
@@ -202,7 +202,7 @@ def write_report(
 ) -> None:
     """Write the report and print the verdict."""
     from compare.commands import terminal
-    from compare.show.spatial import write_spatial_report
+    from compare.show.report import write_spatial_report
 
     with waiting("drawing"):
         written = write_spatial_report(comparison, body, folder, parts, film)

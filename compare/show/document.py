@@ -1,7 +1,8 @@
 """What is said of a result, whoever shows it: a page in HTML or Markdown, or a terminal."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
@@ -62,14 +63,19 @@ class Verdict:
     remarks: Sequence[str] = ()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Picture:
-    """Figures side by side, by what they show for those who cannot see them."""
+    """Figures side by side, drawn when somebody looks at them."""
 
     name: str  # unique on its page
-    figures: "Mapping[str, Figure]"
+    draw: "Mapping[str, Callable[[], Figure]]"  # by what they show for those who cannot see them
     caption: str
     layout: Layout = "wide"
+
+    @cached_property
+    def figures(self) -> "Mapping[str, Figure]":
+        """The figures, by what they show."""
+        return {shows: draw() for shows, draw in self.draw.items()}
 
 
 @dataclass(frozen=True)
@@ -129,7 +135,20 @@ class Document:
     lead: str
     verdict: Verdict
     sections: Sequence[Section]
-    tiles: Sequence[Tile] = field(default=())
+    tiles: Sequence[Tile] = ()
+
+    def pictures(self) -> Iterator[Picture]:
+        """All pictures, in order."""
+        for section in self.sections:
+            yield from _pictures(section.blocks)
+
+
+def _pictures(blocks: Sequence[Block]) -> Iterator[Picture]:
+    for block in blocks:
+        if isinstance(block, Picture):
+            yield block
+        elif isinstance(block, Beside):
+            yield from _pictures(block.blocks)
 
 
 def sections(*parts: tuple[str, str, Iterable[Block]]) -> list[Section]:

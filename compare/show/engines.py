@@ -177,12 +177,12 @@ def _engines(many: ManyEngines, timed: Figure, apart: Figure) -> Iterator[Block]
     yield from between_table(many.found)
     yield Picture(
         "time",
-        {"Error against time a station, a mark an engine": timed},
+        {"Error against time a station, a mark an engine": lambda: timed},
         "Error against time. Processor time of one process; an engine that is not tuned for this "
         "can be faster.",
     )
     caption = "Differences from the closed form over the foot position."
-    yield Picture("apart", {"Differences over the foot position": apart}, caption)
+    yield Picture("apart", {"Differences over the foot position": lambda: apart}, caption)
 
 
 def _split(many: ManyEngines) -> Iterator[Block]:

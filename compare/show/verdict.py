@@ -2,12 +2,9 @@
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from analytic import CLAMP_READINGS
 from compare.comparison import Comparison
 from compare.explain.budget import Budget
-from compare.judge.tolerances import CONTACT_PHASES
 from compare.show.numbers import short
 
 _NEARLY_ALL = 0.95  # of the compared stations: with fewer, the budget is about another disagreement
@@ -33,7 +30,7 @@ def verdict(comparison: Comparison, budget: Budget | None = None) -> str:
             said = f"Readings of {candidate} can be used in place of {reference} to within {much}"
     else:
         others = len(comparison.exceeded) - 1
-        more = f" ({_count(others)} more limit{'s' * (others > 1)} exceeded)" if others else ""
+        more = f" ({others} more limit{'s' * (others > 1)} exceeded)" if others else ""
         said = f"Readings of {candidate} disagree with those of {reference}"
         if _is_mujoco(comparison):
             said = f"Do not use readings of {candidate} in place of {reference} yet"
@@ -64,24 +61,16 @@ def why(comparison: Comparison, budget: Budget | None = None) -> str:
 
 def absent_transitions(comparison: Comparison) -> Iterator[str]:
     """Why a sweep has no beginning or end of Phase B, where it has none."""
-    sources = {"reference": comparison.reference.source, "candidate": comparison.candidate.source}
-    lines: dict[str, list[str]] = {}
-    for which, source in sources.items():
-        phase = comparison.judged[which].phase
-        touching = phase[np.isin(phase, CONTACT_PHASES)]
-        if not (touching == "tangent").any():
-            if touching.size:
-                lines.setdefault("no Phase B: the contact stays at the tip", []).append(source)
+    for which, judged in comparison.judged.items():
+        source = judged.readings.source
+        if not (judged.phase == "tangent").any():
+            if (judged.phase == "tip").any():
+                yield f"{source} has no Phase B: the contact stays at the tip"
             continue
-        found = {n: getattr(event, which) for n, event in comparison.transitions.items()}
-        if found["phase_b_start"] is None:
-            reason = "no start of Phase B: the first contact is tangential already"
-            lines.setdefault(reason, []).append(source)
-        if found["phase_b_end"] is None:
-            reason = "no end of Phase B: the last contact is tangential still"
-            lines.setdefault(reason, []).append(source)
-    for line, those in lines.items():
-        yield f"{line} ({' and '.join(those)})"
+        if getattr(comparison.transitions["phase_b_start"], which) is None:
+            yield f"{source} has no start of Phase B: the first contact is tangential already"
+        if getattr(comparison.transitions["phase_b_end"], which) is None:
+            yield f"{source} has no end of Phase B: the last contact is tangential still"
 
 
 def _is_mujoco(comparison: Comparison) -> bool:
@@ -136,8 +125,3 @@ _REMEDIES = {
     "sensor": "is the sensors' own: compare them with the sum of the contacts",
     "extension": "a beam that cannot be stretched would not have",
 }
-_NUMBERS = ("none", "one", "two", "three", "four", "five", "six")
-
-
-def _count(n: int) -> str:
-    return _NUMBERS[n] if n < len(_NUMBERS) else str(n)

@@ -9,8 +9,7 @@ from analytic.problem.files import write_whole
 from analytic.space import Body
 from compare.comparison import Comparison
 from compare.comparison_in_space import SpatialComparison
-from compare.show.report import write_report
-from compare.show.spatial import write_spatial_report
+from compare.show.report import write_report, write_spatial_report
 
 
 def report(

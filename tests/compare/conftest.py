@@ -11,8 +11,7 @@ def undrawn(monkeypatch):
     reports in `testing`, and by the pages.
     """
     monkeypatch.setattr("compare.show.animation.write_animation", lambda *_: [])
-    monkeypatch.setattr("compare.show.report.FIGURES", {})
-    monkeypatch.setattr("compare.show.report.page_pictures", lambda *_: {})
+    monkeypatch.setattr("compare.show.document.Picture.figures", {})
+    monkeypatch.setattr("compare.show.report.readings", lambda *_: None)
     monkeypatch.setattr("compare.show.animation.space.write_space_animation", lambda *_: [])
-    monkeypatch.setattr("compare.show.spatial.png", lambda *_: b"")
-    monkeypatch.setattr("compare.show.html.inline_svg", lambda *_: "")
+    monkeypatch.setattr("compare.show.report.png", lambda *_: b"")

@@ -8,9 +8,9 @@ from analytic import CLAMP_READINGS
 from compare.commands.terminal.blocks import show, tiles
 from compare.comparison import Comparison
 from compare.show.budgets import budget_summary, motion_budget_summary
-from compare.show.comparison_page import apart_table, comparison_tiles, comparison_verdict
 from compare.show.document import Table, Text
 from compare.show.numbers import short
+from compare.show.plane_page import plane_table, plane_tiles, plane_verdict
 from compare.show.validity import validation_lines
 
 if TYPE_CHECKING:
@@ -27,16 +27,16 @@ if TYPE_CHECKING:
 def print_comparison(comparison: Comparison) -> None:
     """Print the verdict, and what it rests on."""
     show(
-        comparison_verdict(comparison),
-        tiles(comparison_tiles(comparison)),
-        apart_table(comparison),
+        plane_verdict(comparison),
+        tiles(plane_tiles(comparison)),
+        plane_table(comparison),
         *(Text(line) for line in validation_lines(comparison)),
     )
 
 
 def print_spatial_comparison(comparison: "SpatialComparison", parts: "Parts | None") -> None:
     """Print the verdict in space, and what it rests on."""
-    from compare.show.spatial import (
+    from compare.show.spatial_page import (
         events_table,
         parts_table,
         spatial_table,

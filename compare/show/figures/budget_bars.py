@@ -38,13 +38,11 @@ def picture(found: Budget) -> Figure:
     return figure
 
 
-def panels(found: Budget) -> dict[str, Figure]:
-    """Draw a picture for each reading."""
-    figures = {}
-    for reading in CLAMP_READINGS:
-        figures[reading] = figure = Figure(figsize=_PANEL, layout="constrained")
-        _draw(figure.subplots(), found, reading)
-    return figures
+def bars(found: Budget, reading: str) -> Figure:
+    """Draw one reading."""
+    figure = Figure(figsize=_PANEL, layout="constrained")
+    _draw(figure.subplots(), found, reading)
+    return figure
 
 
 def _draw(ax: Axes, found: Budget, reading: str) -> None:

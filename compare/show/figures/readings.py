@@ -60,31 +60,23 @@ def readings(comparison: Comparison) -> Figure:
     return figure
 
 
-def reading_panels(comparison: Comparison) -> dict[str, Figure]:
-    """Draw the same, a picture for each reading."""
-    return {name: _panel(comparison, name) for name in SYMBOLS}
-
-
-def at_snap_off(comparison: Comparison) -> dict[str, Figure]:
-    """Draw the clamp readings around the snap-off; nothing if neither sweep has one."""
-    places = [comparison.snap_off.reference, comparison.snap_off.candidate]
+def around_snap_off(comparison: Comparison, name: str) -> Figure:
+    """Draw a reading around the snap-off, of which one sweep at least has one."""
+    figure = reading_panel(comparison, name)
     length = comparison.reference.beam.length
-    known = [place / length for place in places if place is not None]
-    if not known:
-        return {}
     half = _NEAR * float(np.ptp(foot(comparison.reference))) or _NEAR
-    figures = {name: _panel(comparison, name) for name in CLAMP_READINGS}
-    for figure in figures.values():
-        for ax in figure.axes:
-            ax.set_xlim(min(known) - half, max(known) + half)
-            ax.xaxis.set_major_locator(MaxNLocator(4))
-            for place, colour in zip(places, (REFERENCE, CANDIDATE), strict=True):
-                if place is not None:
-                    ax.axvline(place / length, color=colour, linestyle=":", linewidth=1.3)
-    return figures
+    places = {REFERENCE: comparison.snap_off.reference, CANDIDATE: comparison.snap_off.candidate}
+    known = {colour: place / length for colour, place in places.items() if place is not None}
+    for ax in figure.axes:
+        ax.set_xlim(min(known.values()) - half, max(known.values()) + half)
+        ax.xaxis.set_major_locator(MaxNLocator(4))
+        for colour, place in known.items():
+            ax.axvline(place, color=colour, linestyle=":", linewidth=1.3)
+    return figure
 
 
-def _panel(comparison: Comparison, name: str) -> Figure:
+def reading_panel(comparison: Comparison, name: str) -> Figure:
+    """Draw a reading of both sweeps, and their difference."""
     figure = Figure(figsize=_PANEL)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.2, 1], gridspec_kw=_AXES)
     _draw_reading(upper, lower, comparison, name)

@@ -14,7 +14,8 @@ from PIL import Image
 
 from compare import compare
 from compare.comparison import Comparison
-from compare.show.report import Film, write_report
+from compare.show.document import Film
+from compare.show.report import write_report
 from tests.compare.planted import planted
 from tests.compare.show import sweeps
 from tests.compare.show.pages import Page

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
 
-from compare.show.comparison_page import comparison_document
 from compare.show.html import html
+from compare.show.plane_page import plane_document
 
 VOID = {"meta", "link", "img", "br", "hr", "input", "source"}
 ADDRESSES = ("href", "src", "srcset", "xlink:href", "data", "action", "poster")
@@ -53,4 +53,7 @@ class Page(HTMLParser):
 
 def written_page(comparison) -> str:
     """The report without its pictures."""
-    return html(comparison_document(comparison, {}))
+    document = plane_document(comparison)
+    for picture in document.pictures():
+        vars(picture)["figures"] = {}
+    return html(document)

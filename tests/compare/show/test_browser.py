@@ -15,7 +15,8 @@ from PIL import Image
 
 from compare import compare
 from compare.show.animation import write_animation
-from compare.show.report import Film, write_report
+from compare.show.document import Film
+from compare.show.report import write_report
 from tests.compare.planted import planted
 from tests.conftest import exact_sweep, simulated_sweep
 

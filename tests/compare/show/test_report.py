@@ -15,7 +15,7 @@ from compare import Tolerances, compare
 from compare.explain.convergence import convergence, fitted_orders
 from compare.explain.suspects import Suspect
 from compare.show.budgets import headline
-from compare.show.figures.budget_bars import panels
+from compare.show.figures.budget_bars import bars
 from compare.show.page import inline_svg
 from compare.show.verdict import verdict
 from tests.compare.planted import planted
@@ -135,7 +135,7 @@ def test_verdicts_of_a_disagreement(comparison):
     assert "Do not use" in verdict(compare(exact, replace(off, source="mujoco chain")))
     strict = compare(exact, comparison.candidate, Tolerances(max=1e-6))
     assert "where 1.0e-06 is allowed" in verdict(strict)
-    assert "more limits exceeded" in verdict(strict)
+    assert "more limits exceeded)" in verdict(strict)
 
 
 def test_what_the_budget_says():
@@ -153,7 +153,7 @@ def test_what_the_budget_says():
 
 
 def test_the_budgets_picture_sorts_and_marks():
-    (ax,) = panels(planted("facets"))["force_x"].axes
+    (ax,) = bars(planted("facets"), "force_x").axes
     names = [label.get_text() for label in ax.get_yticklabels()]
     assert (names[0], names[-1]) == ("facets", "unexplained")
     (blamed, unexplained) = ax.patches[1:]  # bars; the others are too small for one

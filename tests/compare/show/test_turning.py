@@ -23,8 +23,8 @@ from analytic.space import (
 )
 from analytic.space.problem.readings import FORCE, MOMENT
 from compare import compare_space
+from compare.show.report import write_spatial_report
 from compare.show.scene import SweepScene, faces_within
-from compare.show.spatial import write_spatial_report
 from compare.show.turning import turning
 
 CASE = SpatialCase(

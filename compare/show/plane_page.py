@@ -1,0 +1,258 @@
+"""What is said of a comparison in the plane: its verdict, and a section a question."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+
+from analytic import CLAMP_READINGS, PHASES, Beam
+from compare.comparison import Comparison
+from compare.explain.budget import UNRESOLVED, Budget
+from compare.explain.convergence import fitted_orders
+from compare.show.budgets import budget_summary, convergence_table, phases_table
+from compare.show.comparison_page import (
+    agreement,
+    apart_table,
+    comparison_document,
+    places_table,
+    sizes,
+)
+from compare.show.document import Beside, Block, Document, Film, Picture, Table, Text, Tile, Verdict
+from compare.show.figures.budget_bars import bars
+from compare.show.figures.geometry import geometry
+from compare.show.figures.order_plot import convergence_picture
+from compare.show.figures.phases import phase_criterion
+from compare.show.figures.readings import around_snap_off, reading_panel
+from compare.show.figures.validation import validation_picture
+from compare.show.numbers import percent, place, quantity, sentence, short, words
+from compare.show.style import PHASE_LETTERS, SYMBOLS
+from compare.show.validity import validation_lines, validation_tables
+from compare.show.verdict import absent_transitions, verdict, why, worst_reading
+
+
+def plane_document(
+    comparison: Comparison, budget: Budget | None = None, film: Film | None = None
+) -> Document:
+    """All that there is to say of a comparison in the plane."""
+    contour = comparison.reference.provenance.get("profile") or "Contour not recorded"
+    compared = comparison.alignment.counts["compared"]
+    found = plane_verdict(comparison, budget)
+    return comparison_document(
+        comparison,
+        f"{contour}; {compared} stations compared.",
+        replace(found, remarks=[*found.remarks, *validation_lines(comparison)[:1]]),
+        plane_tiles(comparison, budget),
+        ("budget", "What the disagreement is made of", _parts(comparison, budget)),
+        (
+            "validation",
+            "Validation: the disagreement against its uncertainty",
+            _validation(comparison),
+        ),
+        ("apart", "How far apart, reading by reading", _apart(comparison)),
+        ("sweep", "The sweep", _sweep(comparison, film)),
+        ("phases", "Phases judged from the clamp", _phases(comparison)),
+        ("snap-off", "Snap-off", _snap_off(comparison)),
+        ("convergence", "Convergence", _convergence(budget)),
+    )
+
+
+def plane_verdict(comparison: Comparison, budget: Budget | None = None) -> Verdict:
+    """Whether the two agree, and why not."""
+    likely = why(comparison) if comparison.likely or budget is None else ""
+    return agreement(comparison, verdict(comparison, budget), likely)
+
+
+def plane_tiles(comparison: Comparison, budget: Budget | None = None) -> Iterator[Tile]:
+    """The numbers that matter."""
+    yield from sizes(comparison, worst_reading(comparison), "foot at {} L")
+    apart, length = comparison.snap_off.difference, comparison.reference.beam.length
+    shift = "none" if apart is None else short(apart / length, " L")
+    yield Tile("snap-off apart", shift, "candidate less reference")
+    alike, right = comparison.phases_alike(), comparison.phase_agreement().get("candidate")
+    if alike is not None:
+        known = "the candidate's true ones are not known"
+        if right is not None:
+            known = f"{percent(right)} of the candidate's are its true ones"
+        yield Tile("phases alike", percent(alike), f"judged from both clamps; {known}")
+    offset = _offset(comparison)
+    if offset:
+        yield Tile("offset of the foot", offset, "taken from the candidate's foot_x")
+    noise = max(comparison.noise.level.values())
+    if noise:
+        yield Tile("noise", short(noise), "of the noisiest reading, allowed for in the limits")
+    if budget is not None:
+        rest = max(part.rms for part in budget.parts["unexplained"].values())
+        still_open = "is undecided" if budget.undecided else "does not close"
+        said = "closes" if budget.closes else still_open
+        yield Tile("stays unexplained", short(rest), f"the budget {said}")
+
+
+def plane_table(comparison: Comparison) -> Table:
+    """How far apart the two are, reading by reading."""
+    allowed = {name: comparison.tolerances.of_sweep(name) for name in CLAMP_READINGS}
+    return apart_table(comparison, _compared_phases(comparison), allowed)
+
+
+def _parts(comparison: Comparison, budget: Budget | None) -> Iterator[Block]:
+    if budget is None:
+        return
+    table, *said = budget_summary(budget)
+    yield from said
+    shows = "Bars: the parts of {}'s disagreement; the table below has the numbers"
+    yield Picture(
+        "budget-bars",
+        {shows.format(name): partial(bars, budget, name) for name in CLAMP_READINGS},
+        "Each part is measured by a controlled change of its own and combines with the others as a "
+        "signal over the sweep, so sizes do not add up; the axis is logarithmic. Orange: the "
+        "largest part. Last: what no part explains. Whiskers: uncertainty. Dashed: the whole "
+        f"disagreement. Grey: up to {short(UNRESOLVED)} may stay unexplained.",
+        "three",
+    )
+    yield table
+    yield phases_table(budget, _compared_phases(comparison))
+
+
+def _validation(comparison: Comparison) -> Iterator[Block]:
+    found = comparison.validation
+    if found is None:
+        return
+    yield from map(Text, validation_lines(comparison))
+    yield from validation_tables(found, comparison.reference.beam)
+    shows = "E = S - D and twice its standard uncertainty over the foot position"
+    yield Picture(
+        "validation",
+        {shows: partial(validation_picture, comparison, found)},
+        "Dots: E at each station. Blue: twice its standard uncertainty, which 95 % of the dots of "
+        "a right model are within, all on one side if an input is off. Grey: noise alone.",
+    )
+
+
+def _apart(comparison: Comparison) -> Iterator[Block]:
+    yield plane_table(comparison)
+    shows = "{} of both models over the foot position, and their difference"
+    yield Picture(
+        "reading",
+        {shows.format(name): partial(reading_panel, comparison, name) for name in SYMBOLS},
+        "Clamp force and moment, and the contact's arc length reconstructed from them, over the "
+        f"foot's position. Line: {comparison.reference.source}. Dots: "
+        f"{comparison.candidate.source}. Shaded: the reference's phases. Below: candidate less "
+        "reference, in the same unit.",
+        "panels",
+    )
+    counts = comparison.alignment.counts.items()
+    counted = [(words(why), str(n)) for why, n in counts if n or why == "compared"]
+    removed = [("offset of the candidate's foot", _offset(comparison) or "none")]
+    removed += [
+        (f"noise of {name}, of its largest magnitude", short(level) if level else "none")
+        for name, level in comparison.noise.level.items()
+    ]
+    stations = Table("What became of the candidate's stations", (), counted)
+    caption = "Removed before the comparison, or allowed for in its limits"
+    yield Beside([stations, Table(caption, (), removed)])
+
+
+def _sweep(comparison: Comparison, film: Film | None) -> Iterator[Block]:
+    if film is not None:
+        yield film
+        yield Text(
+            "Black: the reference, filled with the colour of its curvature. Dots: the candidate. "
+            "Arrow: contact force.",
+            aside=True,
+        )
+    shows = "The object and the vibrissa at stations of both sweeps"
+    yield Picture(
+        "geometry",
+        {shows: partial(geometry, comparison)},
+        "The vibrissa at stations of the sweep, drawn from the clamp readings alone. Grey: the "
+        "side of the object that faces the foot, the only one that the vibrissa can touch.",
+    )
+
+
+def _phases(comparison: Comparison) -> Iterator[Block]:
+    shows = "Phase B's criterion and the contact's arc length over the foot position"
+    yield Picture(
+        "phases",
+        {shows: partial(phase_criterion, comparison)},
+        "In Phase B criterion (26) of Will, Steigenberger and Behn (2014) is zero, in Phase A the "
+        "contact is at the tip; each station goes to the phase whose condition it meets better, in "
+        "units of the readings' own noise.",
+    )
+    caption = (
+        "Foot positions / L where one phase gives way to the next, found from the clamp readings "
+        "alone"
+    )
+    transitions = places_table(comparison, caption, comparison.transitions)
+    absent = [Text(sentence(line), aside=True) for line in absent_transitions(comparison)]
+    yield Beside([transitions, *absent, *_confusions(comparison)])
+
+
+def _confusions(comparison: Comparison) -> Iterator[Table]:
+    right = comparison.phase_agreement()
+    letters = [PHASE_LETTERS[phase] for phase in PHASES]
+    head = ("true phase", *(f"judged {letter}" for letter in letters))
+    for which, counts in comparison.confusion.items():
+        said = "no station has a known phase"
+        if which in right:
+            said = f"{percent(right[which])} of stations judged rightly"
+        numbers = zip(letters, counts.to_numpy(), strict=True)
+        rows = [(letter, *(str(n) for n in row)) for letter, row in numbers]
+        yield Table(f"{comparison.judged[which].readings.source}: {said}", head, rows)
+
+
+def _snap_off(comparison: Comparison) -> Iterator[Block]:
+    found = comparison.snap_off
+    caption = (
+        "Foot position / L where the vibrissa lets go: as its source recorded it, else between the "
+        "last station in contact and the next"
+    )
+    yield places_table(comparison, caption, {"snap-off": found})
+    if found.reference is None and found.candidate is None:
+        yield Text("Neither sweep has one.")
+        return
+    shows = "{} of both models around the snap-off, and their difference"
+    yield Picture(
+        "snap-off",
+        {shows.format(name): partial(around_snap_off, comparison, name) for name in CLAMP_READINGS},
+        "The readings grow like a square root towards the snap-off (dotted), so a small error of "
+        "its place is a large one of theirs. Between its last stations the reference's line "
+        "follows that square root.",
+        "three",
+    )
+
+
+def _convergence(budget: Budget | None) -> Iterator[Block]:
+    if budget is None or not budget.convergence:
+        return
+    orders = fitted_orders(budget.convergence)
+    falls = ", ".join(f"{name} falls with order {x:.2f}" for name, x in orders.items())
+    yield Text(
+        "The beam's own order, observed between the three numbers of segments, is "
+        f"{budget.order:.2f}. The lines below are fitted to the whole disagreement: {falls}."
+    )
+    shows = "Disagreement against the number of segments, both logarithmic"
+    drawn = Picture(
+        "convergence",
+        {shows: partial(convergence_picture, budget.convergence)},
+        "Disagreement with the reference against the number of segments; the triangle shows second "
+        "order. A reading that flattens has reached what segments do not change, as the facets of "
+        "the object.",
+        "middle",
+    )
+    yield Beside([drawn, convergence_table(budget.convergence)])
+
+
+def _compared_phases(comparison: Comparison) -> list[str]:
+    """Of the reference, at the stations that are compared."""
+    there = set(comparison.alignment.table["phase"])
+    return [phase for phase in PHASES if phase in there]
+
+
+def _offset(comparison: Comparison) -> str:
+    """In L, and in the readings' own unit unless that is L; empty if there is none."""
+    beam, offset = comparison.reference.beam, comparison.offset
+    if not (offset.value or offset.uncertainty):
+        return ""
+    value, unsure = place(offset.value / beam.length), short(offset.uncertainty / beam.length)
+    if beam == Beam():
+        return f"{value} ± {unsure} L"
+    own = " ± ".join(quantity(x, "length", beam) for x in (offset.value, offset.uncertainty))
+    return f"{value} ± {unsure} L ({own})"

@@ -1,0 +1,156 @@
+"""What is said of a comparison in space: its verdict, and a section a question."""
+
+from collections.abc import Iterator
+from functools import partial
+
+from compare.comparison_in_space import SpatialComparison
+from compare.explain.split_space import Parts
+from compare.show.comparison_page import (
+    agreement,
+    apart_table,
+    comparison_document,
+    places_table,
+    sizes,
+)
+from compare.show.document import (
+    Block,
+    Document,
+    Film,
+    Picture,
+    Table,
+    Text,
+    Tile,
+    Turntable,
+    Verdict,
+)
+from compare.show.figures.space import (
+    both_in_space,
+    contacts_in_space,
+    parts_in_space,
+    sweep_in_space,
+)
+from compare.show.numbers import percent, short
+from compare.show.scene import SweepScene
+
+
+def spatial_document(
+    comparison: SpatialComparison,
+    scene: SweepScene,
+    parts: Parts | None = None,
+    film: Film | None = None,
+) -> Document:
+    """All that there is to say of a comparison in space."""
+    body = comparison.reference.provenance.get("body", "Body not recorded")
+    touching, stations = comparison.compared.sum(), len(comparison.compared)
+    return comparison_document(
+        comparison,
+        f"{body}; {touching} of {stations} stations compared: those at which both touch. "
+        f"Components are in the {comparison.frame}'s frame.",
+        spatial_verdict(comparison),
+        spatial_tiles(comparison, parts),
+        ("budget", "What the disagreement is made of", _made_of(parts)),
+        ("apart", "How far apart, component by component", _apart(comparison)),
+        ("sweep", "The sweep", _sweep(scene, film)),
+        ("events", "Where they touch and leave", _events(comparison)),
+    )
+
+
+def spatial_verdict(comparison: SpatialComparison) -> Verdict:
+    """Whether the two agree, and why not."""
+    name, worst = comparison.largest, comparison.worst
+    rms = short(comparison.disagreement[name].rms)
+    allowed = short(comparison.tolerances.of(name, "rms"))
+    said = f"{name} is off most: {rms} rms, {allowed} is allowed."
+    return agreement(comparison, said if worst is None else f"Most of all {worst.clause}.")
+
+
+def spatial_tiles(comparison: SpatialComparison, parts: Parts | None = None) -> Iterator[Tile]:
+    """The numbers that matter."""
+    yield from sizes(comparison, comparison.largest, "foot {} L on its way")
+    contact = comparison.contact
+    where = f"{short(comparison.tolerances.contact)} allowed, at {contact.stations} stations"
+    yield Tile("contacts apart, rms", short(contact.rms, " L"), where)
+    yield Tile("contacts apart, most", short(contact.max, " L"), "at any one station")
+    if comparison.phase_agreement is not None:
+        asked = percent(comparison.tolerances.phase_agreement)
+        note = f"of the compared stations; {asked} must be"
+        yield Tile("phases alike", percent(comparison.phase_agreement), note)
+    if parts is not None:
+        yield Tile("stays unexplained", short(parts.unexplained), f"of {short(parts.whole)}")
+
+
+def spatial_table(comparison: SpatialComparison) -> Table:
+    """How far apart the two are, component by component."""
+    limits = comparison.tolerances
+    allowed = {name: limits.of(name, "rms") for name in comparison.disagreement}
+    return apart_table(comparison, ("tip", "tangent"), allowed)
+
+
+def events_table(comparison: SpatialComparison) -> Table:
+    """Where both sweeps touch and leave."""
+    caption = f"Way of the foot / L; {short(comparison.tolerances.event)} apart is allowed"
+    return places_table(comparison, caption, comparison.events)
+
+
+def parts_table(parts: Parts) -> Table:
+    """What the disagreement is made of."""
+    refined, harder = "twice (or half) as many segments, order two", "a contact ten times as stiff"
+    rows = [
+        ("discretisation", short(parts.discretisation), refined),
+        ("softness", short(parts.softness), f"{harder} (or soft)"),
+        ("unexplained", short(parts.unexplained), "what is left"),
+        ("disagreement", short(parts.whole), ""),
+    ]
+    caption = f"Root mean square of the worst component over {parts.stations} stations; signals, so"
+    head = ("part", "rms", "measured by")
+    return Table(f"{caption} sizes do not add up", head, rows, words=(0, 2), whole=[3])
+
+
+def _made_of(parts: Parts | None) -> Iterator[Block]:
+    if parts is not None:
+        yield parts_table(parts)
+        bars = {"What the disagreement is made of, a bar a part": partial(parts_in_space, parts)}
+        yield Picture("parts", bars, "The same as bars.", "middle")
+
+
+def _apart(comparison: SpatialComparison) -> Iterator[Block]:
+    yield spatial_table(comparison)
+    lines, dots = comparison.reference.source, comparison.candidate.source
+    shows = "Six components of both sweeps over the way of the foot, and their differences"
+    caption = f"Lines: {lines}. Dots: {dots}. Below each: candidate less reference."
+    yield Picture("components", {shows: partial(both_in_space, comparison)}, caption)
+
+
+def _sweep(scene: SweepScene, film: Film | None) -> Iterator[Block]:
+    yield Turntable(scene)
+    shows = "The body, the vibrissa at some stations, the contacts, and the readings"
+    caption = (
+        f"{scene.readings.source}: the body, the vibrissa at some stations coloured by phase, and "
+        "the contacts found from its clamp's readings."
+    )
+    yield Picture("space", {shows: partial(sweep_in_space, scene)}, caption, "still")
+    if film is not None:
+        yield film
+
+
+def _events(comparison: SpatialComparison) -> Iterator[Block]:
+    yield events_table(comparison)
+    shows = "When both sweeps touch, in which phase, and how far their contacts are apart"
+    yield Picture(
+        "contacts",
+        {shows: partial(contacts_in_space, comparison)},
+        "Above: phases of both sweeps; white is without readings. Below: distance between their "
+        "contacts; dashed is what its rms may be.",
+    )
+    said = []
+    if comparison.phase_agreement is None:
+        said.append("Phases are not compared: a source records none.")
+    if comparison.contact.from_clamp:
+        sources = " and ".join(comparison.contact.from_clamp)
+        said.append(f"Contacts of {sources} are found from the clamp.")
+    lacking, having = comparison.candidate.source, comparison.reference.source
+    said.append(f"{comparison.untrusted} stations lack readings in {lacking} but not in {having}.")
+    yield Text(" ".join(said))
+    statuses = comparison.statuses.items()
+    counted = [(f"{which}, {what}", str(n)) for which, of in statuses for what, n in of.items()]
+    yield Table("What became of the stations", (), counted)
