@@ -2,12 +2,11 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogFormatter
 
 from analytic import CLAMP_READINGS, Case, Readings
 from analytic.problem.files import write_whole
@@ -36,8 +35,6 @@ from compare.show.style import (
     SYMBOLS,
     label,
 )
-
-_DECADE = 10.0  # of time, drawn at least
 
 
 @dataclass(frozen=True)
@@ -95,29 +92,29 @@ class ManyEngines:
 
 
 def _compared(one: EngineOutcome, found: Comparison) -> EngineOutcome:
-    apart, seconds = found.snap_off.difference, seconds_per_station(found.candidate)
+    apart = found.snap_off.difference
     return replace(
         one,
         rms={name: found.disagreement[name].rms for name in CLAMP_READINGS},
         snap_off_apart=None if apart is None else apart / found.reference.beam.length,
-        seconds_a_station=None if np.isnan(seconds) else seconds,
+        seconds_a_station=seconds_per_station(found.candidate),
         agrees=found.agrees,
     )
 
 
 def write_engines(many: ManyEngines, folder: Path) -> list[Path]:
     """Write the page, its numbers, and the picture of error against time."""
-    timed = error_against_time(many)
-    page = html(engines_document(many, timed, picture(many.found)))
+    document = engines_document(many)
+    timed, _ = document.pictures()
     return [
-        write_whole(folder / "engines.html", page),
+        write_whole(folder / "engines.html", html(document)),
         write_whole(folder / "engines.json", as_json(many.to_dict())),
-        write_whole(folder / "engines.png", png(timed)),
+        write_whole(folder / "engines.png", png(*timed.figures.values())),
     ]
 
 
-def engines_document(many: ManyEngines, timed: Figure, apart: Figure) -> Document:
-    """All that there is to say of a case in many engines, with its two pictures."""
+def engines_document(many: ManyEngines) -> Document:
+    """All that there is to say of a case in many engines."""
     count = len(many.outcomes)
     object_ = many.exact.provenance.get("profile") or "Contour not recorded"
     return Document(
@@ -130,7 +127,7 @@ def engines_document(many: ManyEngines, timed: Figure, apart: Figure) -> Documen
             "" if many.split is None else many.split.sentence,
         ),
         sections(
-            ("engines", "Engines", _engines(many, timed, apart)),
+            ("engines", "Engines", _engines(many)),
             ("split", "What the disagreement is made of", _split(many)),
             ("fairness", "What was set for each engine, and by whom", [_fairness(many)]),
         ),
@@ -172,17 +169,19 @@ def _by_case(found: Mapping[str, Sequence[tuple[str, ...]]]) -> list[tuple[str, 
     return [(case, *row) for case, rows in found.items() for row in rows]
 
 
-def _engines(many: ManyEngines, timed: Figure, apart: Figure) -> Iterator[Block]:
+def _engines(many: ManyEngines) -> Iterator[Block]:
     yield outcomes_table({many.case.name: many.outcomes})
     yield from between_table(many.found)
     yield Picture(
         "time",
-        {"Error against time a station, a mark an engine": lambda: timed},
+        {"Error against time a station, a mark an engine": partial(error_against_time, many)},
         "Error against time. Processor time of one process; an engine that is not tuned for this "
         "can be faster.",
     )
     caption = "Differences from the closed form over the foot position."
-    yield Picture("apart", {"Differences over the foot position": lambda: apart}, caption)
+    yield Picture(
+        "apart", {"Differences over the foot position": partial(picture, many.found)}, caption
+    )
 
 
 def _split(many: ManyEngines) -> Iterator[Block]:
@@ -207,34 +206,29 @@ def error_against_time(many: ManyEngines) -> Figure:
     """Draw the rms of each reading against the time a station, for all engines."""
     figure = Figure(figsize=(7, 4.4), layout="constrained")
     ax = figure.subplots()
-    ax.set_xscale("log")
-    ax.set_yscale("log")
-    timed = [one for one in many.outcomes if one.seconds_a_station and one.rms]
-    milliseconds = [1e3 * (one.seconds_a_station or np.nan) for one in timed]
-    for reading in CLAMP_READINGS:
-        ax.plot(
-            milliseconds,
-            [(one.rms or {})[reading] for one in timed],
-            linestyle="",
-            marker=READING_MARKERS[reading],
-            color=READING_COLOURS[reading],
-            label=SYMBOLS[reading],
-        )
-    for x, one in zip(milliseconds, timed, strict=True):
-        y = max((one.rms or {}).values())
-        ax.annotate(
-            label(one.name), (x, y), (0, 8), textcoords="offset points", ha="center", fontsize=SMALL
-        )
-    ax.margins(0.25)
-    low, high = ax.get_xlim()
-    if high < _DECADE * low:  # times that hardly differ are not drawn far apart
-        middle = np.sqrt(low * high)
-        ax.set_xlim(middle / np.sqrt(_DECADE), middle * np.sqrt(_DECADE))
-    for formatter in (ax.xaxis.set_major_formatter, ax.xaxis.set_minor_formatter):
-        formatter(LogFormatter(minor_thresholds=(1.5, 0.4)))  # 50, not 5 x 10^1
+    ax.set(
+        xscale="log",
+        yscale="log",
+        xlabel="processor time a station [ms], building the model included",
+        ylabel="rms relative to the largest magnitude",
+    )
     ax.set_title(f"{label(many.case.name)}: error against time", fontsize=LARGE, y=AT_TOP)
-    ax.set_xlabel("processor time a station [ms], building the model included")
-    ax.set_ylabel("rms relative to the largest magnitude")
+    named = set()
+    for one in many.outcomes:
+        if one.rms is None or one.seconds_a_station is None:
+            continue
+        x = 1e3 * one.seconds_a_station
+        for reading, rms in one.rms.items():
+            said = "_" if reading in named else SYMBOLS[reading]
+            colour, marker = READING_COLOURS[reading], READING_MARKERS[reading]
+            ax.plot(x, rms, marker, color=colour, label=said)
+            named.add(reading)
+        ax.annotate(
+            label(one.name), (x, max(one.rms.values())), (0, 8), textcoords="offset points",
+            ha="center", fontsize=SMALL,
+        )  # fmt: skip
+    ax.margins(0.25)
     ax.grid(which="both", alpha=0.25)
-    ax.legend(frameon=False, fontsize=SMALL)
+    if named:
+        ax.legend(frameon=False, fontsize=SMALL)
     return figure

@@ -5,21 +5,11 @@ from itertools import groupby
 from pathlib import Path
 
 from analytic import CLAMP_READINGS, InputError
-from compare.explain.budget import UNRESOLVED
+from compare.explain.budget import UNRESOLVED, Budget
 from compare.read.runs import EnginesRecord, RunRecord, read_engines, read_runs
-from compare.show.document import (
-    Block,
-    Document,
-    Image,
-    Items,
-    Table,
-    Text,
-    Verdict,
-    sections,
-)
+from compare.show.document import Block, Document, Image, Items, Table, Text, Verdict, sections
 from compare.show.engines import outcomes_table, parts_table
 from compare.show.numbers import percent, short
-from compare.show.run_sentences import overview, sentences, split_overview
 
 
 def runs_document(folder: Path) -> Document:
@@ -34,22 +24,38 @@ def runs_document(folder: Path) -> Document:
         )
     agree = [run.agrees for run in runs]
     agree += [engine.agrees for one in engines for engine in one.engines]
-    claim = f"{sum(agree)} of {len(agree)} sweeps agree with the closed form."
-    said = overview(runs) if runs else split_overview(engines)
+    by_case = enumerate(groupby(runs, key=lambda run: run.case), 1)
     return Document(
         "Findings",
         f"{len(runs) + len(engines)} runs in the folder {folder.resolve().name}.",
-        Verdict(all(agree), claim, said),
+        Verdict(
+            all(agree),
+            f"{sum(agree)} of {len(agree)} sweeps agree with the closed form.",
+            " ".join(_overview(runs)),
+        ),
         sections(
             ("runs", "Runs", _runs(runs)),
-            *(
-                (f"case-{number}", case, _case([*group]))
-                for number, (case, group) in enumerate(groupby(runs, key=lambda run: run.case), 1)
-            ),
+            *((f"case-{number}", case, _case([*of])) for number, (case, of) in by_case),
             ("engines", "Engines", _engines(engines)),
-            ("made", "Made with", _made_with(runs)),
+            ("made", "Made with", [Items([*dict.fromkeys(run.engine for run in runs)])]),
         ),
     )
+
+
+def _overview(runs: Sequence[RunRecord]) -> Iterator[str]:
+    """The worst of all runs, and how many budgets close."""
+    compared = [run for run in runs if run.error < float("inf")]
+    if compared:
+        worst = max(compared, key=lambda run: run.error)
+        yield (
+            f"The largest rms is {short(worst.error)} of the largest magnitude ({worst.worst}, "
+            f"{worst.case}, {worst.beam})."
+        )
+    budgets = [run.budget for run in runs if run.budget is not None]
+    if budgets:
+        rest = short(max(run.part("unexplained") or 0.0 for run in runs))
+        closed = sum(one.closes for one in budgets)
+        yield f"{closed} of {len(budgets)} budgets close; at most {rest} is unexplained."
 
 
 def _runs(runs: Sequence[RunRecord]) -> Iterator[Block]:
@@ -68,17 +74,12 @@ def _runs(runs: Sequence[RunRecord]) -> Iterator[Block]:
 
 
 def _case(runs: Sequence[RunRecord]) -> Iterator[Block]:
-    yield Text(f"{runs[0].profile}. {sentences(runs)}")
+    yield Text(f"{runs[0].profile}.")
     for run in runs:
         if run.budget is not None:
             shows = f"Budget of the {run.beam}: {run.budget.blame} is the largest part"
             caption = f"{run.beam}, {run.settings.get('segments', '?')} segments, {run.engine}"
             yield Image(run.folder / "budget.png", shows, caption)
-
-
-def _made_with(runs: Sequence[RunRecord]) -> Iterator[Block]:
-    if runs:
-        yield Items([*dict.fromkeys(run.engine for run in runs)])
 
 
 def _runs_table(runs: Sequence[RunRecord]) -> Table:
@@ -90,7 +91,7 @@ def _runs_table(runs: Sequence[RunRecord]) -> Table:
             *(short(run.rms[name]) for name in CLAMP_READINGS),
             short(run.snap_off),
             "none" if run.phases_right is None else percent(run.phases_right),
-            "not measured" if run.budget is None else run.budget.blame,
+            "not measured" if run.budget is None else _largest_part(run.budget),
             "not measured" if run.budget is None else short(run.part("unexplained")),
             "" if run.seconds_a_station is None else f"{1e3 * run.seconds_a_station:.2g}",
         )
@@ -103,14 +104,23 @@ def _runs_table(runs: Sequence[RunRecord]) -> Table:
     return Table("Each run against its closed form", head, rows, words=(0, 1, 8))
 
 
+def _largest_part(budget: Budget) -> str:
+    said = budget.blame
+    if budget.blame == "discretisation":
+        said += f" of order {budget.order:.2f}"
+    said += "".join(f", suspect: {one.name} {one.size} off" for one in budget.suspects[:1])
+    still_open = "undecided" if budget.undecided else "does not close"
+    return said if budget.closes else f"{said}; {still_open}"
+
+
 def _engines(records: Sequence[EnginesRecord]) -> Iterator[Block]:
     if not records:
         return
-    yield Text(split_overview(records))
+    splits = {one.case: one.split for one in records if one.split is not None}
+    yield Items([f"{case}: {found.sentence}" for case, found in splits.items()])
     yield outcomes_table({one.case: one.engines for one in records})
-    parts = {one.case: one.split.parts() for one in records if one.split}
-    if parts:
-        yield parts_table(parts)
+    if splits:
+        yield parts_table({case: found.parts() for case, found in splits.items()})
     yield Text(
         "What is implementation, engine against twin, and what is model, twin against the closed "
         "form; another model's own disagreement stands beside it.",

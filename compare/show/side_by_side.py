@@ -4,8 +4,6 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
-import numpy as np
-import pandas as pd
 from matplotlib.figure import Figure
 
 from analytic import CLAMP_READINGS, Readings
@@ -31,32 +29,10 @@ class SideBySide:
         """What the sweeps are compared with."""
         return next(iter(self.against.values())).reference.source
 
-    def table(self) -> pd.DataFrame:
-        """The comparisons in numbers."""
-        rows = []
-        for names, found in self._all().items():
-            snap_off = found.snap_off.difference
-            rows.append(
-                {
-                    "reference": names[0],
-                    "candidate": names[1],
-                    **{name: found.disagreement[name].rms for name in CLAMP_READINGS},
-                    "snap_off": np.nan if snap_off is None else snap_off,
-                    "seconds_per_station": seconds_per_station(found.candidate),
-                }
-            )
-        return pd.DataFrame(rows)
-
     def to_dict(self) -> dict[str, Any]:
         """What ``side-by-side.json`` holds."""
-        return {
-            "comparisons": [
-                {"names": list(names), **found.to_dict()} for names, found in self._all().items()
-            ]
-        }
-
-    def _all(self) -> dict[tuple[str, str], Comparison]:
-        return {(self.reference, name): c for name, c in self.against.items()} | self.between
+        found = {(self.reference, name): one for name, one in self.against.items()} | self.between
+        return {"comparisons": [{"names": [*names], **c.to_dict()} for names, c in found.items()]}
 
 
 def side_by_side(reference: Readings, candidates: dict[str, Readings]) -> SideBySide:
@@ -70,10 +46,10 @@ def side_by_side(reference: Readings, candidates: dict[str, Readings]) -> SideBy
     )
 
 
-def seconds_per_station(readings: Readings) -> float:
-    """Time of a sweep, as recorded by its source."""
+def seconds_per_station(readings: Readings) -> float | None:
+    """Time of a sweep, if its source recorded it."""
     seconds = readings.provenance.get("seconds")
-    return np.nan if seconds is None else float(seconds) / len(readings.table)
+    return None if seconds is None else float(seconds) / len(readings.table)
 
 
 def against_table(found: SideBySide) -> Table:
@@ -85,8 +61,8 @@ def against_table(found: SideBySide) -> Table:
             (
                 f"{number} {name}",
                 *(short(one.disagreement[reading].rms) for reading in CLAMP_READINGS),
-                "none" if apart is None else short(apart),
-                "" if np.isnan(took) else f"{1e3 * took:.1f}",
+                short(apart),
+                "" if took is None else f"{1e3 * took:.1f}",
             )
         )
     return Table(

@@ -8,7 +8,7 @@ import pytest
 
 from analytic import Readings, named_case, solve_sweep
 from compare import Tolerances
-from compare.show.side_by_side import side_by_side
+from compare.show.side_by_side import seconds_per_station, side_by_side
 from tests.compare.command import vibrissa
 
 
@@ -32,12 +32,15 @@ def test_known_shifts_come_out(exact):
     compared = moment[ahead & (exact.values("force_y") > 0)]
     rms = np.sqrt(np.mean(compared**2)) / np.abs(moment).max()
     found = side_by_side(exact, {"a": shifted(exact, 1e-3, 6.0), "b": shifted(exact, -2e-3, 12.0)})
-    table = found.table().set_index(["reference", "candidate"])
-    assert list(table.index) == [("analytic", "a"), ("analytic", "b"), ("a", "b")]
-    np.testing.assert_allclose(table["moment_z"], rms * np.array([1e-3, 2e-3, 3e-3]), rtol=5e-3)
-    assert (table[["force_x", "force_y"]] == 0).all(axis=None)
-    assert (table["snap_off"] == 0).all()
-    np.testing.assert_allclose(table["seconds_per_station"], [0.1, 0.2, 0.2])
+    pairs = [*found.against.values(), *found.between.values()]
+    assert [*found.against, *found.between] == ["a", "b", ("a", "b")]
+    off = [one.disagreement["moment_z"].rms for one in pairs]
+    np.testing.assert_allclose(off, rms * np.array([1e-3, 2e-3, 3e-3]), rtol=5e-3)
+    for one in pairs:
+        assert one.disagreement["force_x"].rms == one.disagreement["force_y"].rms == 0
+        assert one.snap_off.difference == 0
+    times = [seconds_per_station(one.candidate) for one in pairs]
+    np.testing.assert_allclose(times, [0.1, 0.2, 0.2])
 
 
 @pytest.mark.slow
