@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from analytic import CLAMP_READINGS
+from analytic import CLAMP_READINGS, PHASES
 from compare.explain.budget import Budget
 from compare.explain.motion import MotionBudget
 from compare.explain.parts import Part
@@ -67,8 +67,10 @@ def parts_table(
     )
 
 
-def phases_table(found: Budget, phases: Sequence[str]) -> Table:
+def phases_table(found: Budget) -> Table:
     """The parts in each phase."""
+    there = {p for sizes in found.by_phase.values() for by in sizes.values() for p in by}
+    phases = [phase for phase in PHASES if phase in there]
     return Table(
         "The same in each phase (A: tip contact, B: tangential contact), root mean square",
         ("part", *(f"{r}, {PHASE_LETTERS[p]}" for r in CLAMP_READINGS for p in phases)),

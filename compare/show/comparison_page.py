@@ -1,9 +1,9 @@
 """What the pages of all comparisons, in the plane and in space, have in common."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from analytic import Readings
+from analytic import PHASES, Readings
 from analytic.space import SpatialReadings
 from compare.comparison import Comparison
 from compare.comparison_in_space import SpatialComparison
@@ -81,17 +81,19 @@ def sizes(found: Comparison | SpatialComparison, worst: str, where: str) -> Iter
     yield Tile("largest single difference", short(one.max), f"{worst}, {known}")
 
 
-def apart_table(
-    found: Comparison | SpatialComparison, phases: Sequence[str], allowed: Mapping[str, float]
-) -> Table:
+def apart_table(found: Comparison | SpatialComparison) -> Table:
     """How far apart the two are, reading by reading, and by the phases that there are."""
     beam = found.reference.beam
+    there = {phase for one in found.disagreement.values() for phase in one.rms_by_phase}
+    phases = [phase for phase in PHASES if phase in there]
     rows = []
     for name, one in found.disagreement.items():
         unit, symbol = beam.force_unit, "EI/L²"
         if name.startswith("moment"):
             unit, symbol = beam.moment_unit, "EI/L"
-        row = {"reading": name, "rms": short(one.rms), "allowed": short(allowed[name])}
+        row = {"reading": name, "rms": short(one.rms)}
+        if isinstance(found, SpatialComparison):
+            row["allowed"] = short(found.tolerances.of(name, "rms"))
         row |= {f"rms, {PHASE_LETTERS[p]}": short(one.rms_by_phase.get(p)) for p in phases}
         row |= {"max": short(one.max), "max at / L": place(one.at / beam.length)}
         if isinstance(found, Comparison):

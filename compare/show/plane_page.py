@@ -86,12 +86,6 @@ def plane_tiles(comparison: Comparison, budget: Budget | None = None) -> Iterato
         yield Tile("stays unexplained", short(rest), f"the budget {said}")
 
 
-def plane_table(comparison: Comparison) -> Table:
-    """How far apart the two are, reading by reading."""
-    allowed = {name: comparison.tolerances.of_sweep(name) for name in CLAMP_READINGS}
-    return apart_table(comparison, _compared_phases(comparison), allowed)
-
-
 def _parts(comparison: Comparison, budget: Budget | None) -> Iterator[Block]:
     if budget is None:
         return
@@ -108,7 +102,7 @@ def _parts(comparison: Comparison, budget: Budget | None) -> Iterator[Block]:
         "three",
     )
     yield table
-    yield phases_table(budget, _compared_phases(comparison))
+    yield phases_table(budget)
 
 
 def _validation(comparison: Comparison) -> Iterator[Block]:
@@ -127,7 +121,7 @@ def _validation(comparison: Comparison) -> Iterator[Block]:
 
 
 def _apart(comparison: Comparison) -> Iterator[Block]:
-    yield plane_table(comparison)
+    yield apart_table(comparison)
     shows = "{} of both models over the foot position, and their difference"
     yield Picture(
         "reading",
@@ -238,12 +232,6 @@ def _convergence(budget: Budget | None) -> Iterator[Block]:
         "middle",
     )
     yield Beside([drawn, convergence_table(budget.convergence)])
-
-
-def _compared_phases(comparison: Comparison) -> list[str]:
-    """Of the reference, at the stations that are compared."""
-    there = set(comparison.alignment.table["phase"])
-    return [phase for phase in PHASES if phase in there]
 
 
 def _offset(comparison: Comparison) -> str:

@@ -79,13 +79,6 @@ def spatial_tiles(comparison: SpatialComparison, parts: Parts | None = None) -> 
         yield Tile("stays unexplained", short(parts.unexplained), f"of {short(parts.whole)}")
 
 
-def spatial_table(comparison: SpatialComparison) -> Table:
-    """How far apart the two are, component by component."""
-    limits = comparison.tolerances
-    allowed = {name: limits.of(name, "rms") for name in comparison.disagreement}
-    return apart_table(comparison, ("tip", "tangent"), allowed)
-
-
 def events_table(comparison: SpatialComparison) -> Table:
     """Where both sweeps touch and leave."""
     caption = f"Way of the foot / L; {short(comparison.tolerances.event)} apart is allowed"
@@ -114,7 +107,7 @@ def _made_of(parts: Parts | None) -> Iterator[Block]:
 
 
 def _apart(comparison: SpatialComparison) -> Iterator[Block]:
-    yield spatial_table(comparison)
+    yield apart_table(comparison)
     lines, dots = comparison.reference.source, comparison.candidate.source
     shows = "Six components of both sweeps over the way of the foot, and their differences"
     caption = f"Lines: {lines}. Dots: {dots}. Below each: candidate less reference."

@@ -8,9 +8,10 @@ from analytic import CLAMP_READINGS
 from compare.commands.terminal.blocks import show, tiles
 from compare.comparison import Comparison
 from compare.show.budgets import budget_summary, motion_budget_summary
+from compare.show.comparison_page import apart_table
 from compare.show.document import Table, Text
 from compare.show.numbers import short
-from compare.show.plane_page import plane_table, plane_tiles, plane_verdict
+from compare.show.plane_page import plane_tiles, plane_verdict
 from compare.show.validity import validation_lines
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ def print_comparison(comparison: Comparison) -> None:
     show(
         plane_verdict(comparison),
         tiles(plane_tiles(comparison)),
-        plane_table(comparison),
+        apart_table(comparison),
         *(Text(line) for line in validation_lines(comparison)),
     )
 
@@ -39,7 +40,6 @@ def print_spatial_comparison(comparison: "SpatialComparison", parts: "Parts | No
     from compare.show.spatial_page import (
         events_table,
         parts_table,
-        spatial_table,
         spatial_tiles,
         spatial_verdict,
     )
@@ -47,7 +47,7 @@ def print_spatial_comparison(comparison: "SpatialComparison", parts: "Parts | No
     show(
         spatial_verdict(comparison),
         tiles(spatial_tiles(comparison)),
-        spatial_table(comparison),
+        apart_table(comparison),
         events_table(comparison),
         *([] if parts is None else [parts_table(parts)]),
     )

@@ -16,7 +16,7 @@ from analytic import Readings, deflected_shapes, reconstruct
 from analytic.problem.arrays import Words
 from compare.comparison import Comparison
 from compare.show.figures.keys import key_below, phase_handles
-from compare.show.figures.over_foot import foot, on_vibrissa, place_labels
+from compare.show.figures.over_foot import foot, on_vibrissa
 from compare.show.figures.thinning import cloud, draw
 from compare.show.numbers import quantity
 from compare.show.style import (
@@ -34,14 +34,13 @@ from compare.show.style import (
 
 _SHAPES = 24  # drawn of each sweep
 _HIGHEST = 10.0  # inches, if the sweep is much shorter than the vibrissa
-_LEFT, _RIGHT, _ABOVE, _BELOW = 0.74, 0.06, 0.34, 0.82  # inches around axes
 _OBJECT: dict[str, Any] = {"color": GREY, "linewidth": 2.5}
 _CONTACT: dict[str, Any] = {"color": INK, "marker": "o", "markersize": 1.5, "linestyle": ""}
 
 
 def geometry(comparison: Comparison) -> Figure:
     """Draw the object and the deflected vibrissa, coloured by phase, in both models."""
-    figure = Figure()
+    figure = Figure(layout="constrained")
     axes = figure.subplots(2, 1, sharex=True, sharey=True)
     sides = {"reference": comparison.reference, "candidate": comparison.candidate}
     for ax, (which, readings) in zip(axes, sides.items(), strict=True):
@@ -62,7 +61,6 @@ def geometry(comparison: Comparison) -> Figure:
     ]
     key_below(figure, handles, 5)
     at_equal_scales(figure, axes, PAGE_WIDTH)
-    _fill(figure, axes)
     return figure
 
 
@@ -111,18 +109,6 @@ def at_equal_scales(figure: Figure, axes: Sequence[Axes], width: float) -> None:
     around = len(axes) * 0.3 + 0.9  # titles, labels and the legend
     height = len(axes) * (width - 0.8) * high / wide + around
     figure.set_size_inches(width, min(height, _HIGHEST))
-
-
-def _fill(figure: Figure, axes: Sequence[Axes]) -> None:
-    """Give two axes all of a figure but for their titles, their labels and the legend."""
-    wide, high = figure.get_size_inches()
-    figure.subplots_adjust(
-        _LEFT / wide, _BELOW / high, 1 - _RIGHT / wide, 1 - _ABOVE / high,
-        hspace=2 * _ABOVE / (high - 2 * _ABOVE - _BELOW),
-    )  # fmt: skip
-    for ax in axes:
-        ax.apply_aspect()
-        place_labels(ax)
 
 
 def _draw_shapes(ax: Axes, readings: Readings, phase: Words) -> None:

@@ -1,7 +1,7 @@
 """What lines, dots and shades mean: a key below a figure."""
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -17,10 +17,8 @@ def key_below(figure: Figure, meant: Axes | Sequence[Artist], columns: int) -> N
     A figure that lays itself out makes room for it.
     """
     handles = meant.get_legend_handles_labels()[0] if isinstance(meant, Axes) else meant
-    laid_out = figure.get_layout_engine() is not None
-    place: Literal["outside lower center", "lower center"] = (
-        "outside lower center" if laid_out else "lower center"
-    )
+    outside = "outside " if figure.get_layout_engine() else ""
+    place: Any = f"{outside}lower center"
     figure.legend(handles=handles, loc=place, ncols=columns, fontsize=SMALL, frameon=False)
 
 

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from analytic import CLAMP_READINGS, Readings
 from analytic.problem.arrays import Floats, Words
@@ -16,8 +17,10 @@ from compare.show.numbers import Kind, quantity
 from compare.show.style import (
     CANDIDATE,
     FOOT,
+    PAGE_WIDTH,
     PHASE_COLOURS,
     REFERENCE,
+    SMALL,
     SYMBOLS,
     UNITS,
     axis_label,
@@ -26,24 +29,23 @@ from compare.show.style import (
 LINE: dict[str, Any] = {"color": REFERENCE, "linewidth": 3.0}
 """How the reference is drawn: so wide that dots upon it hide it nowhere."""
 _DOTS = {"color": CANDIDATE, "marker": "o", "markeredgewidth": 0, "linestyle": ""}
-_BELOW, _BESIDE = 21, 38  # points between axes and labels: numbers of five characters
 _BEYOND_TIP = 1.1  # L; as far as a noisy contact is drawn
+
+
+def stacked(readings: Readings) -> tuple[Figure, dict[str, Axes]]:
+    """Axes for the clamp readings, one above the other, over the foot position."""
+    figure = Figure(figsize=(PAGE_WIDTH, 7.0), layout="constrained")
+    axes = figure.subplots(len(CLAMP_READINGS), 1, sharex=True)
+    for ax in axes:
+        ax.tick_params(labelsize=SMALL)
+    axes[-1].set_xlabel(foot_label(readings))
+    return figure, dict(zip(CLAMP_READINGS, axes, strict=True))
 
 
 def dots(comparison: Comparison) -> dict[str, Any]:
     """How the candidate is drawn: the smaller the more stations it has."""
     size = 2.0 if len(comparison.candidate.table) > 100 else 3.5
     return {**_DOTS, "markersize": size}
-
-
-def place_labels(ax: Axes) -> None:
-    """Put the labels of axes past their numbers, whatever these are.
-
-    To measure the numbers, as is done otherwise, takes as long as to draw them.
-    """
-    pixels = ax.figure.dpi / 72  # a point
-    ax.xaxis.set_label_coords(0.5, -_BELOW * pixels / ax.bbox.height)
-    ax.yaxis.set_label_coords(-_BESIDE * pixels / ax.bbox.width, 0.5)
 
 
 def foot(readings: Readings) -> Floats:

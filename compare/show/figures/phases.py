@@ -10,19 +10,16 @@ from compare.show.figures.over_foot import (
     foot,
     foot_label,
     on_vibrissa,
-    place_labels,
     shade_reference,
 )
 from compare.show.figures.thinning import draw
 from compare.show.style import CANDIDATE, GREY, PAGE_WIDTH, REFERENCE, label
 
-_AXES = {"left": 0.107, "right": 0.99, "top": 0.98, "bottom": 0.15, "hspace": 0.08}
-
 
 def phase_criterion(comparison: Comparison) -> Figure:
     """Draw criterion (26) of the paper, zero in Phase B, and the contact, at the tip in Phase A."""
-    figure = Figure(figsize=(PAGE_WIDTH, 5.4))
-    axes = figure.subplots(2, 1, sharex=True, gridspec_kw=_AXES)
+    figure = Figure(figsize=(PAGE_WIDTH, 5.4), layout="constrained")
+    axes = figure.subplots(2, 1, sharex=True)
     for readings, which, style in (
         (comparison.reference, "reference", LINE),
         (comparison.candidate, "candidate", dots(comparison)),
@@ -32,7 +29,6 @@ def phase_criterion(comparison: Comparison) -> Figure:
         draw(axes[1], x, on_vibrissa(1 - judged.shortfall), **style)
     for ax, expected in zip(axes, (0, 1), strict=True):
         shade_reference(ax, comparison)
-        place_labels(ax)
         ax.axhline(expected, color=GREY, linewidth=0.8, linestyle="--")
     axes[0].set_ylabel(r"$(2F_{Ay} - M_{Az}^2)\,/\,2f$" + "\nzero in Phase B")
     axes[1].set_ylabel("contact $s_1$ / $L$\none in Phase A")

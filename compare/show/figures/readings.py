@@ -19,7 +19,6 @@ from compare.show.figures.over_foot import (
     foot_label,
     key,
     on_vibrissa,
-    place_labels,
     reading_label,
     scaled,
     shade_reference,
@@ -39,20 +38,14 @@ from compare.show.style import (
 _ALONE = 3.0  # points; of dots that lie on no line
 _NEAR = 0.03  # of the sweep's length: what is shown on either side of the snap-off
 _PANEL = (4.8, 4.0)  # inches
-# With room for numbers of seven characters, or five beside a label: to measure the texts of each
-# picture would take longer than to draw it.
+# To measure the texts of each would take longer than to draw it.
 _AXES = {"left": 0.155, "right": 0.98, "top": 0.93, "bottom": 0.25, "hspace": 0.2}
-_ROW_OF_AXES = {
-    "left": 0.076, "right": 0.992, "top": 0.94, "bottom": 0.15, "hspace": 0.16, "wspace": 0.25,
-}  # fmt: skip
 
 
 def readings(comparison: Comparison) -> Figure:
     """Draw clamp force, moment and reconstructed contact, and differences, side by side."""
-    figure = Figure(figsize=(12, 5.4))
-    upper, lower = figure.subplots(
-        2, 4, sharex=True, height_ratios=[2.2, 1], gridspec_kw=_ROW_OF_AXES
-    )
+    figure = Figure(figsize=(12, 5.4), layout="constrained")
+    upper, lower = figure.subplots(2, 4, sharex=True, height_ratios=[2.2, 1])
     for i, name in enumerate(SYMBOLS):
         _draw_reading(upper[i], lower[i], comparison, name)
     lower[0].set_ylabel("difference\n(same unit)")
@@ -89,7 +82,6 @@ def _draw_reading(upper: Axes, lower: Axes, comparison: Comparison, name: str) -
     """A reading of both sweeps above, their difference below."""
     for ax in (upper, lower):
         shade_reference(ax, comparison)
-        place_labels(ax)
     reference, candidate = comparison.reference, comparison.candidate
     judged = comparison.judged["reference"]
     curve = with_fold(reference, judged.phase, foot(reference), scaled(reference, judged, name))

@@ -2,12 +2,11 @@
 
 from matplotlib.figure import Figure
 
-from analytic import CLAMP_READINGS
 from compare.comparison import Comparison
 from compare.show.figures.keys import key_below
-from compare.show.figures.over_foot import foot_label, shade_reference
+from compare.show.figures.over_foot import shade_reference, stacked
 from compare.show.figures.thinning import draw
-from compare.show.style import AT_TOP, BLUE, GREY, INK, PAGE_WIDTH, SKY, SMALL, SYMBOLS
+from compare.show.style import AT_TOP, BLUE, GREY, INK, SKY, SMALL, SYMBOLS
 from compare.validate.validation import Validation
 
 _EXPANDED = 2  # standard uncertainties, at one station of one reading
@@ -15,10 +14,9 @@ _EXPANDED = 2  # standard uncertainties, at one station of one reading
 
 def validation_picture(comparison: Comparison, found: Validation) -> Figure:
     """Draw E = S - D of each reading within its expanded uncertainty."""
-    figure = Figure(figsize=(PAGE_WIDTH, 7.0), layout="constrained")
-    axes = figure.subplots(len(CLAMP_READINGS), 1, sharex=True)
+    figure, axes = stacked(comparison.reference)
     length = comparison.reference.beam.length
-    for ax, name in zip(axes, CLAMP_READINGS, strict=True):
+    for name, ax in axes.items():
         rows = found.table[found.table["reading"] == name].sort_values("foot_x")
         x = rows["foot_x"].to_numpy() / length
         shade_reference(ax, comparison)
@@ -40,7 +38,5 @@ def validation_picture(comparison: Comparison, found: Validation) -> Figure:
             y=AT_TOP,
         )
         ax.set_ylabel("of the largest magnitude", fontsize=SMALL)
-        ax.tick_params(labelsize=SMALL)
-    axes[-1].set_xlabel(foot_label(comparison.reference))
-    key_below(figure, axes[0], 4)
+    key_below(figure, axes["force_x"], 4)
     return figure
