@@ -9,6 +9,7 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
 from analytic.problem.arrays import Floats, Words
 from analytic.space import Body, SpatialReadings, deflected_rods, reconstruct_space
+from analytic.space.problem.bodies.support import spread
 from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE
 
 _DEPTH = 0.5  # of the scene, at least, over its longest side
@@ -102,10 +103,7 @@ def _outermost(points: Floats) -> Floats:
     points = pd.DataFrame(points).drop_duplicates().to_numpy()
     if len(points) <= _CORNERS:
         return points
-    height = 1 - 2 * (np.arange(_CORNERS) + 0.5) / _CORNERS  # evenly over the sphere, on a spiral
-    angle = np.pi * (1 + np.sqrt(5)) * np.arange(_CORNERS)
-    ring = np.sqrt(1 - height**2)
-    ways = np.column_stack([ring * np.cos(angle), height, ring * np.sin(angle)])
+    ways = spread(_CORNERS)
     chosen = [
         np.argmax(ways[i : i + _AT_ONCE] @ points.T, axis=1) for i in range(0, _CORNERS, _AT_ONCE)
     ]

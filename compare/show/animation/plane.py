@@ -1,15 +1,33 @@
 """A sweep in the plane in motion: the object from afar, the vibrissa from near, the readings."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import ListedColormap, PowerNorm
+from matplotlib.patches import Polygon
 
-from analytic import CLAMP_READINGS, Readings
-from compare.show.animation.film import framed, write_film
-from compare.show.animation.motion import Motion, Motions
-from compare.show.animation.stage import SIZE, Stage
-from compare.show.animation.views import Curve, View
+from analytic import CLAMP_READINGS, Readings, curvatures, deflected_shapes, reconstruct
+from analytic.problem.arrays import Floats, Words
+from compare.sense.phases import classify
+from compare.show.animation.film import Heading, framed, write_film
+from compare.show.figures.over_foot import foot, shade_phases, unit
+from compare.show.style import BODY, CANDIDATE, FAINT, FOOT, GREY, INK, REFERENCE, axis_label
+
+# Perceptually uniform and the same to every kind of colour vision; its palest end is left out,
+# for it would drown in the white around it.
+_CURVATURE_COLOURS = ListedColormap(colormaps["viridis"](np.linspace(0.0, 0.9, 256)))
+_DOTS = 10  # of a dotted vibrissa, at equal steps of arc length
+_MARKS = 30  # of the candidate in a curve
+_RIM = 1.6  # points, on both sides together
+_LONGEST_ARROW = 0.45  # L; the largest contact force
+_LOWEST, _HIGHEST = -0.1, 1.08  # L; the least that is shown
 
 
 def write_animation(
@@ -20,42 +38,179 @@ def write_animation(
     advance: Callable[[], None] = lambda: None,
 ) -> list[Path]:
     """Draw the sweep in motion, from the sensed readings of both models alone."""
-    motions = Motions(Motion.of(reference), Motion.of(candidate))
-    touching = np.flatnonzero(np.isin(motions.reference.phase, ("tip", "tangent")))
+    one, other = _Motion.of(reference), _Motion.of(candidate)
+    touching = np.flatnonzero(np.isin(one.phase, ("tip", "tangent")))
     chosen = framed(reference, touching, frames)
-    return write_film(_stage(motions), chosen, touching, folder, advance)
-
-
-def _stage(motions: Motions) -> Stage:
-    readings = [motion.readings for motion in (motions.reference, motions.candidate)]
-    case = readings[0].provenance.get("case", "")
-    stage = Stage(case, [one.source for one in readings], motions.reference.phase, (0.085, 0.985))
-    figure = stage.figure
-    grid = figure.add_gridspec(
+    heading = Heading(reference, candidate.source, one.phase)
+    grid = heading.figure.add_gridspec(
         2, 2, left=0.085, right=0.985, top=0.915, bottom=0.085, hspace=0.24, wspace=0.3,
         height_ratios=[1, 2.1], width_ratios=[1.3, 1],
     )  # fmt: skip
-    far = View(figure.add_subplot(grid[0, :]), motions, follows=False)
-    near = View(figure.add_subplot(grid[1, 0]), motions, follows=True)
-    plots = grid[1, 1].subgridspec(3, 1, hspace=0.12)
-    curves = [
-        Curve(figure.add_subplot(plots[i]), motions, name, last=i == 2)
-        for i, name in enumerate(CLAMP_READINGS)
-    ]
-    _add_colour_bar(near, float(motions.reference.force.max()))
-    for view in (far, near):
-        view.frame(SIZE)
-    stage.parts = (far, near, *curves)
-    return stage
+    far = _View(heading.figure.add_subplot(grid[0, :]), one, other, follows=False)
+    near = _View(heading.figure.add_subplot(grid[1, 0]), one, other, follows=True)
+    near.add_keys()
+    plots: Any = grid[1, 1].subgridspec(3, 1, hspace=0.12).subplots(sharex=True)
+    curves = [_Curve(ax, one, other, name) for ax, name in zip(plots, CLAMP_READINGS, strict=True)]
+    plots[-1].set_xlabel(FOOT)
+    return write_film(heading, [far, near, *curves], chosen, touching, folder, advance)
 
 
-def _add_colour_bar(view: View, largest: float) -> None:
-    """The curvature's colours, and an arrow of a round force."""
-    bar = view.ax.figure.colorbar(view.line, ax=view.ax, aspect=32, pad=0.03)
-    bar.set_label(r"curvature $|\kappa|$ / ($1/L$)")
-    steps = np.outer(10.0 ** np.arange(-6, 9), [1, 2, 5]).ravel()
-    unit = steps[steps <= max(largest / 2.5, steps[0])][-1]
-    view.ax.quiverkey(
-        view.force, 0.36, 0.055, unit, f"contact force {unit:g} $EI/L^2$",
-        labelpos="E", coordinates="axes", fontproperties={"size": 9},
-    )  # fmt: skip
+@dataclass(frozen=True)
+class _Motion:
+    """One sweep as it is drawn: lengths in L, forces in EI/L^2, moments in EI/L."""
+
+    readings: Readings
+    foot_x: Floats  # shape (stations,)
+    x: Floats  # shape (stations, points); of the centreline, from clamp to tip
+    y: Floats
+    curvature: Floats  # its magnitude there
+    contact: Floats  # shape (stations, 2); where the body is touched; NaN where it is not
+    clamp: dict[str, Floats]  # shape (stations,); the clamp readings
+    phase: Words  # shape (stations,); as judged from the clamp
+
+    @property
+    def force(self) -> float:
+        """The largest contact force."""
+        return float(np.nanmax(np.hypot(self.clamp["force_x"], self.clamp["force_y"])))
+
+    @classmethod
+    def of(cls, readings: Readings) -> "_Motion":
+        """The sweep that these readings show, in units of their beam."""
+        length = readings.beam.length
+        x, y = deflected_shapes(readings)
+        return cls(
+            readings,
+            foot(readings),
+            x / length,
+            y / length,
+            np.abs(curvatures(readings, x, y)) * length,
+            reconstruct(readings)[["contact_x", "contact_y"]].to_numpy() / length,
+            {name: readings.values(name) / unit(readings, name) for name in CLAMP_READINGS},
+            classify(readings).phase,
+        )
+
+    def beside(self, foot_x: float) -> int:
+        """The station whose foot is nearest."""
+        return int(np.abs(self.foot_x - foot_x).argmin())
+
+    def beads(self, station: int) -> tuple[Floats, Floats]:
+        """Points on the centreline at equal steps of arc length."""
+        x, y = self.x[station], self.y[station]
+        along = np.append(0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y))))
+        at = np.linspace(0, along[-1], _DOTS + 1)[1:]
+        return np.interp(at, along, x), np.interp(at, along, y)
+
+
+class _View:
+    """The object, both vibrissae, the contact and its force, in one pair of axes."""
+
+    def __init__(self, ax: Axes, one: _Motion, other: _Motion, follows: bool) -> None:
+        self._ax, self._one, self._other, self._follows = ax, one, other, follows
+        width, dot = (7.0, 4.5) if follows else (2.0, 0.0)
+        self._outline = _outline(one.readings)
+        self._body = Polygon(self._outline, facecolor=BODY, edgecolor=GREY, zorder=1)
+        ax.add_patch(self._body)
+        self._line = LineCollection(
+            [], cmap=_CURVATURE_COLOURS, norm=PowerNorm(0.5, 0, float(np.nanmax(one.curvature))),
+            linewidth=width, capstyle="round", zorder=3,
+        )  # fmt: skip
+        ax.add_collection(self._line)
+        # Its rim has the reference's colour, as its curves have.
+        (self._rim,) = ax.plot(
+            [], [], color=REFERENCE, linewidth=width + _RIM, solid_capstyle="round", zorder=2.9
+        )
+        (self._dots,) = ax.plot(
+            [], [], "o", color=CANDIDATE, markersize=dot, markeredgecolor="w", zorder=4
+        )
+        (self._clamp,) = ax.plot([], [], color=INK, linewidth=0.8 * width, zorder=5)
+        (self._contact,) = ax.plot([], [], "o", color=INK, markersize=0.5 * width + 1, zorder=6)
+        # It ends at the contact of a low object, in whose inside there is room.
+        low = np.nanmedian(one.contact[:, 1]) < 0.5
+        self._force = ax.quiver(
+            [0.0], [0.0], [0.0], [0.0], color=INK, angles="xy", scale_units="xy",
+            pivot="tip" if low else "tail", scale=one.force / _LONGEST_ARROW, zorder=6,
+            units="dots", width=2.4 if follows else 1.4, minlength=0,
+        )  # fmt: skip
+        ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
+        ax.set_xlabel("$(x - x_0)$ / $L$" if follows else "$x$ / $L$", labelpad=1)
+        ax.set_ylabel("$y$ / $L$")
+        seen = [m.x - m.foot_x[:, None] * follows for m in (one, other)]
+        ax.set_xlim(*_padded([*seen, [] if follows else self._outline[:, 0]], 0.05), auto=True)
+        ax.set_ylim(_LOWEST, _HIGHEST, auto=True)
+        ax.set_aspect("equal", adjustable="datalim")
+        self.moving: list[Artist] = [
+            *([self._body] if follows else []),
+            self._rim, self._line, self._dots, self._clamp, self._contact, self._force,
+        ]  # fmt: skip
+
+    def add_keys(self) -> None:
+        """The curvature's colours, and an arrow of a round force."""
+        bar = self._ax.figure.colorbar(self._line, ax=self._ax, aspect=32, pad=0.03)
+        bar.set_label(r"curvature $|\kappa|$ / ($1/L$)")
+        size = float(f"{self._one.force / 4:.1g}")
+        self._ax.quiverkey(
+            self._force, 0.36, 0.055, size, f"contact force {size:g} $EI/L^2$",
+            labelpos="E", coordinates="axes", fontproperties={"size": 9},
+        )  # fmt: skip
+
+    def show(self, station: int) -> None:
+        """Move to a station."""
+        one, other = self._one, self._other
+        origin = one.foot_x[station] if self._follows else 0.0
+        x, y = one.x[station] - origin, one.y[station]
+        ends = np.column_stack([x, y])
+        self._line.set_segments(list(np.stack([ends[:-1], ends[1:]], axis=1)))
+        self._rim.set_data(x, y)
+        bent = one.curvature[station]
+        self._line.set_array((bent[1:] + bent[:-1]) / 2)
+        # Even where the stations of the two differ, each vibrissa stands on its own foot.
+        beads_x, beads_y = other.beads(other.beside(one.foot_x[station]))
+        self._dots.set_data(beads_x - origin, beads_y)
+        self._clamp.set_data(x[0] + np.array([-0.06, 0.06]), [0.0, 0.0])
+        contact = one.contact[station] - (origin, 0.0)
+        self._contact.set_data(contact[:1], contact[1:])
+        self._force.set_offsets(np.nan_to_num(contact))
+        force_x, force_y = (one.clamp[name][station] for name in ("force_x", "force_y"))
+        self._force.set_UVC([-force_x], [-force_y])
+        if self._follows:
+            self._body.set_xy(self._outline - (origin, 0.0))
+
+
+class _Curve:
+    """One clamp reading over the foot position, as far as the sweep has come."""
+
+    def __init__(self, ax: Axes, one: _Motion, other: _Motion, name: str) -> None:
+        self._one, self._other, self._name = one, other, name
+        (self._line,) = ax.plot([], [], color=REFERENCE, linewidth=2.2)
+        every = max(1, len(other.foot_x) // _MARKS)
+        (self._dots,) = ax.plot([], [], "o", color=CANDIDATE, markersize=2.6, markevery=every)
+        (self._head,) = ax.plot([], [], "o", color=INK, markersize=5)
+        ax.set_xlim(*_padded([one.foot_x, other.foot_x], 0.03))
+        ax.set_ylim(*_padded([one.clamp[name], other.clamp[name]], 0.08))
+        ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
+        ax.set_ylabel(axis_label(name))
+        shade_phases(ax, one.foot_x, one.phase)
+        self.moving: list[Artist] = [self._line, self._dots, self._head]
+
+    def show(self, station: int) -> None:
+        """Grow up to a station."""
+        x, values = self._one.foot_x, self._one.clamp[self._name]
+        until = self._other.beside(x[station]) + 1
+        self._line.set_data(x[: station + 1], values[: station + 1])
+        self._dots.set_data(self._other.foot_x[:until], self._other.clamp[self._name][:until])
+        self._head.set_data(x[station : station + 1], values[station : station + 1])
+
+
+def _outline(readings: Readings) -> Floats:
+    """Vertices of the body, shape (n, 2) [L]; none if the source did not record its contour."""
+    if "contour" not in readings.provenance:
+        return np.full((1, 2), np.nan)
+    xi, eta = (np.asarray(c) / readings.beam.length for c in readings.provenance["contour"])
+    top = eta.max()
+    return np.column_stack([[xi[0], *xi, xi[-1]], [top, *eta, top]])
+
+
+def _padded(values: Iterable[Floats | list[float]], share: float) -> tuple[float, float]:
+    every = np.concatenate([np.ravel(one) for one in values])
+    low, high = float(np.nanmin(every)), float(np.nanmax(every))
+    return low - share * (high - low), high + share * (high - low)

@@ -4,13 +4,15 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
+from analytic.problem.arrays import Floats
 from analytic.space import Body, SpatialReadings
 from compare.align.travel import travel_of
-from compare.show.animation.film import framed, write_film
-from compare.show.animation.stage import Stage
+from compare.show.animation.film import Heading, Part, framed, write_film
 from compare.show.figures.space import COLOURS, LOADS, Load, draw_scene, upright
 from compare.show.scene import SweepScene
 from compare.show.style import CANDIDATE, FAINT, INK, PHASE_COLOURS
@@ -29,28 +31,20 @@ def write_space_animation(
     """Draw the sweep in motion, from the clamp readings of both models alone."""
     touching = np.flatnonzero(reference.touching)
     chosen = framed(reference, touching, frames)
-    stage = _stage(SweepScene.of(reference, body), SweepScene.of(candidate, None))
-    return write_film(stage, chosen, touching, folder, advance)
-
-
-def _stage(one: SweepScene, other: SweepScene) -> Stage:
-    readings = one.readings
+    one, other = SweepScene.of(reference, body), SweepScene.of(candidate, None)
     phase = np.where(np.isfinite(one.lines).all(axis=(1, 2)), one.phase, "")
-    sources = readings.source, other.readings.source
-    stage = Stage(readings.provenance.get("case", ""), sources, phase, (0.09, 0.98))
-    grid = stage.figure.add_gridspec(
+    heading = Heading(reference, candidate.source, phase)
+    grid = heading.figure.add_gridspec(
         2, 2, left=0.09, right=0.98, top=0.95, bottom=0.085, hspace=0.16, wspace=0.24,
         height_ratios=[2.2, 1],
     )  # fmt: skip
-    view = stage.figure.add_subplot(grid[0, :], projection="3d", computed_zorder=False)
-    stage.parts = (
-        _View(view, one, other),
-        *(
-            _Curves(stage.figure.add_subplot(grid[1, i]), readings, other.readings, load)
-            for i, load in enumerate(LOADS)
-        ),
-    )
-    return stage
+    view = heading.figure.add_subplot(grid[0, :], projection="3d", computed_zorder=False)
+    curves = [
+        _Curves(heading.figure.add_subplot(grid[1, i]), one.readings, candidate, load)
+        for i, load in enumerate(LOADS)
+    ]
+    parts: list[Part] = [_View(view, one, other), *curves]
+    return write_film(heading, parts, chosen, touching, folder, advance)
 
 
 class _View:
@@ -62,7 +56,7 @@ class _View:
         (self._line,) = ax.plot([], [], [], linewidth=3)
         (self._dots,) = ax.plot([], [], [], color=CANDIDATE, marker="o", markersize=4, ls="")
         (self._contact,) = ax.plot([], [], [], color=INK, marker="o", markersize=5, ls="")
-        self.moving = (self._line, self._dots, self._contact)
+        self.moving: list[Artist] = [self._line, self._dots, self._contact]
 
     def show(self, station: int) -> None:
         one, other = self._one, self._other
@@ -79,17 +73,19 @@ class _Curves:
 
     def __init__(self, ax: Axes, one: SpatialReadings, other: SpatialReadings, load: Load) -> None:
         self._travel = travel_of(one) / one.beam.length
-        self._values, self.moving = [], []
+        self._values: list[Floats] = []
+        self._marks: list[Line2D] = []
         for name, colour in zip(load.names, COLOURS, strict=True):
             ax.plot(self._travel, load.of(one, name), color=colour, linewidth=1, label=name[-1])
             (mark,) = ax.plot([], [], color=colour, marker="o", markersize=6, ls="")
             self._values.append(load.of(other, name))
-            self.moving.append(mark)
+            self._marks.append(mark)
         ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
         ax.set_xlabel("way of the foot / $L$")
         ax.set_ylabel(load.title)
         ax.legend(fontsize=8, frameon=False, ncols=3)
+        self.moving: list[Artist] = [*self._marks]
 
     def show(self, station: int) -> None:
-        for mark, values in zip(self.moving, self._values, strict=True):
+        for mark, values in zip(self._marks, self._values, strict=True):
             mark.set_data([self._travel[station]], [values[station]])
