@@ -14,6 +14,7 @@ from compare.comparison import Comparison
 from compare.explain.budget import Budget
 from compare.explain.split import Split, split
 from compare.read.runs import EngineOutcome
+from compare.show import style
 from compare.show.document import Block, Document, Picture, Table, Text, Verdict, sections
 from compare.show.html import html
 from compare.show.numbers import short
@@ -25,15 +26,6 @@ from compare.show.side_by_side import (
     picture,
     seconds_per_station,
     side_by_side,
-)
-from compare.show.style import (
-    AT_TOP,
-    LARGE,
-    READING_COLOURS,
-    READING_MARKERS,
-    SMALL,
-    SYMBOLS,
-    label,
 )
 
 
@@ -212,23 +204,23 @@ def error_against_time(many: ManyEngines) -> Figure:
         xlabel="processor time a station [ms], building the model included",
         ylabel="rms relative to the largest magnitude",
     )
-    ax.set_title(f"{label(many.case.name)}: error against time", fontsize=LARGE, y=AT_TOP)
+    ax.set_title(f"{style.label(many.case.name)}: error against time", fontsize=style.LARGE)
     named = set()
     for one in many.outcomes:
         if one.rms is None or one.seconds_a_station is None:
             continue
         x = 1e3 * one.seconds_a_station
         for reading, rms in one.rms.items():
-            said = "_" if reading in named else SYMBOLS[reading]
-            colour, marker = READING_COLOURS[reading], READING_MARKERS[reading]
+            said = "_" if reading in named else style.SYMBOLS[reading]
+            colour, marker = style.READING_COLOURS[reading], style.READING_MARKERS[reading]
             ax.plot(x, rms, marker, color=colour, label=said)
             named.add(reading)
         ax.annotate(
-            label(one.name), (x, max(one.rms.values())), (0, 8), textcoords="offset points",
-            ha="center", fontsize=SMALL,
+            style.label(one.name), (x, max(one.rms.values())), (0, 8), textcoords="offset points",
+            ha="center", fontsize=style.SMALL,
         )  # fmt: skip
     ax.margins(0.25)
     ax.grid(which="both", alpha=0.25)
     if named:
-        ax.legend(frameon=False, fontsize=SMALL)
+        ax.legend(frameon=False, fontsize=style.SMALL)
     return figure

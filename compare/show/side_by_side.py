@@ -13,7 +13,7 @@ from compare.show.figures.keys import key_below
 from compare.show.figures.over_foot import foot_label, shade_reference
 from compare.show.figures.thinning import draw
 from compare.show.numbers import short
-from compare.show.style import AT_TOP, LARGE, LINE_STYLES, SERIES, SYMBOLS, label
+from compare.show.style import LARGE, LINE_STYLES, SERIES, SYMBOLS, label
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def picture(found: SideBySide) -> Figure:
                 label=label(candidate),
             )
         ax.ticklabel_format(axis="y", scilimits=(-2, 2))
-        ax.set_title(SYMBOLS[name], fontsize=LARGE, y=AT_TOP)
+        ax.set_title(SYMBOLS[name], fontsize=LARGE)
         ax.set_xlabel(foot_label(first.reference))
     axes[0].set_ylabel(f"difference from {label(found.reference)}\nrelative to largest magnitude")
     key_below(figure, axes[0], min(len(found.against), 4))

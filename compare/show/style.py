@@ -39,9 +39,6 @@ SMALL, NORMAL, LARGE = 9, 10, 11
 PAGE_WIDTH = 9.0
 """Of a picture across the page, in inches."""
 
-AT_TOP = 1.0
-"""Where a title stands: for a place of its own, all numbers of its axes would be laid out again."""
-
 PNG_LEVEL = 3
 """Of compression: the usual 6 takes half as long again for a twelfth less."""
 

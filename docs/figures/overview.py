@@ -20,23 +20,12 @@ from analytic import (
     named_case,
     solve_sweep,
 )
+from compare.show import style
 from compare.show.figures.fold import with_fold
 from compare.show.figures.over_foot import LINE, foot, shade_phases
-from compare.show.style import (
-    BODY,
-    CANDIDATE,
-    FAINT,
-    FOOT,
-    GREEN,
-    GREY,
-    INK,
-    PHASE_COLOURS,
-    PHASE_NAMES,
-    axis_label,
-)
 from mujoco_models import simulate_sweep
 
-_FORCE = GREEN
+_FORCE = style.GREEN
 _ARROW = {"arrowstyle": "-|>", "color": _FORCE, "linewidth": 1.8}
 
 
@@ -60,16 +49,18 @@ def _sketch(ax: Axes, exact: Readings) -> None:
     named = set()
     for i in np.linspace(3, len(phase) - 1, 17).astype(int):
         name = str(phase[i])
-        label = None if name in named else PHASE_NAMES[name]
-        ax.plot(x[i], y[i], color=PHASE_COLOURS[name], linewidth=1.2, label=label)
+        label = None if name in named else style.PHASE_NAMES[name]
+        ax.plot(x[i], y[i], color=style.PHASE_COLOURS[name], linewidth=1.2, label=label)
         named.add(name)
     xi, eta = (np.asarray(c) for c in exact.provenance["contour"])
-    ax.fill_between(xi, eta, eta.max(), color=BODY, linewidth=0)
-    ax.plot(xi, eta, color=GREY, linewidth=2)
-    ax.text(0, 0.75, "rigid, strictly convex object", ha="center", color=GREY)
-    ax.axhline(0, color=FAINT, linewidth=0.8)
-    ax.annotate("", (-3.05, -0.22), (-2.25, -0.22), arrowprops={"arrowstyle": "-|>", "color": INK})
-    ax.text(-2.2, -0.22, "the foot $x_0$ is swept this way", va="center", color=INK)
+    ax.fill_between(xi, eta, eta.max(), color=style.BODY, linewidth=0)
+    ax.plot(xi, eta, color=style.GREY, linewidth=2)
+    ax.text(0, 0.75, "rigid, strictly convex object", ha="center", color=style.GREY)
+    ax.axhline(0, color=style.FAINT, linewidth=0.8)
+    ax.annotate(
+        "", (-3.05, -0.22), (-2.25, -0.22), arrowprops={"arrowstyle": "-|>", "color": style.INK}
+    )
+    ax.text(-2.2, -0.22, "the foot $x_0$ is swept this way", va="center", color=style.INK)
     ax.set_aspect("equal")
     ax.set_xlim(-3.1, 4.35)
     ax.set_ylim(-0.35, 1.12)
@@ -87,12 +78,12 @@ def _signs(ax: Axes, x0: float) -> None:
     x, y = (path[i] for path in deflected_shapes(sweep))
     x = x - row["foot_x"] + x0
     cx, cy, alpha = row["contact_x"] - row["foot_x"] + x0, row["contact_y"], row["contact_angle"]
-    ax.plot(x, y, color=INK, linewidth=2)
-    ax.plot([x0 - 0.12, x0 + 0.12], [0, 0], color=INK, linewidth=3)
+    ax.plot(x, y, color=style.INK, linewidth=2)
+    ax.plot([x0 - 0.12, x0 + 0.12], [0, 0], color=style.INK, linewidth=3)
     span = np.linspace(-0.45, 0.45, 2)
-    ax.plot(cx + span * np.cos(alpha), cy + span * np.sin(alpha), color=GREY, linewidth=1.2)
-    ax.plot([cx, cx + 0.45], [cy, cy], color=GREY, linewidth=0.8, linestyle=":")
-    ax.add_patch(Arc((cx, cy), 0.6, 0.6, theta1=0, theta2=np.rad2deg(alpha), color=GREY))
+    ax.plot(cx + span * np.cos(alpha), cy + span * np.sin(alpha), color=style.GREY, linewidth=1.2)
+    ax.plot([cx, cx + 0.45], [cy, cy], color=style.GREY, linewidth=0.8, linestyle=":")
+    ax.add_patch(Arc((cx, cy), 0.6, 0.6, theta1=0, theta2=np.rad2deg(alpha), color=style.GREY))
     ax.text(cx + 0.33, cy + 0.05, r"$\alpha$")
     ax.text(cx - 0.02, cy + 0.12, r"$(\xi, \eta)$", ha="right")
     ax.text(x[30] + 0.05, y[30] - 0.08, "$s$")
@@ -123,13 +114,13 @@ def _plots(axes: list[Axes], exact: Readings, simulated: Readings) -> None:
             foot(simulated),
             simulated.values(name),
             "o",
-            color=CANDIDATE,
+            color=style.CANDIDATE,
             markersize=3.6,
             markeredgewidth=0,
             label="mujoco chain, 40 segments",
         )
-        ax.set_title(axis_label(name), fontsize=10)
-        ax.set_xlabel(FOOT)
+        ax.set_title(style.axis_label(name), fontsize=10)
+        ax.set_xlabel(style.FOOT)
 
 
 if __name__ == "__main__":

@@ -16,15 +16,7 @@ from analytic import InputError, Readings
 from analytic.problem.arrays import Integers, Words
 from analytic.problem.files import whole_file, write_whole
 from analytic.space import SpatialReadings
-from compare.show.style import (
-    CANDIDATE,
-    INK,
-    PHASE_COLOURS,
-    PHASE_NAMES,
-    PNG_LEVEL,
-    REFERENCE,
-    label,
-)
+from compare.show import style
 
 _SIZE = (8.0, 6.4)  # inches
 _DPI, _STILL_DPI = 100, 150  # pixels an inch: a still may be printed
@@ -48,13 +40,13 @@ class Heading:
 
     def __init__(self, reference: Readings | SpatialReadings, candidate: str, phase: Words) -> None:
         self.figure = Figure(figsize=_SIZE, dpi=_DPI)
-        case = label(reference.provenance.get("case", ""))
+        case = style.label(reference.provenance.get("case", ""))
         self.figure.text(0.085, _TOP, case, fontsize=12, weight="bold")
         self._text = self.figure.text(0.98, _TOP, "", ha="right", fontsize=12, weight="bold")
-        line = Line2D([], [], color=REFERENCE, linewidth=3)
-        dots = Line2D([], [], color=CANDIDATE, marker="o", linestyle="")
+        line = Line2D([], [], color=style.REFERENCE, linewidth=3)
+        dots = Line2D([], [], color=style.CANDIDATE, marker="o", linestyle="")
         self.figure.legend(
-            [line, dots], [label(reference.source), label(candidate)],
+            [line, dots], [style.label(reference.source), style.label(candidate)],
             loc="center", bbox_to_anchor=(0.5, 0.967), ncols=2, frameon=False,
         )  # fmt: skip
         self._phase = phase
@@ -63,8 +55,8 @@ class Heading:
     def show(self, station: int) -> None:
         """Name the phase of a station."""
         phase = str(self._phase[station])
-        self._text.set_text(PHASE_NAMES.get(phase, "without readings to trust"))
-        self._text.set_color(PHASE_COLOURS.get(phase, INK))
+        self._text.set_text(style.PHASE_NAMES.get(phase, "without readings to trust"))
+        self._text.set_color(style.PHASE_COLOURS.get(phase, style.INK))
 
 
 def framed(readings: Readings | SpatialReadings, touching: Integers, frames: int) -> Integers:
@@ -96,7 +88,7 @@ def write_film(
         _images(heading.figure, [heading, *parts], shown, _STILL_DPI), start=1
     ):
         buffer = io.BytesIO()
-        image.save(buffer, "PNG", dpi=(_STILL_DPI, _STILL_DPI), compress_level=PNG_LEVEL)
+        image.save(buffer, "PNG", dpi=(_STILL_DPI, _STILL_DPI), compress_level=style.PNG_LEVEL)
         written.append(write_whole(folder / f"still-{number}.png", buffer.getvalue()))
     return written
 

@@ -10,7 +10,7 @@ from analytic import CLAMP_READINGS
 from compare.explain.budget import UNRESOLVED, Budget
 from compare.show.budgets import headline
 from compare.show.numbers import short
-from compare.show.style import AT_TOP, BLUE, BODY, GREY, INK, LARGE, ORANGE, SMALL
+from compare.show.style import BLUE, BODY, GREY, INK, LARGE, ORANGE, SMALL
 
 _BLAMED, _OTHER, _UNEXPLAINED, _ZONE = ORANGE, BLUE, INK, BODY
 _LEAST = UNRESOLVED / 50  # of the largest magnitude; less has a number, but no bar
@@ -66,7 +66,7 @@ def _draw(ax: Axes, found: Budget, reading: str) -> None:
     ax.set_yticks(rows, names)
     ax.tick_params(axis="y", length=0)
     ax.yaxis.get_ticklabels()[names.index(found.blame)].set_fontweight("bold")
-    ax.set_title(f"{reading}: {short(total)} in all", fontsize=LARGE, y=AT_TOP)
+    ax.set_title(f"{reading}: {short(total)} in all", fontsize=LARGE)
     ax.set_xlabel("rms / largest magnitude")
     for side in ("top", "right", "left"):
         ax.spines[side].set_visible(False)

@@ -15,27 +15,16 @@ from matplotlib.patches import Circle
 from analytic import Readings, deflected_shapes, reconstruct
 from analytic.problem.arrays import Words
 from compare.comparison import Comparison
+from compare.show import style
 from compare.show.figures.keys import key_below, phase_handles
 from compare.show.figures.over_foot import foot, on_vibrissa
 from compare.show.figures.thinning import cloud, draw
 from compare.show.numbers import quantity
-from compare.show.style import (
-    AT_TOP,
-    BODY,
-    FAINT,
-    GREEN,
-    GREY,
-    INK,
-    NORMAL,
-    PAGE_WIDTH,
-    PHASE_COLOURS,
-    label,
-)
 
 _SHAPES = 24  # drawn of each sweep
 _HIGHEST = 10.0  # inches, if the sweep is much shorter than the vibrissa
-_OBJECT: dict[str, Any] = {"color": GREY, "linewidth": 2.5}
-_CONTACT: dict[str, Any] = {"color": INK, "marker": "o", "markersize": 1.5, "linestyle": ""}
+_OBJECT: dict[str, Any] = {"color": style.GREY, "linewidth": 2.5}
+_CONTACT: dict[str, Any] = {"color": style.INK, "marker": "o", "markersize": 1.5, "linestyle": ""}
 
 
 def geometry(comparison: Comparison) -> Figure:
@@ -47,9 +36,13 @@ def geometry(comparison: Comparison) -> Figure:
         phase = comparison.judged[which].phase
         _draw_shapes(ax, readings, phase)
         _draw_object(ax, readings, phase)
-        ax.set_title(f"{which}: {label(readings.source)}", loc="left", fontsize=NORMAL, y=AT_TOP)
+        ax.set_title(
+            f"{which}: {style.label(readings.source)}",
+            loc="left",
+            fontsize=style.NORMAL,
+        )
         ax.set_ylabel("$y$ / $L$")
-        ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
+        ax.axhline(0, color=style.FAINT, linewidth=0.8, zorder=0)
     foot_x, beam = foot(comparison.reference), comparison.reference.beam
     size = f"$L$ = {quantity(beam.length, 'length', beam)}; " if beam.si else ""
     direction = "right" if foot_x[-1] > foot_x[0] else "left"
@@ -60,7 +53,7 @@ def geometry(comparison: Comparison) -> Figure:
         Line2D([], [], **_CONTACT | {"markersize": 3}, label="reconstructed contact"),
     ]
     key_below(figure, handles, 5)
-    at_equal_scales(figure, axes, PAGE_WIDTH)
+    at_equal_scales(figure, axes, style.PAGE_WIDTH)
     return figure
 
 
@@ -72,7 +65,7 @@ def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
     scale = readings.beam.length
     if "contour" in readings.provenance:
         xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
-        ax.plot(xi, eta, color=FAINT, linewidth=3, label="object", zorder=0)
+        ax.plot(xi, eta, color=style.FAINT, linewidth=3, label="object", zorder=0)
     there = np.isfinite(found["contact_x"].to_numpy())
     if "contact_arc_length" in found:  # not every method knows it
         there &= np.isfinite(on_vibrissa(found["contact_arc_length"].to_numpy() / scale))
@@ -82,12 +75,12 @@ def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
         radius = found["uncertainty"].to_numpy() / scale
         circles = PatchCollection(
             [Circle((x[i], y[i]), radius[i]) for i in kept if np.isfinite(radius[i])],
-            color=GREEN,
+            color=style.GREEN,
             alpha=0.08,
             linewidth=0,
         )
         ax.add_collection(circles)
-        ax.plot([], [], "o", color=GREEN, alpha=0.3, markersize=9, label="95 % of cases")
+        ax.plot([], [], "o", color=style.GREEN, alpha=0.3, markersize=9, label="95 % of cases")
     draw(ax, x, y, **_CONTACT | {"markersize": 2.5}, label="reconstructed contact")
     if not kept.size:
         ax.text(0.5, 0.5, "no contact found", transform=ax.transAxes, ha="center")
@@ -95,9 +88,9 @@ def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
     own = "" if beam.si else " of the readings' unit"
     ax.set_xlabel(f"$x$ / $L$   ($L$ = {quantity(scale, 'length', beam)}{own})")
     ax.set_ylabel("$y$ / $L$")
-    ax.axhline(0, color=FAINT, linewidth=0.8)
+    ax.axhline(0, color=style.FAINT, linewidth=0.8)
     key_below(figure, phase_handles() + ax.get_legend_handles_labels()[0], 3)
-    at_equal_scales(figure, [ax], PAGE_WIDTH)
+    at_equal_scales(figure, [ax], style.PAGE_WIDTH)
     return figure
 
 
@@ -112,7 +105,7 @@ def at_equal_scales(figure: Figure, axes: Sequence[Axes], width: float) -> None:
 
 
 def _draw_shapes(ax: Axes, readings: Readings, phase: Words) -> None:
-    usable = np.flatnonzero(np.isin(phase, list(PHASE_COLOURS)))
+    usable = np.flatnonzero(np.isin(phase, list(style.PHASE_COLOURS)))
     chosen = usable[np.linspace(0, len(usable) - 1, min(_SHAPES, len(usable))).astype(int)]
     if not chosen.size:
         return
@@ -123,11 +116,11 @@ def _draw_shapes(ax: Axes, readings: Readings, phase: Words) -> None:
     x, y = (path[:-1] / scale for path in deflected_shapes(picked))
     lines = LineCollection(
         list(np.stack([x, y], axis=-1)),
-        colors=[PHASE_COLOURS[str(phase[i])] for i in chosen],
+        colors=[style.PHASE_COLOURS[str(phase[i])] for i in chosen],
         linewidths=1.1,
     )
     ax.add_collection(lines)
-    ax.plot(x[:, 0], y[:, 0], "s", color=GREY, markersize=2.5)
+    ax.plot(x[:, 0], y[:, 0], "s", color=style.GREY, markersize=2.5)
     ax.autoscale_view()
 
 
@@ -135,7 +128,7 @@ def _draw_object(ax: Axes, readings: Readings, phase: Words) -> None:
     scale = readings.beam.length
     if "contour" in readings.provenance:
         xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
-        ax.fill_between(xi, eta, eta.max(), color=BODY, linewidth=0, zorder=0)
+        ax.fill_between(xi, eta, eta.max(), color=style.BODY, linewidth=0, zorder=0)
         ax.plot(xi, eta, **_OBJECT, zorder=1)
     found = reconstruct(readings)[np.isin(phase, ("tip", "tangent"))]
     s, x, y = (

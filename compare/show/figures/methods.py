@@ -6,22 +6,11 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from compare.show import style
 from compare.show.figures.keys import key_below
 from compare.show.numbers import short
-from compare.show.style import (
-    AT_TOP,
-    BLUE,
-    BODY,
-    GREEN,
-    GREY,
-    INK,
-    ORANGE,
-    PAPER,
-    PHASE_NAMES,
-    SMALL,
-)
 
-_LEVELS = ((BLUE, "o"), (ORANGE, "s"), (GREEN, "^"))  # by level of noise
+_LEVELS = ((style.BLUE, "o"), (style.ORANGE, "s"), (style.GREEN, "^"))  # by level of noise
 _DARK = -2.2  # decades; more is so dark that words on it are white
 _NEARLY_ALL = 0.985
 _LEAST = 1e-6  # L; what is less is drawn there: no sensor sees the difference
@@ -38,7 +27,8 @@ def picture(found: pd.DataFrame, title: str) -> Figure:
     for ax, phase in zip(axes, phases, strict=False):
         _draw(ax, found[found["phase"] == phase], methods)
         ax.set_title(
-            f"{PHASE_NAMES[phase]}, {_count(found, phase)} contacts", fontsize=SMALL + 1, y=AT_TOP
+            f"{style.PHASE_NAMES[phase]}, {_count(found, phase)} contacts",
+            fontsize=style.SMALL + 1,
         )
     axes[0].set_yticks(range(len(methods)), methods)
     axes[0].invert_yaxis()
@@ -46,7 +36,7 @@ def picture(found: pd.DataFrame, title: str) -> Figure:
     figure.supxlabel(
         "error / $L$: median, and a line to the worst; at the left edge: $10^{-6}$ or less; "
         "right: share answered without noise",
-        fontsize=SMALL,
+        fontsize=style.SMALL,
     )
     figure.suptitle(f"Error of the contact found from the clamp: {title}", fontsize=12)
     return figure
@@ -62,7 +52,7 @@ def side_by_side(found: pd.DataFrame, title: str) -> Figure:
         layout="constrained",
     )
     axes = figure.subplots(1, max(len(phases), 1), squeeze=False, sharey=True)[0]
-    colours = colormaps["viridis_r"].with_extremes(bad=BODY)
+    colours = colormaps["viridis_r"].with_extremes(bad=style.BODY)
     for ax, phase in zip(axes, phases, strict=False):
         rows = found[found["phase"] == phase]
         medians, shares = (
@@ -82,12 +72,12 @@ def side_by_side(found: pd.DataFrame, title: str) -> Figure:
             text = "none" if np.isnan(size) else short(10**size) if size > -6 else "<1e-6"
             text += "" if share > _NEARLY_ALL or np.isnan(size) else f"\n{share:.0%}"
             ax.text(
-                j, i, text, ha="center", va="center", fontsize=SMALL - 2.5, linespacing=0.9,
-                color=PAPER if size > _DARK else INK,
+                j, i, text, ha="center", va="center", fontsize=style.SMALL - 2.5, linespacing=0.9,
+                color=style.PAPER if size > _DARK else style.INK,
             )  # fmt: skip
-        ax.set_xticks(range(len(kinds)), kinds, rotation=35, ha="right", fontsize=SMALL)
-        ax.set_title(PHASE_NAMES[phase], fontsize=SMALL + 1, y=AT_TOP)
-    axes[0].set_yticks(range(len(methods)), methods, fontsize=SMALL)
+        ax.set_xticks(range(len(kinds)), kinds, rotation=35, ha="right", fontsize=style.SMALL)
+        ax.set_title(style.PHASE_NAMES[phase], fontsize=style.SMALL + 1)
+    axes[0].set_yticks(range(len(methods)), methods, fontsize=style.SMALL)
     bar = figure.colorbar(image, ax=axes, label="median error / $L$", shrink=0.8)
     bar.set_ticks(
         range(-6, 1), labels=["$10^{-6}$ or less", *(f"$10^{{{n}}}$" for n in range(-5, 1))]
@@ -95,7 +85,7 @@ def side_by_side(found: pd.DataFrame, title: str) -> Figure:
     figure.supxlabel(
         "the readings' vibrissa; all methods take it for straight, in a rigid clamp, frictionless. "
         "Below a number: share answered, if not all",
-        fontsize=SMALL - 1,
+        fontsize=style.SMALL - 1,
     )
     figure.suptitle(f"What each method survives: {title}, no noise", fontsize=12)
     return figure
@@ -118,17 +108,17 @@ def _draw(ax: Axes, found: pd.DataFrame, methods: list[str]) -> None:
     share = found[found["noise"] == levels[0]].set_index("method")["answered"]
     for y, method in enumerate(methods):
         text = "no answer" if share[method] == 0 else f"{share[method]:.0%}"
-        colour = INK if share[method] < 0.99 else GREY
+        colour = style.INK if share[method] < 0.99 else style.GREY
         ax.annotate(
             text,
             (1.005, y),
             xycoords=("axes fraction", "data"),
             va="center",
-            fontsize=SMALL - 1,
+            fontsize=style.SMALL - 1,
             color=colour,
         )
         if y % 2:
-            ax.axhspan(y - 0.5, y + 0.5, color=BODY, alpha=0.35, linewidth=0)
+            ax.axhspan(y - 0.5, y + 0.5, color=style.BODY, alpha=0.35, linewidth=0)
     ax.set_xscale("log")
     ax.set_xlim(_LEAST / 1.5, 3)
-    ax.tick_params(labelsize=SMALL)
+    ax.tick_params(labelsize=style.SMALL)

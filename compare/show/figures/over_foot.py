@@ -11,33 +11,23 @@ from analytic import CLAMP_READINGS, Readings
 from analytic.problem.arrays import Floats, Words
 from compare.comparison import Comparison
 from compare.sense.phases import Classification
+from compare.show import style
 from compare.show.figures.keys import phase_handles
 from compare.show.figures.thinning import stretches
 from compare.show.numbers import Kind, quantity
-from compare.show.style import (
-    CANDIDATE,
-    FOOT,
-    PAGE_WIDTH,
-    PHASE_COLOURS,
-    REFERENCE,
-    SMALL,
-    SYMBOLS,
-    UNITS,
-    axis_label,
-)
 
-LINE: dict[str, Any] = {"color": REFERENCE, "linewidth": 3.0}
+LINE: dict[str, Any] = {"color": style.REFERENCE, "linewidth": 3.0}
 """How the reference is drawn: so wide that dots upon it hide it nowhere."""
-_DOTS = {"color": CANDIDATE, "marker": "o", "markeredgewidth": 0, "linestyle": ""}
+_DOTS = {"color": style.CANDIDATE, "marker": "o", "markeredgewidth": 0, "linestyle": ""}
 _BEYOND_TIP = 1.1  # L; as far as a noisy contact is drawn
 
 
 def stacked(readings: Readings) -> tuple[Figure, dict[str, Axes]]:
     """Axes for the clamp readings, one above the other, over the foot position."""
-    figure = Figure(figsize=(PAGE_WIDTH, 7.0), layout="constrained")
+    figure = Figure(figsize=(style.PAGE_WIDTH, 7.0), layout="constrained")
     axes = figure.subplots(len(CLAMP_READINGS), 1, sharex=True)
     for ax in axes:
-        ax.tick_params(labelsize=SMALL)
+        ax.tick_params(labelsize=style.SMALL)
     axes[-1].set_xlabel(foot_label(readings))
     return figure, dict(zip(CLAMP_READINGS, axes, strict=True))
 
@@ -61,16 +51,16 @@ def unit(readings: Readings, name: str) -> float:
 def reading_label(readings: Readings, name: str) -> str:
     """A reading's symbol and the unit it is drawn in, with what that is where it is known."""
     if not readings.beam.si or name not in CLAMP_READINGS:
-        return axis_label(name)
+        return style.axis_label(name)
     kind: Kind = "moment" if name == "moment_z" else "force"
     size = quantity(unit(readings, name), kind, readings.beam)
-    return f"{SYMBOLS[name]} / ({UNITS[name]} = {size})"
+    return f"{style.SYMBOLS[name]} / ({style.UNITS[name]} = {size})"
 
 
 def foot_label(readings: Readings) -> str:
     """What an axis of foot positions is called."""
     beam = readings.beam
-    return FOOT + (f"   ($L$ = {quantity(beam.length, 'length', beam)})" if beam.si else "")
+    return style.FOOT + (f"   ($L$ = {quantity(beam.length, 'length', beam)})" if beam.si else "")
 
 
 def scaled(readings: Readings, judged: Classification, name: str) -> Floats:
@@ -95,7 +85,7 @@ def shade_phases(ax: Axes, foot_x: Floats, phase: Words) -> None:
             ax.axvspan(
                 foot_x[max(begin - 1, 0)],
                 foot_x[end],
-                color=PHASE_COLOURS[str(name)],
+                color=style.PHASE_COLOURS[str(name)],
                 alpha=0.10,
                 linewidth=0,
             )

@@ -16,22 +16,11 @@ from analytic import (
     reconstruct_by_decision,
     surplus,
 )
+from compare.show import style
 from compare.show.figures.geometry import at_equal_scales
 from compare.show.figures.over_foot import foot, unit
-from compare.show.style import (
-    AT_TOP,
-    FAINT,
-    GREEN,
-    INK,
-    NORMAL,
-    PHASE_COLOURS,
-    SMALL,
-    YELLOW,
-    axis_label,
-    label,
-)
 
-_A, _B = PHASE_COLOURS["tip"], PHASE_COLOURS["tangent"]
+_A, _B = style.PHASE_COLOURS["tip"], style.PHASE_COLOURS["tangent"]
 
 
 def paper_figures(case: Case, readings: Readings) -> dict[str, Figure]:
@@ -58,12 +47,12 @@ def contact_length(case: Case) -> Figure:
     angle = np.linspace(first, min(events.snap_off.contact_angle, 2 * lowest - first), 801)[1:]
     shortened = surplus(centreline, centreline.parameter(angle))
     s1 = 1 / (1 - shortened)
-    ax.plot(np.rad2deg(angle), np.where(shortened < 1, s1, np.nan), color=INK)
-    ax.axhline(1, color=FAINT, linestyle="--", linewidth=0.9)
+    ax.plot(np.rad2deg(angle), np.where(shortened < 1, s1, np.nan), color=style.INK)
+    ax.axhline(1, color=style.FAINT, linestyle="--", linewidth=0.9)
     for name, event, colour in (
         ("start of Phase B", events.phase_b_start, _B),
         ("end of Phase B", events.phase_b_end, _A),
-        ("least $s_1$", events.contact_length_minimum, GREEN),
+        ("least $s_1$", events.contact_length_minimum, style.GREEN),
     ):
         if event is not None:
             ax.plot(
@@ -77,7 +66,7 @@ def contact_length(case: Case) -> Figure:
     ax.set_xlabel(r"slope angle $\alpha$ of the contour / °")
     ax.set_ylabel("$s_1$ / $L$  (eq. 21)")
     ax.set_ylim(0, 2)
-    ax.legend(fontsize=SMALL, frameon=False)
+    ax.legend(fontsize=style.SMALL, frameon=False)
     return figure
 
 
@@ -87,14 +76,14 @@ def profile(readings: Readings) -> Figure:
     ax = figure.subplots()
     scale = readings.beam.length
     xi, eta = (np.asarray(c) / scale for c in readings.provenance["contour"])
-    ax.plot(xi, eta, color=INK, linewidth=1)
+    ax.plot(xi, eta, color=style.INK, linewidth=1)
     for phase, name, colour in (("tip", "Phase A", _A), ("tangent", "Phase B", _B)):
         here = (readings.table["phase"] == phase).to_numpy()
         x, y = readings.values("contact_x")[here], readings.values("contact_y")[here]
         ax.plot(x / scale, y / scale, ".", color=colour, label=name)
     ax.set_xlabel(r"$\xi$ / $L$")
     ax.set_ylabel(r"$\eta$ / $L$")
-    ax.set_title(label(readings.provenance["profile"]), fontsize=NORMAL, y=AT_TOP)
+    ax.set_title(style.label(readings.provenance["profile"]), fontsize=style.NORMAL)
     figure.legend(loc="outside lower center", ncols=2, frameon=False)
     at_equal_scales(figure, [ax], 6.5)
     return figure
@@ -106,7 +95,7 @@ def observables(readings: Readings) -> Figure:
     axes = figure.subplots(2, 2).ravel()
     x = foot(readings)
     for ax, name in zip(axes[:3], CLAMP_READINGS, strict=True):
-        for phase, colour in PHASE_COLOURS.items():
+        for phase, colour in style.PHASE_COLOURS.items():
             here = (readings.table["phase"] == phase).to_numpy()
             ax.plot(
                 x[here],
@@ -115,7 +104,7 @@ def observables(readings: Readings) -> Figure:
                 color=colour,
                 markersize=3,
             )
-        ax.set_ylabel(axis_label(name))
+        ax.set_ylabel(style.axis_label(name))
     if readings.beam.varies:
         axes[3].set_visible(False)
     else:
@@ -141,7 +130,7 @@ def _error(ax: Axes, readings: Readings) -> None:
     if not readings.beyond_the_paper:
         found_by = {"(26) and integration": reconstruct_by_decision(readings), **found_by}
     for method, found in found_by.items():
-        colour = INK if method == "closed form" else YELLOW
+        colour = style.INK if method == "closed form" else style.YELLOW
         error = np.hypot(
             found["contact_x"] - readings.values("contact_x"),
             found["contact_y"] - readings.values("contact_y"),
@@ -149,4 +138,4 @@ def _error(ax: Axes, readings: Readings) -> None:
         shown = np.maximum(error / scale, 1e-17)  # zero has no place on a logarithmic axis
         ax.semilogy(foot(readings), shown, ".", markersize=3, color=colour, label=method)
     ax.set_ylabel("error of the contact point / $L$")
-    ax.legend(fontsize=SMALL, frameon=False)
+    ax.legend(fontsize=style.SMALL, frameon=False)

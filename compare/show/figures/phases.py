@@ -15,11 +15,13 @@ from compare.show.figures.over_foot import (
 from compare.show.figures.thinning import draw
 from compare.show.style import CANDIDATE, GREY, PAGE_WIDTH, REFERENCE, label
 
+_AXES = {"left": 0.107, "right": 0.99, "top": 0.98, "bottom": 0.15, "hspace": 0.08}
+
 
 def phase_criterion(comparison: Comparison) -> Figure:
     """Draw criterion (26) of the paper, zero in Phase B, and the contact, at the tip in Phase A."""
-    figure = Figure(figsize=(PAGE_WIDTH, 5.4), layout="constrained")
-    axes = figure.subplots(2, 1, sharex=True)
+    figure = Figure(figsize=(PAGE_WIDTH, 5.4))
+    axes = figure.subplots(2, 1, sharex=True, gridspec_kw=_AXES)
     for readings, which, style in (
         (comparison.reference, "reference", LINE),
         (comparison.candidate, "candidate", dots(comparison)),

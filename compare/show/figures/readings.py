@@ -10,6 +10,7 @@ from matplotlib.ticker import MaxNLocator
 from analytic import CLAMP_READINGS, reconstruct
 from analytic.problem.arrays import Floats
 from compare.comparison import Comparison
+from compare.show import style
 from compare.show.figures.fold import with_fold
 from compare.show.figures.keys import key_below
 from compare.show.figures.over_foot import (
@@ -25,28 +26,20 @@ from compare.show.figures.over_foot import (
     unit,
 )
 from compare.show.figures.thinning import draw
-from compare.show.style import (
-    AT_TOP,
-    CANDIDATE,
-    INK,
-    LARGE,
-    REFERENCE,
-    SYMBOLS,
-    label,
-)
 
 _ALONE = 3.0  # points; of dots that lie on no line
 _NEAR = 0.03  # of the sweep's length: what is shown on either side of the snap-off
 _PANEL = (4.8, 4.0)  # inches
-# To measure the texts of each would take longer than to draw it.
+# To measure the texts of each picture would take longer than to draw it.
+_ROW = {"left": 0.07, "right": 0.99, "top": 0.94, "bottom": 0.15, "hspace": 0.16, "wspace": 0.25}
 _AXES = {"left": 0.155, "right": 0.98, "top": 0.93, "bottom": 0.25, "hspace": 0.2}
 
 
 def readings(comparison: Comparison) -> Figure:
     """Draw clamp force, moment and reconstructed contact, and differences, side by side."""
-    figure = Figure(figsize=(12, 5.4), layout="constrained")
-    upper, lower = figure.subplots(2, 4, sharex=True, height_ratios=[2.2, 1])
-    for i, name in enumerate(SYMBOLS):
+    figure = Figure(figsize=(12, 5.4))
+    upper, lower = figure.subplots(2, 4, sharex=True, height_ratios=[2.2, 1], gridspec_kw=_ROW)
+    for i, name in enumerate(style.SYMBOLS):
         _draw_reading(upper[i], lower[i], comparison, name)
     lower[0].set_ylabel("difference\n(same unit)")
     key_below(figure, key(upper[0]), 4)
@@ -58,7 +51,10 @@ def around_snap_off(comparison: Comparison, name: str) -> Figure:
     figure = reading_panel(comparison, name)
     length = comparison.reference.beam.length
     half = _NEAR * float(np.ptp(foot(comparison.reference))) or _NEAR
-    places = {REFERENCE: comparison.snap_off.reference, CANDIDATE: comparison.snap_off.candidate}
+    places = {
+        style.REFERENCE: comparison.snap_off.reference,
+        style.CANDIDATE: comparison.snap_off.candidate,
+    }
     known = {colour: place / length for colour, place in places.items() if place is not None}
     for ax in figure.axes:
         ax.set_xlim(min(known.values()) - half, max(known.values()) + half)
@@ -85,11 +81,11 @@ def _draw_reading(upper: Axes, lower: Axes, comparison: Comparison, name: str) -
     reference, candidate = comparison.reference, comparison.candidate
     judged = comparison.judged["reference"]
     curve = with_fold(reference, judged.phase, foot(reference), scaled(reference, judged, name))
-    draw(upper, *curve, label=label(reference.source), **LINE)
+    draw(upper, *curve, label=style.label(reference.source), **LINE)
     points = foot(candidate), scaled(candidate, comparison.judged["candidate"], name)
-    draw(upper, *points, label=label(candidate.source), **dots(comparison))
-    upper.set_title(reading_label(reference, name), fontsize=LARGE, y=AT_TOP)
-    lower.axhline(0, color=INK, linewidth=0.8)
+    draw(upper, *points, label=style.label(candidate.source), **dots(comparison))
+    upper.set_title(reading_label(reference, name), fontsize=style.LARGE)
+    lower.axhline(0, color=style.INK, linewidth=0.8)
     draw(lower, *_difference(comparison, name), **dots(comparison) | {"markersize": _ALONE})
     lower.set_xlabel(foot_label(reference))
     lower.ticklabel_format(axis="y", scilimits=(-2, 2))

@@ -17,28 +17,15 @@ from compare.align.frames import components
 from compare.align.travel import travel_of
 from compare.comparison_in_space import SpatialComparison
 from compare.explain.split_space import Parts
+from compare.show import style
 from compare.show.figures.keys import key_below, phase_handles
 from compare.show.scene import SweepScene
-from compare.show.style import (
-    BLUE,
-    BODY,
-    FAINT,
-    GREEN,
-    GREY,
-    INK,
-    NORMAL,
-    ORANGE,
-    PAGE_WIDTH,
-    PHASE_COLOURS,
-    SMALL,
-    label,
-)
 
 _SHAPES = 24  # drawn of a sweep
 _DARK = 0.35  # how much darker a face is that looks away from the light
 _LIGHT = np.array([0.4, -0.2, -0.9]) / np.linalg.norm([0.4, -0.2, -0.9])
 _VIEW = {"elev": 12.0, "azim": -62.0}
-COLOURS = (BLUE, ORANGE, GREEN)
+COLOURS = (style.BLUE, style.ORANGE, style.GREEN)
 """Of the components in x, y and z."""
 _LEAST = 1e-12  # L; contacts that are closer are drawn at this
 
@@ -66,28 +53,28 @@ LOADS = (Load(FORCE, "$F$ / ($EI/L^2$)"), Load(MOMENT, "$M$ / ($EI/L$)"))
 def sweep_in_space(scene: SweepScene) -> Figure:
     """Draw the body, the vibrissa at some stations, the contacts found, and the readings."""
     readings = scene.readings
-    figure = Figure(figsize=(PAGE_WIDTH, 0.8 * PAGE_WIDTH), layout="constrained")
+    figure = Figure(figsize=(style.PAGE_WIDTH, 0.8 * style.PAGE_WIDTH), layout="constrained")
     grid = figure.add_gridspec(2, 2, height_ratios=(1.8, 1))
     ax = figure.add_subplot(grid[0, :], projection="3d", computed_zorder=False)
     draw_scene(ax, scene)
     chosen = np.unique(np.linspace(0, len(scene.lines) - 1, _SHAPES).round().astype(int))
-    colours = [PHASE_COLOURS[phase] for phase in scene.phase[chosen]]
+    colours = [style.PHASE_COLOURS[phase] for phase in scene.phase[chosen]]
     ax.add_collection3d(
         Line3DCollection(upright(scene.lines[chosen]), colors=colours, linewidths=1.3)
     )
-    ax.plot(*upright(scene.contact).T, color=INK, marker="o", markersize=1.8, linestyle="")
+    ax.plot(*upright(scene.contact).T, color=style.INK, marker="o", markersize=1.8, linestyle="")
     for i, load in enumerate(LOADS):
         _draw_components(figure.add_subplot(grid[1, i]), readings, load)
-    figure.suptitle(label(readings.source), x=0.01, ha="left", fontsize=NORMAL)
-    found = Line2D([], [], color=INK, marker="o", markersize=3, ls="", label="contact found")
-    travel = Line2D([], [], color=GREY, linestyle="--", label="way of the foot")
+    figure.suptitle(style.label(readings.source), x=0.01, ha="left", fontsize=style.NORMAL)
+    found = Line2D([], [], color=style.INK, marker="o", markersize=3, ls="", label="contact found")
+    travel = Line2D([], [], color=style.GREY, linestyle="--", label="way of the foot")
     key_below(figure, [*phase_handles(), found, travel], 5)
     return figure
 
 
 def both_in_space(comparison: SpatialComparison) -> Figure:
     """Draw the six components of both sweeps over the way of the foot, and their differences."""
-    figure = Figure(figsize=(PAGE_WIDTH, 0.6 * PAGE_WIDTH), layout="constrained")
+    figure = Figure(figsize=(style.PAGE_WIDTH, 0.6 * style.PAGE_WIDTH), layout="constrained")
     grid = figure.subplots(2, 2, sharex=True, height_ratios=(2, 1))
     one, other = comparison.reference, comparison.candidate
     beam = one.beam
@@ -103,21 +90,24 @@ def both_in_space(comparison: SpatialComparison) -> Figure:
             off = np.where(comparison.compared, found - exact, np.nan)
             below.plot(travel, off, color=colour, marker=".", markersize=2.5, linewidth=0.8)
         above.set_ylabel(load.title)
-        above.legend(fontsize=SMALL, frameon=False, ncols=3)
+        above.legend(fontsize=style.SMALL, frameon=False, ncols=3)
         below.set_ylabel("difference")
         below.set_xlabel("way of the foot / $L$")
         below.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2))
         for ax in (above, below):
-            ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
+            ax.axhline(0, color=style.FAINT, linewidth=0.8, zorder=0)
     figure.suptitle(
-        label(f"lines: {one.source}; dots: {other.source}"), x=0.01, ha="left", fontsize=NORMAL
+        style.label(f"lines: {one.source}; dots: {other.source}"),
+        x=0.01,
+        ha="left",
+        fontsize=style.NORMAL,
     )
     return figure
 
 
 def contacts_in_space(comparison: SpatialComparison) -> Figure:
     """Draw when both sweeps touch, in which phase, and how far their contacts are apart."""
-    figure = Figure(figsize=(PAGE_WIDTH, 0.4 * PAGE_WIDTH), layout="constrained")
+    figure = Figure(figsize=(style.PAGE_WIDTH, 0.4 * style.PAGE_WIDTH), layout="constrained")
     strips, below = figure.subplots(2, 1, sharex=True, height_ratios=(1, 1.6))
     length = comparison.reference.beam.length
     travel = comparison.travel / length
@@ -128,23 +118,27 @@ def contacts_in_space(comparison: SpatialComparison) -> Figure:
         if "phase" in readings.table:
             phase = readings.table["phase"].to_numpy()
         phase = np.where(readings.trusted, phase, "")
-        for name, colour in {**PHASE_COLOURS, "touching": GREEN}.items():
+        for name, colour in {**style.PHASE_COLOURS, "touching": style.GREEN}.items():
             spans = [(edges[i], edges[i + 1] - edges[i]) for i in np.flatnonzero(phase == name)]
             strips.broken_barh(spans, (0.6 - row, 0.8), facecolors=colour, linewidth=0)
         events = [pair.reference if row == 0 else pair.candidate
                   for pair in comparison.events.values()]  # fmt: skip
         at = [event / length for event in events if event is not None]
-        strips.plot(at, [1 - row] * len(at), color=INK, marker="|", markersize=18, linestyle="")
-    strips.set_yticks([1, 0], [label(readings.source) for readings in sides])
+        strips.plot(
+            at, [1 - row] * len(at), color=style.INK, marker="|", markersize=18, linestyle=""
+        )
+    strips.set_yticks([1, 0], [style.label(readings.source) for readings in sides])
     strips.set_ylim(-0.6, 1.6)
-    leaves = Line2D([], [], color=INK, marker="|", markersize=9, ls="", label="touches or leaves")
+    leaves = Line2D(
+        [], [], color=style.INK, marker="|", markersize=9, ls="", label="touches or leaves"
+    )
     strips.legend(
-        handles=[*phase_handles(linewidth=5), leaves], fontsize=SMALL, frameon=False, ncols=4,
+        handles=[*phase_handles(linewidth=5), leaves], fontsize=style.SMALL, frameon=False, ncols=4,
         loc="lower left", bbox_to_anchor=(0, 1),
     )  # fmt: skip
     far = np.maximum(comparison.contact.distance, _LEAST)
-    below.semilogy(travel, far, color=INK, marker=".", markersize=3, linewidth=0.8)
-    below.axhline(comparison.tolerances.contact, color=GREY, linestyle="--", linewidth=1)
+    below.semilogy(travel, far, color=style.INK, marker=".", markersize=3, linewidth=0.8)
+    below.axhline(comparison.tolerances.contact, color=style.GREY, linestyle="--", linewidth=1)
     below.set_ylabel("contacts apart / $L$")
     below.set_xlabel("way of the foot / $L$")
     return figure
@@ -152,7 +146,7 @@ def contacts_in_space(comparison: SpatialComparison) -> Figure:
 
 def parts_in_space(parts: Parts) -> Figure:
     """Draw what a disagreement is made of."""
-    figure = Figure(figsize=(0.6 * PAGE_WIDTH, 0.2 * PAGE_WIDTH), layout="constrained")
+    figure = Figure(figsize=(0.6 * style.PAGE_WIDTH, 0.2 * style.PAGE_WIDTH), layout="constrained")
     ax = figure.subplots()
     sizes = {
         "unexplained": parts.unexplained,
@@ -160,7 +154,7 @@ def parts_in_space(parts: Parts) -> Figure:
         "discretisation": parts.discretisation,
         "disagreement": parts.whole,
     }
-    ax.barh([*sizes], [*sizes.values()], color=[BLUE, BLUE, BLUE, INK])
+    ax.barh([*sizes], [*sizes.values()], color=[style.BLUE, style.BLUE, style.BLUE, style.INK])
     ax.set_xscale("log")
     ax.set_xlabel("rms of the worst component")
     return figure
@@ -177,9 +171,11 @@ def draw_scene(ax: Axes3D, scene: SweepScene) -> None:
             [np.repeat(0.87 * grey[:, None], 3, axis=1), np.full(len(grey), 0.6)]
         )
         ax.add_collection3d(
-            Poly3DCollection(upright(faces), facecolors=colours, edgecolors=BODY, linewidths=0.2)
+            Poly3DCollection(
+                upright(faces), facecolors=colours, edgecolors=style.BODY, linewidths=0.2
+            )
         )
-    ax.plot(*upright(scene.foot).T, color=GREY, linestyle="--", linewidth=1)
+    ax.plot(*upright(scene.foot).T, color=style.GREY, linestyle="--", linewidth=1)
     low, high = scene.low, scene.high
     ax.set(
         xlim=(low[0], high[0]),
@@ -202,10 +198,10 @@ def upright(points: Floats) -> Floats:
 
 def _draw_components(ax: Axes, readings: SpatialReadings, load: Load) -> None:
     travel = travel_of(readings) / readings.beam.length
-    style: dict[str, Any] = {"marker": ".", "markersize": 2.5, "linewidth": 1}
+    drawn: dict[str, Any] = {"marker": ".", "markersize": 2.5, "linewidth": 1}
     for name, colour in zip(load.names, COLOURS, strict=True):
-        ax.plot(travel, load.of(readings, name), color=colour, label=name[-1], **style)
-    ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
+        ax.plot(travel, load.of(readings, name), color=colour, label=name[-1], **drawn)
+    ax.axhline(0, color=style.FAINT, linewidth=0.8, zorder=0)
     ax.set_xlabel("way of the foot / $L$")
     ax.set_ylabel(load.title)
-    ax.legend(fontsize=SMALL, frameon=False, ncols=3)
+    ax.legend(fontsize=style.SMALL, frameon=False, ncols=3)

@@ -6,7 +6,7 @@ from compare.comparison import Comparison
 from compare.show.figures.keys import key_below
 from compare.show.figures.over_foot import shade_reference, stacked
 from compare.show.figures.thinning import draw
-from compare.show.style import AT_TOP, BLUE, GREY, INK, SKY, SMALL, SYMBOLS
+from compare.show.style import BLUE, GREY, INK, SKY, SMALL, SYMBOLS
 from compare.validate.validation import Validation
 
 _EXPANDED = 2  # standard uncertainties, at one station of one reading
@@ -35,7 +35,6 @@ def validation_picture(comparison: Comparison, found: Validation) -> Figure:
             f"{SYMBOLS[name]}: rms {one.error:.1e}, {said} "
             f"(limit {one.limit:.1e} = {one.coverage:.2f} $u_\\mathrm{{val}}$)",
             fontsize=SMALL + 1,
-            y=AT_TOP,
         )
         ax.set_ylabel("of the largest magnitude", fontsize=SMALL)
     key_below(figure, axes["force_x"], 4)

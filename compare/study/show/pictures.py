@@ -1,7 +1,9 @@
 """The pictures of a study, drawn from its table alone."""
 
+from collections.abc import Callable
+from functools import partial
 from itertools import combinations
-from typing import Literal
+from typing import Literal, TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -11,11 +13,14 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
-from compare.show.style import AT_TOP, FAINT, GREY, INK, LINE_STYLES, ORANGE, SERIES, SMALL, label
+from compare.show.style import FAINT, GREY, INK, LINE_STYLES, ORANGE, SERIES, SMALL, label
 from compare.study.show.questions import Question
 from compare.study.show.results import WORST, StudyResults, together
 from compare.study.show.slices import Line, lines, plane, words
 from compare.study.show.tables import pareto_front
+
+Drawings: TypeAlias = dict[str, Callable[[], Figure]]
+"""Figures to draw, by what they show."""
 
 _AXES = {
     "mujoco.segments": "segments $N$",
@@ -40,45 +45,40 @@ _MARKED = 25  # points of a line up to which each is marked
 _MAP_FROM = 4  # values an axis from which a map shows more than lines do
 
 
-def axis_pictures(found: StudyResults, question: Question) -> dict[str, Figure]:
+def axis_pictures(found: StudyResults, question: Question) -> Drawings:
     """Draw the number that answers a question over each axis by itself."""
-    drawn = {}
-    for axis in found.plain_axes:
-        cut = lines(found, axis, question.metric)
-        if cut:
-            drawn[axis] = _over_axis(found, question, axis, cut)
-    return drawn
+    cuts = {axis: lines(found, axis, question.metric) for axis in found.plain_axes}
+    return {
+        axis: partial(_over_axis, found, question, axis, cut) for axis, cut in cuts.items() if cut
+    }
 
 
-def maps(found: StudyResults, question: Question) -> dict[str, Figure]:
+def maps(found: StudyResults, question: Question) -> Drawings:
     """Draw the number that answers a question over each pair of axes with many values."""
-    drawn = {}
+    drawn: Drawings = {}
     for beam, done in found.by_beam(question.metric):
         many = [axis for axis in found.plain_axes if done[axis].nunique() >= _MAP_FROM]
         for across, up in combinations(many, 2):
             sampled = {across, up} <= set(found.sampled)
             if not sampled and together(done, across, up):
                 continue  # zipped: the lines show it
-            figure = Figure(figsize=(5.4, 4.0), layout="constrained")
-            ax = figure.subplots()
             held, shown = plane(found, done, (across, up), question.metric)
-            _map(ax, shown, across, up, question)
-            _dress(ax, done[across], across, "x")
-            _dress(ax, done[up], up, "y")
             title = ", ".join(filter(None, (beam, f"at {words(held)}" if held else "")))
-            ax.set_title(label(title), fontsize=SMALL, y=AT_TOP)
-            drawn["-".join(filter(None, (across, up, beam)))] = figure
+            name = " ".join(filter(None, ("map", across, up, beam)))
+            drawn[name] = partial(_map, shown, across, up, question, title)
     return drawn
 
 
-def error_against_time(found: StudyResults) -> Figure | None:
-    """Draw every simulated run by its time and its error, and the front that none of them beats."""
+def timed(found: StudyResults) -> pd.DataFrame:
+    """The simulated runs whose time and error are known."""
     if WORST not in found.done or "seconds_candidate" not in found.done:
-        return None
+        return pd.DataFrame()
     done = found.done.dropna(subset=["seconds_candidate", WORST])
-    done = done[(done["seconds_candidate"] > 0) & (done[WORST] > 0)]
-    if len(done) < 2:
-        return None
+    return done[(done["seconds_candidate"] > 0) & (done[WORST] > 0)]
+
+
+def error_against_time(found: StudyResults, done: pd.DataFrame) -> Figure:
+    """Draw every simulated run by its time and its error, and the front that none of them beats."""
     figure = Figure(figsize=(5.6, 3.9), layout="constrained")
     ax = figure.subplots()
     for colour, (beam, group) in zip(SERIES, found.by_beam(WORST), strict=False):
@@ -88,10 +88,12 @@ def error_against_time(found: StudyResults) -> Figure | None:
     front = pareto_front(done, "seconds_candidate", WORST)
     ax.plot(front["seconds_candidate"], front[WORST], color=INK, linewidth=1.2,
             drawstyle="steps-post", label="best error for the time")  # fmt: skip
-    ax.set_xscale("log")
-    ax.set_yscale("log")
-    ax.set_xlabel("time of the simulated sweep [s]")
-    ax.set_ylabel("worst reading's rms\n/ largest magnitude")
+    ax.set(
+        xscale="log",
+        yscale="log",
+        xlabel="time of the simulated sweep [s]",
+        ylabel="worst reading's rms\n/ largest magnitude",
+    )
     ax.legend(fontsize=SMALL, frameon=False)
     return figure
 
@@ -128,7 +130,7 @@ def _over_axis(found: StudyResults, question: Question, axis: str, cut: list[Lin
     ax.grid(axis="y", color=FAINT, alpha=0.35, linewidth=0.6)
     held = {key: value for key, value in cut[0].held.items() if key != varying}
     if held:
-        ax.set_title(f"at {label(words(held))}", fontsize=SMALL, y=AT_TOP)
+        ax.set_title(f"at {label(words(held))}", fontsize=SMALL)
     if len(cut) > 1:
         title = _label(varying) if varying else None
         figure.legend(
@@ -144,7 +146,9 @@ def _from(table: pd.DataFrame, least: float) -> pd.DataFrame:
     return table.assign(**{name: table[name].clip(lower=least) for name in drawn})
 
 
-def _map(ax: Axes, done: pd.DataFrame, across: str, up: str, question: Question) -> None:
+def _map(done: pd.DataFrame, across: str, up: str, question: Question, title: str) -> Figure:
+    figure = Figure(figsize=(5.4, 4.0), layout="constrained")
+    ax = figure.subplots()
     column = question.metric
     table = done[[across, up, column]].abs()
     norm = LogNorm() if _spans_decades(table[column]) else Normalize()
@@ -167,9 +171,13 @@ def _map(ax: Axes, done: pd.DataFrame, across: str, up: str, question: Question)
             border = ax.tricontour(table[across], table[up], table[column],
                                    levels=[limit], colors=ORANGE)  # fmt: skip
             border.set_linewidth(2)
-    bar = ax.figure.colorbar(drawn, ax=ax, label=question.label.replace("\n", " "))
+    bar = figure.colorbar(drawn, ax=ax, label=question.label.replace("\n", " "))
     if passed:
         bar.ax.axhline(limit, color=ORANGE, linewidth=2)
+    _dress(ax, done[across], across, "x")
+    _dress(ax, done[up], up, "y")
+    ax.set_title(label(title), fontsize=SMALL)
+    return figure
 
 
 def _dress(ax: Axes, values: pd.Series, axis: str, which: Literal["x", "y"]) -> None:

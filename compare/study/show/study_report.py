@@ -1,16 +1,17 @@
 """The report of a study: tables, figures and one offline page, from what is stored alone."""
 
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pandas as pd
-from matplotlib.figure import Figure
 
 from analytic import InputError
 from analytic.problem.files import write_whole
 from compare.show.document import (
     Block,
     Document,
+    Layout,
     Picture,
     Table,
     Text,
@@ -29,7 +30,6 @@ from compare.study.show.sentences import headline, varied
 from compare.study.show.slices import curves, repeated
 
 _LONGEST_TABLE = 24  # rows on the page; all of them are in a file
-_COST = "Each dot is a run. No run beats the line in both time and error."
 _TABLES = {"orders": "Observed orders", "phase-b-vanishes": "Where Phase B vanishes"}
 
 
@@ -50,37 +50,24 @@ def write_report(folder: Path, warn: Warn, place: Path | None = None) -> Path:
         "phase-b-vanishes": tables.vanishing(found),
         "curves": curves(found, [question.metric for question in asked(found)]),
     }
-    drawn = _drawn(found)
-    place = place or folder
-    (place / "report").mkdir(parents=True, exist_ok=True)
-    for section in drawn.values():
-        for name, figure in section.items():
-            write_whole(place / "report" / f"{name}.png", png(figure))
+    document = _document(found, numbers)
+    contents: dict[str, str | bytes] = {
+        f"{shows.replace(' ', '-')}.png": png(figure)
+        for picture in document.pictures()
+        for shows, figure in picture.figures.items()
+    }
     for name, table in numbers.items():
         if not table.empty:
-            write_whole(place / "report" / f"{name}.csv", table.to_csv(index=False).encode())
-    return write_whole(place / "report.html", html(_document(found, numbers, drawn)))
+            contents[f"{name}.csv"] = table.to_csv(index=False)
+    page = html(document)
+    place = place or folder
+    (place / "report").mkdir(parents=True, exist_ok=True)
+    for name, content in contents.items():
+        write_whole(place / "report" / name, content)
+    return write_whole(place / "report.html", page)
 
 
-def _drawn(found: StudyResults) -> dict[str, dict[str, Figure]]:
-    """The pictures of every question, by the names of their files."""
-    drawn = {}
-    for question in asked(found):
-        over_axes = pictures.axis_pictures(found, question)
-        over_pairs = pictures.maps(found, question)
-        drawn[question.name] = {
-            **{f"{question.name}-{axis}": figure for axis, figure in over_axes.items()},
-            **{f"{question.name}-map-{pair}": figure for pair, figure in over_pairs.items()},
-        }
-    against_time = pictures.error_against_time(found)
-    if against_time is not None:
-        drawn["time"] = {"error-against-time": against_time}
-    return drawn
-
-
-def _document(
-    found: StudyResults, numbers: dict[str, pd.DataFrame], drawn: dict[str, dict[str, Figure]]
-) -> Document:
+def _document(found: StudyResults, numbers: dict[str, pd.DataFrame]) -> Document:
     """All that there is to say of a study."""
     study, questions = found.plan.study, asked(found)
     answers = {question.name: headline(found, question) for question in questions}
@@ -103,11 +90,8 @@ def _document(
         ),
         sections(
             ("not-done", "Why runs are not done", _lost(lost)),
-            *(
-                (one.name, one.text, _answer(found, one, answers[one.name], drawn))
-                for one in questions
-            ),
-            ("time", "What does accuracy cost?", _panels("time", drawn, _COST)),
+            *((one.name, one.text, _answer(found, one, answers[one.name])) for one in questions),
+            ("time", "What does accuracy cost?", _cost(found)),
             *((name, title, _table(name, numbers[name])) for name, title in _TABLES.items()),
             ("versions", "Versions", _versions(found)),
         ),
@@ -120,11 +104,21 @@ def _lost(rows: list[tuple[str, str, str]]) -> Iterator[Block]:
         yield Table("One example each", ("outcome", "runs", "example"), rows, words=(0, 2))
 
 
-def _answer(
-    found: StudyResults, question: Question, answer: str, drawn: dict[str, dict[str, Figure]]
-) -> Iterator[Block]:
+def _answer(found: StudyResults, question: Question, answer: str) -> Iterator[Block]:
     yield Text(answer)
-    yield from _panels(question.name, drawn, _caption(found, question))
+    drawn = pictures.axis_pictures(found, question) | pictures.maps(found, question)
+    figures = {f"{question.name} {name}": draw for name, draw in drawn.items()}
+    if figures:
+        layout: Layout = "panels" if len(figures) > 1 else "middle"
+        yield Picture(f"p-{question.name}", figures, _caption(found, question), layout)
+
+
+def _cost(found: StudyResults) -> Iterator[Picture]:
+    runs = pictures.timed(found)
+    if len(runs) > 1:
+        figure = {"error against time": partial(pictures.error_against_time, found, runs)}
+        said = "Each dot is a run. No run beats the line in both time and error."
+        yield Picture("p-time", figure, said, "middle")
 
 
 def _versions(found: StudyResults) -> Iterator[Block]:
@@ -143,12 +137,6 @@ def _caption(found: StudyResults, question: Question) -> str:
     if question.limit is not None:
         said += f" Dashed, or orange in a map: {question.limit}."
     return said
-
-
-def _panels(name: str, drawn: dict[str, dict[str, Figure]], caption: str) -> Iterator[Picture]:
-    figures = {title.replace("-", " "): one for title, one in drawn.get(name, {}).items()}
-    if figures:
-        yield Picture(f"p-{name}", figures, caption, "panels" if len(figures) > 1 else "middle")
 
 
 def _table(name: str, table: pd.DataFrame) -> Iterator[Table]:
