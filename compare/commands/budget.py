@@ -55,7 +55,7 @@ def _at_rest(job: Job, target: float | None) -> Measured:
 
 def _in_motion(job: Job, target: float | None) -> Measured:
     found, runs = measured_motion_budget(job)
-    terminal.print_motion_budget(found, job.case.name)
+    terminal.print_budget(found, job.case.name)
     content = found.to_dict()
     if target is not None:
         fastest = fastest_motion(job, runs, target)

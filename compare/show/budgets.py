@@ -27,16 +27,18 @@ def headline(found: Budget) -> str:
     return f"The largest part is {found.blame}; {remains}"
 
 
-def budget_summary(found: Budget) -> Iterator[Block]:
+def budget_summary(found: Budget | MotionBudget) -> Iterator[Block]:
     """The parts, what they come to, and the suspects."""
+    if isinstance(found, MotionBudget):
+        yield from _in_motion(found)
+        return
     yield parts_table(found, found.checks)
     yield Text("", strong=f"{headline(found)}.")
     if found.suspects:
         yield Items([_suspect(one) for one in found.suspects])
 
 
-def motion_budget_summary(found: MotionBudget) -> Iterator[Block]:
-    """The parts of a disagreement in motion, and what they come to."""
+def _in_motion(found: MotionBudget) -> Iterator[Block]:
     yield parts_table(found)
     closes = "closes" if found.closes else "does not close"
     yield Text(f"The budget {closes}; {found.blame} dominates, over {found.stations} stations.")

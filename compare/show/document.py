@@ -51,6 +51,12 @@ class Tile:
     note: str
 
 
+def tiles_table(found: Iterable[Tile]) -> Table:
+    """Tiles below each other."""
+    rows = [(one.name, one.value, one.note) for one in found]
+    return Table("", (), rows, words=(0, 2))
+
+
 @dataclass(frozen=True)
 class Verdict:
     """What it comes to."""

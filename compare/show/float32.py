@@ -4,6 +4,8 @@ import matplotlib.ticker
 import pandas as pd
 from matplotlib.figure import Figure
 
+from compare.show.document import Table
+from compare.show.numbers import short
 from compare.show.style import BLUE, GREY, LARGE, NORMAL, ORANGE, SMALL, label
 
 _WORTH = 0.5  # stations; as many are expected to be lost where a loss is predicted
@@ -16,6 +18,27 @@ def sentence(found: pd.DataFrame, version: str) -> str:
         f"MuJoCo Warp {version} {_from(found, lost, 'loses contacts', 'loses no contact')}; from "
         f"float32's resolution that is predicted {_from(found, expected, '', 'nowhere')}."
     )
+
+
+def losses_table(found: pd.DataFrame, case: str) -> Table:
+    """What is lost by contact stiffness, and what was predicted of it."""
+    rows = [
+        (
+            f"{row['contact_stiffness']:g}",
+            short(row["depth"]),
+            short(row["resolution"]),
+            f"{row['lost']} of {row['stations']} ({row['predicted_lost']:.1f})",
+            f"{short(row['force_error'])} ({short(row['predicted_force_error'])})",
+            f"{short(row['imbalance'])} ({short(row['predicted_imbalance'])})",
+        )
+        for row in found.to_dict("records")
+    ]
+    caption = (
+        f"{case}: MuJoCo's states at rest in single precision, found (predicted); lost: stations; "
+        "force: over the largest load; L = EI = 1"
+    )
+    head = ("stiffness", "depth", "resolution", "lost", "force off", "imbalance")
+    return Table(caption, head, rows)
 
 
 def _from(found: pd.DataFrame, where: pd.Series, some: str, none: str) -> str:

@@ -4,7 +4,17 @@ import re
 from collections.abc import Iterator
 from urllib.parse import quote
 
-from compare.show.document import Beside, Block, Document, Image, Items, Table, Text, Verdict
+from compare.show.document import (
+    Beside,
+    Block,
+    Document,
+    Image,
+    Items,
+    Table,
+    Text,
+    Verdict,
+    tiles_table,
+)
 
 _MARKS = re.compile(r"[\\`*~$\[\]]|#(?!\d+;)|(?<!\w)_|_(?!\w)")
 
@@ -13,8 +23,7 @@ def markdown(document: Document) -> str:
     """The document as a page."""
     parts = [f"# {plain(document.title)}", plain(document.lead), *_lines(document.verdict)]
     if document.tiles:
-        rows = [(one.name, one.value, one.note) for one in document.tiles]
-        parts += _lines(Table("", ("", "", ""), rows, words=(0, 2)))
+        parts += _lines(tiles_table(document.tiles))
     for section in document.sections:
         parts.append(f"## {plain(section.title)}")
         parts += [part for block in section.blocks for part in _lines(block)]

@@ -16,7 +16,18 @@ from compare.show.comparison_page import (
     places_table,
     sizes,
 )
-from compare.show.document import Beside, Block, Document, Film, Picture, Table, Text, Tile, Verdict
+from compare.show.document import (
+    Beside,
+    Block,
+    Document,
+    Film,
+    Picture,
+    Table,
+    Text,
+    Tile,
+    Verdict,
+    tiles_table,
+)
 from compare.show.figures.budget_bars import bars
 from compare.show.figures.geometry import geometry
 from compare.show.figures.order_plot import convergence_picture
@@ -53,6 +64,14 @@ def plane_document(
         ("snap-off", "Snap-off", _snap_off(comparison)),
         ("convergence", "Convergence", _convergence(budget)),
     )
+
+
+def plane_summary(comparison: Comparison) -> Iterator[Block]:
+    """The verdict and what it rests on, in short."""
+    yield plane_verdict(comparison)
+    yield tiles_table(plane_tiles(comparison))
+    yield apart_table(comparison)
+    yield from map(Text, validation_lines(comparison))
 
 
 def plane_verdict(comparison: Comparison, budget: Budget | None = None) -> Verdict:

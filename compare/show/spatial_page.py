@@ -22,6 +22,7 @@ from compare.show.document import (
     Tile,
     Turntable,
     Verdict,
+    tiles_table,
 )
 from compare.show.figures.space import (
     both_in_space,
@@ -53,6 +54,16 @@ def spatial_document(
         ("sweep", "The sweep", _sweep(scene, film)),
         ("events", "Where they touch and leave", _events(comparison)),
     )
+
+
+def spatial_summary(comparison: SpatialComparison, parts: Parts | None) -> Iterator[Block]:
+    """The verdict and what it rests on, in short."""
+    yield spatial_verdict(comparison)
+    yield tiles_table(spatial_tiles(comparison))
+    yield apart_table(comparison)
+    yield events_table(comparison)
+    if parts is not None:
+        yield parts_table(parts)
 
 
 def spatial_verdict(comparison: SpatialComparison) -> Verdict:

@@ -16,13 +16,13 @@ from PIL import Image as Pixels
 from analytic import PHASES, InputError, Readings
 from analytic.problem.files import write_whole
 from compare.read.runs import read_runs
-from compare.sense.accuracy import phase_table
 from compare.sense.transitions import TRANSITIONS
 from compare.show.document import Block, Document, Image, Section, Table, Text
 from compare.show.markdown import markdown
 from compare.show.numbers import percent
 from compare.show.runs import runs_document
 from docs.figures.methods_record import MethodsRecord, method_sentences, read_methods
+from docs.figures.phase_accuracy import phase_table
 
 _MARK = "<!-- Written by `make results`: edits would be lost. -->\n"
 _COLOURS = 48  # that a picture keeps, which makes it a third as large

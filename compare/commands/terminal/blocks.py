@@ -1,6 +1,6 @@
 """The parts of a document as a terminal shows them; pictures it does not."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from rich import box
 from rich.console import JustifyMethod
@@ -9,7 +9,7 @@ from rich.table import Table as RichTable
 from rich.text import Text as RichText
 
 from compare.commands.terminal.console import console, print_line
-from compare.show.document import Block, Items, Table, Text, Tile, Verdict
+from compare.show.document import Block, Items, Table, Text, Verdict
 
 _LONGEST = 24  # characters that are never folded
 
@@ -26,11 +26,6 @@ def show(*blocks: Block) -> None:
                 console().print(_table(block))
             case Verdict():
                 _verdict(block)
-
-
-def tiles(found: Iterable[Tile]) -> Table:
-    """Tiles below each other."""
-    return Table("", (), [(one.name, one.value, one.note) for one in found], words=(0, 2))
 
 
 def _verdict(found: Verdict) -> None:

@@ -5,14 +5,10 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from analytic import CLAMP_READINGS
-from compare.commands.terminal.blocks import show, tiles
+from compare.commands.terminal.blocks import show
 from compare.comparison import Comparison
-from compare.show.budgets import budget_summary, motion_budget_summary
-from compare.show.comparison_page import apart_table
-from compare.show.document import Table, Text
-from compare.show.numbers import short
-from compare.show.plane_page import plane_tiles, plane_verdict
-from compare.show.validity import validation_lines
+from compare.show.budgets import budget_summary
+from compare.show.document import Text
 
 if TYPE_CHECKING:
     from compare.comparison_in_space import SpatialComparison
@@ -27,40 +23,21 @@ if TYPE_CHECKING:
 
 def print_comparison(comparison: Comparison) -> None:
     """Print the verdict, and what it rests on."""
-    show(
-        plane_verdict(comparison),
-        tiles(plane_tiles(comparison)),
-        apart_table(comparison),
-        *(Text(line) for line in validation_lines(comparison)),
-    )
+    from compare.show.plane_page import plane_summary
+
+    show(*plane_summary(comparison))
 
 
 def print_spatial_comparison(comparison: "SpatialComparison", parts: "Parts | None") -> None:
     """Print the verdict in space, and what it rests on."""
-    from compare.show.spatial_page import (
-        events_table,
-        parts_table,
-        spatial_tiles,
-        spatial_verdict,
-    )
+    from compare.show.spatial_page import spatial_summary
 
-    show(
-        spatial_verdict(comparison),
-        tiles(spatial_tiles(comparison)),
-        apart_table(comparison),
-        events_table(comparison),
-        *([] if parts is None else [parts_table(parts)]),
-    )
+    show(*spatial_summary(comparison, parts))
 
 
-def print_budget(found: "Budget", case: str) -> None:
+def print_budget(found: "Budget | MotionBudget", case: str) -> None:
     """Print the parts, the verdict and the suspects."""
     show(Text("", strong=f"Budget of {case}"), *budget_summary(found))
-
-
-def print_motion_budget(found: "MotionBudget", case: str) -> None:
-    """Print the parts of a disagreement in motion, and the verdict."""
-    show(Text("", strong=f"Budget of {case} in motion"), *motion_budget_summary(found))
 
 
 def print_advice(advice: "Followed") -> None:
@@ -126,20 +103,6 @@ def print_engines(many: "ManyEngines") -> None:
 
 def print_float32(found: pd.DataFrame, case: str) -> None:
     """Print what single precision loses, by contact stiffness."""
-    rows = [
-        (
-            f"{row['contact_stiffness']:g}",
-            short(row["depth"]),
-            short(row["resolution"]),
-            f"{row['lost']} of {row['stations']} ({row['predicted_lost']:.1f})",
-            f"{short(row['force_error'])} ({short(row['predicted_force_error'])})",
-            f"{short(row['imbalance'])} ({short(row['predicted_imbalance'])})",
-        )
-        for row in found.to_dict("records")
-    ]
-    caption = (
-        f"{case}: MuJoCo's states at rest in single precision, found (predicted); lost: stations; "
-        "force: over the largest load; L = EI = 1"
-    )
-    head = ("stiffness", "depth", "resolution", "lost", "force off", "imbalance")
-    show(Table(caption, head, rows))
+    from compare.show.float32 import losses_table
+
+    show(losses_table(found, case))

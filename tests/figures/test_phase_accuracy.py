@@ -3,8 +3,8 @@
 import pytest
 
 from analytic import CASE_NAMES, PHASES
-from compare.sense.accuracy import phase_table
 from compare.sense.transitions import TRANSITIONS
+from docs.figures.phase_accuracy import phase_table
 from tests.conftest import exact_sweep, simulated_sweep
 
 # Share of stations judged rightly, by noise. Observed at worst: 1, 0.993, 0.911 (0.920 over
