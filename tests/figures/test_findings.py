@@ -7,31 +7,16 @@ import pytest
 from matplotlib.figure import Figure
 
 from analytic import CASE_NAMES, InputError
-from analytic.problem.files import write_whole
-from compare import compare
-from compare.show.page import document, png
-from compare.show.report import budget_files
+from compare.show.page import png
 from docs.figures.findings import write_findings
 from docs.figures.methods_record import method_sentences, read_methods
-from tests.compare.planted import planted
-from tests.compare.show import sweeps
+from tests.compare.show.sweeps import two_runs
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory) -> Path:
     """Two runs, one with a budget, one with its readings, and a table of methods."""
-    made = tmp_path_factory.mktemp("runs")
-    for case, budget in (("parabola", planted()), ("catenary", None)):
-        exact, simulated = sweeps.exact(case), sweeps.candidate(case)
-        run = made / f"{case}-chain"
-        run.mkdir()
-        contents = {"comparison.json": document(compare(exact, simulated).to_dict())}
-        if budget is not None:
-            contents |= budget_files(budget)
-        for name, content in contents.items():
-            write_whole(run / name, content)
-        if budget is None:
-            simulated.write(run / "mujoco-chain.parquet")
+    made = two_runs(tmp_path_factory.mktemp("runs"))
     (made / "methods").mkdir()
     methods_table(good=1e-3, poor=0.2).to_csv(made / "methods" / "methods.csv", index=False)
     (made / "methods" / "methods.png").write_bytes(png(Figure((1, 1))))

@@ -2,10 +2,16 @@
 
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 
 from analytic import CLAMP_READINGS, Readings, named_case, solve_sweep
+from analytic.problem.files import write_whole
+from compare import compare
+from compare.show.page import document
+from compare.show.report import budget_files
+from tests.compare.planted import planted
 
 STATIONS = 60
 
@@ -39,3 +45,19 @@ def without_contact(name: str) -> Readings:
     nothing |= {column: np.nan for column in sweep.table if column.startswith(("contact", "tip_"))}
     provenance = {**sweep.provenance, "events": {}}
     return replace(sweep, table=sweep.table.assign(phase="free", **nothing), provenance=provenance)
+
+
+def two_runs(folder: Path) -> Path:
+    """As `write_report` leaves them, one with a budget and one with its readings."""
+    for case, budget in (("parabola", planted()), ("catenary", None)):
+        simulated = candidate(case)
+        run = folder / f"{case}-chain"
+        run.mkdir()
+        contents = {"comparison.json": document(compare(exact(case), simulated).to_dict())}
+        if budget is not None:
+            contents |= budget_files(budget)
+        else:
+            simulated.write(run / "mujoco-chain.parquet")
+        for name, content in contents.items():
+            write_whole(run / name, content)
+    return folder

@@ -17,7 +17,7 @@ from compare.show.figures.over_foot import foot
 from compare.show.figures.thinning import cloud, envelope, stretches
 from compare.show.markdown import plain
 from compare.show.report import write_report
-from compare.show.style import axis_label, label
+from compare.show.style import label
 from tests.compare.show import sweeps
 from tests.conftest import exact_sweep
 
@@ -123,11 +123,6 @@ def test_any_name_can_be_drawn(text):
 def test_any_name_is_plain_in_markdown(text):
     written = plain(text)
     assert not set("<>|\n") & set(written)
-
-
-def test_labels_have_units():
-    assert axis_label("force_x") == "$F_{Ax}$ / ($EI/L^2$)"
-    assert axis_label("contact_arc_length") == "$s_1$ / $L$"
 
 
 @pytest.mark.slow

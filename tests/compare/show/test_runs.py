@@ -8,62 +8,17 @@ from pathlib import Path
 import pytest
 
 from analytic import InputError
-from analytic.problem.files import write_whole
-from compare import compare
-from compare.read.runs import ComparisonFile, RunRecord, read_runs
+from compare.read.runs import read_runs
 from compare.report import write_report
-from compare.show.page import document
-from compare.show.report import budget_files
 from tests.compare.planted import planted
-from tests.compare.show import sweeps
 from tests.compare.show.pages import Page
-
-
-def run(
-    case="catenary", beam="chain", rms=1e-3, snap_off=1e-4, right=1.0, budget=None
-) -> RunRecord:
-    """A run of which only what the page shows is known; force_y is its worst reading."""
-    agrees = rms <= 2e-3
-    comparison = {
-        "verdict": "agrees" if agrees else "disagrees",
-        "disagreement": {
-            "force_x": {"rms": rms / 3},
-            "force_y": {"rms": rms},
-            "moment_z": {"rms": rms / 2},
-        },
-        "snap_off": {"difference": snap_off},
-        "phases": {"agreement": right},
-        "candidate": {
-            "source": f"mujoco {beam}",
-            "beam": {"length": 2.0},
-            "stations": 100,
-            "provenance": {"case": case, "settings": {"beam": beam, "segments": 40}},
-        },
-    }
-    return RunRecord(
-        Path(f"{case}-{beam}"),
-        ComparisonFile.model_validate(comparison),
-        budget,
-    )
+from tests.compare.show.sweeps import two_runs
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory) -> Path:
     """Two runs as `write_report` leaves them, one with a budget."""
-    made = tmp_path_factory.mktemp("runs")
-    for case, budget in (("parabola", planted()), ("catenary", None)):
-        exact, simulated = sweeps.exact(case), sweeps.candidate(case)
-        run = made / f"{case}-chain"
-        run.mkdir()
-        contents = {"comparison.json": document(compare(exact, simulated).to_dict())}
-        if budget is not None:
-            contents |= budget_files(budget)
-        for name, content in contents.items():
-            write_whole(run / name, content)
-        if budget is None:
-            simulated.write(run / "mujoco-chain.parquet")
-    (made / "a-study").mkdir()
-    return made
+    return two_runs(tmp_path_factory.mktemp("runs"))
 
 
 @pytest.fixture
@@ -90,17 +45,16 @@ def test_page(folder, tmp_path):
     assert picture["alt"].startswith("Budget of the chain: discretisation")
 
 
-def test_names_settings_and_blame_are_no_markup(tmp_path):
+def test_names_settings_and_blame_are_no_markup(runs):
     nasty = "a|b <script>alert(1)</script>\n# *c* $x$"
-    record = run(case=nasty, budget=planted())
-    comparison = record.comparison.model_dump()
-    comparison["candidate"]["provenance"]["settings"] = {"segments": nasty, "beam": nasty}
-    (tmp_path / "odd").mkdir()
-    (tmp_path / "odd" / "comparison.json").write_text(json.dumps(comparison))
+    run = runs / "parabola-chain"
+    comparison = json.loads((run / "comparison.json").read_text())
+    provenance = comparison["candidate"]["provenance"]
+    provenance |= {"case": nasty, "settings": {"segments": nasty, "beam": nasty}}
+    (run / "comparison.json").write_text(json.dumps(comparison))
     budget = planted().to_dict() | {"blame": nasty}
-    (tmp_path / "odd" / "budget.json").write_text(json.dumps(budget))
-    (tmp_path / "odd" / "budget.png").write_bytes(budget_files(planted())["budget.png"])
-    text = write_report(tmp_path).path.read_text(encoding="utf-8")
+    (run / "budget.json").write_text(json.dumps(budget))
+    text = write_report(runs).path.read_text(encoding="utf-8")
     assert "<td>a|b &lt;script&gt;" in text
     assert "<script" not in text
 
