@@ -20,7 +20,7 @@ FOUND = --budget --beam $(BEAM) --out $(@D) $(ARGS) || test $$? -eq 1; test -f $
 
 .NOTPARALLEL:
 .PHONY: help install develop run test test-slow test-all trials coverage lint docs wheel fuzz bench results again studies \
-  net size install-mujoco3 test-mujoco3 install-engines test-engines versions clean
+  net size reference install-mujoco3 test-mujoco3 install-engines test-engines versions clean
 
 help:            ## list the targets
 	@grep -E '^[a-z0-9-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -52,6 +52,9 @@ lint: develop    ## format, style, types, import rules
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+reference: install ## docs/examples/reference/tables: contact states for tests of any engine
+	$(BIN)/vibrissa verify --tables docs/examples/reference/tables
 
 size: develop    ## lines of code and docstring, room by room
 	$(BIN)/python -m tests.size

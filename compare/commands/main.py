@@ -25,6 +25,7 @@ from compare.commands.report import report
 from compare.commands.rig import rig
 from compare.commands.run import run, view
 from compare.commands.study import study
+from compare.commands.verify import verify
 
 BAD_INPUT = 2
 _LONGEST = 800  # characters of an error
@@ -44,6 +45,7 @@ COMMANDS: dict[str, tuple[Callable[..., int], ...]] = {
     "What the clamp says": (reconstruct, calibrate, rig),
     "Models": (inspect,),
     "Many": (study, report),
+    "Trust": (verify,),
     "What there is": (list_what_there_is,),
 }
 _NAMES = {list_what_there_is: "list"}

@@ -5,13 +5,19 @@ m = M - (r - r0) x F with the clamp's force F and moment M (lengths in L, EI = 1
 integral, no plane of bending and no normal enter.
 """
 
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.optimize import root
 
 from analytic.problem.arrays import Floats
 from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE, MOMENT, SpatialReadings
 
 _TOLERANCE = 1e-13  # of the Dormand-Prince method of order 8
+_LOADS = 4  # steps to the whole load, each the start of the next
+_MISSED = 1e-11  # of the moments at the tip, relative to those at the clamp
 _SHOWN = 33  # points of a loaded part that is drawn
 
 
@@ -137,3 +143,66 @@ def deflected_rods(readings: SpatialReadings) -> Floats:
         tip = place[:, -1:] + (1 - loaded)[:, None, None] * along[:, -1:]
         lines[bent] = foot[bent, None] + beam.length * np.concatenate([place, tip], axis=1)
     return lines
+
+
+@dataclass(frozen=True)
+class Cantilever:
+    """A rod that stretches, shears, bends and twists (Simo, 1985; Antman, 2005), from x = 0 on.
+
+    Axes of the section: along the rod, y, z, as the world's at the clamp where it is not turned.
+    """
+
+    length: float  # of the parameter along it
+    stretching: Floats  # compliances 1/EA, 1/GA_y, 1/GA_z
+    bending: Floats  # compliances 1/GJ, 1/EI_y, 1/EI_z
+    force: Floats = field(default_factory=lambda: np.zeros(3))  # dead, at the tip
+    moment: Floats = field(default_factory=lambda: np.zeros(3))  # likewise
+    weight: Floats = field(default_factory=lambda: np.zeros(3))  # by length
+    curvature: Callable[[float], float] = lambda s: 0.0  # about z, at rest
+    speed: Callable[[float], float] = lambda s: 1.0  # of arc length with the parameter
+    turned: float = 0.0  # at the clamp, about z [rad]
+
+    @property
+    def largest(self) -> float:
+        """Of the moments that the loads can cause."""
+        across = self.force + self.length * self.weight
+        return float(np.linalg.norm(across) * self.length + np.linalg.norm(self.moment))
+
+    def march(self, moment: Floats, load: float = 1.0) -> tuple[Floats, Floats]:
+        """Place of the tip and moment there, of a moment in the section at the clamp."""
+
+        def rate(s: float, state: Floats) -> Floats:
+            frame = state[3:12].reshape(3, 3)
+            force = load * (self.force + (self.length - s) * self.weight)
+            along = frame @ (np.eye(3)[0] + self.stretching * (frame.T @ force))
+            bent = self.bending * (frame.T @ state[12:])
+            bent[2] += self.curvature(s)
+            turning = np.cross(frame, bent)  # each row: frame times the matrix of bent x
+            rates = [along, turning.ravel(), -np.cross(along, force)]
+            return np.asarray(self.speed(s) * np.concatenate(rates))
+
+        sine, cosine = np.sin(self.turned), np.cos(self.turned)
+        frame = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
+        begin = np.concatenate([np.zeros(3), frame.ravel(), moment])
+        scale = np.ones(15)
+        scale[:3], scale[12:] = self.length, self.largest
+        marched = solve_ivp(
+            rate, (0, self.length), begin, "DOP853", rtol=_TOLERANCE, atol=_TOLERANCE * scale
+        ).y[:, -1]
+        return marched[:3], marched[12:]
+
+    def tip(self) -> Floats:
+        """Where its tip rests, by shooting from the clamp; certified by the moment there."""
+        scaled = np.zeros(3)
+        for load in np.linspace(0, 1, _LOADS + 1)[1:]:
+            found = root(self._missed, scaled, args=(load,), tol=_TOLERANCE)
+            scaled = found.x
+        missed = float(np.abs(found.fun).max())
+        if not missed <= _MISSED:
+            raise ArithmeticError(f"a rod's tip misses its moment by {missed:.1e}")
+        return self.march(self.largest * scaled)[0]
+
+    def _missed(self, scaled: Floats, load: float) -> Floats:
+        """Of the tip's moment, over the loads'."""
+        missed = self.march(self.largest * scaled, load)[1] - load * self.moment
+        return np.asarray(missed / self.largest)

@@ -1,0 +1,117 @@
+"""The rows as one page: what agrees, what does not and why, and one picture."""
+
+from collections.abc import Sequence
+from functools import partial
+from itertools import groupby
+
+from matplotlib.figure import Figure
+
+from compare.show.document import Document, Picture, Section, Table, Text, Tile, Verdict
+from compare.show.style import BLUE, FAINT, GREEN, ORANGE, PAGE_WIDTH, PINK, SMALL
+from compare.verify.record import Row, State
+
+_COLOURS: dict[State, str] = {
+    "all digits": GREEN,
+    "explained": BLUE,
+    "open": ORANGE,
+    "differs": PINK,
+}
+_LEAST = 1e-16  # of a difference that is drawn
+_LINE = 0.19  # inches
+
+
+def verified(rows: Sequence[Row]) -> Document:
+    """All that is said of them."""
+    sources = {row.source for row in rows}
+    contact = {row.source for row in rows if row.contact}
+    tiles = [
+        Tile("sources", str(len(sources)), f"{len(contact)} of them on contact or whiskers"),
+        *(Tile(state, str(_count(rows, state)), f"of {len(rows)} numbers") for state in _COLOURS),
+    ]
+    picture = Picture("verify", {_CAPTION: partial(drawn, rows)}, _CAPTION)
+    return Document(
+        "Checked by strangers",
+        "What others printed, measured or derived, beside what is computed here.",
+        verdict(rows),
+        [
+            Section("numbers", "Number by number", [table(rows)]),
+            Section("picture", "How far apart", [picture]),
+            Section("sources", "Sources", [_sources(rows)]),
+            Section("meaning", "How to read it", [Text(_MEANING)]),
+        ],
+        tiles,
+    )
+
+
+_CAPTION = "How far each number here is from the quoted one; 1e-16 stands for less."
+_MEANING = (
+    "A number agrees in all digits if ours rounds to the printed one. Explained: it does not, but "
+    "the difference is no larger than what the reason on its line makes. Open: the difference has "
+    "no reason here, and is no larger than when it was found. Differs: it is larger than that, and "
+    "the exit code is 1."
+)
+
+
+def verdict(rows: Sequence[Row]) -> Verdict:
+    """Whether any number differs by more than is known."""
+    said: dict[State, list[str]] = {state: [] for state in _COLOURS}
+    for row in rows:
+        line = f"{row.source}, {row.what}: {row.quoted}, here {row.ours:.{row.digits + 3}g}"
+        said[row.state].append(f"{row.state}: {line}; {row.why}".rstrip("; "))
+    wrong = said["differs"]
+    counts = ", ".join(f"{_count(rows, state)} {state}" for state in _COLOURS)
+    claim = "Some numbers differ." if wrong else "All numbers agree, or differ as stated."
+    return Verdict(not wrong, claim, f"Of {len(rows)}: {counts}.", "", wrong, said["open"])
+
+
+def table(rows: Sequence[Row]) -> Table:
+    """One line a number."""
+    lines = [
+        (
+            *(row.source, row.what, row.quoted, f"{row.ours:.{max(row.digits + 2, 5)}g}"),
+            *(str(row.digits), ": ".join(filter(None, (row.state, row.why)))),
+        )
+        for row in rows
+    ]
+    head = ("source", "number", "quoted", "here", "digits", "why not more")
+    blamed = [number for number, row in enumerate(rows) if row.state == "differs"]
+    return Table("What was quoted, and what is found", head, lines, (0, 1, 5), blamed)
+
+
+def summary(rows: Sequence[Row]) -> Table:
+    """One line a source."""
+    lines = []
+    for name, group in groupby(rows, lambda row: row.source):
+        found = list(group)
+        digits = [row.digits for row in found]
+        states = [str(_count(found, state) or "") for state in _COLOURS]
+        lines.append((name, str(len(found)), f"{min(digits)} to {max(digits)}", *states))
+    head = ("source", "numbers", "digits that agree", *_COLOURS)
+    return Table("What others printed, and what is found here", head, lines)
+
+
+def drawn(rows: Sequence[Row]) -> Figure:
+    """The differences, a line a number."""
+    figure = Figure(figsize=(PAGE_WIDTH, 1.2 + _LINE * len(rows)), layout="constrained")
+    ax = figure.subplots()
+    places = range(len(rows))
+    for state, colour in _COLOURS.items():
+        these = [place for place in places if rows[place].state == state]
+        sizes = [max(rows[place].difference, _LEAST) for place in these]
+        ax.plot(sizes, these, "o", color=colour, label=state)
+    ax.set(xscale="log", xlabel="difference from the quoted number, relative")
+    ax.set_yticks(places, [f"{row.source}: {row.what}" for row in rows], fontsize=SMALL)
+    ax.set_ylim(len(rows) - 0.5, -0.5)
+    ax.grid(axis="x", color=FAINT, alpha=0.35, linewidth=0.6)
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    return figure
+
+
+def _sources(rows: Sequence[Row]) -> Table:
+    cited = {row.source: row for row in rows}.values()
+    lines = [(row.source, "contact" if row.contact else "rod", row.cite) for row in cited]
+    return Table("Where the numbers stand", ("source", "about", "where"), lines, words=(0, 1, 2))
+
+
+def _count(rows: Sequence[Row], state: State) -> int:
+    return sum(row.state == state for row in rows)

@@ -1,0 +1,90 @@
+"""The quoted numbers of all sources, each beside ours: how many digits agree, and why not more."""
+
+import math
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from pathlib import Path
+from typing import Any, Literal, TypeAlias
+
+from compare.verify import contacts, rods
+
+FILE = Path(__file__).with_name("sources.toml")
+State: TypeAlias = Literal["all digits", "explained", "open", "differs"]
+_EDGE = 1 + 1e-9  # a number half-way between two printed ones rounds to either
+_FORMULA, _ROUNDED = 14, 5e-15  # digits that a formula has in double precision, and half the last
+
+_MODELS: Mapping[str, Callable[..., rods.Parts]] = vars(rods) | vars(contacts)
+
+
+@dataclass(frozen=True)
+class Row:
+    """One number of a source."""
+
+    source: str
+    cite: str
+    contact: bool  # whether the source is about contact or whiskers
+    what: str
+    quoted: str  # as printed, or the name of the formula
+    theirs: float
+    ours: float
+    digits: int  # that agree
+    state: State
+    why: str
+
+    @property
+    def difference(self) -> float:
+        """Of ours, relative to theirs."""
+        return abs(self.ours - self.theirs) / abs(self.theirs)
+
+
+def sources(file: Path = FILE) -> list[dict[str, Any]]:
+    """What a file quotes."""
+    return list(tomllib.loads(file.read_text(encoding="utf-8"))["source"])
+
+
+def verify(given: Sequence[Mapping[str, Any]]) -> Iterator[Row]:
+    """The rows of these sources, one after the other as they are computed."""
+    for source in given:
+        known: dict[str, rods.Parts] = {}
+        for row in source["row"]:
+            arguments = {**source.get("given", {}), **row.get("at", {})}
+            made = known.get(repr(arguments))
+            if made is None:
+                made = known[repr(arguments)] = _MODELS[source["model"]](**arguments)
+            yield _judged(source, row, made)
+
+
+def _judged(source: Mapping[str, Any], row: Mapping[str, Any], made: rods.Parts) -> Row:
+    ours, printed = made[row["value"]], row.get("quoted")
+    theirs = made[row["against"]] if printed is None else float(printed)
+    missed = abs(ours - theirs)
+    whole, last = _FORMULA, _ROUNDED * abs(theirs)
+    if printed is not None:
+        number = Decimal(printed).as_tuple()
+        whole, last = len(number.digits), 0.5 * 10.0 ** int(number.exponent)
+    state: State = "differs"
+    if missed <= _EDGE * last:
+        state = "all digits"
+    elif missed <= row.get("within", source.get("within", 0.0)):
+        state = "open" if row.get("open") else "explained"
+    agree = whole if state == "all digits" else min(whole, _digits(missed / abs(theirs)))
+    why = row.get("why", "" if state == "all digits" else source.get("why", ""))
+    return Row(
+        source["name"],
+        source["cite"],
+        source.get("contact", False),
+        row["what"],
+        printed or row["against"],
+        theirs,
+        ours,
+        agree,
+        state,
+        why,
+    )
+
+
+def _digits(relative: float) -> int:
+    """Significant digits that a relative difference leaves."""
+    return _FORMULA if relative == 0 else max(0, math.floor(-math.log10(2 * relative)))

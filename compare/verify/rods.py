@@ -1,0 +1,131 @@
+"""What the sources on rods ask for: elastica under dead loads, and rods that stretch and shear."""
+
+import math
+from typing import TypeAlias
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipk
+
+from analytic.solver.elastica import frame, span
+from analytic.space.checks.rod import Cantilever
+
+Parts: TypeAlias = dict[str, float]
+"""Numbers by name."""
+
+_ANGLES = 1e-9, math.pi / 2 - 1e-9  # that a dead tip load turns a cantilever by
+_HARDLY = 1e-7  # how far a buckled column bends
+
+
+def _closed_form(turned: float, alpha: float) -> tuple[float, float, float]:
+    """Load and place of the tip of a vibrissa, by the functions that its sweeps use."""
+    loaded = span(np.array(turned), np.array(alpha))
+    up, across = frame(loaded, np.array(alpha))
+    return float(loaded.q) ** 2, float(up / loaded.q), float(across / loaded.q)
+
+
+def tip_load(load: float) -> Parts:
+    """A cantilever under a dead load across it: contact with an upright side."""
+    upright = math.pi / 2
+    turned = brentq(lambda w: _closed_form(w, upright)[0] - load, *_ANGLES, xtol=1e-15, rtol=1e-14)
+    _, up, across = _closed_form(turned, upright)
+    return {"w": across, "u": 1 - up, "theta": turned}
+
+
+def column(degrees: float) -> Parts:
+    """A column after buckling, by its tip's rotation, and the textbook's complete integrals."""
+    turned = math.radians(degrees)
+    load, up, across = _closed_form(turned, 0.0)
+    m = math.sin(turned / 2) ** 2
+    whole = float(ellipk(m))
+    return {
+        "P": load / (math.pi / 2) ** 2,
+        "x": up,
+        "y": across,
+        "textbook P": (2 * whole / math.pi) ** 2,
+        "textbook x": 2 * float(ellipe(m)) / whole - 1,
+        "textbook y": 2 * math.sqrt(m) / whole,
+    }
+
+
+def self_buckling() -> Parts:
+    """The weight under which a standing rod leans: w L^3/EI."""
+    bent = np.array([0, 0, _HARDLY])
+
+    def missed(weight: float) -> float:
+        rod = Cantilever(1.0, np.zeros(3), np.ones(3), weight=np.array([-weight, 0, 0]))
+        return float(rod.march(bent)[1][2]) / _HARDLY
+
+    return {"w": float(brentq(missed, 6, 9, xtol=1e-9))}
+
+
+def rectangle(
+    length: float,
+    width: float,
+    height: float,
+    modulus: float,
+    poisson: float,
+    force: list[float],
+    moment: tuple[float, ...] = (0, 0, 0),
+    shear: float = math.inf,
+    shear_z: float | None = None,
+    torsion: float | None = None,
+) -> Parts:
+    """A cantilever of rectangular section: `height` along y, `width` along z.
+
+    Shear correction factors (infinite: no shear), and that of the polar moment for torsion; else
+    the rectangle's own torsion constant (Timoshenko and Goodier, Theory of elasticity).
+    """
+    area, sliding = width * height, modulus / (2 * (1 + poisson))
+    about_y, about_z = height * width**3 / 12, width * height**3 / 12
+    if torsion is None:
+        thin, wide = sorted((width, height))
+        odd = np.arange(1, 60, 2)
+        tails = np.tanh(odd * math.pi * wide / (2 * thin)) / odd**5
+        twist = wide * thin**3 / 3 * (1 - 192 * thin / (math.pi**5 * wide) * float(tails.sum()))
+    else:
+        twist = torsion * (about_y + about_z)
+    stiff = np.array([modulus, sliding * shear, sliding * (shear_z or shear)]) * area
+    bending = np.array([sliding * twist, modulus * about_y, modulus * about_z])
+    rod = Cantilever(
+        length, 1 / stiff, 1 / bending, force=np.array(force, float), moment=np.array(moment, float)
+    )
+    tip = rod.tip()
+    return {"u": length - tip[0], "x": tip[0] - length, "y": tip[1], "z": tip[2]}
+
+
+def bend(
+    radius: float, degrees: float, load: float, stretching: list[float], bending: list[float]
+) -> Parts:
+    """An arc from the clamp, pulled out of its plane at its tip."""
+    turn = math.radians(degrees)
+    rod = Cantilever(
+        radius * turn,
+        1 / np.array(stretching),
+        1 / np.array(bending),
+        force=np.array([0, 0, load]),
+        curvature=lambda s: 1 / radius,
+    )
+    tip = rod.tip()
+    moved = tip - radius * np.array([math.sin(turn), 1 - math.cos(turn), 0])
+    return dict(zip("xyzuvw", map(float, [*tip, *moved]), strict=True))
+
+
+def parabola_bend(
+    points: list[list[float]], load: float, stretching: list[float], bending: list[float]
+) -> Parts:
+    """The same of a rod along the parabola through three points, the first of them the origin."""
+    x, y = np.array(points, dtype=float).T
+    line = np.polynomial.Polynomial.fit(x, y, 2).convert()
+    slope, bent = line.deriv(), line.deriv(2)
+    rod = Cantilever(
+        points[-1][0],
+        1 / np.array(stretching),
+        1 / np.array(bending),
+        force=np.array([0, 0, load]),
+        curvature=lambda x: float(bent(x)) / (1 + float(slope(x)) ** 2) ** 1.5,
+        speed=lambda x: math.hypot(1, float(slope(x))),
+        turned=math.atan(float(slope(0.0))),
+    )
+    moved = rod.tip() - [*points[-1], 0]
+    return dict(zip("uvw", map(float, moved), strict=True))

@@ -1,0 +1,107 @@
+"""The reference tables: the same each time, and checkers that name what is planted."""
+
+import importlib.util
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from compare.verify.tables import write_tables
+
+HERE = Path(__file__).parents[3] / "docs" / "examples" / "reference"
+TABLES = HERE / "tables"
+NAMES = ("contact", "friction", "sweep", "event", "space")
+PLANTED = 100
+FOUND = 95  # at least
+
+
+@pytest.fixture(scope="module")
+def python():
+    spec = importlib.util.spec_from_file_location("check", HERE / "check.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return lambda table, mine: "\n".join(module.check(Path(table), Path(mine)))
+
+
+@pytest.fixture(scope="module")
+def cpp(tmp_path_factory):
+    if shutil.which("g++") is None:
+        pytest.skip("no g++")
+    program = tmp_path_factory.mktemp("cpp") / "check"
+    asked = ["g++", "-std=c++17", "-Wall", "-Werror", HERE / "check.cpp", "-o", program]
+    subprocess.run(asked, check=True)
+
+    def check(table, mine):
+        done = subprocess.run([program, table, mine], capture_output=True, text=True, check=False)
+        assert done.returncode == (done.stdout != "agrees\n"), done.stderr
+        return "" if done.returncode == 0 else done.stdout
+
+    return check
+
+
+@pytest.fixture(params=["python", "cpp"])
+def check(request):
+    return request.getfixturevalue(request.param)
+
+
+def test_the_tables_are_made_again_bit_for_bit(tmp_path):
+    written = write_tables(tmp_path)
+    assert {path.name for path in written} == {path.name for path in TABLES.iterdir()}
+    for path in written:
+        assert path.read_bytes() == (TABLES / path.name).read_bytes(), path.name
+    assert sum(path.stat().st_size for path in written) < 5e6
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_table_agrees_with_itself(name, check):
+    assert check(TABLES / f"{name}.csv", TABLES / f"{name}.csv") == ""
+
+
+def test_every_column_is_explained():
+    known = set(pd.read_csv(TABLES / "columns.csv")["column"])
+    for name in NAMES:
+        assert set(pd.read_csv(TABLES / f"{name}.csv").columns) <= known
+
+
+def plantings():
+    """Table, what is planted, and how a complaint names it."""
+    rng = np.random.default_rng(34)
+    for _ in range(PLANTED):
+        name = str(rng.choice(NAMES))
+        table = pd.read_csv(TABLES / f"{name}.csv")
+        numbers = [c for c in table.select_dtypes("float") if table[c].abs().max() > 1e-12]
+        column, kind = str(rng.choice(numbers)), str(rng.choice(["sign", "unit", "stale"]))
+        if kind == "sign":
+            table[column] *= -1
+        elif kind == "unit":
+            table[column] *= float(rng.choice([1e3, 1e-3, 25.4, np.pi / 180, 180 / np.pi, 9.81]))
+        else:  # the rows of another version
+            table = table.drop(index=int(rng.integers(len(table))))
+        said = "stale" if kind == "stale" else f"{column}: wrong {kind}"
+        yield name, table, said
+
+
+def test_plantings_are_named(check, tmp_path):
+    named = 0
+    for name, table, said in plantings():
+        table.to_csv(tmp_path / "mine.csv", index=False, na_rep="nan", float_format="%.13e")
+        named += said in check(TABLES / f"{name}.csv", tmp_path / "mine.csv")
+    assert named >= FOUND
+
+
+def test_a_reference_that_was_changed_is_stale(check, tmp_path):
+    for path in TABLES.iterdir():
+        shutil.copy(path, tmp_path)
+    changed = tmp_path / "contact.csv"
+    changed.write_text(changed.read_text().replace("1", "2", 1))
+    assert "stale" in check(changed, changed)
+
+
+def test_a_number_that_is_off_is_said(check, tmp_path):
+    table = pd.read_csv(TABLES / "contact.csv")
+    table.loc[3, "force_x"] *= 1.01
+    table.to_csv(tmp_path / "mine.csv", index=False, na_rep="nan")
+    assert "force_x: off" in check(TABLES / "contact.csv", tmp_path / "mine.csv")
