@@ -41,16 +41,12 @@ _STRAIGHT = 1e-14  # EI/L, of a spring: rounding
 class State(NamedTuple):
     """A configuration, and the contact that Newton's method has for it; lengths in L."""
 
-    configuration: Floats
-    """MuJoCo's coordinates, shape (nq,)."""
-    link: int
-    """The link that carries the bead."""
-    s: float
-    """Arc length of the bead [L]."""
-    force: float
-    """Of the contact [EI/L^2]."""
+    configuration: Floats  # MuJoCo's coordinates, shape (nq,)
+    link: int  # the link that carries the bead
+    s: float  # arc length of the bead [L]
+    force: float  # of the contact [EI/L^2]
+    # Whether the bead is where its link is tangential, or at the tip or a joint that protrudes
     sliding: bool
-    """Whether the bead is where its link is tangential, or at the tip or a joint that protrudes."""
 
 
 class Linearised(NamedTuple):
@@ -58,21 +54,14 @@ class Linearised(NamedTuple):
 
     touch: Touch
     turning: Floats
-    push: Floats
-    """d_q, shape (nv,)."""
-    moved: Floats
-    """How the bead moves with the turns, shape (nv, 3) [L]."""
-    slope: float
-    """d_s."""
-    rolling: Floats
-    """d_qs, shape (nv,)."""
-    along: float
-    """d_ss."""
-    stiffness: Floats
-    """Second derivative of the Lagrangian, shape (nv, nv)."""
+    push: Floats  # d_q, shape (nv,)
+    moved: Floats  # how the bead moves with the turns, shape (nv, 3) [L]
+    slope: float  # d_s
+    rolling: Floats  # d_qs, shape (nv,)
+    along: float  # d_ss
+    stiffness: Floats  # second derivative of the Lagrangian, shape (nv, nv)
     springs: Floats
-    own: Floats
-    """Of the stiffness, what a velocity's own spring has, shape (nv,) [EI/L]."""
+    own: Floats  # of the stiffness, what a velocity's own spring has, shape (nv,) [EI/L]
 
     def curvature(self, state: State) -> Floats:
         """The same with the bead where its link is nearest to the body, if it slides."""

@@ -32,8 +32,7 @@ Law: TypeAlias = Callable[[Floats], tuple[Floats, Floats | float]]
 class SpaceBeam(Protocol):
     """A straight beam of rigid links on a foot, and the second derivative of its energy."""
 
-    layout: Layout
-    """Where its joints are."""
+    layout: Layout  # where its joints are
 
     @property
     def law(self) -> Law | None:

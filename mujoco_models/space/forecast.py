@@ -44,35 +44,24 @@ HEAD_ON = 1e-6
 class Bow(NamedTuple):
     """A chain in a plane with its clamp, and a contact; lengths in L."""
 
-    angles: Floats
-    """Of the links from the clamp's tangent, shape (n_links,) [rad]."""
-    side: Floats
-    """To which they turn: a unit vector across the clamp's tangent, shape (3,)."""
-    link: int
-    """The link that carries the bead."""
-    s: float
-    """Arc length of the bead [L]."""
-    force: Floats
-    """Of the body on the vibrissa, in the plane, shape (3,) [EI/L^2]."""
-    sliding: bool
-    """Whether the bead is where its link is tangential."""
+    angles: Floats  # of the links from the clamp's tangent, shape (n_links,) [rad]
+    side: Floats  # to which they turn: a unit vector across the clamp's tangent, shape (3,)
+    link: int  # the link that carries the bead
+    s: float  # arc length of the bead [L]
+    force: Floats  # of the body on the vibrissa, in the plane, shape (3,) [EI/L^2]
+    sliding: bool  # whether the bead is where its link is tangential
+    # Whether it is at rest, and the energy of vibrissa and contact is least there
     stable: bool = False
-    """Whether it is at rest, and the energy of vibrissa and contact is least there."""
 
 
 class _Bent(NamedTuple):
     """The loaded part of a chain."""
 
-    angles: Floats
-    """Shape (n,) [rad]."""
-    levers: Floats
-    """Of the force, shape (n,) [L]."""
-    ways: Floats
-    """Cosines and sines of the angles, shape (2, n)."""
-    along: float
-    """From the first joint to the bead, along the clamp's tangent [L]."""
-    aside: float
-    """To the side [L]."""
+    angles: Floats  # shape (n,) [rad]
+    levers: Floats  # of the force, shape (n,) [L]
+    ways: Floats  # cosines and sines of the angles, shape (2, n)
+    along: float  # from the first joint to the bead, along the clamp's tangent [L]
+    aside: float  # to the side [L]
 
 
 class Forecast:

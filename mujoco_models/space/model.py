@@ -24,23 +24,17 @@ _FAR = 10.0  # L; beyond, MuJoCo need not say how far
 class Touch(NamedTuple):
     """What MuJoCo says of the bead at some place of the vibrissa; lengths in L."""
 
-    centre: Floats
-    """Of the bead, shape (3,)."""
-    normal: Floats
-    """The body's, outward, shape (3,)."""
-    distance: float
-    """Between the two surfaces; negative if they overlap."""
+    centre: Floats  # of the bead, shape (3,)
+    normal: Floats  # the body's, outward, shape (3,)
+    distance: float  # between the two surfaces; negative if they overlap
 
 
 class Clamped(NamedTuple):
     """The clamp's action on the vibrissa at the foot, in the world's frame."""
 
-    force: Floats
-    """Shape (3,) [EI/L^2]."""
-    moment: Floats
-    """Shape (3,) [EI/L]."""
-    discrepancy: float
-    """By how much that differs from what holds the contacts' forces."""
+    force: Floats  # shape (3,) [EI/L^2]
+    moment: Floats  # shape (3,) [EI/L]
+    discrepancy: float  # by how much that differs from what holds the contacts' forces
 
 
 class SpaceModel:

@@ -27,14 +27,10 @@ class Settled(NamedTuple):
     state: State
     touch: Touch
     stable: bool
-    surface: Surface
-    """What it touches."""
-    stays: bool
-    """Whether that is where the body is, and no other link is deeper."""
-    tangents: Floats
-    """Unit vectors along the links, shape (n_links, 3)."""
-    bow: Bow | None
-    """What a forecast starts from; None past what there is none for."""
+    surface: Surface  # what it touches
+    stays: bool  # whether that is where the body is, and no other link is deeper
+    tangents: Floats  # unit vectors along the links, shape (n_links, 3)
+    bow: Bow | None  # what a forecast starts from; None past what there is none for
 
 
 class Rest:

@@ -23,8 +23,7 @@ class Surface(NamedTuple):
     """What may be touched."""
 
     model: SpaceModel
-    feature: Feature | None
-    """Of a mesh; None for a smooth body as it is."""
+    feature: Feature | None  # of a mesh; None for a smooth body as it is
 
     def touch(self, link: int, s: float) -> Touch:
         """The nearest point to a bead on a link."""

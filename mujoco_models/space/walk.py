@@ -51,8 +51,7 @@ class Station(NamedTuple):
     """What a station comes to."""
 
     status: str
-    settled: Settled | None
-    """None where nothing touches, or where it is not known what does."""
+    settled: Settled | None  # None where nothing touches, or where it is not known what does
 
 
 class Walk:
