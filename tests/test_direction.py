@@ -181,7 +181,7 @@ def test_bad_sweeps(sweep, said):
 
 
 def test_bad_direction():
-    with pytest.raises(InputError, match=r"sweep.direction = 'up': must be one of left, right"):
+    with pytest.raises(InputError, match=r"sweep.direction = 'up': must be left or right"):
         Sweep(direction="up")
 
 

@@ -38,7 +38,7 @@ from mujoco_models import Settings, simulate_sweep
         (lambda: parabola(-1, 0.5), "parabola.a = -1"),
         (lambda: catenary(0.5, np.nan), "catenary.c = nan"),
         (lambda: circle(0, (0, 0.5)), "circle.radius = 0"),
-        (lambda: circle(1, (0, np.inf)), "lowest = (0, inf)"),
+        (lambda: circle(1, (0, np.inf)), "lowest[1] = inf"),
         (lambda: Sweep(stations=1), "sweep.stations = 1"),
         (lambda: Sweep(start=np.nan), "sweep.start = nan"),
         (lambda: Case(profile=circle(1, (0, 1.2))), "1.195 L"),

@@ -13,11 +13,9 @@ class Solution(NamedTuple):
 
     force: float
     moment: float
-    reach: float
-    """x(s1) - x0."""
+    reach: float  # x(s1) - x0
     arc_length: float
-    slope: float
-    """phi at the contact [rad]."""
+    slope: float  # phi at the contact [rad]
 
 
 def boundary_value_problem(

@@ -24,10 +24,8 @@ class End(NamedTuple):
     x: Floats
     y: Floats
     phi: Floats
-    moment: Floats
-    """Positive where it adds to the curvature [EI/L]."""
-    least_phi: Floats
-    """Smallest slope angle on the way, at 16 places [rad]."""
+    moment: Floats  # positive where it adds to the curvature [EI/L]
+    least_phi: Floats  # smallest slope angle on the way, at 16 places [rad]
 
 
 def integrate_span(

@@ -41,8 +41,7 @@ _Candidate: TypeAlias = tuple[Integers, Floats, Floats]
 class Reached(NamedTuple):
     """Places of the vibrissa as seen from its foot, of a sweep to the left; arrays of one shape."""
 
-    alpha: Floats
-    """Slope angle of the contour that is touched there [rad]."""
+    alpha: Floats  # slope angle of the contour that is touched there [rad]
     arc_length: Floats
     x: Floats
     y: Floats
@@ -52,11 +51,9 @@ class ClampEnd(NamedTuple):
     """The clamp's end of vibrissae in a sweep to the left, dimensionless; arrays of one shape."""
 
     force: Floats
-    direction: Floats
-    """Slope angle phi_F of the force on the vibrissa at its contact [rad]."""
+    direction: Floats  # slope angle phi_F of the force on the vibrissa at its contact [rad]
     moment: Floats
-    theta: Floats
-    """Slope angle at the clamp, from the force's [rad]."""
+    theta: Floats  # slope angle at the clamp, from the force's [rad]
     vibrissa: Vibrissa
 
     @classmethod

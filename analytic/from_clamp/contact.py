@@ -47,12 +47,10 @@ def sides(sensed: Floats) -> Floats:
 class SweptVibrissa(NamedTuple):
     """What the readings of a sweep are of, as the clamp's readings need it."""
 
+    # its numbers in a sweep to the left; the mirror image's, if the foot moves to the right.
     vibrissa: Vibrissa
-    """Its numbers in a sweep to the left; the mirror image's, if the foot moves to the right."""
-    plain: bool
-    """Whether it is the paper's: straight at rest, rigidly clamped, without friction."""
-    way: float
-    """-1 if the foot moves to the right, else 1; it determines the sense of friction."""
+    plain: bool  # whether it is the paper's: straight at rest, rigidly clamped, without friction
+    way: float  # -1 if the foot moves to the right, else 1; it determines the sense of friction
 
     @classmethod
     def of(cls, readings: Readings) -> "SweptVibrissa":

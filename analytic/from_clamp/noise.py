@@ -7,11 +7,15 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import CLAMP_READINGS, SENSED
 from analytic.problem.errors import InputError
+from analytic.problem.numbers import within
 from analytic.problem.readings import Readings
 
 _DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # kills cubics: what is left is noise
 _ROUND_OFF = 1e-14  # of the largest magnitude: no reading is better than that
 
+SAMPLES = 400  # of the noise, a station
+AT_ONCE = 10_000  # stations whose samples are in memory, 130 MB for each number of them
+_COVERAGE = 0.95
 MEDIAN_OF_NORMAL = 0.6745
 """Median of |x| for a standard normal x: turns a median deviation into a standard deviation."""
 
@@ -59,25 +63,27 @@ def relative_noise(readings: Readings, level: float) -> dict[str, float]:
         If `level` is not between 0 and 1.
     """
     if isinstance(level, bool | str) or not 0 <= level < 1:
-        raise InputError(
-            "noise", level, "between 0 and 1", "it is a share of each reading's largest magnitude"
-        )
+        remedy = "it is a share of each reading's largest magnitude"
+        raise InputError("noise", level, "between 0 and 1", remedy)
     return {name: float(level) * largest(readings.values(name)) for name in CLAMP_READINGS}
 
 
-def checked_noise(noise: object) -> dict[str, float]:
+def checked_noise(noise: object, columns: tuple[str, ...] = SENSED) -> dict[str, float]:
     """The noise that a user states."""
-    remedy = "`relative_noise(readings, 0.01)` makes it from a share of the largest magnitudes"
     if not isinstance(noise, Mapping):
+        remedy = "`relative_noise(readings, 0.01)` makes it from a share of the largest magnitudes"
         raise InputError("noise", repr(noise), "a standard deviation by column", remedy)
-    for name, size in noise.items():
-        if name not in SENSED:
-            raise InputError("noise", repr(name), f"of {', '.join(SENSED)}", remedy)
-        if isinstance(size, bool | str) or not 0 <= size < np.inf:
-            raise InputError(
-                f"noise of {name}", size, "a number from 0 up, in the column's unit", remedy
-            )
-    return {str(name): float(size) for name, size in noise.items()}
+    for name in noise:
+        if name not in columns:
+            raise InputError("noise", repr(name), f"of {', '.join(columns)}")
+    remedy = "it is in the column's unit"
+    return {name: within(f"noise of {name}", x, 0.0, remedy=remedy) for name, x in noise.items()}
+
+
+def covering(misses: Floats, axis: int) -> Floats:
+    """The distance within which 95 % of the samples lie; a sample that is nowhere is far away."""
+    far = np.nan_to_num(misses, nan=np.inf)
+    return np.asarray(np.quantile(far, _COVERAGE, axis=axis, method="higher"))
 
 
 def largest(values: Floats) -> float:

@@ -17,7 +17,7 @@ from analytic.from_clamp.contact import (
     sides,
 )
 from analytic.from_clamp.mistaken import likely_mistakes
-from analytic.from_clamp.noise import checked_noise
+from analytic.from_clamp.noise import AT_ONCE, SAMPLES, checked_noise, covering
 from analytic.from_clamp.phases import Judgement, judge_phases
 from analytic.problem.arrays import Booleans, Floats, Words
 from analytic.problem.beam import Beam
@@ -27,9 +27,6 @@ from analytic.problem.readings import Readings
 from analytic.problem.table import mirrored_table
 from analytic.solver.elastica import tangent_span
 
-_SAMPLES = 400  # of the noise, a station
-_AT_ONCE = 10_000  # stations whose samples are in memory, 130 MB for each number of them
-_COVERAGE = 0.95
 _LARGE = 0.99  # quantile of the forces that is called the largest
 _MANY = 0.2  # of the stations; of good readings with 3 % of noise up to an eighth have no contact
 _CLEAR = 0.1  # of the largest force; with less, noise makes of a contact what it likes
@@ -128,18 +125,13 @@ def require_beam(found: pd.DataFrame, readings: Readings) -> None:
         return
     impossible = f"{wrong} of {loaded.sum()} contacts cannot be of"
     if readings.beam == Beam():
-        raise InputError(
-            "vibrissa",
-            "none given",
-            f"the one that was measured ({impossible} L = EI = 1)",
-            "use --beam FILE (in Python a Beam), in the units of the readings",
-        )
-    raise InputError(
-        "vibrissa",
-        f"of length {readings.beam.length:g} and flexural rigidity {readings.beam.base_rigidity:g}",
-        f"the one that was measured ({impossible} this one)",
-        f"check its units, and units and signs of {readings.source}{_likely(readings, loaded)}",
-    )
+        allowed = f"the one that was measured ({impossible} L = EI = 1)"
+        remedy = "use --beam FILE (in Python a Beam), in the units of the readings"
+        raise InputError("vibrissa", "none given", allowed, remedy)
+    sizes = f"length {readings.beam.length:g} and rigidity {readings.beam.base_rigidity:g}"
+    allowed = f"the one that was measured ({impossible} this one)"
+    of_readings = f"units and signs of {readings.source}{_likely(readings, loaded)}"
+    raise InputError("vibrissa", f"of {sizes}", allowed, f"check its units, and {of_readings}")
 
 
 def doubt(found: pd.DataFrame, readings: Readings) -> str | None:
@@ -250,16 +242,13 @@ def _uncertainty(
     contact = contact_bent_right if held.plain else held.contact
     generator = np.random.default_rng(seed)
 
-    def covering(some: Floats) -> Floats:
-        random = generator.standard_normal((4, some.shape[1], _SAMPLES))
+    def covered(some: Floats) -> Floats:
+        random = generator.standard_normal((4, some.shape[1], SAMPLES))
         noisy = some[:, :, None] + spread[:, None, None] * random
         moved, here = (held.surface(contact(x)) for x in (noisy, some[:, :, None]))
-        miss = np.hypot(*(m - h for m, h in zip(moved, here, strict=True)))
-        return np.asarray(
-            np.quantile(np.nan_to_num(miss, nan=np.inf), _COVERAGE, axis=1, method="higher")
-        )
+        return covering(np.hypot(*np.subtract(moved, here)), axis=1)
 
     radius = np.full(len(loaded), np.nan)
-    pieces = np.array_split(sensed, sensed.shape[1] // _AT_ONCE + 1, axis=1)
-    radius[loaded] = np.concatenate([covering(piece) for piece in pieces])
+    pieces = np.array_split(sensed, sensed.shape[1] // AT_ONCE + 1, axis=1)
+    radius[loaded] = np.concatenate([covered(piece) for piece in pieces])
     return radius

@@ -112,12 +112,8 @@ def _mean(held: SweptVibrissa, sensed: Floats, spread: Floats) -> FrictionFound:
     usable = np.isfinite(sines[0]) & (np.abs(sines[0]) < _MOST)
     sine, moved = sines[0, usable], sines[1:, usable]
     if len(sine) < _FEWEST:
-        raise InputError(
-            "stations of Phase B",
-            len(sine),
-            f"{_FEWEST} or more, from which the friction coefficient is estimated",
-            "let the vibrissa touch along its side: a lower object, or more stations",
-        )
+        remedy = "let the vibrissa touch along its side: a lower object, or more stations"
+        raise InputError("stations of Phase B", len(sine), f"{_FEWEST} or more", remedy)
     variance = (np.nan_to_num((moved - sine) / _STEP) ** 2).sum(axis=0)
     weight = 1 / _beside(variance)
     mean = float(np.sum(weight * sine) / weight.sum())

@@ -19,11 +19,7 @@ _AGREED = 1e-13  # of that width: polynomials of one degree less and of this one
 _AT_ONCE, _ASIDE = 64, 15  # so many numbers take hardly longer than one; at most, on either side
 
 
-def zeros(
-    function: Callable[[Integers, Floats], Floats],
-    low: Floats,
-    high: Floats,
-) -> Floats:
+def zeros(function: Callable[[Integers, Floats], Floats], low: Floats, high: Floats) -> Floats:
     """Where `function` changes its sign between `low` and `high`.
 
     Chandrupatla's method (Adv. Eng. Software 28, 1997): inverse quadratic interpolation where three
@@ -80,10 +76,8 @@ def smooth_zeros(
 class Surroundings(NamedTuple):
     """Places about likely zeros, those of Chebyshev's polynomials, for interpolation."""
 
-    centre: Floats
-    """Shape (n,)."""
-    radius: Floats
-    """Up to how far on either side, shape (n,)."""
+    centre: Floats  # shape (n,)
+    radius: Floats  # up to how far on either side, shape (n,)
 
     @classmethod
     def of(cls, low: Floats, high: Floats, likely: Floats) -> "Surroundings":

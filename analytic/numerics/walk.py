@@ -11,11 +11,10 @@ _LEAST = 1e-9  # of the way: a gap that is closed over less stays unseen
 State = TypeVar("State")
 
 
-class Event(NamedTuple):
+class WalkEvent(NamedTuple):
     """What happens on the way, and where; lengths in L."""
 
-    kind: str
-    """``"touch"``, ``"phase"``, ``"hop"``, ``"release"`` or ``"slip-off"``."""
+    kind: str  # ``"touch"``, ``"phase"``, ``"hop"``, ``"release"`` or ``"slip-off"``
     travel: float
 
 

@@ -14,6 +14,7 @@ from numpy.polynomial import chebyshev
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
+from analytic.problem.numbers import floats
 
 _DEGREE = 24
 _TAIL = 3  # coefficients, of a series that is exact they are rounding
@@ -33,6 +34,8 @@ _ROUNDING = 4 * float(np.finfo(float).eps)
 _NODES = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, _DEGREE))
 _CUBIC = 4  # coefficients
+_SMOOTH = "smooth but for a few kinks and jumps"
+_OR_PAIRS = "give pairs (arc length, value), or drop what is too narrow to matter"
 _SPANS = 1e-9  # of the length; by how much a table's ends may miss the vibrissa's
 
 
@@ -56,12 +59,9 @@ class Along:
         except (TypeError, ValueError):
             whole = False
         if not whole:
-            raise InputError(
-                "series along the vibrissa",
-                "other numbers",
-                "ascending ends of pieces, and finite coefficients for each",
-                "give a function of arc length, or pairs (arc length, value)",
-            )
+            allowed = "ascending ends of pieces, and finite coefficients for each"
+            remedy = "give a function of arc length, or pairs (arc length, value)"
+            raise InputError("series along the vibrissa", "other numbers", allowed, remedy)
         object.__setattr__(self, "ends", ends)
         object.__setattr__(self, "series", series)
 
@@ -161,38 +161,26 @@ class Along:
 
 def _check_span(name: str, begin: float, end: float, length: float) -> None:
     if not max(abs(begin), abs(end - length)) <= _SPANS * length:
-        raise InputError(
-            name,
-            f"from s = {begin:g} to {end:g}",
-            f"from the clamp, s = 0, to the tip, s = {length:g}",
-            "give all of the vibrissa, in the unit of its length",
-        )
+        allowed = f"from the clamp, s = 0, to the tip, s = {length:g}"
+        remedy = "give all of the vibrissa, in the unit of its length"
+        raise InputError(name, f"from s = {begin:g} to {end:g}", allowed, remedy)
 
 
 def _interpolated(name: str, given: object, length: float) -> Along:
     from scipy.interpolate import PchipInterpolator  # slow to load, and few need it
 
-    try:
-        table = np.array(given, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        table = np.empty(0)
-    if table.ndim != 2 or table.shape[1:] != (2,) or not 2 <= len(table) <= _MOST_PIECES:
-        raise InputError(
-            name,
-            f"{given!r}"[:80],
-            f"a number, a function of arc length, or 2 to {_MOST_PIECES} pairs (arc length, value)",
-            "as 1.0, or [(0, 1.0), (1, 0.5)]",
-        )
+    allowed = (
+        f"a number, a function of arc length, or 2 to {_MOST_PIECES} pairs (arc length, value)"
+    )
+    table = floats(name, given, (None, 2), allowed)
+    if not 2 <= len(table) <= _MOST_PIECES:
+        raise InputError(name, f"{given!r}"[:80], allowed, "as 1.0, or [(0, 1.0), (1, 0.5)]")
     s, values = table.T
-    wrong = ~(np.isfinite(table).all(axis=1) & np.append(True, np.diff(s) > 0))
+    wrong = np.append(False, np.diff(s) <= 0)
     if wrong.any():
         i = int(np.argmax(wrong))
-        raise InputError(
-            f"{name}, pair {i}",
-            tuple(table[i].tolist()),
-            "finite and after the one before",
-            "correct or drop it",
-        )
+        what = tuple(table[i].tolist())
+        raise InputError(f"{name}, pair {i}", what, "after the one before", "correct or drop it")
     _check_span(name, s[0], s[-1], length)
     s[0], s[-1] = 0.0, length
     curve = PchipInterpolator(s, values)
@@ -244,24 +232,15 @@ def _sampled(name: str, function: Callable[[Floats], Floats], length: float) -> 
             ends.append(end)
             pieces.append(found)
     if ahead or len(pieces) > _MOST_PIECES:
-        raise InputError(
-            name,
-            f"a function that is rough at s = {begin:g}",
-            "smooth but for a few kinks and jumps",
-            "or give pairs (arc length, value)",
-        )
+        raise InputError(name, f"a function that is rough at s = {begin:g}", _SMOOTH, _OR_PAIRS)
     ends[-1] = length
     whole = Along(tuple(ends), tuple(_trimmed(piece) for piece in pieces))
     places = np.linspace(0, length, _LOOKS)
     off = np.abs(_values(name, function, places) - whole(places)) > _ALIKE * largest
     off &= np.abs(places[:, None] - ends).min(axis=1) > _NARROW * length  # of a jump, either side
     if off.any():
-        raise InputError(
-            name,
-            f"a function with a narrow dent at s = {places[np.argmax(off)]:g}",
-            "smooth but for a few kinks and jumps",
-            "give pairs (arc length, value), or drop what is too narrow to matter",
-        )
+        what = f"a function with a narrow dent at s = {places[np.argmax(off)]:g}"
+        raise InputError(name, what, _SMOOTH, _OR_PAIRS)
     return whole
 
 
@@ -281,16 +260,12 @@ def _values(name: str, function: Callable[[Floats], Floats], s: Floats) -> Float
         with np.errstate(all="ignore"):  # what is not finite is reported
             found = np.broadcast_to(np.asarray(function(s), dtype=float), s.shape)
     except (TypeError, ValueError) as error:
-        raise InputError(
-            name,
-            "a function that takes no array of arc lengths",
-            "one that maps an array of arc lengths to one of the same shape",
-            f"write it with NumPy functions ({error})",
-        ) from error
+        what, allowed = "a function that takes no array", "one of an array of arc lengths"
+        raise InputError(name, what, allowed, f"write it with NumPy functions ({error})") from error
     wrong = ~np.isfinite(found)
     if wrong.any():
         i = int(np.argmax(wrong))
-        raise InputError(name, f"{found[i]} at s = {s[i]:g}", "finite all along", "correct it")
+        raise InputError(name, f"{found[i]} at s = {s[i]:g}", "finite all along")
     return found
 
 

@@ -10,14 +10,9 @@ from numpy.typing import ArrayLike
 
 from analytic.problem.along import Along
 from analytic.problem.arrays import Floats
-from analytic.problem.beam_checks import (
-    checked_curvature,
-    checked_length,
-    checked_radii,
-    checked_rigidity,
-)
-from analytic.problem.errors import InputError
-from analytic.problem.numbers import LARGEST
+from analytic.problem.beam_checks import checked_curvature, checked_radii, checked_rigidity
+from analytic.problem.errors import InputError, require
+from analytic.problem.numbers import LARGEST, positive
 from analytic.problem.unloaded import Unloaded
 
 Varying: TypeAlias = float | Callable[[Floats], Floats] | Sequence[tuple[float, float]] | Along
@@ -72,7 +67,7 @@ class Beam:
     si: bool = field(default=False, kw_only=True, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        length = checked_length(self.length)
+        length = positive("beam.length", self.length)
         radius, tip_radius = checked_radii(self.radius, self.tip_radius, length)
         for name, value in (
             ("length", length),
@@ -82,15 +77,11 @@ class Beam:
             ("natural_curvature", checked_curvature(self.natural_curvature, length)),
         ):
             object.__setattr__(self, name, value)
-        if not isinstance(self.si, bool):
-            raise InputError("beam.si", repr(self.si), "True or False", "leave it out")
+        require("beam.si", self.si, bool, "leave it out")
         if not self._has_units():
-            raise InputError(
-                "beam.flexural_rigidity",
-                f"{self.base_rigidity:g} with a length of {self.length:g}",
-                f"such that EI/L^2 and EI/L are {1 / LARGEST:g} to {LARGEST:g}",
-                "choose units nearer to the case",
-            )
+            what = f"{self.base_rigidity:g} with a length of {self.length:g}"
+            allowed = f"such that EI/L^2 and EI/L are {1 / LARGEST:g} to {LARGEST:g}"
+            raise InputError("beam.flexural_rigidity", what, allowed, "choose other units")
 
     @property
     def force_unit(self) -> float:
@@ -200,17 +191,12 @@ class Beam:
         old_rigidity, natural = self._rigidity, self._natural
         if isinstance(natural, Along):
             natural = natural.times(1, length)
-        stiffer = (
-            old_rigidity.times(rigidity, length)
-            if isinstance(old_rigidity, Along)
-            else old_rigidity * rigidity
-        )
-        return replace(
-            self,
-            length=self.length * length,
-            flexural_rigidity=stiffer,
-            natural_curvature=natural,
-        )
+        if isinstance(old_rigidity, Along):
+            stiffer: float | Along = old_rigidity.times(rigidity, length)
+        else:
+            stiffer = old_rigidity * rigidity
+        longer = self.length * length
+        return replace(self, length=longer, flexural_rigidity=stiffer, natural_curvature=natural)
 
     def mirrored(self) -> "Beam":
         """The mirror image, x to -x.

@@ -14,7 +14,7 @@ from analytic.problem.beam import Beam
 from analytic.problem.contours.contour import Contour
 from analytic.problem.contours.families import catenary
 from analytic.problem.errors import InputError, require
-from analytic.problem.numbers import is_finite_number, is_whole_number
+from analytic.problem.numbers import finite, whole, within
 from analytic.problem.reach import FARTHEST, contact_range, out_of_reach
 from analytic.problem.rest import first_touch
 from analytic.problem.support import check_support, is_plain, require_plain, support_record
@@ -55,25 +55,14 @@ class Sweep:
     direction: Direction = "left"
 
     def __post_init__(self) -> None:
-        if not (is_whole_number(self.stations) and 2 <= self.stations <= _MOST_STATIONS):
-            raise InputError(
-                "sweep.stations",
-                self.stations,
-                f"a whole number, 2 to {_MOST_STATIONS:,}",
-                "200 is usual",
-            )
-        object.__setattr__(self, "stations", int(self.stations))
+        stations = whole("sweep.stations", self.stations, 2, _MOST_STATIONS)
+        object.__setattr__(self, "stations", stations)
         for name in ("start", "stop"):
-            value = getattr(self, name)
-            if value is not None and not is_finite_number(value):
-                raise InputError(f"sweep.{name}", value, "finite", "leave it out for the default")
+            if getattr(self, name) is not None:
+                finite(f"sweep.{name}", getattr(self, name))
         if self.direction not in get_args(Direction):
-            raise InputError(
-                "sweep.direction",
-                repr(self.direction),
-                f"one of {', '.join(get_args(Direction))}",
-                "it is where the foot moves to",
-            )
+            remedy = "it is where the foot moves to"
+            raise InputError("sweep.direction", repr(self.direction), "left or right", remedy)
 
 
 @dataclass(frozen=True)
@@ -125,26 +114,18 @@ class Case:
         farthest = 2 * FARTHEST * self.beam.length
         for name in ("start", "stop"):  # by default they are in order, and the stop is not needed
             value = getattr(self.sweep, name)
-            if value is not None and not abs(value) <= farthest:
-                raise InputError(
-                    f"sweep.{name}", value, f"within {farthest:g} of the origin", "check its unit"
-                )
+            if value is not None:
+                within(f"sweep.{name}", value, -farthest, farthest, "check its unit")
+        more = self._way > 0
         if self._way * self._start > self._way * touch:
-            raise InputError(
-                "sweep.start",
-                self.sweep.start,
-                f"at {'most' if self._way > 0 else 'least'} {touch:.6g}, "
-                "where the tip first touches",
-                "a sweep starts clear of the object",
-            )
+            allowed = f"at {'most' if more else 'least'} {touch:.6g}, where the tip first touches"
+            remedy = "a sweep starts clear of the object"
+            raise InputError("sweep.start", self.sweep.start, allowed, remedy)
         stop, shortest = self.sweep.stop, _SHORTEST * self.beam.length
         if stop is not None and not self._way * (stop - self._start) > shortest:
-            raise InputError(
-                "sweep.stop",
-                stop,
-                f"{'more' if self._way > 0 else 'less'} than the start, {self._start:.6g}",
-                f"the foot moves to the {self.sweep.direction} (sweep.direction)",
-            )
+            allowed = f"{'more' if more else 'less'} than the start, {self._start:.6g}"
+            remedy = f"the foot moves to the {self.sweep.direction} (sweep.direction)"
+            raise InputError("sweep.stop", stop, allowed, remedy)
 
     @cached_property
     def centreline(self) -> Contour:
@@ -195,14 +176,8 @@ class Case:
         left, right = self.reach
         xi, eta = self.centreline.place(np.linspace(left, right, 67))
         beam = self.beam
-        numbers = np.concatenate(
-            [
-                [beam.length, beam.base_rigidity, beam.radius, self._start, self._stop],
-                [self.sweep.stations],
-                xi,
-                eta,
-            ]
-        )
+        sizes = beam.length, beam.base_rigidity, beam.radius
+        numbers = np.array([*sizes, self._start, self._stop, self.sweep.stations, *xi, *eta])
         if not self.is_plain:
             base_curvature = float(beam.curvature_at(0.0))
             beyond = base_curvature, self.clamp_stiffness, self.friction

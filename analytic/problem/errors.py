@@ -14,11 +14,11 @@ class InputError(ValueError):
         The value that was given.
     allowed : str
         What would be allowed (``"a positive finite number"``).
-    remedy : str
+    remedy : str, optional
         What to do about it.
     """
 
-    def __init__(self, name: str, value: object, allowed: str, remedy: str) -> None:
+    def __init__(self, name: str, value: object, allowed: str, remedy: str = "correct it") -> None:
         self.name, self._given = name, (name, _written(value), allowed, remedy)
         line = f"{name} = {self._given[1]}: must be {allowed}; {remedy}"
         super().__init__(" ".join(line.split()))

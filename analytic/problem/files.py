@@ -23,18 +23,13 @@ def regular_file(path: str | Path, name: str, largest: int) -> Path:
         size = path.stat().st_size
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(
-            name, path, "a file that is there", f"check the path ({reason})"
-        ) from error
+        remedy = f"check the path ({reason})"
+        raise InputError(name, path, "a file that is there", remedy) from error
     if not path.is_file():
         raise InputError(name, path, "a regular file", "a folder, pipe or device cannot be read")
     if size > largest:
-        raise InputError(
-            f"{name} {path}",
-            f"of {size / 1e6:.0f} MB",
-            f"at most {largest / 1e6:.0f} MB",
-            "split it or drop what is not needed",
-        )
+        what, allowed = f"of {size / 1e6:.0f} MB", f"at most {largest / 1e6:.0f} MB"
+        raise InputError(f"{name} {path}", what, allowed, "split it or drop what is not needed")
     return path
 
 

@@ -81,12 +81,8 @@ def named_case(name: str) -> Case:
         If there is no case of that name.
     """
     if name not in NAMED_TABLES:
-        raise InputError(
-            "case",
-            repr(name),
-            f"one of {', '.join(NAMED_TABLES)}, or a TOML file",
-            "see `vibrissa list cases`",
-        )
+        allowed = f"one of {', '.join(NAMED_TABLES)}, or a TOML file"
+        raise InputError("case", repr(name), allowed, "see `vibrissa list cases`")
     tables = NAMED_TABLES[name]
     return Case(
         Beam(**tables.get("beam", {})),

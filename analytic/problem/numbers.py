@@ -1,6 +1,7 @@
-"""Checks of single numbers, each with one line that says what is wrong."""
+"""Checks of numbers and arrays, each with one line that says what is wrong."""
 
 import math
+from collections.abc import Sequence
 from numbers import Integral, Real
 from typing import TypeGuard
 
@@ -22,53 +23,59 @@ def is_finite_number(value: object) -> TypeGuard[float]:
         return False
 
 
-def is_whole_number(value: object) -> TypeGuard[int]:
-    """Whether a value is an integer and no boolean."""
-    return isinstance(value, Integral) and not isinstance(value, bool)
+def within(
+    name: str, value: object, low: float, high: float = LARGEST, remedy: str = "correct it"
+) -> float:
+    """A number from `low` to `high`."""
+    if not (is_finite_number(value) and low <= float(value) <= high):
+        kind = "positive" if low > 0 else "finite"
+        raise InputError(name, value, f"a {kind} number between {low:g} and {high:g}", remedy)
+    return float(value)
+
+
+def whole(name: str, value: object, low: int, high: int) -> int:
+    """A whole number from `low` to `high`."""
+    number = int(value) if isinstance(value, Integral) and not isinstance(value, bool) else low - 1
+    if not low <= number <= high:
+        raise InputError(name, value, f"a whole number, {low} to {high:,}", "200 is usual")
+    return number
 
 
 def finite(name: str, value: object) -> float:
     """A number that is finite and whose square is, too."""
-    if not (is_finite_number(value) and abs(value) <= LARGEST):
-        raise InputError(name, value, "a finite number", "correct it")
-    return float(value)
+    return within(name, value, -LARGEST)
 
 
 def positive(name: str, value: object) -> float:
     """A number that is positive and finite, and whose square and inverse are numbers."""
-    if not (is_finite_number(value) and 1 / LARGEST <= value <= LARGEST):
-        allowed = f"positive and finite ({1 / LARGEST:g} to {LARGEST:g})"
-        raise InputError(name, value, allowed, "correct the number or its sign")
-    return float(value)
+    return within(name, value, 1 / LARGEST)
+
+
+def floats(name: str, value: object, shape: Sequence[int | None], allowed: str) -> Floats:
+    """Finite numbers in an array of some shape, of which None is any length."""
+    try:
+        found = np.array(value, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        found = np.array(np.nan)
+    fits = [n in (None, m) for n, m in zip(shape, found.shape, strict=False)]
+    if found.ndim != len(shape) or not all(fits):
+        raise InputError(name, f"{value!r}"[:80], allowed)
+    wrong = ~(np.abs(found) <= LARGEST)
+    if wrong.any():
+        place = np.argwhere(wrong)[0].tolist()
+        raise InputError(f"{name}{place}", found[tuple(place)], "a finite number")
+    return found
 
 
 def pair(name: str, value: object) -> tuple[float, float]:
     """Two finite numbers."""
-    first: object
-    second: object
-    try:
-        first, second = value  # type: ignore[misc]  # whatever was given
-    except (TypeError, ValueError) as error:
-        raise InputError(name, value, "two numbers", "as (0.0, 0.5)") from error
-    if not (is_finite_number(first) and is_finite_number(second)):
-        raise InputError(name, value, "two finite numbers", "correct them")
-    return finite(f"{name}[0]", first), finite(f"{name}[1]", second)
+    first, second = floats(name, value, (2,), "two numbers, as (0.0, 0.5)").tolist()
+    return first, second
 
 
 def points_of(name: str, value: object) -> Floats:
     """Points of the plane, at least three."""
-    try:
-        points = np.array(value, dtype=float)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise InputError(
-            name, "no list of points", "a list of points (x, y)", f"correct it ({error})"
-        ) from error
-    if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3:
-        raise InputError(
-            name, f"of shape {points.shape}", "three or more points (x, y)", "add some"
-        )
-    wrong = ~(np.abs(points) <= LARGEST).all(axis=1)
-    if wrong.any():
-        i = int(np.argmax(wrong))
-        raise InputError(f"{name} {i}", points[i], "finite", "correct or drop it")
+    points = floats(name, value, (None, 2), "a list of points (x, y)")
+    if len(points) < 3:
+        raise InputError(name, f"{len(points)} points", "three or more", "add some")
     return points

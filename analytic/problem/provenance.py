@@ -3,46 +3,21 @@
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from analytic.problem.errors import InputError
+from analytic.problem.numbers import floats
 
 
 def check_provenance(provenance: Mapping[str, Any]) -> None:
     """Refuse what readings could not use."""
-    events = provenance.get("events", {})
-    if not isinstance(events, Mapping) or not all(_is_place(x) for x in events.values()):
-        raise InputError(
-            "provenance.events", _short(events), "foot positions or null by name", "drop it"
-        )
-    support = provenance.get("support", {})
-    if not _is_held(support):
-        raise InputError(
-            "provenance.support", _short(support), "clamp_stiffness and friction", "drop it"
-        )
+    for name, known in (("events", None), ("support", {"clamp_stiffness", "friction"})):
+        value = provenance.get(name, {})
+        fits = isinstance(value, Mapping) and (known is None or set(value) <= known)
+        if not fits or not all(_is_number(x) for x in value.values()):
+            allowed = "numbers or null by name"
+            raise InputError(f"provenance.{name}", f"{value!r}"[:80], allowed, "drop it")
     contour = provenance.get("contour", [[], []])
-    try:
-        right = np.ndim(contour) == 2 and len(contour) == 2 and np.isfinite(contour).all()
-    except (TypeError, ValueError):
-        right = False
-    if not right:
-        raise InputError(
-            "provenance.contour", _short(contour), "two lists of as many coordinates", "drop it"
-        )
+    floats("provenance.contour", contour, (2, None), "two lists of as many coordinates")
 
 
-def _is_held(value: object) -> bool:
-    """Whether a value is a clamp's stiffness, None if rigid, and friction, by name."""
-    if not isinstance(value, Mapping):
-        return False
-    known = set(value) <= {"clamp_stiffness", "friction"}
-    return known and all(_is_place(number) for number in value.values())
-
-
-def _is_place(value: object) -> bool:
+def _is_number(value: object) -> bool:
     return value is None or (isinstance(value, int | float) and not isinstance(value, bool))
-
-
-def _short(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= 80 else f"{text[:80]}..."

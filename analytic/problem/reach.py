@@ -31,12 +31,8 @@ def contact_range(contour: Contour) -> tuple[float, float]:
     if lowest <= 0:
         raise InputError(name, f"{lowest:.6g} L", "above the foot line, y = 0", "raise the object")
     if lowest >= 1:
-        raise InputError(
-            name,
-            f"{lowest:.6g} L",
-            "below 1 L, the tip of the vibrissa",
-            "lower the object or lengthen the vibrissa",
-        )
+        remedy = "lower the object or lengthen the vibrissa"
+        raise InputError(name, f"{lowest:.6g} L", "below 1 L, the tip of the vibrissa", remedy)
     ends = _height_one(t, eta, contour)
     _check_place(contour, ends)
     return ends
@@ -59,19 +55,16 @@ def out_of_reach(contour: Contour, last: float, first: float) -> float:
 def _check_place(contour: Contour, ends: tuple[float, float]) -> None:
     left, right = contour.place(np.array(ends))[0].tolist()
     if right - left > _WIDEST:
-        raise InputError(
-            f"width of the object within reach ({contour.label})",
-            f"{right - left:.6g} L",
-            f"at most {_WIDEST:g} L",
-            "the vibrissa feels a straight wall: check the units, or cut a part out",
-        )
+        name = f"width of the object within reach ({contour.label})"
+        remedy = "the vibrissa feels a straight wall: check the units, or cut a part out"
+        raise InputError(name, f"{right - left:.6g} L", f"at most {_WIDEST:g} L", remedy)
     if not max(abs(left), abs(right)) <= FARTHEST:
-        raise InputError(
-            f"place of the object ({contour.label})",
+        what, allowed = (
             f"x from {left:.6g} L to {right:.6g} L",
             f"within {FARTHEST:g} L of the origin",
-            "move the origin to the object, or check the units of object and beam",
         )
+        remedy = "move the origin to the object, or check the units of object and beam"
+        raise InputError(f"place of the object ({contour.label})", what, allowed, remedy)
 
 
 def _height_one(t: Floats, eta: Floats, contour: Contour) -> tuple[float, float]:

@@ -1,27 +1,23 @@
 """One sweep's readings: the table that every engine, rig and comparison speaks."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.beam import Beam, Varying
 from analytic.problem.columns import SENSED
-from analytic.problem.errors import InputError, require
+from analytic.problem.errors import InputError
 from analytic.problem.files import as_path
 from analytic.problem.places import Place, row_number
 from analytic.problem.provenance import check_provenance
-from analytic.problem.support import (
-    beyond_the_paper,
-    require_plain,
-    support_of,
-    support_record,
-)
+from analytic.problem.support import beyond_the_paper, require_plain, support_of, support_record
+from analytic.problem.sweep_table import SweepTable, usable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Readings:
+class Readings(SweepTable):
     """One sweep, in the units of its beam.
 
     Parameters
@@ -64,67 +60,20 @@ class Readings:
     beam: Beam = field(default_factory=Beam)
     source: str = "measured"
     provenance: Mapping[str, Any] = field(default_factory=dict)
+    sensed: ClassVar[tuple[str, ...]] = SENSED
 
     def __post_init__(self) -> None:
-        import pandas as pd  # slow to load, and solvers do without
+        from analytic.problem.table import checked_table  # slow to load, and solvers do without
 
-        from analytic.problem.table import checked_table
-
-        for name, value, kind, remedy in (
-            ("table", self.table, pd.DataFrame, "`Readings.of` takes mappings too"),
-            ("beam", self.beam, Beam, "as Beam(length=..., flexural_rigidity=...)"),
-            ("source", self.source, str, "it says who produced them"),
-            ("provenance", self.provenance, Mapping, "as {'engine': '...'}"),
-        ):
-            require(f"readings' {name}", value, kind, remedy)
+        self._check_kinds()
         table = checked_table(self.table, self.source)
         if len(table) < 2 or table["foot_x"].isna().any():
-            raise InputError(
-                f"stations of the readings ({self.source})",
-                f"{len(table)}, {int(table['foot_x'].notna().sum())} with a finite foot_x",
-                "two or more, each with a finite foot_x",
-                "is it complete? `Readings.of` drops rows without a foot_x",
-            )
+            what = f"{len(table)}, {int(table['foot_x'].notna().sum())} with a finite foot_x"
+            allowed = "two or more, each with a finite foot_x"
+            remedy = "is it complete? `Readings.of` drops rows without a foot_x"
+            raise InputError(f"stations of the readings ({self.source})", what, allowed, remedy)
         check_provenance(self.provenance)
         object.__setattr__(self, "table", table)
-
-    @classmethod
-    def solved(
-        cls,
-        columns: Mapping[str, Floats | Integers],
-        beam: Beam,
-        source: str,
-        provenance: Callable[[], Mapping[str, Any]],
-        snap_off: float | None,
-    ) -> "Readings":
-        """Readings of a solver's own columns, which are not checked.
-
-        Table and provenance are made when they are first asked for: many sweeps are asked for their
-        snap-off only.
-
-        Parameters
-        ----------
-        columns : mapping of array, shape (stations,)
-            As `as_table` takes them: all numbers floats, none infinite.
-        beam : Beam
-            The vibrissa.
-        source : str
-            Who solved it.
-        provenance : callable
-            Makes one of the form that `Readings` asks for.
-        snap_off : float, optional
-            The foot position that the provenance has [length].
-
-        Returns
-        -------
-        Readings
-            What `Readings` of the same is, in a tenth of the time.
-        """
-        found = object.__new__(cls)
-        to_make = {"table": partial(_table, columns), "provenance": provenance}
-        parts = {"beam": beam, "source": source, "snap_off": snap_off, "_to_make": to_make}
-        found.__dict__.update(parts)
-        return found
 
     if not TYPE_CHECKING:
 
@@ -205,36 +154,6 @@ class Readings:
         value = self.provenance.get("events", {}).get("snap_off")
         return None if value is None else float(value)
 
-    def values(self, column: str) -> Floats:
-        """A numeric column.
-
-        Parameters
-        ----------
-        column : str
-            One of `COLUMNS` but ``phase`` and ``status``, or one that an engine added.
-
-        Returns
-        -------
-        array, shape (stations,)
-            In the column's unit; NaN throughout if it was not measured.
-        """
-        if column not in self.table:
-            return np.full(len(self.table), np.nan)
-        return self.table[column].to_numpy(dtype=float)
-
-    @property
-    def trusted(self) -> Booleans:
-        """Stations whose four sensed values may be used, shape (stations,).
-
-        That is: no status speaks against them, and none of the four is a gap.
-        """
-        from analytic.problem.table import says
-
-        finite = np.isfinite([self.values(name) for name in SENSED]).all(axis=0)
-        if "status" in self.table:
-            finite &= says(self.table["status"], "ok")
-        return np.asarray(finite, dtype=bool)
-
     @property
     def gaps(self) -> int:
         """Number of stations at which a force or the moment is missing (NaN)."""
@@ -312,39 +231,6 @@ class Readings:
         table, beam = mirrored_table(self.table), self.beam.mirrored()
         return replace(self, table=table, beam=beam, provenance=provenance)
 
-    def write(self, path: str | Path) -> Path:
-        """Write to Parquet (metadata inside) or CSV (metadata in the first line), by the suffix.
-
-        The file appears whole or not at all.
-
-        Parameters
-        ----------
-        path : str or Path
-            Named ``*.parquet`` or ``*.csv``.
-
-        Returns
-        -------
-        Path
-            `path`.
-
-        Raises
-        ------
-        InputError
-            If the name has another suffix, or JSON cannot hold the provenance.
-        OSError
-            If the file cannot be written.
-        """
-        from analytic.problem.readings_file import write_file
-
-        metadata = {
-            "beam": asdict(self.beam),
-            "source": self.source,
-            "provenance": dict(self.provenance),
-        }
-        path = as_path(path, "readings file")
-        write_file(path, self.table, metadata)
-        return path
-
     @staticmethod
     def read_table(path: str | Path) -> "pd.DataFrame":
         """The bare table in a Parquet or CSV file, whatever its columns.
@@ -396,25 +282,13 @@ class Readings:
         content = read_file(path)
         metadata = content.metadata
         if "tangent" in metadata:
-            raise InputError(
-                f"readings file {path}",
-                "of a sweep in space",
-                "one sweep in the plane",
-                "read it with `analytic.space.SpatialReadings` or `vibrissa reconstruct`",
-            )
-        try:
-            beam = _beam(metadata["beam"]) if "beam" in metadata else otherwise
-            return cls.of(
-                content.table,
-                beam,
-                metadata.get("source", f"measured, {path.name}"),
-                metadata.get("provenance", {}),
-                content.place,
-            )
-        except InputError as error:
-            raise InputError(
-                f"readings file {path}", "unusable", "one sweep", str(error)
-            ) from error
+            what, allowed = "of a sweep in space", "one sweep in the plane"
+            remedy = "read it with `analytic.space.SpatialReadings` or `vibrissa reconstruct`"
+            raise InputError(f"readings file {path}", what, allowed, remedy)
+        with usable(path):
+            beam = Beam(**metadata["beam"]) if "beam" in metadata else otherwise
+            source = metadata.get("source", f"measured, {path.name}")
+            return cls.of(content.table, beam, source, metadata.get("provenance"), content.place)
 
     def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         """Draw force and moment at the clamp over the foot position.
@@ -444,6 +318,25 @@ class Readings:
         return as_html(self.table, repr(self))
 
 
+def solved_readings(
+    columns: Mapping[str, Floats | Integers],
+    beam: Beam,
+    source: str,
+    provenance: Callable[[], Mapping[str, Any]],
+    snap_off: float | None,
+) -> Readings:
+    """Readings of a solver's own columns, all finite floats or numbers of words: not checked.
+
+    Table and provenance are made when they are first asked for: many sweeps are asked for their
+    snap-off only.
+    """
+    found = object.__new__(Readings)
+    to_make = {"table": partial(_table, columns), "provenance": provenance}
+    parts = {"beam": beam, "source": source, "snap_off": snap_off, "_to_make": to_make}
+    found.__dict__.update(parts)
+    return found
+
+
 def _table(columns: Mapping[str, Floats | Integers]) -> "pd.DataFrame":
     from analytic.problem.table import as_table
 
@@ -462,10 +355,3 @@ def _frame(data: "pd.DataFrame | Mapping[str, ArrayLike]") -> "pd.DataFrame":
         return pd.DataFrame(dict(data))
     except (ValueError, TypeError) as error:
         raise InputError("readings", "no table", allowed, f"{remedy} ({error})") from error
-
-
-def _beam(table: object) -> Beam:
-    try:
-        return Beam(**table)  # type: ignore[arg-type]  # whatever the file holds
-    except TypeError as error:
-        raise InputError("beam", table, "a table of Beam's numbers", str(error)) from error

@@ -20,16 +20,17 @@ _LARGEST = 512_000_000  # bytes; a CSV of 10^6 stations with all columns has 220
 _MOST_CELLS = 100_000_000  # a small Parquet file may hold the same value that often
 _METADATA_KEY = b"vibrissa"
 _CSV_PREFIX = "# vibrissa "
+_NO_TABLE = (ValueError, TypeError, LookupError, NotImplementedError, pd.errors.ParserWarning)
+_DAMAGED = (*_NO_TABLE, OSError, RecursionError, MemoryError, pa.ArrowException)
 
 
 class FileContent(NamedTuple):
     """What a file of readings holds."""
 
+    # beam, source and provenance as `write_file` wrote them; empty if there are none.
     metadata: dict[str, Any]
-    """Beam, source and provenance as `write_file` wrote them; empty if there are none."""
     table: pd.DataFrame
-    place: Place
-    """Where a row of the table stands in the file."""
+    place: Place  # where a row of the table stands in the file
 
 
 def write_file(path: Path, table: pd.DataFrame, metadata: Mapping[str, Any]) -> None:
@@ -37,9 +38,8 @@ def write_file(path: Path, table: pd.DataFrame, metadata: Mapping[str, Any]) -> 
     try:
         text = json.dumps(metadata)
     except (TypeError, ValueError, RecursionError) as error:
-        raise InputError(
-            "provenance", "given", "what JSON can hold", f"numbers, texts, lists, tables ({error})"
-        ) from error
+        remedy = f"numbers, texts, lists, tables ({error})"
+        raise InputError("provenance", "given", "what JSON can hold", remedy) from error
     is_csv = _is_csv(path)
     with whole_file(path) as unfinished:
         if is_csv:
@@ -61,28 +61,12 @@ def read_file(path: Path) -> FileContent:
         metadata, table = _read_csv(path) if is_csv else _read_parquet(path)
     except InputError:
         raise
-    except (
-        OSError,
-        ValueError,
-        TypeError,
-        LookupError,
-        RecursionError,
-        MemoryError,
-        NotImplementedError,
-        pd.errors.ParserWarning,
-        pa.ArrowException,
-    ) as error:
+    except _DAMAGED as error:
         reason = " ".join(str(error).split())[:200] or type(error).__name__
-        raise InputError(
-            f"readings file {path}",
-            f"unreadable ({reason})",
-            "a whole Parquet or CSV file",
-            "write it again or name another file",
-        ) from error
+        what, allowed = f"unreadable ({reason})", "a whole Parquet or CSV file"
+        raise InputError(f"readings file {path}", what, allowed, "write it again") from error
     if not isinstance(metadata, dict):
-        raise InputError(
-            f"metadata of {path}", "no table", "what `Readings.write` wrote", "write it again"
-        )
+        raise InputError(f"metadata of {path}", "no table", "what `write` wrote", "write it again")
 
     def place(row: int) -> str:
         return f"line {_line_of(path, row)} of {path}" if is_csv else f"row {row} of {path}"
@@ -110,13 +94,10 @@ def _is_csv(path: Path) -> bool:
 
 def _read_parquet(path: Path) -> tuple[Any, pd.DataFrame]:
     with pq.ParquetFile(path, pre_buffer=False) as file:
-        if file.metadata.num_rows * file.metadata.num_columns > _MOST_CELLS:
-            raise InputError(
-                f"readings file {path}",
-                f"{file.metadata.num_rows} rows of {file.metadata.num_columns} columns",
-                f"at most {_MOST_CELLS:.0e} cells",
-                "split it",
-            )
+        cells = file.metadata.num_rows * file.metadata.num_columns
+        if cells > _MOST_CELLS:
+            allowed = f"at most {_MOST_CELLS:.0e}"
+            raise InputError(f"readings file {path}", f"{cells} cells", allowed, "split it")
         # Not in Arrow's threads: one that still ends while Python does aborts the whole process.
         columns = file.read(use_threads=False)
     metadata = (columns.schema.metadata or {}).get(_METADATA_KEY, b"{}")
@@ -134,11 +115,7 @@ def _read_csv(path: Path) -> tuple[Any, pd.DataFrame]:
             # A row with more cells than the header would shift or lose values.
             warnings.simplefilter("error", pd.errors.ParserWarning)
             table = pd.read_csv(
-                file,
-                comment="#",
-                index_col=False,
-                skipinitialspace=True,
-                low_memory=False,
+                file, comment="#", index_col=False, skipinitialspace=True, low_memory=False
             )
     twice = [name for name in COLUMNS if f"{name}.1" in table]
     if twice:  # pandas numbers columns of one name

@@ -14,7 +14,7 @@ from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.columns import COLUMNS, WORDS, units
 from analytic.problem.errors import InputError
-from analytic.problem.readings import Readings
+from analytic.problem.readings import Readings, solved_readings
 
 DIVERGED = {"phase": "free", "status": "diverged"}
 """The row of a station without numbers."""
@@ -62,7 +62,7 @@ class Recorder:
 
             # Beyond the largest number in the case's units: an error says so.
             return Readings(as_table(columns), beam, self.source, provenance)
-        return Readings.solved(columns, beam, self.source, lambda: provenance, events["snap_off"])
+        return solved_readings(columns, beam, self.source, lambda: provenance, events["snap_off"])
 
     def _columns(self) -> dict[str, Floats | Integers]:
         """As `analytic.problem.table.as_table` takes them; a station without numbers has NaN."""

@@ -18,10 +18,8 @@ _ROUNDING = 1e-14  # rad, of the slope of an upright side
 class FirstTouch(NamedTuple):
     """The first contact, unloaded; dimensionless."""
 
-    t: float
-    """Contour parameter."""
-    excess: float
-    """phi1 - alpha >= 0 at the tip, less a cone's lean; s1 - 1 < 0 elsewhere."""
+    t: float  # contour parameter
+    excess: float  # phi1 - alpha >= 0 at the tip, less a cone's lean; s1 - 1 < 0 elsewhere
     foot_x: float
 
 
@@ -36,12 +34,9 @@ def first_touch(contour: Contour, reach: tuple[float, float], rest: Unloaded) ->
 
     at_lowest, at_first = height(np.array([lowest, first])).tolist()
     if at_lowest >= tip_y:
-        raise InputError(
-            f"height of the lowest point of the object ({contour.label}), less the radius,",
-            f"{at_lowest:.6g} L",
-            f"below {tip_y:.6g} L, the tip of the vibrissa at rest",
-            "lower the object or lessen the natural curvature",
-        )
+        name = f"height of the lowest point of the object ({contour.label}), less the radius,"
+        allowed = f"below {tip_y:.6g} L, the tip of the vibrissa at rest"
+        raise InputError(name, f"{at_lowest:.6g} L", allowed, "lower the object or curve it less")
     top = first if at_first <= tip_y else zero(lambda t: height(t) - tip_y, lowest, first)
 
     def arc_length(t: Floats) -> Floats:
@@ -56,13 +51,10 @@ def first_touch(contour: Contour, reach: tuple[float, float], rest: Unloaded) ->
     steep = lean(grid)
     at_tip = top < first or at_first >= tip_y * (1 - 1e-15)
     if not at_tip and steep[0] < -_ROUNDING:
-        raise InputError(
-            "beam.natural_curvature",
-            f"{float(rest.curvature(np.array(1.0))):.6g}/L at the tip",
-            "such that the vibrissa at rest does not lean over the object from its upper side "
-            f"({contour.label})",
-            "lessen it; only the object's lower side can be touched",
-        )
+        what = f"{float(rest.curvature(np.array(1.0))):.6g}/L at the tip"
+        allowed = f"such that it does not lean over the upper side of the object ({contour.label})"
+        remedy = "lessen it; only the object's lower side can be touched"
+        raise InputError("beam.natural_curvature", what, allowed, remedy)
     crossings = np.flatnonzero((steep[:-1] > 0) & (steep[1:] <= 0))
     tangents = zeros(lambda _, t: lean(t), grid[crossings + 1], grid[crossings])
     places = np.append(top, tangents)

@@ -7,46 +7,25 @@ from typing import Any
 from analytic.problem.along import Along
 from analytic.problem.beam import Beam, Varying
 from analytic.problem.errors import InputError
-from analytic.problem.numbers import is_finite_number
+from analytic.problem.numbers import within
 
 _MOST_FRICTION = 1.0
-_SOFTEST = 0.01  # EI/L
+_SOFTEST = 0.01  # EI/L, of the clamp
 _MOST_TURNED = math.pi / 2  # rad; beyond, the vibrissa at rest leans over itself
 
 
 def check_support(clamp_stiffness: object, friction: object, beam: Beam, signed: bool) -> None:
     """Refuse a clamp or a friction that cannot be."""
-    softest = _SOFTEST * beam.moment_unit
-    rigid = isinstance(clamp_stiffness, float) and clamp_stiffness == math.inf
-    if not (rigid or (is_finite_number(clamp_stiffness) and clamp_stiffness >= softest)):
-        raise InputError(
-            "clamp_stiffness",
-            clamp_stiffness,
-            f"at least {softest:g}, a hundredth of EI/L, or infinite",
-            "it is moment by angle ([support] rotational_stiffness of a case file);"
-            " leave it out for a rigid clamp",
-        )
+    if not (isinstance(clamp_stiffness, float) and clamp_stiffness == math.inf):
+        remedy = "it is moment by angle, at least a hundredth of EI/L; a rigid clamp has none"
+        within("clamp_stiffness", clamp_stiffness, _SOFTEST * beam.moment_unit, remedy=remedy)
     least = -_MOST_FRICTION if signed else 0.0
-    if not (is_finite_number(friction) and least <= friction <= _MOST_FRICTION):
-        raise InputError(
-            "friction", friction, f"from {least:g} to {_MOST_FRICTION:g}", "0.1 to 0.5 is usual"
-        )
-    natural = beam.natural_curvature
-    overhangs = "the vibrissa at rest overhangs, and no contact of it is solved"
-    if isinstance(natural, float) and abs(natural) * beam.length > _MOST_TURNED:
-        raise InputError(
-            "beam.natural_curvature",
-            natural,
-            f"within {_MOST_TURNED / beam.length:.6g} of zero",
-            f"beyond, {overhangs}",
-        )
-    if isinstance(natural, Along) and beam.unloaded.most_turned > _MOST_TURNED * (1 + 1e-12):
-        raise InputError(
-            "beam.natural_curvature",
-            f"such that the vibrissa turns by {beam.unloaded.most_turned:.6g} rad",
-            f"such that it turns by at most {_MOST_TURNED:.6g} rad",
-            f"beyond, {overhangs}",
-        )
+    within("friction", friction, least, _MOST_FRICTION, "0.1 to 0.5 is usual")
+    turned = beam.unloaded.most_turned
+    if turned > _MOST_TURNED * (1 + 1e-12):
+        what = f"{beam.natural_curvature:g}, which turns the vibrissa by {turned:.6g} rad"
+        allowed = f"such that it turns by at most {_MOST_TURNED:.6g} rad"
+        raise InputError("beam.natural_curvature", what, allowed, "beyond, it overhangs at rest")
 
 
 def is_plain(beam: Beam, clamp_stiffness: float, friction: float) -> bool:

@@ -8,10 +8,9 @@ import numpy as np
 import pandas as pd
 import pyarrow as pa
 import pyarrow.compute as pc
-from numpy.typing import NDArray
 
 from analytic.problem.arrays import Booleans, Floats, Integers
-from analytic.problem.columns import COLUMNS, CONTACT, ODD, SENSED, WORDS
+from analytic.problem.columns import CONTACT, ODD, SENSED, WORDS
 from analytic.problem.errors import InputError
 from analytic.problem.places import Place, row_number
 
@@ -39,21 +38,7 @@ def as_numbers(column: "pd.Series[Any]", name: str, place: Place = row_number) -
 
 def checked_table(table: pd.DataFrame, source: str, place: Place = row_number) -> pd.DataFrame:
     """A table whose columns are those of readings: numbers as floats, rows counted from 0."""
-    missing = [name for name in SENSED if name not in table]
-    if missing:
-        raise InputError(
-            f"columns of the readings ({source})",
-            _few(list(map(str, table.columns))) or "none",
-            f"at least {', '.join(SENSED)}",
-            f"add {', '.join(missing)}",
-        )
-    twice = (
-        []
-        if table.columns.is_unique
-        else [x for x in COLUMNS if table.columns.tolist().count(x) > 1]
-    )
-    if twice:
-        raise InputError(f"column {twice[0]}", "there more than once", "one column", "drop one")
+    check_columns(table, SENSED, source)
     changed: dict[str, Floats] = {}
     for name in (*SENSED, *CONTACT):
         if name in table:
@@ -63,10 +48,24 @@ def checked_table(table: pd.DataFrame, source: str, place: Place = row_number) -
                 changed[name] = numbers
     for name, allowed in WORDS.items():
         if name in table:
-            _check_words(table[name], name, allowed, place)
+            check_words(table[name], name, allowed, place)
     if not isinstance(table.index, pd.RangeIndex):
         table = table.reset_index(drop=True)
     return table.assign(**changed) if changed else table
+
+
+def check_columns(table: pd.DataFrame, sensed: tuple[str, ...], source: str) -> None:
+    """Refuse a table without what a clamp senses, or with two columns of one name."""
+    missing = [name for name in sensed if name not in table]
+    if missing:
+        there = f"{', '.join(map(str, table.columns))}"[:120] or "none"
+        allowed = f"at least {', '.join(sensed)}"
+        raise InputError(
+            f"columns of the readings ({source})", there, allowed, f"add {', '.join(missing)}"
+        )
+    twice = table.columns[table.columns.duplicated()]
+    if len(twice):
+        raise InputError(f"column {twice[0]}", "there more than once", "one column", "drop one")
 
 
 def as_table(columns: Mapping[str, Floats | Integers]) -> pd.DataFrame:
@@ -77,11 +76,6 @@ def as_table(columns: Mapping[str, Floats | Integers]) -> pd.DataFrame:
             for name, values in columns.items()
         }
     )
-
-
-def in_words(name: str, numbers: NDArray[np.intp]) -> "pd.Series[str]":
-    """A column of words from their numbers."""
-    return pd.Series(_words(name).take(numbers))
 
 
 def says(column: "pd.Series[Any]", word: str) -> Booleans:
@@ -121,9 +115,8 @@ def _parsed(column: "pd.Series[Any]", name: str, place: Place) -> Floats:
     wrong = np.isnan(numbers) & column.notna().to_numpy()
     if wrong.any():
         row = int(np.argmax(wrong))
-        cell = repr(column.iloc[row])
-        shown = cell if len(cell) <= 40 else f"{cell[:40]}..."
-        raise InputError(f"column {name}, {place(row)},", shown, "a number", _TEXT_FIX)
+        cell = f"{column.iloc[row]!r}"[:40]
+        raise InputError(f"column {name}, {place(row)},", cell, "a number", _TEXT_FIX)
     return numbers
 
 
@@ -137,35 +130,19 @@ def _number(cell: object) -> float:
     return np.nan
 
 
-def _check_words(
-    column: "pd.Series[Any]",
-    name: str,
-    allowed: tuple[str, ...],
-    place: Place,
+def check_words(
+    column: "pd.Series[Any]", name: str, allowed: tuple[str, ...], place: Place
 ) -> None:
+    """Refuse a word that may not stand in a column."""
     if isinstance(column.dtype, pd.StringDtype) and set(column.unique()) <= set(allowed):
         return
     unknown = ~column.astype(str).isin(allowed).to_numpy()
     if unknown.any():
         row = int(np.argmax(unknown))
-        raise InputError(
-            f"column {name}, {place(row)},",
-            _few([repr(str(column.iloc[row]))]),
-            f"one of {', '.join(allowed)}",
-            "fix the column or drop it",
-        )
+        word, these = f"{str(column.iloc[row])!r}"[:120], f"one of {', '.join(allowed)}"
+        raise InputError(f"column {name}, {place(row)},", word, these, "fix the column or drop it")
 
 
 def _wrong_type(name: str, kind: object) -> InputError:
-    return InputError(
-        f"column {name}",
-        f"of type {kind}",
-        "numbers",
-        "booleans, categories, times are no readings",
-    )
-
-
-def _few(names: list[str]) -> str:
-    """Names in one line that fits a screen."""
-    text = ", ".join(names)
-    return text if len(text) <= 120 else f"{text[:120]}... ({len(names)} in all)"
+    remedy = "booleans, categories, times are no readings"
+    return InputError(f"column {name}", f"of type {kind}", "numbers", remedy)

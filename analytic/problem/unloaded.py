@@ -28,6 +28,8 @@ class Unloaded:
     @cached_property
     def most_turned(self) -> float:
         """The largest angle by which it turns from the upright, to either side [rad]."""
+        if not isinstance(self.natural, Along):
+            return abs(self.natural)
         s = np.linspace(0, 1, _PLACES)
         return float(np.abs(self.at(s)[2] - np.pi / 2).max())
 

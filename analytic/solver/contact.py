@@ -8,11 +8,11 @@ from numpy.typing import ArrayLike
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
-from analytic.problem.columns import COLUMNS, WORDS
+from analytic.problem.columns import COLUMNS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError, require
 from analytic.problem.support import check_support
-from analytic.problem.table import as_table, in_words
+from analytic.problem.table import as_table
 from analytic.solver.columns import Units, to_columns, without
 from analytic.solver.equilibria import equilibria
 from analytic.solver.general.clearance import is_clear
@@ -74,12 +74,8 @@ def solve_contact(
         raise InputError("alpha", repr(alpha)[:80], "numbers", "angles are in rad") from error
     outside = ~(np.abs(angles) <= np.pi / 2)
     if outside.any():
-        raise InputError(
-            "alpha",
-            f"{angles[outside][0]} rad",
-            "between -pi/2 and pi/2 rad, the slope angles of the lower side of a body",
-            "angles are in rad",
-        )
+        what, allowed = f"{angles[outside][0]} rad", "between -pi/2 and pi/2 rad"
+        raise InputError("alpha", what, allowed, "they are slope angles of the lower side")
     contour = profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
     t = contour.parameter(angles)
     vibrissa, units = Vibrissa.of(beam, clamp_stiffness, friction), Units.of(beam)
@@ -92,18 +88,9 @@ def solve_contact(
 
 
 def _plain(contour: Contour, t: Floats, vibrissa: Vibrissa, units: Units) -> pd.DataFrame:
-    """The paper's vibrissa, some contacts at a time, each column written where it stays."""
-    names = [name for name in COLUMNS if name not in WORDS]
-    numbers = np.empty((len(names), t.size))
-    words = {name: np.empty(t.size, dtype=np.intp) for name in WORDS}
-    for first in range(0, t.size, _AT_ONCE):
-        part = slice(first, first + _AT_ONCE)
-        found = to_columns(equilibria(contour, t[part]).states(vibrissa), units)
-        for values, name in zip(numbers, names, strict=True):
-            values[part] = found[name]
-        for name in WORDS:
-            words[name][part] = found[name]
-    table = pd.DataFrame(numbers.T, columns=names, copy=False)
-    for name in WORDS:
-        table.insert(COLUMNS.index(name), name, in_words(name, words[name]))
-    return table
+    """The paper's vibrissa, some contacts at a time."""
+    parts = [
+        to_columns(equilibria(contour, t[first : first + _AT_ONCE]).states(vibrissa), units)
+        for first in range(0, max(t.size, 1), _AT_ONCE)
+    ]
+    return as_table({name: np.concatenate([part[name] for part in parts]) for name in COLUMNS})

@@ -34,8 +34,7 @@ class Equilibria(NamedTuple):
     span: Span
     root_f: Floats
     tangent: Booleans
-    frame: Frame
-    """The contact as seen from the clamp, times sqrt(f)."""
+    frame: Frame  # the contact as seen from the clamp, times sqrt(f)
 
     @property
     def arc_length(self) -> Floats:
@@ -96,10 +95,8 @@ class Equilibria(NamedTuple):
 class TipRate(NamedTuple):
     """How states change along the contour in Phase A; arrays of shape (n,)."""
 
-    foot_x: Floats
-    """[L by the contour's parameter]."""
-    tip_rotation: Floats
-    """[rad by the contour's parameter]."""
+    foot_x: Floats  # [L by the contour's parameter]
+    tip_rotation: Floats  # [rad by the contour's parameter]
 
 
 class LengthRates(NamedTuple):

@@ -159,18 +159,12 @@ def _extrema(contours: Contours, grid: Grid, value: Floats, rate: Floats) -> Gri
 class Samples(NamedTuple):
     """States along grids, arrays of shape (n,); NaN out of reach."""
 
-    foot_x: Floats
-    """[L]."""
-    rate: Floats
-    """Its derivative along the contour."""
-    tip_rotation: Floats
-    """Excess rotation of the tip [rad]."""
-    tangent_rate: Floats
-    """Derivative of the foot position in Phase B."""
-    tip_rate: Floats
-    """Derivative of the foot position in Phase A."""
-    tip_rotation_rate: Floats
-    """Derivative of the excess rotation in Phase A."""
+    foot_x: Floats  # [L]
+    rate: Floats  # its derivative along the contour
+    tip_rotation: Floats  # excess rotation of the tip [rad]
+    tangent_rate: Floats  # derivative of the foot position in Phase B
+    tip_rate: Floats  # derivative of the foot position in Phase A
+    tip_rotation_rate: Floats  # derivative of the excess rotation in Phase A
 
 
 def folded(contours: Contours, grid: Grid) -> tuple[Grid, Samples, Grid]:

@@ -7,7 +7,7 @@ from importlib.metadata import version
 import numpy as np
 
 from analytic.problem.case import Case
-from analytic.problem.readings import Readings
+from analytic.problem.readings import Readings, solved_readings
 from analytic.problem.table import as_table, mirrored_columns
 from analytic.solver.columns import ReadingColumns
 
@@ -27,7 +27,7 @@ def as_readings(case: Case, columns: ReadingColumns, events: Points, finite: boo
     places = {n: None if x is None else way * x * case.beam.length for n, x in events.items()}
     record = partial(_provenance, case, places)
     if finite:
-        return Readings.solved(own, case.beam, "analytic", record, places["snap_off"])
+        return solved_readings(own, case.beam, "analytic", record, places["snap_off"])
     return Readings(as_table(own), case.beam, "analytic", record())
 
 

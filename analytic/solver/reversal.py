@@ -9,7 +9,7 @@ from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.case import Case
 from analytic.problem.columns import CLAMP_READINGS, COLUMNS, CONTACT, STATUS_NUMBER
 from analytic.problem.errors import InputError, require
-from analytic.problem.numbers import is_finite_number
+from analytic.problem.numbers import finite
 from analytic.problem.rest import first_touch
 from analytic.problem.table import as_table, mirrored_table
 from analytic.solver.columns import ReadingColumns, Units, to_columns, unloaded_columns
@@ -130,21 +130,16 @@ def turn_back(case: Case, turn_at: float, stations: int = 100) -> pd.DataFrame:
         If the states are lost on the way, or not exact.
     """
     _check(case)
-    if not is_finite_number(turn_at):
-        raise InputError("turn_at", repr(turn_at), "a finite number", "it is a foot position")
+    turn_at = finite("turn_at", turn_at)
     if case.sweep.direction == "right":
         return _mirrored(turn_back(case.mirrored(), -turn_at, stations))
     length = case.beam.length
     onward, back = SlidingBranch.of(case, 1.0), SlidingBranch.of(case, -1.0)
     first, last = onward.path.foot_x[0], onward.path.foot_x[onward.path.snap_off]
     if not last <= turn_at / length < first:
-        raise InputError(
-            "turn_at",
-            turn_at,
-            f"from {last * length:.6g}, where the vibrissa snaps off, to {first * length:.6g}, "
-            "where it first touches",
-            "the foot turns round while the vibrissa touches",
-        )
+        snap_off = f"{last * length:.6g}, where the vibrissa snaps off"
+        allowed = f"from {snap_off}, to {first * length:.6g}, where it first touches"
+        raise InputError("turn_at", turn_at, allowed, "it turns round while it touches")
     foot = np.linspace(turn_at, case.foot_x[0], stations)
     foot_x = foot / length
     turning = onward.at(case, foot_x[:1])

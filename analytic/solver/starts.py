@@ -32,14 +32,10 @@ class Stations(NamedTuple):
 class Starts(NamedTuple):
     """What is known of stations before any is solved, shape (n,)."""
 
-    tangent: Booleans
-    """Phase B."""
-    t: Floats
-    """Contour parameter, nearly."""
-    tip_rotation: Floats
-    """Excess rotation of the tip [rad], nearly."""
-    behind: Floats
-    """Excess rotation where the station's cell ends [rad]."""
+    tangent: Booleans  # Phase B
+    t: Floats  # contour parameter, nearly
+    tip_rotation: Floats  # excess rotation of the tip [rad], nearly
+    behind: Floats  # excess rotation where the station's cell ends [rad]
 
 
 def located(

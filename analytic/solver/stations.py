@@ -56,10 +56,7 @@ def solve_stations(
 
 @np.errstate(all="ignore")  # folds and first contacts: what is not finite is no step
 def _newton(
-    contours: Contours,
-    stations: Stations,
-    tangent: Booleans,
-    start: tuple[Floats, Floats],
+    contours: Contours, stations: Stations, tangent: Booleans, start: tuple[Floats, Floats]
 ) -> _Iterate:
     """The iterate that misses least, of each station.
 

@@ -141,8 +141,7 @@ class _Tried(NamedTuple):
     loaded: Span
     by_excess: Span
     twice: Span
-    up: tuple[Floats, Floats, Floats]
-    """Height times sqrt(f), and its derivatives."""
+    up: tuple[Floats, Floats, Floats]  # height times sqrt(f), and its derivatives
 
     def turned_to(self, p: Floats) -> Floats:
         """Excess and integrals, shape (4, n), a step of third order away.

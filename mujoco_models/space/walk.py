@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.numerics.walk import Event, first_clear, first_touch, first_unlike
+from analytic.numerics.walk import WalkEvent, first_clear, first_touch, first_unlike
 from analytic.problem.arrays import Floats
 from mujoco_models.space.balance import State
 from mujoco_models.space.descent import descend
@@ -69,7 +69,7 @@ class Walk:
         self._held: Settled | None = None
         self._lost = False
         self._failures = 0
-        self.events: list[Event] = []
+        self.events: list[WalkEvent] = []
 
     def go_to(self, target: float) -> Station:
         """Go on to a station."""
@@ -108,7 +108,7 @@ class Walk:
         if touch is None:
             self._at = target
             return True
-        self.events.append(Event("touch", touch))
+        self.events.append(WalkEvent("touch", touch))
         self._begin(touch)
         return True
 
@@ -257,29 +257,29 @@ class Walk:
             return between if between is not None and between.stays else None
 
         high = first_unlike(held, self._at, goal, followed, _at_tip, _EVENT)
-        self.events.append(Event("phase", high))
+        self.events.append(WalkEvent("phase", high))
 
     def _fall(self, held: Settled, goal: float) -> bool:
         """Where the vibrissa goes when no stable equilibrium is near any more."""
         if held.state.force < _LOOSE:
-            self.events.append(Event("release", self._at))
+            self.events.append(WalkEvent("release", self._at))
             self._held, self._lost, self._at = None, self._gap(goal) <= 0, goal
             return True
         hopped = over_faces(self._rest, held, self._foot(goal), _LANDING)
         if hopped is not None:
-            self.events.append(Event("hop", self._at))
+            self.events.append(WalkEvent("hop", self._at))
             self._note_phase(held, goal, hopped)
             self._held, self._at = hopped, goal
             return True
         landed = self._descended(held, goal)
         if landed is None:
-            self.events.append(Event("slip-off", self._at))
+            self.events.append(WalkEvent("slip-off", self._at))
             self._held, self._lost, self._at = None, self._gap(goal) <= 0, goal
             return True
         if not landed.stable:
             return False
         if _apart(landed, held) > _STEADY:  # or it was the same branch, where that is steep
-            self.events.append(Event("hop", self._at))
+            self.events.append(WalkEvent("hop", self._at))
         self._held, self._at = landed, goal
         return True
 

@@ -162,13 +162,11 @@ def _fitted(
         there = np.asarray(np.isfinite(expected).all(axis=0))
         touching = int(np.any(expected[:, there] != 0, axis=0).sum())
         if touching < (1 - _NOT_EXPLAINED) * every:
-            raise InputError(
-                "readings",
-                f"loaded at {every} stations, at {every - touching} of which the best fit does not "
-                "touch",
-                "of the case's vibrissa and object, but for the unknowns",
-                "check foot_x, units and object, or fit offset too",
-            )
+            untouched = f"at {every - touching} of which the best fit does not touch"
+            what = f"loaded at {every} stations, {untouched}"
+            allowed = "of the case's vibrissa and object, but for the unknowns"
+            remedy = "check foot_x, units and object, or fit offset too"
+            raise InputError("readings", what, allowed, remedy)
         if there.all():
             break
         fit = LeastSquaresFit(fit.measured.at(there), case, names)
@@ -207,9 +205,8 @@ def _covariance(fit: LeastSquaresFit, numbers: Floats, misfit: float) -> Floats:
     sizes = np.linalg.norm(jacobian, axis=0)
     for name, size in zip(fit.names, sizes.tolist(), strict=True):
         if not size > 0:
-            raise InputError(
-                "unknowns", name, "something that the readings depend on", "leave it out"
-            )
+            allowed = "something that the readings depend on"
+            raise InputError("unknowns", name, allowed, "leave it out")
     _, singular, ways = np.linalg.svd(jacobian / sizes, full_matrices=False)
     scaled = (ways.T / np.maximum(singular, _TINY) ** 2) @ ways
     return np.asarray(scaled / np.outer(sizes, sizes) * misfit**2)
@@ -220,12 +217,9 @@ def _check_inside(name: str, number: float, sought: Sought) -> None:
     kind = UNKNOWNS[name]
     for end, possible in zip((kind.lowest, kind.highest), kind.possible, strict=True):
         if not possible and abs(number - end) < _AT_THE_END * max(1.0, abs(end)):
-            raise InputError(
-                f"{name} of the best fit",
-                f"{kind.value(sought):g}",
-                "a vibrissa's",
-                "the object, the units or something else of the case is not as stated",
-            )
+            value = f"{kind.value(sought):g}"
+            remedy = "the object, the units or something else of the case is not as stated"
+            raise InputError(f"{name} of the best fit", value, "a vibrissa's", remedy)
 
 
 def _not_distinguished(names: tuple[str, ...], covariance: Floats, which: int) -> InputError:
@@ -235,19 +229,13 @@ def _not_distinguished(names: tuple[str, ...], covariance: Floats, which: int) -
     alike[which] = 0
     other = int(np.argmax(alike))
     if alike[other] < _ALIKE:
-        return InputError(
-            "unknowns",
-            names[which],
-            "something that these readings determine",
-            "leave it out, take less noise, or sweep further",
-        )
-    return InputError(
-        "unknowns",
-        f"{names[which]} and {names[other]}",
-        "ones that these readings distinguish",
-        f"a change of one undoes that of the other (correlation {alike[other]:.4f}): state one of "
-        "them, take less noise, or sweep further",
-    )
+        remedy = "leave it out, take less noise, or sweep further"
+        allowed = "something that these readings determine"
+        return InputError("unknowns", names[which], allowed, remedy)
+    undone = f"a change of one undoes that of the other (correlation {alike[other]:.4f})"
+    remedy = f"{undone}: state one of them, take less noise, or sweep further"
+    both, allowed = f"{names[which]} and {names[other]}", "ones that these readings distinguish"
+    return InputError("unknowns", both, allowed, remedy)
 
 
 def _interval(fit: LeastSquaresFit, numbers: Floats, i: int, half: float) -> Estimate:

@@ -38,17 +38,13 @@ def check_size(readings: Readings, case: Case) -> None:
     for name, unit in zip(CLAMP_READINGS, units(beam, CLAMP_READINGS), strict=True):
         size = largest(readings.values(name)[readings.trusted]) / unit
         if size == 0:
-            raise InputError(
-                f"{name} of the readings", "zero at all stations", "under load somewhere",
-                "the vibrissa never touches, or the column is a dead channel",
-            )  # fmt: skip
+            remedy = "the vibrissa never touches, or the column is a dead channel"
+            what = "zero at all stations"
+            raise InputError(f"{name} of the readings", what, "under load somewhere", remedy)
         if not 10.0**-_DECADES < size < 10.0**_DECADES:
-            raise InputError(
-                f"{name} of the readings",
-                f"up to {size:.1e} of what EI and length of the case make its unit",
-                f"within {_DECADES} decades of it",
-                "give readings and case in the same units",
-            )
+            what = f"up to {size:.1e} of what EI and length of the case make its unit"
+            allowed, remedy = f"within {_DECADES} decades of it", "give both in the same units"
+            raise InputError(f"{name} of the readings", what, allowed, remedy)
 
 
 def measured_under_load(
@@ -66,12 +62,10 @@ def measured_under_load(
     fewest = _PER_UNKNOWN * unknowns
     order = _kept(readings, loaded) if len(loaded) else loaded
     if len(order) < fewest:
-        raise InputError(
-            "stations under load, but for those next to the snap-off",
-            len(order),
-            f"{fewest} or more, {_PER_UNKNOWN} for each unknown",
-            "sweep further or with more stations, or state less noise",
-        )
+        name = "stations under load, but for those next to the snap-off"
+        allowed = f"{fewest} or more, {_PER_UNKNOWN} for each unknown"
+        remedy = "sweep further or with more stations, or state less noise"
+        raise InputError(name, len(order), allowed, remedy)
     return Measured(x[order], np.stack([readings.values(n)[order] for n in CLAMP_READINGS]), spread)
 
 

@@ -20,8 +20,7 @@ class Sought:
     """The vibrissa that is tried: a case, and by how much the readings' foot positions are off."""
 
     case: Case
-    offset: float = 0.0
-    """Foot positions of the readings less the true ones [length]."""
+    offset: float = 0.0  # foot positions of the readings less the true ones [length]
 
 
 @dataclass(frozen=True)
@@ -92,12 +91,7 @@ UNKNOWNS: dict[str, Unknown] = {
     ),
     "friction": Unknown("friction", lambda given: 1.0, 0.0, 1.0, (True, False), (0.1, 0.4)),
     "offset": Unknown(
-        "",
-        lambda given: given.beam.length,
-        -_FARTHEST,
-        _FARTHEST,
-        (False, False),
-        (-0.05, 0.05),
+        "", lambda given: given.beam.length, -_FARTHEST, _FARTHEST, (False, False), (-0.05, 0.05)
     ),
 }
 """By name. The rigidity is that at the clamp; what varies along the vibrissa goes along with it.
@@ -121,17 +115,11 @@ def checked_unknowns(names: object, case: Case) -> tuple[str, ...]:
             raise InputError("unknowns", f"{name} twice", "each once", "leave one out")
     beam = case.beam
     if "natural_curvature" in names and isinstance(beam.natural_curvature, Along):
-        raise InputError(
-            "unknowns",
-            "natural_curvature, which varies along the case's vibrissa",
-            "a number of the case",
-            "give the case a constant one, or fit something else",
-        )
+        what = "natural_curvature, which varies along the case's vibrissa"
+        remedy = "give the case a constant one, or fit something else"
+        raise InputError("unknowns", what, "a number of the case", remedy)
     if "tip_radius" in names and (isinstance(beam.flexural_rigidity, Along) or beam.radius == 0):
-        raise InputError(
-            "unknowns",
-            "tip_radius of a vibrissa whose rigidity does not follow it",
-            "of a cone",
-            "give the case a radius and a flexural rigidity that is a number",
-        )
+        what = "tip_radius of a vibrissa whose rigidity does not follow it"
+        remedy = "give the case a radius and a flexural rigidity that is a number"
+        raise InputError("unknowns", what, "of a cone", remedy)
     return tuple(names)

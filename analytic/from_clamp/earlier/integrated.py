@@ -15,19 +15,12 @@ _BLOCK = 500  # stations that are integrated together
 _AT_TIP = 0.05  # of the clamp's moment may be left at the tip: the errors of good readings
 
 
-def in_plane(sensed: LoadedStations) -> Answer:
+def up_to_zero(sensed: LoadedStations) -> Answer:
     """Integrate the elastica up to the first zero of its moment, or to the tip.
 
-    phi' = -(M - F_y x + F_x y): G. R. Scholz and C. D. Rahn, Profile sensing with an actuated
-    whisker, IEEE Transactions on Robotics and Automation 20, 2004.
+    In the plane: G. R. Scholz and C. D. Rahn, Profile sensing with an actuated whisker, IEEE
+    Transactions on Robotics and Automation 20, 2004; in space: `spatial_contact`.
     """
-    ends = [_in_plane(block) for block in _blocks(*sensed)]
-    x, y = np.concatenate(ends, axis=1) if ends else np.zeros((2, 0))
-    return Answer(sensed.foot_x + x, y)
-
-
-def in_space(sensed: LoadedStations) -> Answer:
-    """The same as `spatial_contact`, of readings in a plane."""
     none = np.zeros_like(sensed.foot_x)
     force = np.column_stack([-sensed.across, sensed.along, none])
     moment = np.column_stack([none, none, sensed.moment])
@@ -42,30 +35,9 @@ def spatial_contact(force: Floats, moment: Floats, tangent: Floats) -> Floats:
     Three-dimensional contact imaging with an actuated whisker, IEEE Transactions on Robotics 22,
     2006.
     """
-    ends = [_in_space(*block) for block in _blocks(force, moment, tangent)]
-    return np.concatenate(ends) if ends else np.zeros((0, 3))
-
-
-def _blocks(*values: Floats) -> list[tuple[Floats, ...]]:
-    starts = range(0, len(values[0]), _BLOCK)
-    return [tuple(v[i : i + _BLOCK] for v in values) for i in starts]
-
-
-def _in_plane(block: tuple[Floats, ...]) -> Floats:
-    _, across, along, moment, _ = block
-
-    def rate(state: Floats) -> Floats:
-        x, y, phi = state
-        kappa = -(moment - along * x - across * y)
-        return np.stack([np.cos(phi), np.sin(phi), kappa])
-
-    def left(state: Floats) -> tuple[Floats, Floats]:
-        x, y, phi = state
-        rising = -along * np.cos(phi) - across * np.sin(phi)
-        return moment - along * x - across * y, rising
-
-    start = np.stack([0 * moment, 0 * moment, np.full_like(moment, np.pi / 2)])
-    return _up_to_zero(rate, start, left, moment)[:2]
+    starts = range(0, len(force), _BLOCK)
+    blocks = [[given[i : i + _BLOCK] for given in (force, moment, tangent)] for i in starts]
+    return np.concatenate([np.zeros((0, 3)), *(_in_space(*block) for block in blocks)])
 
 
 def _in_space(force: Floats, moment: Floats, tangent: Floats) -> Floats:

@@ -1,4 +1,4 @@
-"""The earlier methods by name: who published them, what each needs and takes for granted."""
+"""The earlier methods by name: who published them, and what each needs."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,7 +16,6 @@ class Method:
     # What it has to know: of ``"moment"``, ``"force"``, ``"rigidity"``, ``"first contact"``,
     # ``"slope"`` and ``"length"``.
     needs: tuple[str, ...]
-    assumes: str  # what it takes for granted, in a few words
     estimate: Callable[[LoadedStations], Answer]  # the contact on the vibrissa's axis
 
 
@@ -24,61 +23,51 @@ METHODS: dict[str, Method] = {
     "binary": Method(
         "binary whiskers of mobile robots",
         ("moment", "length"),
-        "the vibrissa stays straight",
         small_deflection.binary,
     ),
     "kaneko": Method(
         "Kaneko, Kanayama and Tsuji 1998",
         ("moment", "rigidity", "first contact"),
-        "small deflection, a point object",
         small_deflection.from_moment_and_travel,
     ),
     "kim-moeller": Method(
         "Kim and Moeller 2007",
         ("slope", "first contact"),
-        "small deflection, a point object",
         small_deflection.from_slope_and_travel,
     ),
     "birdwell": Method(
         "Birdwell and others 2007",
         ("moment", "force", "rigidity"),
-        "small deflection",
         small_deflection.from_force_and_moment,
     ),
     "birdwell-cone": Method(
         "Birdwell and others 2007",
         ("moment", "force", "rigidity"),
-        "small deflection, a cone that ends in a point",
         small_deflection.from_force_and_moment_of_cone,
     ),
     "beam-column": Method(
         "Timoshenko and Gere 1961",
         ("moment", "force", "rigidity"),
-        "small slopes",
         small_deflection.from_beam_column,
     ),
     "scholz-rahn": Method(
         "Scholz and Rahn 2004",
         ("moment", "force", "rigidity", "length"),
-        "a straight cylinder",
-        integrated.in_plane,
+        integrated.up_to_zero,
     ),
     "clements-rahn": Method(
         "Clements and Rahn 2006",
         ("moment", "force", "rigidity", "length"),
-        "a straight cylinder, in space",
-        integrated.in_space,
+        integrated.up_to_zero,
     ),
     "quist-hartmann": Method(
         "Quist and Hartmann 2012",
         ("force", "rigidity", "length"),
-        "the force is normal to the vibrissa; 40 segments, the last one rigid",
         segments.by_segments,
     ),
     "quist-hartmann-half-cell": Method(
         "Quist and Hartmann 2012, with half a segment that bends at the clamp",
         ("force", "rigidity", "length"),
-        "the force is normal to the vibrissa; 40 segments",
         partial(segments.by_segments, half_cell=True),
     ),
 }

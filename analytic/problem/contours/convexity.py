@@ -7,9 +7,11 @@ import numpy as np
 
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.errors import InputError
+from analytic.problem.numbers import LARGEST
 
 Coordinate: TypeAlias = Callable[[Floats], Floats]
 
+OF_ANGLES = "a function that maps an array of angles to an array of the same shape"
 _COARSE = 129
 _FINE = 1024  # short chords, of functions of which nothing is known
 _FEW = 32  # of the families' closed forms, in which no waves can hide
@@ -49,12 +51,9 @@ def check_convex(
     size = float(np.hypot(np.ptp(x), np.ptp(y)))
     place = float(np.hypot(x, y).max())
     if size < _LEAST_SIZE * place:
-        raise InputError(
-            "profile",
-            f"{label}, of a size of {size:.3g} at a distance of {place:.3g} from the origin",
-            f"larger than {_LEAST_SIZE:g} of that distance",
-            "enlarge it; a sharp corner is a polygon's",
-        )
+        what = f"{label}, of a size of {size:.3g} at a distance of {place:.3g} from the origin"
+        allowed = f"larger than {_LEAST_SIZE:g} of that distance"
+        raise InputError("profile", what, allowed, "enlarge it; a sharp corner is a polygon's")
     n = _COARSE
     _check_chords(long[:-1], long[1:], np.diff(x[:n]), np.diff(y[:n]), place, label, corners=True)
     dx, dy = (values[n + places.size :] - values[n : n + places.size] for values in (x, y))
@@ -73,38 +72,21 @@ def _values(curve: Coordinate, alpha: Floats, name: str, label: str) -> Floats:
         with np.errstate(all="ignore"):  # what is not finite is reported below
             values = np.asarray(curve(alpha), dtype=float)
     except (TypeError, ValueError, ArithmeticError) as error:
-        raise InputError(
-            f"profile.{name}",
-            label,
-            "a function that maps an array of angles to an array of the same shape",
-            f"write it with NumPy functions ({error})",
-        ) from error
+        remedy = f"write it with NumPy functions ({error})"
+        raise InputError(f"profile.{name}", label, OF_ANGLES, remedy) from error
     if values.shape != alpha.shape:
-        raise InputError(
-            f"profile.{name}",
-            f"of {label}, mapping shape {alpha.shape} to {values.shape}",
-            "a function that maps an array of angles to an array of the same shape",
-            "write it with NumPy functions",
-        )
-    finite = np.abs(values) < 1e150
+        what = f"of {label}, mapping shape {alpha.shape} to {values.shape}"
+        raise InputError(f"profile.{name}", what, OF_ANGLES, "write it with NumPy functions")
+    finite = np.abs(values) < LARGEST
     if not finite.all():
-        raise InputError(
-            "profile",
-            f"{label}, {name} not finite at alpha = {alpha[~finite][0]:.6g} rad",
-            "finite over its whole alpha_range",
-            "narrow alpha_range or correct xi and eta",
-        )
+        what = f"{label}, {name} not finite at alpha = {alpha[~finite][0]:.6g} rad"
+        allowed = "finite over its whole alpha_range"
+        raise InputError("profile", what, allowed, "narrow alpha_range or correct xi and eta")
     return values
 
 
 def _check_chords(
-    begin: Floats,
-    end: Floats,
-    dx: Floats,
-    dy: Floats,
-    place: float,
-    label: str,
-    corners: bool,
+    begin: Floats, end: Floats, dx: Floats, dy: Floats, place: float, label: str, corners: bool
 ) -> None:
     """Refuse the first chord whose slope is not between those at its ends, rounding allowed for."""
     length = np.hypot(dx, dy)
@@ -116,21 +98,15 @@ def _check_chords(
     wrong = (slope < begin - slack) | (slope > end + slack)
     if wrong.any():
         i = int(np.argmax(wrong))
-        raise InputError(
-            "profile",
-            f"{label}, whose chord between alpha = {begin[i]:.6g} and {end[i]:.6g} rad "
-            f"has slope angle {slope[i]:.6g} rad",
-            "strictly convex, each chord's slope between those of the tangents at its ends",
-            "check that (xi, eta) is the point where the slope angle is alpha",
-        )
+        ends = f"alpha = {begin[i]:.6g} and {end[i]:.6g} rad"
+        what = f"{label}, whose chord between {ends} has slope angle {slope[i]:.6g} rad"
+        allowed = "strictly convex, each chord's slope between those of the tangents at its ends"
+        raise InputError("profile", what, allowed, "is (xi, eta) where the slope angle is alpha?")
     if corners and not resolved.all():
         i = int(np.argmin(resolved))
-        raise InputError(
-            "profile",
-            f"{label}, which does not move between alpha = {begin[i]:.6g} and {end[i]:.6g} rad",
-            "strictly convex without corners",
-            "round the corner, or use a polygon",
-        )
+        ends = f"alpha = {begin[i]:.6g} and {end[i]:.6g} rad"
+        what, allowed = f"{label}, which stays between {ends}", "strictly convex without corners"
+        raise InputError("profile", what, allowed, "round the corner, or use a polygon")
 
 
 def _check_bowed(
@@ -148,12 +124,9 @@ def _check_bowed(
     if edge.any():
         i = int(np.argmax(edge))
         ends = f"({x[0, i]:.6g}, {y[0, i]:.6g}) and ({x[2, i]:.6g}, {y[2, i]:.6g})"
-        raise InputError(
-            "profile",
-            f"{label}, straight between {ends} at alpha = {low[i]:.6g} rad",
-            "strictly convex, without straight edges",
-            "bow the edge, or use a polygon, which may have them",
-        )
+        what = f"{label}, straight between {ends} at alpha = {low[i]:.6g} rad"
+        allowed = "strictly convex, without straight edges"
+        raise InputError("profile", what, allowed, "bow the edge; a polygon may have straight ones")
 
 
 def _check_radius(
@@ -164,9 +137,6 @@ def _check_radius(
     wrong = resolved & ~(np.abs(stated - found) <= 0.5 * found)
     if (stated <= 0).any() or wrong.sum() > 0.05 * len(alpha):
         i = int(np.argmax((stated <= 0) | wrong))
-        raise InputError(
-            "profile.radius_of_curvature",
-            f"{stated[i]:.6g} for {label} at alpha = {alpha[i]:.6g} rad",
-            f"positive and d(arc length)/d(alpha), which is {found[i]:.6g} there",
-            "correct it or leave it out",
-        )
+        what = f"{stated[i]:.6g} for {label} at alpha = {alpha[i]:.6g} rad"
+        allowed = f"positive and d(arc length)/d(alpha), which is {found[i]:.6g} there"
+        raise InputError("profile.radius_of_curvature", what, allowed, "correct it or leave it out")

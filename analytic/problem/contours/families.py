@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.problem.contours.profile import Profile
+from analytic.problem.contours.profile import Profile, of_family
 from analytic.problem.numbers import finite, pair, positive
 
 _STEEPEST = math.pi / 2 - 1e-3  # the graph of a function of x never stands upright
@@ -33,7 +33,7 @@ def catenary(a: float, c: float) -> Profile:
         If a number cannot be.
     """
     a, c = positive("profile catenary.a", a), finite("profile catenary.c", c)
-    return Profile.of_family(
+    return of_family(
         xi=partial(_catenary_xi, a),
         eta=partial(_catenary_eta, a, c),
         alpha_range=(-_STEEPEST, _STEEPEST),
@@ -63,7 +63,7 @@ def parabola(a: float, c: float) -> Profile:
         If a number cannot be.
     """
     a, c = positive("profile parabola.a", a), finite("profile parabola.c", c)
-    return Profile.of_family(
+    return of_family(
         xi=partial(_parabola_xi, a),
         eta=partial(_parabola_eta, a, c),
         alpha_range=(-_STEEPEST, _STEEPEST),
@@ -151,7 +151,7 @@ def two_circles(
     right = positive("profile two_circles.right_radius", right_radius)
     left = positive("profile two_circles.left_radius", left_radius)
     x, y = pair("profile two_circles.lowest", lowest)
-    return Profile.of_family(
+    return of_family(
         xi=partial(_two_circles_xi, right, left, x),
         eta=partial(_two_circles_eta, right, left, y),
         alpha_range=(-math.pi / 2, math.pi / 2),
@@ -189,7 +189,7 @@ def _parabola_radius(a: float, alpha: Floats) -> Floats:
 
 def _ellipse(across: float, upward: float, lowest: tuple[float, float], label: str) -> Profile:
     x, y = lowest
-    return Profile.of_family(
+    return of_family(
         xi=partial(_ellipse_xi, across, upward, x),
         eta=partial(_ellipse_eta, across, upward, y),
         alpha_range=(-math.pi / 2, math.pi / 2),

@@ -10,7 +10,7 @@ from analytic.problem.contours.mesh_file import MeshBody, read_body
 from analytic.problem.contours.polygon import Polygon, polygon
 from analytic.problem.contours.solid import ConvexMesh
 from analytic.problem.errors import InputError
-from analytic.problem.numbers import finite, is_finite_number, pair, positive
+from analytic.problem.numbers import finite, pair, positive, within
 
 _IN_PLANE = 1e-6  # of the mesh's extent: files hold single precision
 _SAME = 1e-9  # of the section's extent; corners closer than that are one
@@ -68,28 +68,19 @@ def mesh_section(
     scale = positive("mesh scale", scale)
     shift = np.array(pair("mesh offset", offset))
     height = finite("mesh height", height)
-    if not (is_finite_number(tolerance) and tolerance >= 0):
-        raise InputError("mesh tolerance", tolerance, "finite and not negative", "0 keeps all")
+    tolerance = within("mesh tolerance", tolerance, 0.0, remedy="0 keeps all")
     body, name = read_body(file, hull, tolerance), Path(file).name
     third = ({"x", "y", "z"} - set(axes)).pop()
     across = ["xyz".index(axis) for axis in (*axes, third)]
     low, high = (float(end(body.vertices[:, across[2]])) for end in (np.min, np.max))
+    plane = f"height {height:g} of the plane through {file}"
     if not low < height < high:
-        raise InputError(
-            f"height {height:g} of the plane through {file}",
-            f"outside {low:.6g}..{high:.6g} along {third}",
-            f"where the mesh is, between its ends along {third}",
-            "move the plane",
-        )
+        what = f"outside {low:.6g}..{high:.6g} along {third}"
+        raise InputError(plane, what, "between the mesh's ends there", "move the plane")
     points = (body.vertices[:, across] - [0, 0, height]) * [1, 1, _handedness(across)]
     corners = _corners(_cut(points, body.faces) * scale + shift)
     if len(corners) < 3:
-        raise InputError(
-            f"height {height:g} of the plane through {file}",
-            "where it only touches the mesh",
-            "where it cuts the mesh",
-            "move the plane",
-        )
+        raise InputError(plane, "only touching the mesh", "where it cuts the mesh", "move it")
     label = f"section of {name}"
     if body.miss > 0:
         label += f", simplified within {body.miss * scale:.1e}"

@@ -147,43 +147,35 @@ def polygon(points: ArrayLike, label: str = "polygon") -> Polygon:
     short = (edges == 0).all(axis=1)
     if short.any():
         i = int(np.argmax(short))
-        raise InputError(
-            f"polygon vertex {i}", vertices[i], "apart from the next one", "drop one of the two"
-        )
+        raise InputError(f"polygon vertex {i}", vertices[i], "apart from the next one", "drop one")
     edges = edges / np.abs(edges).max()  # so that no product overflows or vanishes
     before = np.roll(edges, 1, axis=0)
     cross = before[:, 0] * edges[:, 1] - before[:, 1] * edges[:, 0]
     turn = np.arctan2(cross, (before * edges).sum(axis=1))
     if turn.sum() < -np.pi:  # a multiple of 2 pi; of a figure of eight it is zero
         return polygon(vertices[::-1], label)
+    around, in_order = (
+        float(np.rad2deg(turn.sum())),
+        "it crosses itself: give the vertices in order",
+    )
     if np.abs(turn).max() > np.pi - 1e-9:
-        i = int(np.argmax(np.abs(turn)))
+        where, remedy = _vertex(vertices, np.argmax(np.abs(turn))), "order them, or make it thicker"
         raise InputError(
-            f"polygon vertex {i}, ({vertices[i, 0]:.6g}, {vertices[i, 1]:.6g}),",
-            "folded back on itself",
-            "a corner of a convex polygon that is not all but flat",
-            "give the vertices in order, or make it thicker",
+            where, "folded back on itself", "a corner that is not all but flat", remedy
         )
-    if turn.sum() < np.pi:
-        raise InputError(
-            "polygon",
-            f"with a total turn of {np.rad2deg(turn.sum()):.4g} deg",
-            "convex, 360 deg",
-            "it crosses itself: give the vertices in order",
-        )
+    if around < 180:
+        raise InputError("polygon", f"turning by {around:.4g} deg", "convex, 360 deg", in_order)
     if turn.min() < -_STRAIGHT:
-        i = int(np.argmin(turn))
-        raise InputError(
-            f"polygon vertex {i}, ({vertices[i, 0]:.6g}, {vertices[i, 1]:.6g}),",
-            f"a dent of {np.rad2deg(-turn[i]):.4g} deg",
-            "convex",
-            "drop it or take the convex hull",
-        )
-    if turn.sum() > 3 * np.pi:
-        raise InputError(
-            "polygon", f"winding {turn.sum() / 2 / np.pi:.0f} times", "simple", "it crosses itself"
-        )
+        dent = f"a dent of {np.rad2deg(-turn.min()):.4g} deg"
+        where = _vertex(vertices, np.argmin(turn))
+        raise InputError(where, dent, "convex", "drop it or take the convex hull")
+    if around > 540:
+        raise InputError("polygon", f"winding {around / 360:.0f} times", "simple", in_order)
     return Polygon(_lower_side(vertices[turn > _STRAIGHT]), label=label)
+
+
+def _vertex(vertices: Floats, i: np.intp) -> str:
+    return f"polygon vertex {i}, ({vertices[i, 0]:.6g}, {vertices[i, 1]:.6g}),"
 
 
 def _lower_side(vertices: Floats) -> Floats:

@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.contours.contour import Contour, ContourPoint
-from analytic.problem.contours.convexity import Coordinate, check_convex
+from analytic.problem.contours.convexity import OF_ANGLES, Coordinate, check_convex
 from analytic.problem.contours.parallel import Parallel
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import pair, positive
@@ -60,56 +60,14 @@ class Profile(Contour):
             curve = getattr(self, name)
             if not (callable(curve) or (curve is None and name == "radius_of_curvature")):
                 raise InputError(
-                    f"profile.{name}",
-                    curve,
-                    "a function that maps an array of angles to an array of the same shape",
-                    "write it with NumPy functions",
+                    f"profile.{name}", curve, OF_ANGLES, "write it with NumPy functions"
                 )
         lowest, highest = pair("profile.alpha_range", self.alpha_range)
         if not -np.pi / 2 <= lowest < highest <= np.pi / 2:
-            raise InputError(
-                "profile.alpha_range",
-                self.alpha_range,
-                "two angles, the smaller first, within [-pi/2, pi/2] rad",
-                "angles are in rad and grow with x along the lower side of a convex body",
-            )
+            allowed = "two angles, the smaller first, within [-pi/2, pi/2] rad"
+            remedy = "they grow with x along the lower side of a convex body"
+            raise InputError("profile.alpha_range", self.alpha_range, allowed, remedy)
         check_convex(self.xi, self.eta, self.alpha_range, self.radius_of_curvature, self.label)
-
-    @classmethod
-    def of_family(
-        cls,
-        xi: Coordinate,
-        eta: Coordinate,
-        alpha_range: tuple[float, float],
-        radius_of_curvature: Coordinate,
-        label: str,
-        kinks: tuple[float, ...] = (),
-    ) -> "Profile":
-        """A contour of a family whose closed form is known to be convex.
-
-        Waves are not searched for, only numbers beyond the machine's.
-
-        Parameters
-        ----------
-        xi, eta, alpha_range, radius_of_curvature, label, kinks
-            As `Profile` has them.
-
-        Returns
-        -------
-        Profile
-            What `Profile` of the same is, in a fifth of the time.
-
-        Raises
-        ------
-        InputError
-            If rounding hides the contour's shape.
-        """
-        check_convex(xi, eta, alpha_range, radius_of_curvature, label, known=True)
-        found = object.__new__(cls)
-        parts = (xi, eta, alpha_range, radius_of_curvature, label, kinks)
-        for part, value in zip(fields(cls), parts, strict=True):
-            object.__setattr__(found, part.name, value)
-        return found
 
     @property
     def t_range(self) -> tuple[float, float]:
@@ -211,6 +169,26 @@ class Profile(Contour):
         slopes = (order * aside ** (order - 1) * powers[:, 1:]).sum(axis=1) / h
         best = np.argmin(np.abs(np.diff(slopes, axis=0)), axis=0)
         return np.asarray(np.take_along_axis(slopes, best[None], axis=0)[0])
+
+
+def of_family(
+    xi: Coordinate,
+    eta: Coordinate,
+    alpha_range: tuple[float, float],
+    radius_of_curvature: Coordinate,
+    label: str,
+    kinks: tuple[float, ...] = (),
+) -> Profile:
+    """A contour of a family whose closed form is known to be convex: it is not searched for waves.
+
+    What rounding hides is refused all the same, in a fifth of the time.
+    """
+    check_convex(xi, eta, alpha_range, radius_of_curvature, label, known=True)
+    found = object.__new__(Profile)
+    parts = (xi, eta, alpha_range, radius_of_curvature, label, kinks)
+    for part, value in zip(fields(Profile), parts, strict=True):
+        object.__setattr__(found, part.name, value)
+    return found
 
 
 def _scaled(curve: Coordinate, factor: float, alpha: Floats) -> Floats:

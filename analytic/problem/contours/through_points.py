@@ -15,8 +15,7 @@ from analytic.problem.numbers import points_of
 class _Arcs(NamedTuple):
     """Circular arcs that share their tangents where they meet; arrays of n arcs."""
 
-    begin: Floats
-    """Slope angle at which each arc begins, ascending [rad]."""
+    begin: Floats  # slope angle at which each arc begins, ascending [rad]
     centre_x: Floats
     centre_y: Floats
     radius: Floats
@@ -55,22 +54,18 @@ def through_points(points: ArrayLike, label: str = "curve through points") -> Pr
     run, rise = np.diff(at, axis=0).T
     if not (run > 0).all():
         i = int(np.argmin(run > 0)) + 1
-        raise InputError(
-            f"point {i} from the left",
-            at[i],
-            "to the right of the one before",
-            "give the lower side only, in order",
-        )
+        allowed, remedy = "to the right of the one before", "give the lower side only, in order"
+        raise InputError(f"point {i} from the left", at[i], allowed, remedy)
     chord = np.arctan2(rise, run)
     turn = np.diff(chord)
     if not (turn > 0).all():
         i = int(np.argmin(turn > 0)) + 1
-        raise InputError(
-            f"point {i} from the left, ({at[i, 0]:.6g}, {at[i, 1]:.6g}),",
+        where = f"point {i} from the left, ({at[i, 0]:.6g}, {at[i, 1]:.6g}),"
+        what, remedy = (
             f"a turn of {np.rad2deg(turn[i - 1]):.4g} deg",
-            "a turn to the left, as on a strictly convex body",
-            "drop it, or use a polygon for straight parts",
+            "a polygon has straight parts",
         )
+        raise InputError(where, what, "a turn to the left, as on a strictly convex body", remedy)
     arcs = _biarcs(at, chord, _tangents(np.hypot(run, rise), chord))
     end = float(arcs.begin[-1]), float(arcs.begin[0])
     return Profile(

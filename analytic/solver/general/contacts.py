@@ -11,12 +11,9 @@ from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
 from analytic.solver.equilibria import equilibria
-from analytic.solver.general.dense import between, nodes
 from analytic.solver.general.path import Path, follow
 from analytic.solver.general.states import States, Vibrissa, states, with_rates
 
-_MANY = 2000  # contacts; then only a part is solved from the path
-_EVERY = 20  # contact
 _STEPS = 8  # from the paper's vibrissa
 _BALANCED = 1e-12  # L, rad
 
@@ -31,13 +28,7 @@ def contacts(contour: Contour, t: Floats, vibrissa: Vibrissa) -> States:
     reach = contact_range(contour)
     touch = first_touch(contour, reach, vibrissa.unloaded)
     path = follow(contour, vibrissa, touch, reach)
-    if len(t) < _MANY:
-        z = _solved(contour, vibrissa, path, t)
-    else:
-        some = np.unique(np.append(np.sort(t)[::_EVERY], t.max()))
-        known = nodes(contour, vibrissa, some, _solved(contour, vibrissa, path, some))
-        z, found = between(contour, vibrissa, known, t)
-        z[~found] = _solved(contour, vibrissa, path, t[~found])
+    z = _solved(contour, vibrissa, path, t)
     return states(contour.at(t), z[:, 0], z[:, 1], vibrissa)
 
 

@@ -30,19 +30,14 @@ class Point(NamedTuple):
     """A point of the curve."""
 
     z: Floats
-    direction: Floats
-    """Derivative of `z` by the curve's length."""
+    direction: Floats  # derivative of `z` by the curve's length
     foot_x: float
-    rate: float
-    """Foot position [L] and its derivative by the curve's length."""
-    amplitude: float = 0.0
-    """Amplitude of the span [rad]; see `States`."""
+    rate: float  # foot position [L] and its derivative by the curve's length
+    amplitude: float = 0.0  # amplitude of the span [rad]; see `States`
+    # whether `direction` is that of the cross product of the two conditions' derivatives, or -1. It
+    # stays along a smooth curve. Next to buckling two curves come close to each other, and the
+    # other one has the other sense.
     sense: int = 1
-    """Whether `direction` is that of the cross product of the two conditions' derivatives, or -1.
-
-    It stays along a smooth curve. Next to buckling two curves come close to each other, and the
-    other one has the other sense.
-    """
 
 
 class EquilibriumCurve(NamedTuple):

@@ -34,15 +34,11 @@ _MOST = 64  # parts of a panel
 class SpanEnd(NamedTuple):
     """Where spans have come to; arrays of shape (n,)."""
 
-    theta: Floats
-    """Slope angle from the force's [rad]."""
-    m: Floats
-    """Moment, as the curvature beyond the natural one where the rigidity is EI(0)."""
+    theta: Floats  # slope angle from the force's [rad]
+    m: Floats  # moment, as the curvature beyond the natural one where the rigidity is EI(0)
     along: Floats
-    across: Floats
-    """Integrals of cos(theta) and sin(theta) on the way."""
-    amplitude: Floats
-    """By how much the pendulum's phase has changed [rad]."""
+    across: Floats  # integrals of cos(theta) and sin(theta) on the way
+    amplitude: Floats  # by how much the pendulum's phase has changed [rad]
 
 
 class Trail(NamedTuple):

@@ -28,20 +28,16 @@ _TO_ALL = np.vstack([TO_NODES, WEIGHTS])  # and to the end
 class Panel(NamedTuple):
     """A part of n vibrissae, or k = 1 that is the same for all; integrals begin where it does."""
 
-    length: Floats
-    """Shape (k,) [L]; negative on the way to the clamp."""
-    s: Floats
-    """Arc lengths of the nodes, shape (NODES, k) [L]."""
+    length: Floats  # shape (k,) [L]; negative on the way to the clamp
+    s: Floats  # arc lengths of the nodes, shape (NODES, k) [L]
     natural: Floats
-    flexible: Floats
-    """Natural curvature and EI(0)/EI at both ends, shape (2, k)."""
+    flexible: Floats  # natural curvature and EI(0)/EI at both ends, shape (2, k)
     rest: Floats
+    # by how much natural curvature, and a moment of 1, turn nodes and end, (NODES + 1, k) [rad]
     bend: Floats
-    """By how much natural curvature, and a moment of 1, turn nodes and end, (NODES + 1, k) [rad]"""
-    give: Floats
-    """EI(0)/EI at the nodes, times the length squared, shape (NODES, k)."""
+    give: Floats  # EI(0)/EI at the nodes, times the length squared, shape (NODES, k)
+    # what integrates twice, with that between, shape (NODES + 1, NODES), if k is 1.
     twice: Floats | None
-    """What integrates twice, with that between, shape (NODES + 1, NODES), if k is 1."""
 
     @classmethod
     def between(

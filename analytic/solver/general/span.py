@@ -29,14 +29,11 @@ class Start(NamedTuple):
     """The clamp's end of the span, as seen from the contact; arrays of one shape."""
 
     p: Floats
-    g: Floats
-    """sin(chi) and cos(chi) of the slope at the clamp."""
+    g: Floats  # sin(chi) and cos(chi) of the slope at the clamp
     kappa: Floats
     along: Floats
-    across: Floats
-    """Integrals of cos(theta) and sin(theta) from the clamp to the contact."""
-    amplitude: Floats
-    """Amplitude of the span: pi at half a period [rad]."""
+    across: Floats  # integrals of cos(theta) and sin(theta) from the clamp to the contact
+    amplitude: Floats  # amplitude of the span: pi at half a period [rad]
 
 
 def back_to_clamp(theta: Floats, kappa: Floats, force: Floats, length: Floats) -> Start:

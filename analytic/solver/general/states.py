@@ -36,16 +36,14 @@ _WEIGHTS = np.array([[-1.5, 2.0, -0.5, 0.0, 0.0], [-1.5, 0.0, 0.0, 2.0, -0.5]])
 class Vibrissa(NamedTuple):
     """What the vibrissa and its contact are beyond the paper's, dimensionless."""
 
+    # of the unloaded vibrissa; positive to the left of its way from clamp to tip [1/L].
     natural_curvature: float = 0.0
-    """Of the unloaded vibrissa; positive to the left of its way from clamp to tip [1/L]."""
-    compliance: float = 0.0
-    """Rotation of the clamp by moment [L/EI]."""
+    compliance: float = 0.0  # rotation of the clamp by moment [L/EI]
+    # coefficient, or one a state; positive where the object pushes the vibrissa to the right.
     friction: float | Floats = 0.0
-    """Coefficient, or one a state; positive where the object pushes the vibrissa to the right."""
-    radius: float | Floats = 0.0
-    """At the tip, or one a state [L]."""
+    radius: float | Floats = 0.0  # at the tip, or one a state [L]
+    # what varies along the vibrissa, if anything does; the natural curvature is then its.
     rod: RodProperties | None = None
-    """What varies along the vibrissa, if anything does; the natural curvature is then its."""
 
     @classmethod
     def of(cls, beam: Beam, clamp_stiffness: float, friction: float) -> "Vibrissa":
@@ -118,20 +116,15 @@ class Vibrissa(NamedTuple):
 class States(NamedTuple):
     """Vibrissae against points of the contour, in balance or not; arrays of shape (n,)."""
 
-    point: ContourPoint
-    """Of the contour that the centreline feels at the tip."""
-    force: Floats
-    """Normal force f."""
+    point: ContourPoint  # of the contour that the centreline feels at the tip
+    force: Floats  # normal force f
     excess: Floats
-    moment: Floats
-    """M_Az, on the vibrissa."""
+    moment: Floats  # M_Az, on the vibrissa
     up: Floats
-    reach: Floats
-    """Height of the contact above the foot and its distance from it along x."""
-    slope_residual: Floats
-    """What the slope at the clamp misses [rad]; zero in balance."""
+    reach: Floats  # height of the contact above the foot and its distance from it along x
+    slope_residual: Floats  # what the slope at the clamp misses [rad]; zero in balance
+    # amplitude of the span: from pi on, half a period, it is one that buckles [rad].
     amplitude: Floats
-    """Amplitude of the span: from pi on, half a period, it is one that buckles [rad]."""
     vibrissa: Vibrissa
 
     @property
@@ -221,8 +214,7 @@ class StateRates(NamedTuple):
     """
 
     slope_residual: Floats
-    height_residual: Floats
-    """Of the height of the span's end over the contour's point."""
+    height_residual: Floats  # of the height of the span's end over the contour's point
     foot_x: Floats
 
 

@@ -25,14 +25,13 @@ _BALANCED = 1e-11  # L, rad
 class Sticking(NamedTuple):
     """States of a vibrissa that sticks while its foot goes back; arrays of shape (m, ...)."""
 
+    # contour parameter, normal force, excess, and the force's angle off the contour's normal,
+    # arctan(mu) at first [rad]; shape (m, 4).
     z: Floats
-    """Contour parameter, normal force, excess, and the force's angle off the contour's normal,
-    arctan(mu) at first [rad]; shape (m, 4)."""
-    foot_x: Floats
-    """Rising [L]."""
+    foot_x: Floats  # rising [L]
+    # from the last one on: at the angle -arctan(mu) it slides back; it may stick until the foot
+    # stops; or it would slide on again, or has no state beside the last one, and lets go.
     then: Literal["slides back", "stops", "unsolved"]
-    """From the last one on: at the angle -arctan(mu) it slides back; it may stick until the foot
-    stops; or it would slide on again, or has no state beside the last one, and lets go."""
 
 
 def stick(contour: Contour, vibrissa: Vibrissa, start: Floats, until: float) -> Sticking:

@@ -24,10 +24,9 @@ class Solved(NamedTuple):
 
     columns: ReadingColumns
     events: dict[str, float | None]
-    touching: Booleans
-    """The stations that are not free."""
+    touching: Booleans  # the stations that are not free
+    # contour parameter, normal force and excess at these, NaN where there is no state, (m, 3).
     places: Floats
-    """Contour parameter, normal force and excess at these, NaN where there is no state, (m, 3)."""
 
 
 def solve(case: Case, stations: Floats | None = None) -> Solved:

@@ -5,10 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from analytic.from_clamp.contact import UNLOADED
-from analytic.from_clamp.noise import scatter
+from analytic.from_clamp.noise import checked_noise, scatter
 from analytic.problem.arrays import Booleans
-from analytic.problem.errors import InputError
-from analytic.problem.numbers import is_finite_number
 from analytic.space.problem.readings import FORCE, MOMENT, SpatialReadings
 
 COMPONENTS = (*FORCE, *MOMENT)
@@ -26,12 +24,7 @@ def component_noise(
     what F . M jumps by is noise and nothing else, and if it is less than what was seen allows, what
     was seen is so much less noise.
     """
-    given = {} if stated is None else dict(stated)
-    for name, value in given.items():
-        if name not in COMPONENTS:
-            raise InputError("noise", repr(name), f"of {', '.join(COMPONENTS)}", "correct it")
-        if not (is_finite_number(value) and value >= 0):
-            raise InputError(f"noise[{name}]", value, "0 or more", "it is a standard deviation")
+    given = {} if stated is None else checked_noise(stated, COMPONENTS)
     force, moment = readings.values(*FORCE), readings.values(*MOMENT)
     loaded = readings.trusted & force.any(axis=1)
     force, moment = force[loaded], moment[loaded]

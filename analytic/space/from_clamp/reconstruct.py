@@ -1,12 +1,14 @@
 """The body from the clamp's six components, in closed form."""
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from analytic.from_clamp.contact import LONGEST, contact_bent_right
-from analytic.problem.arrays import Floats, Integers
+from analytic.from_clamp.noise import AT_ONCE, SAMPLES, covering
+from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.support import require_plain
 from analytic.space.from_clamp.noise import COMPONENTS, component_noise, felt
 from analytic.space.problem.readings import (
@@ -18,9 +20,6 @@ from analytic.space.problem.readings import (
     SpatialReadings,
 )
 
-_SAMPLES = 400  # of the noise, a station
-_AT_ONCE = 10_000  # stations whose samples are in memory, 130 MB
-_COVERAGE = 0.95
 _EXACT = 1e-9  # sine of an angle: what rounding leaves of one that vanishes
 _EXPLAINED = 4.0  # standard deviations that noise may explain
 _SUSPICIOUS = 0.02  # share of the moment that must not be there, in the median of a sweep
@@ -63,9 +62,8 @@ def reconstruct_space(
     """
     beam, tangent = readings.beam, readings.clamp_tangent
     require_plain("the reconstruction in space", beam, np.inf, 0.0)
-    foot = readings.values(*FOOT) / beam.length
-    force = readings.values(*FORCE) / beam.force_unit
-    moment = readings.values(*MOMENT) / beam.moment_unit
+    clamp = _Clamp.of(readings)
+    foot = clamp.foot
     units = np.repeat([beam.force_unit, beam.moment_unit], 3)
     known = component_noise(readings, noise)
     on = felt(readings, known)
@@ -74,7 +72,6 @@ def reconstruct_space(
         for sizes in (known, noise or {})
     )
 
-    radius = beam.radius / beam.length
     points = np.full((len(foot), 3), np.nan)
     normals, arc_length = points.copy(), np.full(len(foot), np.nan)
     uncertainty, torsion, along_force, torsion_noise, along_noise = (
@@ -82,24 +79,22 @@ def reconstruct_space(
     )
     phase = np.full(len(foot), "free", dtype=object)
     if on.any():
-        found = _contacts(foot[on], force[on], moment[on], tangent, radius)
+        loaded = clamp.at(on)
+        found = loaded.contacts()
         there = (found[6] >= 0) & (found[6] <= LONGEST)
         points[on], normals[on] = (
             np.where(there, part, np.nan).T for part in (found[:3], found[3:6])
         )
         arc_length[on] = np.where(there, found[6], np.nan)
-        sizes = np.linalg.norm(moment[on], axis=1)
-        torsion[on] = moment[on] @ tangent / sizes
-        along_force[on] = -(moment[on] * found[3:6].T).sum(axis=1) / sizes
+        sizes = np.linalg.norm(loaded.moment, axis=1)
+        torsion[on] = loaded.moment @ tangent / sizes
+        along_force[on] = -(loaded.moment * found[3:6].T).sum(axis=1) / sizes
         torsion_noise[on] = np.sqrt(tangent**2 @ deviation[3:] ** 2) / sizes
-        lever = moment[on] / np.linalg.norm(force[on], axis=1)[:, None]
+        lever = loaded.moment / np.linalg.norm(loaded.force, axis=1)[:, None]
         along_noise[on] = (
             np.sqrt(lever**2 @ deviation[:3] ** 2 + found[3:6].T ** 2 @ deviation[3:] ** 2) / sizes
         )
-        spread, sine_spread = _spread(
-            foot[on], force[on], moment[on], tangent, radius, stated, seed
-        )
-        uncertainty[on] = spread
+        uncertainty[on], sine_spread = _spread(loaded, stated, seed)
         tip = found[7] > np.maximum(_EXACT, _EXPLAINED * sine_spread)
         phase[on] = np.where(there, np.where(tip, "tip", "tangent"), "free")
     columns: dict[str, Floats] = dict(zip(FOOT, (foot * beam.length).T, strict=True))
@@ -162,15 +157,8 @@ def contacts_moved(
     """How far noise moves the contacts that are found, sample by sample."""
     beam = readings.beam
     deviation = np.array([noise.get(name, 0.0) for name in COMPONENTS])
-    far, _, reach = _samples(
-        readings.values(*FOOT)[at] / beam.length,
-        readings.values(*FORCE)[at] / beam.force_unit,
-        readings.values(*MOMENT)[at] / beam.moment_unit,
-        readings.clamp_tangent,
-        beam.radius / beam.length,
-        deviation / np.repeat([beam.force_unit, beam.moment_unit], 3),
-        np.random.default_rng(seed),
-    )
+    deviation = deviation / np.repeat([beam.force_unit, beam.moment_unit], 3)
+    far, _, reach = _Clamp.of(readings).at(at).samples(deviation, np.random.default_rng(seed))
     return np.where((reach >= 0) & (reach <= LONGEST), far * beam.length, np.nan)
 
 
@@ -195,68 +183,70 @@ def _beyond_noise(found: pd.DataFrame, name: str) -> float:
     return float(size.median()) if deviations > _EXPLAINED else 0.0
 
 
-def _contacts(
-    foot: Floats, force: Floats, moment: Floats, tangent: Floats, radius: float
-) -> Floats:
-    """Point, normal, arc length and sin(phi1 - alpha), shape (8, n), dimensionless."""
-    size = np.linalg.norm(force, axis=1)
-    normal = -force / size[:, None]
-    down = -(normal @ tangent)
-    sideways = normal + down[:, None] * tangent
-    sine = np.linalg.norm(sideways, axis=1)
-    with np.errstate(divide="ignore", invalid="ignore"):  # a force along the clamp's tangent
-        lateral = sideways / sine[:, None]
-        bending = (moment * np.cross(lateral, tangent)).sum(axis=1)
-        planar = np.stack([np.zeros_like(size), -size * sine, size * down, bending])
-        found = contact_bent_right(planar)
-        criterion = down - bending**2 / (2 * size)
-    axis = foot + found.xi[:, None] * lateral + found.eta[:, None] * tangent
-    return np.concatenate(
-        [(axis - radius * normal).T, normal.T, found.arc_length[None], criterion[None]]
-    )
+class _Clamp(NamedTuple):
+    """What the clamp is and feels at n stations, dimensionless."""
+
+    foot: Floats
+    force: Floats
+    moment: Floats
+    tangent: Floats
+    radius: float
+
+    @classmethod
+    def of(cls, readings: SpatialReadings) -> "_Clamp":
+        beam = readings.beam
+        return cls(
+            readings.values(*FOOT) / beam.length,
+            readings.values(*FORCE) / beam.force_unit,
+            readings.values(*MOMENT) / beam.moment_unit,
+            readings.clamp_tangent,
+            beam.radius / beam.length,
+        )
+
+    def at(self, which: Booleans | Integers) -> "_Clamp":
+        """Some of the stations."""
+        foot, force, moment = (values[which] for values in self[:3])
+        return self._replace(foot=foot, force=force, moment=moment)
+
+    def contacts(self) -> Floats:
+        """Point, normal, arc length and sin(phi1 - alpha), shape (8, n)."""
+        size = np.linalg.norm(self.force, axis=1)
+        normal = -self.force / size[:, None]
+        down = -(normal @ self.tangent)
+        sideways = normal + down[:, None] * self.tangent
+        sine = np.linalg.norm(sideways, axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):  # a force along the clamp's tangent
+            lateral = sideways / sine[:, None]
+            bending = (self.moment * np.cross(lateral, self.tangent)).sum(axis=1)
+            planar = np.stack([np.zeros_like(size), -size * sine, size * down, bending])
+            found = contact_bent_right(planar)
+            criterion = down - bending**2 / (2 * size)
+        axis = self.foot + found.xi[:, None] * lateral + found.eta[:, None] * self.tangent
+        place = (axis - self.radius * normal).T
+        return np.concatenate([place, normal.T, found.arc_length[None], criterion[None]])
+
+    def samples(
+        self, deviation: Floats, random: np.random.Generator
+    ) -> tuple[Floats, Floats, Floats]:
+        """Distances of disturbed contacts, criteria and arc lengths, each (samples, stations)."""
+        true, every = self.contacts(), []
+        for _ in range(SAMPLES):
+            disturbed = random.normal(size=(len(self.foot), 6)) * deviation
+            force, moment = self.force + disturbed[:, :3], self.moment + disturbed[:, 3:]
+            found = self._replace(force=force, moment=moment).contacts()
+            every.append((np.linalg.norm(found[:3] - true[:3], axis=0), found[7], found[6]))
+        far, sines, reach = np.array(every).swapaxes(0, 1)
+        return far, sines, reach
 
 
-def _spread(
-    foot: Floats,
-    force: Floats,
-    moment: Floats,
-    tangent: Floats,
-    radius: float,
-    deviation: Floats,
-    seed: int,
-) -> tuple[Floats, Floats]:
+def _spread(clamp: _Clamp, deviation: Floats, seed: int) -> tuple[Floats, Floats]:
     """Where 95 % of the contacts lie that noise makes of each, and the criterion's deviation."""
+    count = len(clamp.foot)
     if not deviation.any():
-        return np.zeros(len(foot)), np.zeros(len(foot))
-    random, spread, sine_spread = np.random.default_rng(seed), [], []
-    for here in np.array_split(np.arange(len(foot)), len(foot) // _AT_ONCE + 1):
-        far, sines, _ = _samples(
-            foot[here], force[here], moment[here], tangent, radius, deviation, random
-        )
-        far = np.nan_to_num(far, nan=np.inf)
-        spread.append(np.quantile(far, _COVERAGE, axis=0, method="higher"))
-        sine_spread.append(np.std(sines, axis=0))
-    return np.concatenate(spread), np.concatenate(sine_spread)
-
-
-def _samples(
-    foot: Floats,
-    force: Floats,
-    moment: Floats,
-    tangent: Floats,
-    radius: float,
-    deviation: Floats,
-    random: np.random.Generator,
-) -> tuple[Floats, Floats, Floats]:
-    """Distances of disturbed contacts, criteria and arc lengths, each (samples, stations)."""
-    true = _contacts(foot, force, moment, tangent, radius)
-    far, sines, reach = [], [], []
-    for _ in range(_SAMPLES):
-        disturbed = random.normal(size=(len(foot), 6)) * deviation
-        found = _contacts(
-            foot, force + disturbed[:, :3], moment + disturbed[:, 3:], tangent, radius
-        )
-        far.append(np.linalg.norm(found[:3] - true[:3], axis=0))
-        sines.append(found[7])
-        reach.append(found[6])
-    return np.array(far), np.array(sines), np.array(reach)
+        return np.zeros(count), np.zeros(count)
+    random, spread = np.random.default_rng(seed), []
+    for here in np.array_split(np.arange(count), count // AT_ONCE + 1):
+        far, sines, _ = clamp.at(here).samples(deviation, random)
+        spread.append((covering(far, axis=0), np.std(sines, axis=0)))
+    uncertainty, sine_spread = np.concatenate(spread, axis=1)
+    return uncertainty, sine_spread

@@ -62,31 +62,19 @@ class SpatialCase:
         way = self.way
         begin = way.gap(0.0)
         if begin.size <= 0:
-            raise InputError(
-                "path.points[0]",
-                way.foot(0.0) * self.beam.length,
-                f"such that the straight vibrissa starts clear of the {self.body.label}",
-                "start farther away, or move the body",
-            )
+            allowed = f"such that the straight vibrissa starts clear of the {self.body.label}"
+            foot = way.foot(0.0) * self.beam.length
+            raise InputError("path.points[0]", foot, allowed, "start farther away")
         into = way.meets_clamp()
         if into is not None:
-            x, _, z = way.foot(into) * self.beam.length
-            raise InputError(
-                "path",
-                f"into the body ({self.body.label}) at ({x:.4g}, {z:.4g})",
-                "past it: the clamp has to pass, too",
-                "raise the body, or move the path",
-            )
+            what = f"into the body ({self.body.label}) at {self._place(into)}"
+            remedy = "raise the body, or move the path"
+            raise InputError("path", what, "past it: the clamp has to pass, too", remedy)
         if way.next_touch(0.0) is None:
             travel, gap = way.nearest()
-            x, _, z = way.foot(travel) * self.beam.length
-            raise InputError(
-                "path",
-                f"passing the {self.body.label} at a distance of {gap.size:.4g} L, nearest with "
-                f"the foot at ({x:.4g}, {z:.4g})",
-                "within reach of the vibrissa",
-                "check body, path and their unit",
-            )
+            distance = f"at a distance of {gap.size:.4g} L, with the foot at {self._place(travel)}"
+            what, remedy = f"passing the {self.body.label} {distance}", "check body, path and unit"
+            raise InputError("path", what, "within reach of the vibrissa", remedy)
 
     @property
     def way(self) -> Way:
@@ -113,33 +101,26 @@ class SpatialCase:
             },
         }
 
+    def _place(self, travel: float) -> str:
+        x, _, z = self.way.foot(travel) * self.beam.length
+        return f"({x:.4g}, {z:.4g})"
+
     def _check_place(self) -> None:
         length = self.beam.length
-        far = float(np.abs(self.path.corners).max())
-        if far > _FARTHEST * length:
-            raise InputError(
-                "path.points",
-                f"{far / length:.4g} L from the origin",
-                f"within {_FARTHEST:g} L",
-                "check their unit, or move the origin to the body",
-            )
+        far = float(np.abs(self.path.corners).max()) / length
+        near = f"within {_FARTHEST:g} L of the origin"
+        if far > _FARTHEST:
+            raise InputError("path.points", f"{far:.4g} L away", near, "check their unit")
         if not isinstance(self.body, Polyhedron):
             return
         low, high = self.body.vertices.min(axis=0), self.body.vertices.max(axis=0)
         size, away = float((high - low).max()), float(np.abs([low, high]).max())
         what = f"body ({self.body.label})"
         if not _SMALLEST * length <= size <= _LARGEST * length:
-            raise InputError(
-                what,
-                f"{size / length:.4g} L in size",
-                f"{_SMALLEST:g} to {_LARGEST:g} L",
-                'the file is in another unit: give that as scale, 1e-3 or "1 mm" for millimetres',
-            )
+            allowed = f"{_SMALLEST:g} to {_LARGEST:g} L"
+            remedy = 'the file is in another unit: give that as scale, 1e-3 or "1 mm"'
+            raise InputError(what, f"{size / length:.4g} L in size", allowed, remedy)
         if away > _FARTHEST * length:
             x, y, z = (low + high) / 2
-            raise InputError(
-                what,
-                f"around ({x:.4g}, {y:.4g}, {z:.4g})",
-                f"within {_FARTHEST:g} L of the origin",
-                "move it with offset, or check its unit",
-            )
+            around = f"around ({x:.4g}, {y:.4g}, {z:.4g})"
+            raise InputError(what, around, near, "move it with offset, or check its unit")

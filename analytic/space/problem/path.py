@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
-from analytic.problem.numbers import finite, is_whole_number
+from analytic.problem.numbers import finite, floats, whole
 from analytic.space.problem.numbers import direction
 
 _MOST_STATIONS = 100_000
@@ -42,40 +42,21 @@ class FootPath:
     stations: int = 200
 
     def __post_init__(self) -> None:
-        try:
-            points = np.array(self.points, dtype=float)
-        except (TypeError, ValueError, OverflowError) as error:
-            raise InputError("path.points", self.points, "points (x, z)", str(error)) from error
-        if points.ndim != 2 or points.shape[1:] != (2,) or not 2 <= len(points) <= _MOST_POINTS:
-            raise InputError(
-                "path.points",
-                f"of shape {points.shape}",
-                f"2 to {_MOST_POINTS:,} points (x, z)",
-                "as [[1, 0], [-1, 0.2]]",
-            )
-        if not (np.abs(points) < 1e100).all():
-            raise InputError("path.points", points.tolist(), "finite", "correct them")
+        allowed = f"2 to {_MOST_POINTS:,} points (x, z)"
+        points = floats("path.points", self.points, (None, 2), allowed)
+        if not 2 <= len(points) <= _MOST_POINTS:
+            raise InputError("path.points", len(points), allowed, "as [[1, 0], [-1, 0.2]]")
         lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
         extent = float(np.ptp(points, axis=0).max())
         if not (lengths > 1e-9 * extent).all():
             i = int(np.argmin(lengths))
-            raise InputError(
-                f"path.points[{i + 1}]",
-                points[i + 1],
-                "another place than the one before",
-                "drop it",
-            )
-        if not (is_whole_number(self.stations) and 2 <= self.stations <= _MOST_STATIONS):
-            raise InputError(
-                "path.stations",
-                self.stations,
-                f"a whole number, 2 to {_MOST_STATIONS:,}",
-                "200 is usual",
-            )
+            allowed = "another place than the one before"
+            raise InputError(f"path.points[{i + 1}]", points[i + 1], allowed, "drop it")
+        stations = whole("path.stations", self.stations, 2, _MOST_STATIONS)
         object.__setattr__(self, "points", points)
         object.__setattr__(self, "height", finite("path.height", self.height))
         object.__setattr__(self, "tangent", direction("path.tangent", self.tangent))
-        object.__setattr__(self, "stations", int(self.stations))
+        object.__setattr__(self, "stations", stations)
 
     @property
     def clamp_tangent(self) -> Floats:

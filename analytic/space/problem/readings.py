@@ -1,9 +1,9 @@
 """One sweep's readings in space: six components at the clamp, and the contact."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pandas as pd
@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike
 
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.beam import Beam
-from analytic.problem.errors import InputError, require
+from analytic.problem.errors import InputError
 from analytic.problem.files import as_path
 from analytic.problem.places import Place, row_number
-from analytic.problem.readings_file import read_file, write_file
-from analytic.problem.table import as_numbers
+from analytic.problem.readings_file import read_file
+from analytic.problem.sweep_table import SweepTable, usable
+from analytic.problem.table import as_numbers, check_columns, check_words
 from analytic.space.problem.numbers import direction
 
 FOOT = ("foot_x", "foot_y", "foot_z")
@@ -31,7 +32,7 @@ _WORDS = {"phase": PHASES_IN_SPACE, "status": STATUSES_IN_SPACE}
 
 
 @dataclass(frozen=True, eq=False)
-class SpatialReadings:
+class SpatialReadings(SweepTable):
     """One sweep in space, in the units of its beam.
 
     Parameters
@@ -65,10 +66,10 @@ class SpatialReadings:
     tangent: ArrayLike = (0.0, 1.0, 0.0)
     source: str = "measured"
     provenance: Mapping[str, Any] = field(default_factory=dict)
+    sensed: ClassVar[tuple[str, ...]] = SENSED_IN_SPACE
 
     def __post_init__(self) -> None:
-        require("readings' table", self.table, pd.DataFrame, "columns by name")
-        require("readings' beam", self.beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
+        self._check_kinds()
         object.__setattr__(self, "tangent", direction("readings' tangent", self.tangent))
         object.__setattr__(self, "table", _checked(self.table, self.source, row_number))
 
@@ -77,77 +78,18 @@ class SpatialReadings:
         """Direction of the vibrissa at its clamp, of length 1, shape (3,)."""
         return np.asarray(self.tangent)
 
-    def values(self, *columns: str) -> Floats:
-        """Numeric columns side by side.
-
-        Parameters
-        ----------
-        *columns : str
-            Their names.
-
-        Returns
-        -------
-        array, shape (stations, columns)
-            NaN throughout where one was not measured; shape (stations,) for a single one.
-        """
-        found = [
-            self.table[name].to_numpy(dtype=float)
-            if name in self.table
-            else np.full(len(self.table), np.nan)
-            for name in columns
-        ]
-        return found[0] if len(found) == 1 else np.column_stack(found)
-
-    @property
-    def trusted(self) -> Booleans:
-        """Stations whose sensed values may be used, shape (stations,)."""
-        fine = np.isfinite(self.values(*SENSED_IN_SPACE)).all(axis=1)
-        if "status" in self.table:
-            fine &= (self.table["status"] == "ok").to_numpy()
-        return np.asarray(fine, dtype=bool)
-
     @property
     def touching(self) -> Booleans:
         """Trusted stations with a force, shape (stations,)."""
         force = np.linalg.norm(self.values(*FORCE), axis=1)
         return np.asarray(self.trusted & (force > 1e-9 * self.beam.force_unit))
 
-    def write(self, path: str | Path) -> Path:
-        """Write to Parquet (metadata inside) or CSV (metadata in the first line), by the suffix.
-
-        Parameters
-        ----------
-        path : str or Path
-            Named ``*.parquet`` or ``*.csv``.
-
-        Returns
-        -------
-        Path
-            `path`.
-
-        Raises
-        ------
-        InputError
-            If the name has another suffix, or JSON cannot hold the provenance.
-        OSError
-            If the file cannot be written.
-        """
-        metadata = {
-            "beam": asdict(self.beam),
-            "tangent": self.clamp_tangent.tolist(),
-            "source": self.source,
-            "provenance": dict(self.provenance),
-        }
-        path = as_path(path, "readings file")
-        write_file(path, self.table, metadata)
-        return path
+    def _metadata(self) -> dict[str, Any]:
+        return {**super()._metadata(), "tangent": self.clamp_tangent.tolist()}
 
     @classmethod
     def read(
-        cls,
-        path: str | Path,
-        beam: Beam | None = None,
-        tangent: ArrayLike | None = None,
+        cls, path: str | Path, beam: Beam | None = None, tangent: ArrayLike | None = None
     ) -> "SpatialReadings":
         """Read what `write` wrote, or measured data with the nine sensed columns.
 
@@ -174,7 +116,7 @@ class SpatialReadings:
         path = as_path(path, "readings file")
         content = read_file(path)
         metadata = content.metadata
-        try:
+        with usable(path):
             known = metadata.get("beam")
             otherwise = Beam() if beam is None else beam
             upright = (0.0, 1.0, 0.0) if tangent is None else tangent
@@ -185,42 +127,20 @@ class SpatialReadings:
                 metadata.get("source", f"measured, {path.name}"),
                 metadata.get("provenance", {}),
             )
-        except (InputError, TypeError) as error:
-            raise InputError(
-                f"readings file {path}", "unusable", "one sweep in space", str(error)
-            ) from error
 
 
 def _checked(table: pd.DataFrame, source: str, place: Place) -> pd.DataFrame:
-    missing = [name for name in SENSED_IN_SPACE if name not in table]
-    if missing:
-        raise InputError(
-            f"columns of the readings ({source})",
-            f"without {', '.join(missing)}",
-            f"with {', '.join(SENSED_IN_SPACE)}",
-            "add them; the frame is the world's, y up",
-        )
+    check_columns(table, SENSED_IN_SPACE, source)
     columns = {}
     for name in table.columns:
         if name in _WORDS:
-            words = table[name].to_numpy(dtype=object)
-            wrong = ~np.isin(words.astype(str), _WORDS[name])
-            if wrong.any():
-                row = int(np.argmax(wrong))
-                raise InputError(
-                    f"{name}, {place(row)},",
-                    words[row],
-                    f"one of {', '.join(_WORDS[name])}",
-                    "fix it",
-                )
-            columns[name] = words
+            check_words(table[name], name, _WORDS[name], place)
+            columns[name] = table[name].to_numpy(dtype=object)
         else:
             columns[name] = as_numbers(table[name], str(name), place)
     found = pd.DataFrame(columns)
     lost = found[list(FOOT)].isna().any(axis=1).to_numpy()
     if lost.any() or len(found) < 1:
-        row = int(np.argmax(lost)) if lost.any() else 0
-        raise InputError(
-            f"foot position, {place(row)},", "missing", "three numbers", "drop the row, or fill it"
-        )
+        where = f"foot position, {place(int(np.argmax(lost)) if lost.any() else 0)},"
+        raise InputError(where, "missing", "three numbers", "drop the row, or fill it")
     return found

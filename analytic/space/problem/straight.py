@@ -1,5 +1,6 @@
 """The straight vibrissa among the bodies: where on its way it first touches. Geometry only."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -18,12 +19,9 @@ _EXACT = 1e-15  # L, of the way
 class Gap(NamedTuple):
     """How near the straight vibrissa is to the body; lengths in L."""
 
-    size: float
-    """Between surface and surface; not positive where they meet."""
-    arc_length: float
-    """Where on the vibrissa they are nearest."""
-    spot: Spot
-    """Where on the body."""
+    size: float  # between surface and surface; not positive where they meet
+    arc_length: float  # where on the vibrissa they are nearest
+    spot: Spot  # where on the body
 
 
 def straight_gap(body: Body, foot: Floats, tangent: Floats, radius: float) -> Gap:
@@ -95,25 +93,26 @@ class Way:
         return first_clear(self._size, begin, self._corners_after(begin), _EXACT)
 
     def nearest(self) -> tuple[float, Gap]:
-        """Where the straight vibrissa is nearest to the body, at the way's corners and between."""
-        from scipy.optimize import minimize_scalar
-
-        legs = zip(self.marks[:-1], self.marks[1:], strict=True)
-        between = [minimize_scalar(self._size, bounds=leg, method="bounded").x for leg in legs]
-        found = [(float(at), self.gap(float(at))) for at in (*self.marks, *between)]
-        return min(found, key=lambda one: one[1].size)
+        """Where the straight vibrissa is nearest to the body."""
+        at = self._least(self._size)
+        return at, self.gap(at)
 
     def meets_clamp(self) -> float | None:
         """Where the clamp itself would run into the body."""
-        from scipy.optimize import minimize_scalar
 
         def clear(travel: float) -> float:
             return self.body.nearest(self.foot(travel), _ANY).distance - self.radius
 
+        deepest = self._least(clear)
+        return deepest if clear(deepest) <= 0 else None
+
+    def _least(self, distance: Callable[[float], float]) -> float:
+        """Where a distance is least, at the way's corners and between."""
+        from scipy.optimize import minimize_scalar
+
         legs = zip(self.marks[:-1], self.marks[1:], strict=True)
-        between = [float(minimize_scalar(clear, bounds=leg, method="bounded").x) for leg in legs]
-        deepest = min((*self.marks, *between), key=clear)
-        return float(deepest) if clear(deepest) <= 0 else None
+        between = [float(minimize_scalar(distance, bounds=b, method="bounded").x) for b in legs]
+        return min([*map(float, self.marks), *between], key=distance)
 
     def _size(self, travel: float) -> float:
         return self.gap(travel).size

@@ -37,16 +37,11 @@ _HALVINGS = 12  # of a link, to find its place that is nearest to the body
 class Touching(NamedTuple):
     """Where the chain touches, in case it is at rest."""
 
-    place: Floats
-    """Of the body, shape (3,) [L]."""
-    on_parallel: Floats
-    """The same on the parallel surface."""
-    arc_length: float
-    """[L]"""
-    bent: float
-    """Angle of the link there above the body's surface [rad]."""
-    turned: float
-    """The largest turn of a link in the step to come [rad]."""
+    place: Floats  # of the body, shape (3,) [L]
+    on_parallel: Floats  # the same on the parallel surface
+    arc_length: float  # [L]
+    bent: float  # angle of the link there above the body's surface [rad]
+    turned: float  # the largest turn of a link in the step to come [rad]
 
 
 def descend(scene: Scene, start: Contact, foot: Floats) -> Iterator[Touching]:
@@ -84,8 +79,7 @@ def descend(scene: Scene, start: Contact, foot: Floats) -> Iterator[Touching]:
 
 class _Near(NamedTuple):
     link: int
-    along: float
-    """Of the link's start [L]."""
+    along: float  # of the link's start [L]
     gap: float
     normal: Floats
     point: Floats

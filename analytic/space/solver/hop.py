@@ -38,12 +38,9 @@ _LEAST = 1e-3  # rad, rotation of a tip that is searched for
 class _Step(NamedTuple):
     """Along a face or an edge."""
 
-    by: Floats
-    """Shape (3,) [L]."""
-    whole: bool
-    """Whether the face goes on as far as the state at rest."""
-    target: Contact
-    """That state."""
+    by: Floats  # shape (3,) [L]
+    whole: bool  # whether the face goes on as far as the state at rest
+    target: Contact  # that state
 
 
 def landing(scene: Scene, start: Contact, begin: Floats, foot: Floats) -> Contact | None:

@@ -28,14 +28,10 @@ from analytic.space.problem.bodies.body import cross
 class Plane(NamedTuple):
     """The plane in which the vibrissa bends; vectors of shape (3,)."""
 
-    tangent: Floats
-    """Of the clamp, t."""
-    normal: Floats
-    """Of the body at the contact, n."""
-    lateral: Floats
-    """The part of the normal across the clamp's tangent, of length 1: d."""
-    alpha: float
-    """Slope angle of the body's surface against the plane across t [rad]."""
+    tangent: Floats  # of the clamp, t
+    normal: Floats  # of the body at the contact, n
+    lateral: Floats  # the part of the normal across the clamp's tangent, of length 1: d
+    alpha: float  # slope angle of the body's surface against the plane across t [rad]
 
     @classmethod
     def of(cls, tangent: Floats, normal: Floats) -> "Plane":
@@ -59,20 +55,13 @@ class Plane(NamedTuple):
 class Loaded(NamedTuple):
     """The loaded part of a vibrissa of unit length, and its rates."""
 
-    root_f: float
-    """q: the root of the force on a loaded part of length 1."""
-    moment: float
-    """C: moment at the clamp over the root of the force."""
-    place: Floats
-    """Height along t and reach along d of its end, shape (2,)."""
-    by_alpha: Floats
-    """Rate of that with alpha at fixed w, shape (2,)."""
-    by_excess: Floats
-    """Rate of that with w, shape (2,)."""
-    bending: float
-    """Energy of bending over the root of the force: S - q sin(theta_1)."""
-    root_f_rates: Floats
-    """Rates of q with w and with alpha, shape (2,)."""
+    root_f: float  # q: the root of the force on a loaded part of length 1
+    moment: float  # C: moment at the clamp over the root of the force
+    place: Floats  # height along t and reach along d of its end, shape (2,)
+    by_alpha: Floats  # rate of that with alpha at fixed w, shape (2,)
+    by_excess: Floats  # rate of that with w, shape (2,)
+    bending: float  # energy of bending over the root of the force: S - q sin(theta_1)
+    root_f_rates: Floats  # rates of q with w and with alpha, shape (2,)
 
 
 def loaded_part(excess: float, alpha: float) -> Loaded:

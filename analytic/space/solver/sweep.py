@@ -1,5 +1,6 @@
 """The sweep in space: every station solved, checked and put into one table."""
 
+from dataclasses import replace
 from functools import cache
 from importlib.metadata import version
 
@@ -27,7 +28,7 @@ from analytic.space.solver.walk import walk
 _SOLVED = 1e-11  # L, EI/L, rad: of the residual by the closed form
 _CERTIFIED = 1e-9  # of that by integration, which is good to 1e-12
 _NUMBERS = ("contact_angle", "contact_arc_length", "stability", "residual")
-_VECTORS = (*FOOT, *FORCE, *MOMENT, *CONTACT_POINT, *NORMAL)
+_COLUMNS = ("phase", *FORCE, *MOMENT, *CONTACT_POINT, *NORMAL, *_NUMBERS, "status")
 
 
 def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
@@ -65,16 +66,12 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
         _row(contact, way.foot(at / length), scene, beam) if contact else _free(fine)
         for contact, fine, at in zip(walked.contacts, walked.known, travel, strict=True)
     ]
-    table = pd.DataFrame(rows, columns=["phase", *_VECTORS[3:], *_NUMBERS, "status"])
-    foot = pd.DataFrame(case.path.at(travel), columns=list(FOOT))
-    table = pd.concat([pd.DataFrame({"travel": travel}), foot, table], axis=1)
+    table = pd.DataFrame(rows, columns=list(_COLUMNS))
+    foot = dict(zip(FOOT, case.path.at(travel).T, strict=True))
+    table = pd.concat([pd.DataFrame({"travel": travel, **foot}), table], axis=1)
     events = [
-        {
-            "kind": e.kind,
-            "travel": e.travel * length,
-            "foot": (way.foot(e.travel) * length).tolist(),
-        }
-        for e in walked.events
+        {"kind": kind, "travel": at * length, "foot": (way.foot(at) * length).tolist()}
+        for kind, at in walked.events
     ]
     provenance = {**case.provenance(), "engine": _engine(), "events": events}
     tangent = case.path.clamp_tangent
@@ -82,26 +79,23 @@ def solve_space(case: SpatialCase, certified: bool = False) -> SpatialReadings:
     return _with_certificate(readings) if certified else readings
 
 
-def _row(contact: Contact, foot: Floats, scene: Scene, beam: Beam) -> list[object]:
+def _row(contact: Contact, foot: Floats, scene: Scene, beam: Beam) -> dict[str, object]:
     """One station that touches; its foot is the one that was asked for."""
     plane, radius = contact.plane, scene.radius
     force = -contact.force * plane.normal
     moment = np.sqrt(contact.force) * contact.loaded.moment * plane.across
     stable = margin(second_variation(contact, radius))
     missed = _missed(contact, foot, scene)
-    status = "ok" if missed <= _SOLVED else "diverged"
-    return [
-        "tangent" if contact.tangent else "tip",
-        *(force * beam.force_unit),
-        *(moment * beam.moment_unit),
-        *(contact.spot.point * beam.length),
-        *plane.normal,
-        plane.alpha,
-        contact.arc_length * beam.length,
-        stable,
-        missed,
-        status,
-    ]
+    numbers = plane.alpha, contact.arc_length * beam.length, stable, missed
+    return {
+        "phase": "tangent" if contact.tangent else "tip",
+        **dict(zip(FORCE, force * beam.force_unit, strict=True)),
+        **dict(zip(MOMENT, moment * beam.moment_unit, strict=True)),
+        **dict(zip(CONTACT_POINT, contact.spot.point * beam.length, strict=True)),
+        **dict(zip(NORMAL, plane.normal, strict=True)),
+        **dict(zip(_NUMBERS, numbers, strict=True)),
+        "status": "ok" if missed <= _SOLVED else "diverged",
+    }
 
 
 def _missed(contact: Contact, foot: Floats, scene: Scene) -> float:
@@ -119,12 +113,12 @@ def _missed(contact: Contact, foot: Floats, scene: Scene) -> float:
     )
 
 
-def _free(known: bool) -> list[object]:
+def _free(known: bool) -> dict[str, object]:
     """One station that touches nothing, or of which nothing is known."""
-    nothing = [np.nan] * 6
-    if known:
-        return ["free", *[0.0] * 6, *nothing, np.nan, np.nan, np.nan, 0.0, "ok"]
-    return ["free", *nothing, *nothing, np.nan, np.nan, np.nan, np.nan, "slipped off"]
+    if not known:
+        return {"phase": "free", "status": "slipped off"}
+    nothing = dict.fromkeys((*FORCE, *MOMENT, "residual"), 0.0)
+    return {"phase": "free", **nothing, "status": "ok"}
 
 
 def _with_certificate(readings: SpatialReadings) -> SpatialReadings:
@@ -134,9 +128,7 @@ def _with_certificate(readings: SpatialReadings) -> SpatialReadings:
     table = table.assign(
         residual=np.fmax(table["residual"], found), status=table["status"].mask(wrong, "diverged")
     )
-    return SpatialReadings(
-        table, readings.beam, readings.tangent, readings.source, readings.provenance
-    )
+    return replace(readings, table=table)
 
 
 @cache

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.numerics.walk import Event, first_unlike
+from analytic.numerics.walk import WalkEvent, first_unlike
 from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from analytic.space.problem.straight import Way
@@ -29,11 +29,11 @@ _SAME = 1e-7  # the same between a face that has no end and the mesh
 class Walked(NamedTuple):
     """The states of the stations; lengths in L."""
 
+    # none where the vibrissa is free, or where it is not known where it is.
     contacts: list[Contact | None]
-    """None where the vibrissa is free, or where it is not known where it is."""
+    # false between a slip-off and where the straight vibrissa is clear of the body again.
     known: list[bool]
-    """False between a slip-off and where the straight vibrissa is clear of the body again."""
-    events: list[Event]
+    events: list[WalkEvent]
 
 
 def walk(scene: Scene, way: Way, travel: Sequence[float] | Floats) -> Walked:
@@ -46,7 +46,7 @@ class _Walker:
         self._scene = scene
         self._way = way
         self._smooth = not isinstance(scene.body, Polyhedron)
-        self._events: list[Event] = []
+        self._events: list[WalkEvent] = []
 
     def along(self, travel: Sequence[float] | Floats) -> Walked:
         contacts: list[Contact | None] = []
@@ -174,7 +174,7 @@ class _Walker:
         return self._way.next_touch(clear + 10 * _CLOSE), travel if released else clear
 
     def _note(self, kind: str, travel: float) -> None:
-        self._events.append(Event(kind, travel))
+        self._events.append(WalkEvent(kind, travel))
 
 
 def _apart(one: Contact, other: Contact) -> float:

@@ -244,14 +244,6 @@ def test_what_cannot_be_fitted_is_refused(readings, case, unknowns, message):
     assert "\n" not in str(refused.value)
 
 
-def test_noise_that_is_none_is_refused():
-    for noise in ({"x": 1.0}, 0.01, {"force_x": -1.0}):
-        with pytest.raises(InputError, match="noise"):
-            calibrate(READINGS, SOFT, noise=noise)
-    with pytest.raises(InputError, match="stations under load"):
-        calibrate(READINGS, SOFT, noise={"force_x": 1e9})
-
-
 def test_rows_of_zeros_amid_contact_are_left_out():
     """Ten dropouts filled with zeros; they made the rigidity 13 % too low."""
     case = Case(Beam(), CIRCLE, Sweep(150))

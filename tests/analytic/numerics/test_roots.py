@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
-from analytic.numerics.roots import Surroundings, smooth_zeros, zero, zeros
+from analytic.numerics.roots import smooth_zeros, zero, zeros
 
 EPS = float(np.finfo(float).eps)
 
@@ -29,17 +29,6 @@ def test_bounds_may_be_in_either_order() -> None:
 def test_a_triple_zero_and_a_tiny_one_are_enclosed() -> None:
     assert zero(lambda x: (x - 0.7) ** 3, 0.0, 1.0) == pytest.approx(0.7, rel=1e-5)
     assert zero(lambda x: x - 1e-19, 0.0, 1.0) == pytest.approx(1e-19, rel=1e-12)
-
-
-def test_one_zero_of_a_smooth_function_takes_five_calls() -> None:
-    calls = []
-
-    def cosine(x: np.ndarray) -> np.ndarray:
-        calls.append(x.size)
-        return np.asarray(np.cos(x) - x)
-
-    assert zero(cosine, 0.0, 1.5) == pytest.approx(0.7390851332151607, rel=4 * EPS)
-    assert len(calls) <= 5
 
 
 def _nearly_known(likely: ArrayLike, jump: bool = False) -> tuple[np.ndarray, int]:
@@ -69,20 +58,3 @@ def test_a_wrong_guess_and_a_jump_cost_calls_and_no_digits(
     found, calls = _nearly_known([np.nan, likely[1]] if unknown else likely, jump)
     np.testing.assert_allclose(found, [0.3, 0.6], rtol=16 * EPS)
     assert calls > 1
-
-
-def test_what_functions_are_near_their_zeros_is_interpolated() -> None:
-    about = Surroundings.of(np.array([2.0, 3.0]), np.array([4.0, 3.3]), np.array([3.1, 3.14]))
-    found, known = about.zeros(np.sin(about.places))
-    assert known.all()
-    np.testing.assert_allclose(found, np.pi, rtol=16 * EPS)
-    values = about.between(np.stack([np.cos(about.places), np.exp(about.places)]), found[:, None])
-    # A rounding of an angle is one of twelve times as much in the last of thirteen cosines.
-    expected = np.array([-1, np.exp(np.pi)])[:, None, None]
-    np.testing.assert_allclose(values, np.broadcast_to(expected, values.shape), rtol=48 * EPS)
-    assert np.isnan(about.between(np.sin(about.places)[None], np.array([[2.0], [3.0]]))).all()
-
-
-def test_a_step_is_no_zero_that_interpolation_knows() -> None:
-    about = Surroundings.of(np.zeros(1), np.ones(1), np.full(1, 0.5))
-    assert not about.zeros(np.sign(about.places - 0.51))[1].any()

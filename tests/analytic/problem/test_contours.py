@@ -203,9 +203,9 @@ def test_mirror_symmetry(one, other, height):
     ("points", "said"),
     [
         ([[0, 0], [1, 1]], "three or more"),
-        ([[0, 0], [1, np.nan], [2, 3]], "vertex 1"),
+        ([[0, 0], [1, np.nan], [2, 3]], r"vertex\[1, 1\]"),
         ([[0, 0], [1, 0], [1, 0], [0, 1]], "vertex 1"),
-        ([[0, 0], [1, 0], [2, 0]], "total turn|degenerate|convex"),
+        ([[0, 0], [1, 0], [2, 0]], "folded back|convex"),
         ([[0, 1], [1, 0], [2, 1], [1, 0.5]], r"vertex 3, \(1, 0.5\)"),
         ([[0, 0], [1, 1], [1, 0], [0, 1]], "crosses itself|dent"),
         ([[687, -915], [1631, -218], [-1901, 332], [125, 1520], [139, 815]], "crosses itself"),
@@ -225,7 +225,7 @@ def test_bad_polygons(points, said):
     ("points", "said"),
     [
         ([[0, 0], [1, 1]], "three or more"),
-        ([[0, 0], [1, np.inf], [2, 3]], "point 1"),
+        ([[0, 0], [1, np.inf], [2, 3]], r"point\[1, 1\]"),
         ([[0, 1], [1, 0], [1, 0.5], [2, 2]], "point 2"),
         ([[0, 1], [1, 0], [2, 0.5], [3, 0.8]], r"point 2 from the left, \(2, 0.5\)"),
         ([[0, 0], [1, 0], [2, 0]], "turn of 0 deg"),
@@ -234,29 +234,6 @@ def test_bad_polygons(points, said):
 def test_bad_points(points, said):
     with pytest.raises(InputError, match=said):
         through_points(points)
-
-
-def test_bad_meshes(tmp_path):
-    ring = tmp_path / "ring.stl"
-    trimesh.creation.annulus(0.5, 1.0, 1.0).export(ring)
-    with pytest.raises(InputError, match="of its convex hull, dented at"):
-        mesh_section(ring)
-    ball = trimesh.creation.icosphere()
-    ball.export(tmp_path / "ball.stl")
-    with pytest.raises(InputError, match=r"outside -1\.\.1 along z"):
-        mesh_section(tmp_path / "ball.stl", height=2.0)
-    ball.update_faces(np.arange(len(ball.faces)) > 5)
-    ball.export(tmp_path / "open.stl")
-    with pytest.raises(InputError, match="watertight"):
-        mesh_section(tmp_path / "open.stl")
-    (tmp_path / "text.stl").write_text("solid nothing")
-    (tmp_path / "other.xyz").write_text("")
-    for name in ("text.stl", "missing.stl", "other.xyz"):
-        with pytest.raises(InputError, match=name) as refused:
-            mesh_section(tmp_path / name)
-        assert "\n" not in str(refused.value)
-    with pytest.raises(InputError, match="axes"):
-        mesh_section(tmp_path / "ball.stl", axes="xx")
 
 
 def test_flat_below_an_ellipse_has_two_stretches_of_phase_b():

@@ -19,9 +19,7 @@ from analytic import (
     parabola,
     polygon,
     solve_sweep,
-    through_points,
     two_circles,
-    with_friction,
 )
 
 
@@ -101,14 +99,14 @@ def test_any_numbers_make_a_case_or_one_line(kind, one, other, x, y):
         (lambda: circle(1.0, (1e6, 0.5)), "within 10000 L"),
         (lambda: polygon([[1e9 - 1, 0.5], [1e9 + 1, 0.5], [1e9, 2]]), "within 10000 L"),
         (lambda: circle(1e-12, (0, 0.5)), "larger than 1e-10"),
-        (lambda: ellipse((1e6, 1e-6), (0, 0.5)), "does not move"),
+        (lambda: ellipse((1e6, 1e-6), (0, 0.5)), "which stays"),
         (lambda: catenary(1e-200, -0.5), "catenary.a = 1e-200"),
         (lambda: circle(1e300, (0, 0.5)), "circle.radius = 1e+300"),
         (lambda: circle(True, (0, 0.5)), "circle.radius = True"),
         (lambda: circle("1", (0, 0.5)), "circle.radius = 1"),
         (lambda: circle(10**400, (0, 0.5)), "circle.radius"),
         (lambda: circle(1, 0.5), "two numbers"),
-        (lambda: circle(1, "ab"), "two finite numbers"),
+        (lambda: circle(1, "ab"), "two numbers"),
         (lambda: ellipse((1, 2, 3), (0, 0.5)), "two numbers"),
     ],
 )
@@ -117,11 +115,6 @@ def test_what_cannot_be_felt_is_refused_when_it_is_made(make, said):
         Case(profile=make())
     assert said in str(refused.value)
     assert "\n" not in str(refused.value)
-
-
-def test_events_ask_the_same_of_a_contour():
-    with pytest.raises(InputError, match="at most 1000 L"):
-        find_events(circle(1e6, (0, 0.5)))
 
 
 @pytest.mark.parametrize("make", [lambda: circle(1e5, (0, 0.3)), lambda: catenary(0.004, -0.7)])
@@ -143,7 +136,7 @@ def test_nearly_flat_objects_work(make):
         ({"eta": lambda a: "high"}, "NumPy functions"),
         ({"xi": lambda a: a * 1e200}, "not finite at alpha"),
         ({"alpha_range": 1.0}, "two numbers"),
-        ({"alpha_range": (0, np.nan)}, "two finite numbers"),
+        ({"alpha_range": (0, np.nan)}, "alpha_range[1] = nan"),
         ({"alpha_range": (-1, 2)}, "within [-pi/2, pi/2]"),
         ({"radius_of_curvature": 1.0}, "radius_of_curvature = 1.0"),
         ({"radius_of_curvature": lambda a: -np.ones_like(a)}, "positive"),
@@ -153,7 +146,7 @@ def test_nearly_flat_objects_work(make):
                 "xi": lambda a: np.sin(np.maximum(a, 0.3)),
                 "eta": lambda a: 1 - np.cos(np.maximum(a, 0.3)),
             },
-            "does not move",
+            "which stays",
         ),
     ],
 )
@@ -161,43 +154,6 @@ def test_what_is_no_profile(change, said):
     given_ = {"xi": np.sin, "eta": lambda a: 1 - np.cos(a), "alpha_range": (-1, 1)}
     with pytest.raises(InputError) as refused:
         Profile(**{**given_, **change})
-    assert said in str(refused.value)
-    assert "\n" not in str(refused.value)
-
-
-@pytest.mark.parametrize(
-    ("make", "said"),
-    [
-        (lambda: Case(profile=3), "case.profile = a int"),
-        (lambda: Case(beam=1.0), "case.beam = a float"),
-        (lambda: Case(sweep=200), "case.sweep = a int"),
-        (lambda: Case(name=3), "case.name = a int"),
-        (lambda: solve_sweep("catenary"), "named_case('catenary')"),
-        (lambda: with_friction("catenary", 0.1), "case = 'catenary'"),
-        (lambda: Sweep(stations=2.5), "sweep.stations = 2.5"),
-        (lambda: Sweep(stations=True), "sweep.stations = True"),
-        (lambda: Sweep(stations=10**20), "2 to 1,000,000"),
-        (lambda: Sweep(start="here"), "sweep.start = here"),
-        (lambda: Case(sweep=Sweep(start=1e308)), "sweep.start = 1e+308"),
-        (lambda: Case(sweep=Sweep(start=2.5, stop=2.5 - 1e-12)), "less than the start"),
-        (lambda: Beam(length=True), "beam.length = True"),
-        (lambda: Beam(length="1"), "beam.length = 1"),
-        (lambda: Beam(length=10**400), "beam.length"),
-        (lambda: Beam(length=1e200, radius=0), "EI/L^2"),
-        (lambda: Beam(length=1e-200, radius=0), "EI/L^2"),
-        (lambda: Beam(flexural_rigidity=1e-320), "EI/L^2"),
-        (lambda: catenary(0.5, -0.8).scaled(0), "profile.scale = 0"),
-        (lambda: catenary(0.5, -0.8).offset(-1), "parallel curve = -1"),
-        (lambda: polygon("square"), "list of points"),
-        (lambda: polygon([[0, 0], [1], [2, 2]]), "list of points"),
-        (lambda: polygon([[0, 0], [1e200, 0], [0, 1]]), "vertex 1"),
-        (lambda: through_points(None), "of shape ()"),
-        (lambda: through_points([[0, "a"], [1, 1], [2, 2]]), "list of points"),
-    ],
-)
-def test_misuse(make, said):
-    with pytest.raises(InputError) as refused:
-        make()
     assert said in str(refused.value)
     assert "\n" not in str(refused.value)
 

@@ -131,28 +131,6 @@ def test_a_table_of_ones_own():
     assert table.index.tolist() == ["a", "b", "b"]
 
 
-@pytest.mark.parametrize(
-    ("make", "said"),
-    [
-        (lambda: Readings.of("rig.csv"), "a str"),
-        (lambda: Readings.of({**FOUR, "force_x": [1.0]}), "columns of one length"),
-        (lambda: Readings.of({"foot_x": 1.0}), "readings"),
-        (lambda: Readings(FOUR), "`Readings.of`"),
-        (lambda: Readings.of(FOUR, beam=1.0), "a float"),
-        (lambda: Readings.of(FOUR, source=3), "a int"),
-        (lambda: Readings.of({**FOUR, "phase": ["free", "tip", "loose"]}), "row 2, = 'loose'"),
-        (lambda: Readings.of({**FOUR, "phase": [["free"], None, 1]}), "row 0"),
-        (lambda: Readings.of(FOUR, provenance={"events": [1]}), "provenance.events"),
-        (lambda: Readings.of(FOUR, provenance={"events": {"snap_off": "x"}}), "provenance.events"),
-        (lambda: Readings.of(FOUR, provenance={"contour": [[1], [2, 3]]}), "provenance.contour"),
-        (lambda: Readings.of(FOUR, provenance={"f": len}).write("x.csv"), "what JSON can hold"),
-        (lambda: Readings.of(FOUR).write("x.txt"), "x.txt"),
-    ],
-)
-def test_misuse(make, said):
-    assert said in refusal(make)
-
-
 def with_metadata(path, text: bytes):
     columns = pa.table(FOUR).replace_schema_metadata({b"vibrissa": text})
     pq.write_table(columns, path)

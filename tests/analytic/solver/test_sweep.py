@@ -184,15 +184,3 @@ def test_a_profile_of_callables_is_as_good_as_a_family():
     np.testing.assert_allclose(
         a[list(CLAMP_READINGS)].to_numpy(), b[list(CLAMP_READINGS)].to_numpy(), atol=1e-9
     )
-
-
-def test_sweep_never_touches_the_simulator():
-    import subprocess
-    import sys
-
-    code = (
-        "import sys, analytic, compare; "
-        "analytic.solve_sweep(analytic.named_case('parabola')); "
-        "sys.exit('mujoco' in sys.modules)"
-    )
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

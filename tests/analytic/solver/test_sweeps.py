@@ -130,12 +130,6 @@ def test_a_bug_of_the_batch_itself_is_seen(monkeypatch):
         list(solve_sweeps([named_case("catenary"), named_case("parabola")]))
 
 
-def test_no_cases_and_no_list():
-    assert list(solve_sweeps([])) == []
-    with pytest.raises(InputError, match="cases"):
-        solve_sweeps(named_case("catenary"))
-
-
 @pytest.mark.slow
 def test_cases_are_taken_as_they_are_needed():
     """And the memory is that of a batch, however many there are."""

@@ -177,7 +177,7 @@ def test_readings_come_back_from_their_file(readings, suffix, tmp_path):
 def test_readings_that_cannot_be_are_refused_in_one_line(readings, tmp_path):
     path = tmp_path / "rig.csv"
     readings.table.drop(columns="force_z").to_csv(path, index=False)
-    with pytest.raises(InputError, match="without force_z"):
+    with pytest.raises(InputError, match="add force_z"):
         SpatialReadings.read(path)
     readings.table.assign(phase="sideways").to_csv(path, index=False)
     with pytest.raises(InputError, match="line 2 of"):

@@ -121,6 +121,6 @@ def test_friction_is_estimated_from_the_clamp(tmp_path):
     done = vibrissa("reconstruct", "rig.csv", "--friction", "auto", "--out", "found", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "friction coefficient 0.3000 +-" in done.stdout
-    for wrong, said in (("2", "from -1 to 1"), ("much", "a number or auto")):
+    for wrong, said in (("2", "between -1 and 1"), ("much", "a number or auto")):
         done = vibrissa("reconstruct", "rig.csv", "--friction", wrong, cwd=tmp_path)
         assert done.returncode == 2 and said in done.stderr

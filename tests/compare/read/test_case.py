@@ -35,7 +35,7 @@ def refused(tmp_path, content) -> str:
         ("[mujoco]\nsegments = true\n", "line 6: mujoco.segments = True"),
         ("[mujoco]\nplanar = 1\n", "line 6: mujoco.planar = 1"),
         ("[sweep]\nstations = 99999999999999999999\n", "sweep.stations"),
-        ("[beam]\nlength = 1e308\n", "a length of 1e+308"),
+        ("[beam]\nlength = 1e308\n", "beam.length = 1e+308"),
         ("[beam]\nlength = 0x" + "f" * 5000, "line 6: beam.length = an integer of 20000 bits"),
         ('[beam]\nlength = "9**9**9 m"\n', "line 6: beam.length = '9**9**9 m'"),
         ("x = " + "9" * 5000, "valid TOML"),

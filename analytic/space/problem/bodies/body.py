@@ -105,6 +105,15 @@ def grid_patches(x: Floats) -> Floats:
     return cells.reshape(-1, 4, 3)
 
 
+def sphere_grid() -> Floats:
+    """Unit vectors by longitude and latitude, shape (97, 49, 3)."""
+    around, down = np.meshgrid(
+        np.linspace(0, 2 * np.pi, 97), np.linspace(0, np.pi, 49), indexing="ij"
+    )
+    ring = np.sin(down)
+    return np.stack([ring * np.cos(around), np.cos(down), ring * np.sin(around)], axis=-1)
+
+
 def across(normal: Floats) -> Floats:
     """Two unit vectors that span the plane normal to a vector."""
     axis = np.eye(3)[np.argmin(np.abs(normal), axis=-1)]

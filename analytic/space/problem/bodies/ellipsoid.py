@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import positive
-from analytic.space.problem.bodies.body import Body, Spot, grid_patches
+from analytic.space.problem.bodies.body import Body, Spot, grid_patches, sphere_grid
 from analytic.space.problem.numbers import Vector, axes, vector
 
 _STEPS = 60  # of Newton's method, from below: it cannot overshoot
@@ -65,13 +65,7 @@ class Ellipsoid(Body):
 
     def patches(self, centre: Floats, reach: float) -> Floats:
         """By longitude and latitude; all of it."""
-        around, down = np.meshgrid(
-            np.linspace(0, 2 * np.pi, 97), np.linspace(0, np.pi, 49), indexing="ij"
-        )
-        unit = np.stack(
-            [np.sin(down) * np.cos(around), np.cos(down), np.sin(down) * np.sin(around)], axis=-1
-        )
-        return grid_patches(self.centre + (unit * self.semi_axes) @ self.frame)
+        return grid_patches(self.centre + (sphere_grid() * self.semi_axes) @ self.frame)
 
 
 def _multiplier(weighted: list[float], squares: list[float]) -> float:
@@ -148,9 +142,8 @@ def ellipsoid(semi_axes: Vector, centre: Vector, frame: ArrayLike | None = None)
     for i, size in enumerate(sizes):
         positive(f"body ellipsoid.semi_axes[{i}]", float(size))
     if sizes.max() > 1e4 * sizes.min():
-        raise InputError(
-            "body ellipsoid.semi_axes", semi_axes, "within 1e4 of each other", "it is a disc else"
-        )
+        allowed = "within 1e4 of each other"
+        raise InputError("body ellipsoid.semi_axes", semi_axes, allowed, "it is a disc else")
     name = " by ".join(f"{size:g}" for size in sizes)
     rows = np.eye(3) if frame is None else axes("body ellipsoid.frame", frame)
     middle = vector("body ellipsoid.centre", centre)

@@ -10,7 +10,7 @@ import numpy as np
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.mesh_file import read_body
 from analytic.problem.errors import InputError
-from analytic.problem.numbers import positive
+from analytic.problem.numbers import positive, within
 from analytic.space.problem.bodies.body import Body, Spot, cross
 from analytic.space.problem.bodies.feature import Feature
 from analytic.space.problem.numbers import Vector, vector
@@ -319,8 +319,7 @@ def convex_mesh(
     """
     unit = positive("body mesh.scale", scale)
     place = vector("body mesh.offset", offset)
-    if not (np.isfinite(tolerance) and tolerance >= 0):
-        raise InputError("body mesh.tolerance", tolerance, "0 or more", "correct it")
+    tolerance = within("body mesh.tolerance", tolerance, 0.0)
     body = read_body(file, hull, tolerance / unit)
     label = Path(file).name
     if body.miss > 0:
@@ -354,13 +353,9 @@ def polyhedron(points: Floats, label: str = "polyhedron") -> Polyhedron:
         given = np.asarray(points, dtype=float)
         found = ConvexHull(given)
     except (QhullError, ValueError) as error:
-        reason = str(error).split("\n")[0][:80]
-        raise InputError(
-            "body polyhedron.points",
-            f"not usable ({reason})",
-            "four points or more with a volume",
-            "an array of shape (n, 3)",
-        ) from error
+        what = f"not usable ({error!s:.80})"
+        allowed, remedy = "four points or more with a volume", "an array of shape (n, 3)"
+        raise InputError("body polyhedron.points", what, allowed, remedy) from error
     faces = np.searchsorted(found.vertices, found.simplices)
     return solid(given[found.vertices], faces, found.equations[:, :3], label)
 

@@ -9,7 +9,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import positive
-from analytic.space.problem.bodies.body import Body, Spot, across, grid_patches
+from analytic.space.problem.bodies.body import Body, Spot, across, grid_patches, sphere_grid
 
 _STEPS = 80  # of Newton's method on the sphere of normals
 _WIDE = 0.5  # rad, the longest step
@@ -44,32 +44,25 @@ class SmoothBody(Body):
 
     def __post_init__(self) -> None:
         if not callable(self.point):
-            raise InputError(
-                "body.point", self.point, "a function of a unit vector", "the support's gradient"
-            )
+            allowed = "a function of a unit vector"
+            raise InputError("body.point", self.point, allowed, "the support's gradient")
         normals = spread(_TESTED)
         try:
             points = np.array([self._at(n) for n in normals])
         except (TypeError, ValueError, IndexError) as error:
-            raise InputError(
-                "body.point", "failing", "a function of an array of shape (3,)", str(error)
-            ) from error
+            allowed = "a function of an array of shape (3,)"
+            raise InputError("body.point", "failing", allowed, str(error)) from error
         if points.shape != (_TESTED, 3) or not np.isfinite(points).all():
-            raise InputError(
-                "body.point", "not finite", "three finite coordinates for each normal", "check it"
-            )
+            raise InputError("body.point", "not finite", "three finite coordinates", "check it")
         own = (normals * points).sum(axis=1)
         beyond = points @ normals.T - own
         size = float(np.ptp(points, axis=0).max())
         worst = int(np.argmax(beyond.max(axis=0)))
         if not size > 0 or beyond[:, worst].max() > 1e-9 * size:
             x, y, z = normals[worst]
-            raise InputError(
-                "body.point",
-                f"of the normal ({x:.3f}, {y:.3f}, {z:.3f}) is not the farthest along it",
-                "the gradient of a convex body's support function",
-                "check its sign and derivative",
-            )
+            what = f"of the normal ({x:.3f}, {y:.3f}, {z:.3f}) is not the farthest along it"
+            allowed = "the gradient of a convex body's support function"
+            raise InputError("body.point", what, allowed, "check its sign and derivative")
 
     def nearest(self, x: Floats, apart: float) -> Spot:
         """Newton's method for the normal along which the point lies off the surface."""
@@ -131,15 +124,7 @@ class SmoothBody(Body):
 
     def patches(self, centre: Floats, reach: float) -> Floats:
         """By longitude and latitude of the normal; all of it."""
-        around, down = np.linspace(0, 2 * np.pi, 97), np.linspace(0, np.pi, 49)
-        grid = [
-            [
-                self._at(np.array([np.sin(v) * np.cos(u), np.cos(v), np.sin(v) * np.sin(u)]))
-                for v in down
-            ]
-            for u in around
-        ]
-        return grid_patches(np.array(grid))
+        return grid_patches(np.apply_along_axis(self._at, -1, sphere_grid()))
 
 
 def spread(count: int) -> Floats:

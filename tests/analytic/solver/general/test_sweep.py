@@ -34,29 +34,17 @@ from analytic.solver.general.path import follow
 from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.states import states as states_of
 from analytic.solver.general.stations import solve_places
+from tests.analytic.solver.general.sound import READ, assert_sound
 
 SQUARE = polygon([(-0.6, 0.45), (0.7, 0.4), (0.9, 1.5), (-0.5, 1.6)])
 ROUND = np.linspace(0, 2 * np.pi, 17)[:-1]
 SIXTEEN = polygon(np.column_stack([np.cos(ROUND), 1.4 + np.sin(ROUND)]))
-READ = ("force_x", "force_y", "moment_z")
 
 
 def case_of(profile, natural=0.0, stiffness=math.inf, friction=0.0, stations=40, radius=0.005):
     beam = Beam(radius=radius, natural_curvature=natural)
     sweep = Sweep(stations)
     return Case(beam, profile, sweep, clamp_stiffness=stiffness, friction=friction)
-
-
-def assert_sound(case):
-    """Every station that is ok balances, by integration from the clamp; none is lost."""
-    readings = solve_sweep(case)
-    table = readings.table
-    assert set(table["status"]) <= {"ok", "touches again", "sticks"}
-    ok = table["status"] == "ok"
-    assert table.loc[ok, ["residual_boundary", "residual_moment"]].max(axis=None) < 1e-12
-    # 1e-10: the integration errs by 1e-13 times how much an error at the clamp grows.
-    assert certify(readings)[ok].max(axis=None) < 1e-10
-    return readings
 
 
 @pytest.mark.parametrize("natural", [-0.8, 0.0, 0.6])

@@ -38,6 +38,7 @@ from analytic.solver.general.states import Vibrissa
 from analytic.solver.general.states import states as states_of
 from analytic.solver.general.stations import solve_places
 from analytic.solver.residuals import residuals
+from tests.analytic.solver.general.sound import READ, assert_sound
 
 ROWS = pd.read_csv(Path(__file__).parents[3] / "data" / "general_vibrissa.csv")
 PROFILES = {"g1": catenary(0.5, -0.8), "g2": parabola(0.5, 0.5)}
@@ -70,7 +71,6 @@ VARIANTS = {  # the beam, and what holds it
         {"clamp_stiffness": 8.0, "friction": 0.15},
     ),
 }
-READ = ("force_x", "force_y", "moment_z")
 
 
 @pytest.mark.parametrize("variant", VARIANTS)
@@ -97,18 +97,6 @@ def test_references(variant, profile):
 
 def case_of(beam, profile=OBJECT, stations=40, **held):
     return Case(beam, profile, Sweep(stations), **held)
-
-
-def assert_sound(case):
-    """Every station that is ok balances, by integration from the clamp; none is lost."""
-    readings = solve_sweep(case)
-    table = readings.table
-    assert set(table["status"]) <= {"ok", "touches again", "sticks"}
-    ok = table["status"] == "ok"
-    assert table.loc[ok, ["residual_boundary", "residual_moment"]].max(axis=None) < 1e-12
-    # 1e-10: the integration errs by 1e-13 times how much an error at the clamp grows.
-    assert certify(readings)[ok].max(axis=None) < 1e-10
-    return readings
 
 
 BEAMS = {
@@ -365,17 +353,6 @@ def test_mirror_units_and_file(tmp_path):
     np.testing.assert_allclose(moment, left.values("moment_z"), atol=1e-11)
 
 
-def test_many_contacts_are_those_solved_one_by_one():
-    angles = np.random.default_rng(3).permutation(np.linspace(-0.5, 0.9, 800))
-    beam, profile = Beam(tip_radius=0.001), catenary(0.5, -0.8)
-    many = solve_contact(profile, angles, beam, friction=0.2)
-    few = solve_contact(profile, angles[:40], beam, friction=0.2)
-    assert list(many["status"][:40]) == list(few["status"])
-    columns = ["foot_x", *READ, "contact_arc_length", "tip_angle"]
-    # 1e-10: some 1e-15 of misses, at forces of up to 20 and next to the end of reach.
-    pd.testing.assert_frame_equal(many[columns][:40], few[columns], rtol=0, atol=1e-10)
-
-
 def test_residuals_find_a_wrong_rigidity():
     """The conditions are those of the vibrissa that is asked for."""
     case = case_of(Beam(tip_radius=0.002))
@@ -425,15 +402,6 @@ def test_a_sharp_cone_lets_go_at_a_state_that_balances(ratio):
     found = find_events(case.profile, case.beam).snap_off
     assert found.status == "ok"
     assert found.foot_x == pytest.approx(solve_sweep(case).snap_off, abs=1e-12)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["taper 0.05", "cone and bow"])
-def test_an_array_of_which_a_tenth_is_beyond_the_curves_end(name):
-    """How fast, the bench says."""
-    alpha = np.deg2rad(np.linspace(-30, 40, 8000))
-    table = solve_contact(catenary(0.5, -0.8), alpha, BEAMS[name])
-    assert (table["status"] == "ok").mean() > 0.9
 
 
 @pytest.mark.parametrize("beam", [Beam(tip_radius=0.002), Beam(natural_curvature=bow(-0.4))])
