@@ -40,12 +40,9 @@ if TYPE_CHECKING:
     from compare.judge.spatial import SpatialTolerances
     from compare.judge.tolerances import Tolerances
     from compare.read.job import Job, SpaceJob
-    from mujoco_models import Settings
     from mujoco_models.allowed import BeamKind
 
-    Sweeps = dict[tuple[str, Settings | None], Readings]
-    EngineSweeps = dict[tuple[str, Settings, str], Readings]
-    SpaceSweeps = dict[tuple[str, str], SpatialReadings]
+    Sweeps = dict[tuple[object, ...], Any]
 
 _PACKAGES = ("analytic", "mujoco_models", "engines", "compare")
 _RECORD = "vibrissa"
@@ -176,7 +173,7 @@ def vibrissa_job(request: pytest.FixtureRequest, vibrissa_case: Case) -> Job:
 
 @pytest.fixture(scope="session")
 def vibrissa_sweeps() -> Sweeps:
-    """The sweeps of this session, by case and by MuJoCo's settings (None: the closed form)."""
+    """The sweeps of this session, by case, settings (None: the closed form) and engine."""
     return {}
 
 
@@ -205,7 +202,7 @@ def vibrissa_engine(request: pytest.FixtureRequest) -> str:
 
 @pytest.fixture
 def vibrissa_engine_sweep(
-    vibrissa_engine: str, vibrissa_job: Job, vibrissa_engine_sweeps: EngineSweeps
+    vibrissa_engine: str, vibrissa_job: Job, vibrissa_sweeps: Sweeps
 ) -> Callable[..., Readings]:
     """``vibrissa_engine_sweep(segments=80)`` is the sweep of `vibrissa_case` in the engine.
 
@@ -213,25 +210,20 @@ def vibrissa_engine_sweep(
     made once a session. A case that the engine refuses is skipped, with what it says.
     """
 
-    def made(**settings: Any) -> Readings:  # noqa: ANN401
+    def made(**settings: Any) -> Any:  # noqa: ANN401
         case, numerics = vibrissa_job.case, replace(vibrissa_job.settings, **settings)
-        key = case.digest, numerics, vibrissa_engine
-        if key not in vibrissa_engine_sweeps:
-            engine = _ours("engines").find_engine(vibrissa_engine)
+        engine = _ours("engines").find_engine(vibrissa_engine)
+
+        def sweep() -> Any:  # noqa: ANN401
             try:
                 found = engine.sweep(case, numerics)
             except _ours("analytic").InputError as error:
                 pytest.skip(f"engine {vibrissa_engine}: {error}")
-            vibrissa_engine_sweeps[key] = _ours("engines.apart").checked(found, case)
-        return vibrissa_engine_sweeps[key]
+            return _ours("engines.apart").checked(found, case)
+
+        return _once(vibrissa_sweeps, (case.digest, numerics, vibrissa_engine), sweep)
 
     return made
-
-
-@pytest.fixture(scope="session")
-def vibrissa_engine_sweeps() -> EngineSweeps:
-    """The engines' sweeps of this session, by case, settings and engine."""
-    return {}
 
 
 @pytest.fixture
@@ -248,17 +240,9 @@ def vibrissa_space_case(request: pytest.FixtureRequest) -> SpatialCase:
     return job.case
 
 
-@pytest.fixture(scope="session")
-def vibrissa_space_sweeps() -> SpaceSweeps:
-    """The sweeps in space of this session, by file and MuJoCo's settings."""
-    return {}
-
-
 @pytest.fixture
 def vibrissa_space_sweep(
-    request: pytest.FixtureRequest,
-    vibrissa_space_case: SpatialCase,
-    vibrissa_space_sweeps: SpaceSweeps,
+    request: pytest.FixtureRequest, vibrissa_space_case: SpatialCase, vibrissa_sweeps: Sweeps
 ) -> Callable[..., SpatialReadings]:
     """``vibrissa_space_sweep()`` is the closed form's sweep of `vibrissa_space_case`.
 
@@ -266,7 +250,7 @@ def vibrissa_space_sweep(
     `mujoco_models.SpatialSettings`, and change the settings of the case. Each sweep is made once a
     session.
     """
-    return _space_sweep_of(request, vibrissa_space_sweeps)
+    return _space_sweep_of(request, vibrissa_sweeps)
 
 
 @pytest.fixture
@@ -290,11 +274,10 @@ def vibrissa_agreement(
                 f"vibrissa_agreement: give a reference, or let the test use `{asked}`",
                 pytrace=False,
             )
-        case = request.getfixturevalue(asked)
-        if in_space:
-            return _space_sweep_of(request, request.getfixturevalue("vibrissa_space_sweeps"))()
-        sweeps = request.getfixturevalue("vibrissa_sweeps")
-        return _sweep_of(case, sweeps)()
+        case, sweeps = map(request.getfixturevalue, (asked, "vibrissa_sweeps"))
+        sweep = _space_sweep_of(request, sweeps) if in_space else _sweep_of(case, sweeps)
+        found: Readings | SpatialReadings = sweep()
+        return found
 
     def agree(
         candidate: Readings | SpatialReadings,
@@ -330,39 +313,36 @@ def vibrissa_agreement(
     return agree
 
 
-def _sweep_of(case: Case, sweeps: Sweeps) -> Callable[..., Readings]:
-    def made(beam: BeamKind | None = None, **settings: Any) -> Readings:  # noqa: ANN401
-        mujoco_models = _ours("mujoco_models")
-        numerics = None if beam is None else mujoco_models.Settings(beam=beam, **settings)
-        key = case.digest, numerics
-        if key not in sweeps:
-            sweeps[key] = (
-                _ours("analytic").solve_sweep(case)
-                if numerics is None
-                else mujoco_models.simulate_sweep(case, numerics)
-            )
-        return sweeps[key]
+def _sweep_of(case: Case, sweeps: Sweeps) -> Callable[..., Any]:
+    def made(beam: BeamKind | None = None, **settings: Any) -> Any:  # noqa: ANN401
+        if beam is None:
+            return _once(sweeps, (case.digest, None), lambda: _ours("analytic").solve_sweep(case))
+        ours = _ours("mujoco_models")
+        numerics = ours.Settings(beam=beam, **settings)
+        return _once(sweeps, (case.digest, numerics), lambda: ours.simulate_sweep(case, numerics))
 
     return made
 
 
-def _space_sweep_of(
-    request: pytest.FixtureRequest, sweeps: SpaceSweeps
-) -> Callable[..., SpatialReadings]:
+def _space_sweep_of(request: pytest.FixtureRequest, sweeps: Sweeps) -> Callable[..., Any]:
     job = request.node.stash[_SPACE_JOB]
+    name = str(request.node.callspec.params["vibrissa_space_case"])
 
-    def made(beam: str | None = None, **settings: Any) -> SpatialReadings:  # noqa: ANN401
-        numerics = None if beam is None else replace(job.settings, beam=beam, **settings)
-        key = str(request.node.callspec.params["vibrissa_space_case"]), repr(numerics)
-        if key not in sweeps:
-            sweeps[key] = (
-                _ours("analytic.space").solve_space(job.case)
-                if numerics is None
-                else _ours("mujoco_models").simulate_space(job.case, numerics)
-            )
-        return sweeps[key]
+    def made(beam: str | None = None, **settings: Any) -> Any:  # noqa: ANN401
+        if beam is None:
+            solve = _ours("analytic.space").solve_space
+            return _once(sweeps, (name, None), lambda: solve(job.case))
+        simulate = _ours("mujoco_models").simulate_space
+        numerics = replace(job.settings, beam=beam, **settings)
+        return _once(sweeps, (name, repr(numerics)), lambda: simulate(job.case, numerics))
 
     return made
+
+
+def _once(sweeps: Sweeps, key: tuple[object, ...], make: Callable[[], Any]) -> Any:  # noqa: ANN401
+    if key not in sweeps:
+        sweeps[key] = make()
+    return sweeps[key]
 
 
 def _stated(one: _Choice, name: str) -> Any:  # noqa: ANN401

@@ -18,10 +18,11 @@ from compare.comparison import Comparison
 from compare.show import style
 from compare.show.figures.keys import key_below, phase_handles
 from compare.show.figures.over_foot import foot, on_vibrissa
-from compare.show.figures.thinning import cloud, draw
+from compare.show.figures.thinning import draw
 from compare.show.numbers import quantity
 
 _SHAPES = 24  # drawn of each sweep
+_CIRCLES = 2000  # drawn at most
 _HIGHEST = 10.0  # inches, if the sweep is much shorter than the vibrissa
 _OBJECT: dict[str, Any] = {"color": style.GREY, "linewidth": 2.5}
 _CONTACT: dict[str, Any] = {"color": style.INK, "marker": "o", "markersize": 1.5, "linestyle": ""}
@@ -70,11 +71,11 @@ def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
     if "contact_arc_length" in found:  # not every method knows it
         there &= np.isfinite(on_vibrissa(found["contact_arc_length"].to_numpy() / scale))
     x, y = (np.where(there, found[name] / scale, np.nan) for name in ("contact_x", "contact_y"))
-    kept = cloud(x, y)
     if "uncertainty" in found:
         radius = found["uncertainty"].to_numpy() / scale
+        known = np.flatnonzero(there & np.isfinite(radius))
         circles = PatchCollection(
-            [Circle((x[i], y[i]), radius[i]) for i in kept if np.isfinite(radius[i])],
+            [Circle((x[i], y[i]), radius[i]) for i in known[:: len(known) // _CIRCLES + 1]],
             color=style.GREEN,
             alpha=0.08,
             linewidth=0,
@@ -82,7 +83,7 @@ def reconstruction(readings: Readings, found: pd.DataFrame) -> Figure:
         ax.add_collection(circles)
         ax.plot([], [], "o", color=style.GREEN, alpha=0.3, markersize=9, label="95 % of cases")
     draw(ax, x, y, **_CONTACT | {"markersize": 2.5}, label="reconstructed contact")
-    if not kept.size:
+    if not there.any():
         ax.text(0.5, 0.5, "no contact found", transform=ax.transAxes, ha="center")
     beam = readings.beam
     own = "" if beam.si else " of the readings' unit"

@@ -15,15 +15,14 @@ _PARTS = 500  # that a long sweep is cut into, each a pixel or three wide
 _KEPT = 4  # stations of each: the first, the last, the lowest, the highest
 _FEW = _PARTS * _KEPT  # are all drawn
 _BEHIND = 1.9  # a dense cloud, for a line through it
-_CELLS = (500, 250)  # across and up a cloud of dots; of each cell one is drawn
 
 
 def draw(ax: Axes, x: Floats, y: Floats, **style: Any) -> Line2D:  # noqa: ANN401
-    """Plot a line or dots, thinned where there are more than a picture can show."""
+    """Plot a line or dots: a long line thinned, many dots as pixels."""
     are_dots = style.get("linestyle") == ""
-    kept = cloud(x, y) if are_dots else envelope(y)
+    kept = np.arange(len(y)) if are_dots else envelope(y)
     (line,) = ax.plot(x[kept], y[kept], **style)
-    if are_dots and len(kept) > _FEW:
+    if are_dots and len(y) > _FEW:
         line.set(rasterized=True, zorder=_BEHIND)
     return line
 
@@ -38,19 +37,6 @@ def envelope(y: Floats) -> Integers:
         for part in np.array_split(np.arange(len(y)), _PARTS)
     ]
     return np.unique(kept)
-
-
-def cloud(x: Floats, y: Floats) -> Integers:
-    """Points that draw the same cloud as all of them: one of each small cell."""
-    finite = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
-    if len(finite) <= _FEW:
-        return finite
-    column, row = (
-        ((at[finite] - at[finite].min()) / (np.ptp(at[finite]) or 1.0) * cells).astype(int)
-        for at, cells in zip((x, y), _CELLS, strict=True)
-    )
-    _, first = np.unique(column * (_CELLS[1] + 1) + row, return_index=True)
-    return np.sort(finite[first])
 
 
 def stretches(phase: Words) -> tuple[Integers, Integers, Words]:

@@ -55,8 +55,4 @@ def asked(found: StudyResults) -> list[Question]:
             # What differs by rounding alone does not depend on anything.
             if len(sizes) and sizes.max() > 0 and sizes.max() > (1 + 1e-9) * sizes.min():
                 chosen.append(question)
-    if chosen and chosen[0].name == "disagreement":
-        return [question for question in chosen if question.name != "phase-b"] + [
-            question for question in chosen if question.name == "phase-b"
-        ]
     return chosen

@@ -14,7 +14,7 @@ from compare import compare
 from compare.sense.phases import classify
 from compare.show.figures.fold import with_fold
 from compare.show.figures.over_foot import foot
-from compare.show.figures.thinning import cloud, envelope, stretches
+from compare.show.figures.thinning import envelope, stretches
 from compare.show.markdown import plain
 from compare.show.report import write_report
 from compare.show.style import label
@@ -80,21 +80,6 @@ def test_thinning_loses_no_peak(seed, n, missing):
     if np.isfinite(y).any():
         assert np.nanmax(y[kept]) == np.nanmax(y)
         assert np.nanmin(y[kept]) == np.nanmin(y)
-
-
-def test_a_thinned_cloud_looks_the_same():
-    rng = np.random.default_rng(1)
-    x, y = rng.uniform(-2, 3, 100_000), rng.standard_normal(100_000)
-    y[::7] = np.nan
-    kept = cloud(x, y)
-    assert len(kept) < 60_000
-    finite = np.isfinite(y)
-    cells = [
-        {*zip(*(np.floor((a - a[finite].min()) / np.ptp(a[finite]) * c)[i] for a, c in
-                ((x, 500), (y, 250))), strict=True)}
-        for i in (np.flatnonzero(finite), kept)
-    ]  # fmt: skip
-    assert cells[0] == cells[1]
 
 
 @pytest.mark.parametrize("n", [5, 10, 100_000])
