@@ -26,9 +26,7 @@ def colophon() -> dict[str, str]:
 def _command() -> str:
     if not sys.argv[0] or sys.argv[0] == "-c":
         return ""
-    program = Path(sys.argv[0])
-    name = f"python -m {program.parent.name}" if program.stem == "__main__" else program.name
-    return shlex.join([*name.split(" "), *sys.argv[1:]])
+    return shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])
 
 
 def _versions() -> list[str]:

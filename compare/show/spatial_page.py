@@ -27,7 +27,6 @@ from compare.show.document import (
 from compare.show.figures.space import (
     both_in_space,
     contacts_in_space,
-    parts_in_space,
     sweep_in_space,
 )
 from compare.show.numbers import percent, short
@@ -113,8 +112,6 @@ def parts_table(parts: Parts) -> Table:
 def _made_of(parts: Parts | None) -> Iterator[Block]:
     if parts is not None:
         yield parts_table(parts)
-        bars = {"What the disagreement is made of, a bar a part": partial(parts_in_space, parts)}
-        yield Picture("parts", bars, "The same as bars.", "middle")
 
 
 def _apart(comparison: SpatialComparison) -> Iterator[Block]:

@@ -13,9 +13,9 @@ from analytic.problem.arrays import Floats
 from analytic.space import Body, SpatialReadings
 from compare.align.travel import travel_of
 from compare.show.animation.film import Heading, Part, framed, write_film
-from compare.show.figures.space import COLOURS, LOADS, Load, draw_scene, upright
+from compare.show.figures.space import COLOURS, LOADS, Load, draw_scene, label_axes, upright
 from compare.show.scene import SweepScene
-from compare.show.style import CANDIDATE, FAINT, INK, PHASE_COLOURS
+from compare.show.style import CANDIDATE, INK, PHASE_COLOURS
 
 _DOTS = 12  # of a dotted vibrissa
 
@@ -80,10 +80,7 @@ class _Curves:
             (mark,) = ax.plot([], [], color=colour, marker="o", markersize=6, ls="")
             self._values.append(load.of(other, name))
             self._marks.append(mark)
-        ax.axhline(0, color=FAINT, linewidth=0.8, zorder=0)
-        ax.set_xlabel("way of the foot / $L$")
-        ax.set_ylabel(load.title)
-        ax.legend(fontsize=8, frameon=False, ncols=3)
+        label_axes(ax, load)
         self.moving: list[Artist] = [*self._marks]
 
     def show(self, station: int) -> None:

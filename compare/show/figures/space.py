@@ -1,7 +1,6 @@
 """A sweep in space: body, vibrissa and contacts as they stand, and the readings along the way."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,7 +15,6 @@ from analytic.space.problem.readings import FORCE, MOMENT
 from compare.align.frames import components
 from compare.align.travel import travel_of
 from compare.comparison_in_space import SpatialComparison
-from compare.explain.split_space import Parts
 from compare.show import style
 from compare.show.figures.keys import key_below, phase_handles
 from compare.show.scene import SweepScene
@@ -64,11 +62,16 @@ def sweep_in_space(scene: SweepScene) -> Figure:
     )
     ax.plot(*upright(scene.contact).T, color=style.INK, marker="o", markersize=1.8, linestyle="")
     for i, load in enumerate(LOADS):
-        _draw_components(figure.add_subplot(grid[1, i]), readings, load)
+        below = figure.add_subplot(grid[1, i])
+        travel = travel_of(readings) / readings.beam.length
+        for name, colour in zip(load.names, COLOURS, strict=True):
+            values = load.of(readings, name)
+            below.plot(travel, values, ".-", color=colour, markersize=2.5, label=name[-1])
+        label_axes(below, load)
     figure.suptitle(style.label(readings.source), x=0.01, ha="left", fontsize=style.NORMAL)
     found = Line2D([], [], color=style.INK, marker="o", markersize=3, ls="", label="contact found")
-    travel = Line2D([], [], color=style.GREY, linestyle="--", label="way of the foot")
-    key_below(figure, [*phase_handles(), found, travel], 5)
+    way = Line2D([], [], color=style.GREY, linestyle="--", label="way of the foot")
+    key_below(figure, [*phase_handles(), found, way], 5)
     return figure
 
 
@@ -89,13 +92,12 @@ def both_in_space(comparison: SpatialComparison) -> Figure:
             above.plot(travel, found, color=colour, marker=".", markersize=3, linestyle="")
             off = np.where(comparison.compared, found - exact, np.nan)
             below.plot(travel, off, color=colour, marker=".", markersize=2.5, linewidth=0.8)
-        above.set_ylabel(load.title)
-        above.legend(fontsize=style.SMALL, frameon=False, ncols=3)
+        label_axes(above, load)
+        above.set_xlabel("")
         below.set_ylabel("difference")
         below.set_xlabel("way of the foot / $L$")
         below.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2))
-        for ax in (above, below):
-            ax.axhline(0, color=style.FAINT, linewidth=0.8, zorder=0)
+        below.axhline(0, color=style.FAINT, linewidth=0.8, zorder=0)
     figure.suptitle(
         style.label(f"lines: {one.source}; dots: {other.source}"),
         x=0.01,
@@ -144,22 +146,6 @@ def contacts_in_space(comparison: SpatialComparison) -> Figure:
     return figure
 
 
-def parts_in_space(parts: Parts) -> Figure:
-    """Draw what a disagreement is made of."""
-    figure = Figure(figsize=(0.6 * style.PAGE_WIDTH, 0.2 * style.PAGE_WIDTH), layout="constrained")
-    ax = figure.subplots()
-    sizes = {
-        "unexplained": parts.unexplained,
-        "softness": parts.softness,
-        "discretisation": parts.discretisation,
-        "disagreement": parts.whole,
-    }
-    ax.barh([*sizes], [*sizes.values()], color=[style.BLUE, style.BLUE, style.BLUE, style.INK])
-    ax.set_xscale("log")
-    ax.set_xlabel("rms of the worst component")
-    return figure
-
-
 def draw_scene(ax: Axes3D, scene: SweepScene) -> None:
     """Draw what does not move: the body and the way of the foot, with axes of equal scale."""
     faces = scene.faces
@@ -196,11 +182,8 @@ def upright(points: Floats) -> Floats:
     return points[..., [0, 2, 1]]
 
 
-def _draw_components(ax: Axes, readings: SpatialReadings, load: Load) -> None:
-    travel = travel_of(readings) / readings.beam.length
-    drawn: dict[str, Any] = {"marker": ".", "markersize": 2.5, "linewidth": 1}
-    for name, colour in zip(load.names, COLOURS, strict=True):
-        ax.plot(travel, load.of(readings, name), color=colour, label=name[-1], **drawn)
+def label_axes(ax: Axes, load: Load) -> None:
+    """Say what axes of a force or a moment over the way of the foot show, once it is drawn."""
     ax.axhline(0, color=style.FAINT, linewidth=0.8, zorder=0)
     ax.set_xlabel("way of the foot / $L$")
     ax.set_ylabel(load.title)
