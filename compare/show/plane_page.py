@@ -245,8 +245,8 @@ def _convergence(budget: Budget | None) -> Iterator[Block]:
     drawn = Picture(
         "convergence",
         {shows: partial(convergence_picture, budget.convergence)},
-        "Disagreement with the reference against the number of segments; the triangle shows second "
-        "order. A reading that flattens has reached what segments do not change, as the facets of "
+        "Disagreement with the reference against the number of segments; dashed is second order. A "
+        "reading that flattens has reached what segments do not change, as the facets of "
         "the object.",
         "middle",
     )

@@ -12,7 +12,6 @@ from compare.show.budgets import headline
 from compare.show.numbers import short
 from compare.show.style import BLUE, BODY, GREY, INK, LARGE, ORANGE, SMALL
 
-_BLAMED, _OTHER, _UNEXPLAINED, _ZONE = ORANGE, BLUE, INK, BODY
 _LEAST = UNRESOLVED / 50  # of the largest magnitude; less has a number, but no bar
 _PANEL = (4.3, 3.1)  # inches
 
@@ -57,9 +56,10 @@ def _draw(ax: Axes, found: Budget, reading: str) -> None:
     ax.xaxis.set_major_formatter(lambda x, _: f"1e{round(math.log10(x))}")
     ax.minorticks_off()
     ax.set_xlim(_LEAST, 1.5 * largest)
-    ax.axvspan(_LEAST, UNRESOLVED, color=_ZONE, alpha=0.6, linewidth=0, zorder=0)
+    ax.axvspan(_LEAST, UNRESOLVED, color=BODY, alpha=0.6, linewidth=0, zorder=0)
+    colours = {found.blame: ORANGE, "unexplained": INK}
     for name, row, part in zip(names, rows, parts, strict=True):
-        _bar(ax, row, part.rms, part.uncertainty, _colour(name, found.blame))
+        _bar(ax, row, part.rms, part.uncertainty, colours.get(name, BLUE))
     ax.axvline(total, color=GREY, linestyle="--", linewidth=1.3, zorder=3)
     ax.axhline(0.65, color=GREY, linewidth=0.6)
     ax.set_ylim(-0.6, rows[0] + 0.6)
@@ -90,9 +90,3 @@ def _order(found: Budget) -> list[str]:
     explained = [name for name in found.parts if name != "unexplained"]
     explained.sort(key=lambda name: -max(part.rms for part in found.parts[name].values()))
     return [*explained, "unexplained"]
-
-
-def _colour(name: str, blame: str) -> str:
-    if name == "unexplained":
-        return _UNEXPLAINED
-    return _BLAMED if name == blame else _OTHER

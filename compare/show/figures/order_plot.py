@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, NullLocator
 
@@ -33,23 +32,8 @@ def convergence_picture(found: Mapping[int, Mapping[str, float]]) -> Figure:
     ax.grid(axis="y", color=FAINT, alpha=0.35, linewidth=0.6)
     ax.set_xlabel("segments $N$")
     ax.set_ylabel("rms / largest magnitude")
-    _slope_triangle(ax, n, min(errors[name] for errors in found.values() for name in errors))
+    lowest = min(errors[name] for errors in found.values() for name in errors)
+    second = 0.7 * lowest * (n.max() / n) ** _SECOND
+    ax.plot(n, second, color=GREY, linestyle="--", linewidth=1, label="second order")
     ax.legend(fontsize=SMALL, frameon=False, loc="upper right")
     return figure
-
-
-def _slope_triangle(ax: Axes, n: np.ndarray, lowest: float) -> None:
-    """What second order looks like, below the curves where there is room."""
-    left, right = n[0], n[0] * (n[-1] / n[0]) ** 0.45
-    low = lowest
-    high = low * (right / left) ** _SECOND
-    ax.plot([left, left, right, left], [high, low, low, high], color=GREY, linewidth=1)
-    ax.annotate(
-        f"{_SECOND}", (left, np.sqrt(low * high)), (-9, 0), textcoords="offset points",
-        color=GREY, va="center",
-    )  # fmt: skip
-    ax.annotate(
-        "1", (np.sqrt(left * right), low), (0, -12), textcoords="offset points",
-        color=GREY, ha="center",
-    )  # fmt: skip
-    ax.set_ylim(bottom=low / 1.8)
