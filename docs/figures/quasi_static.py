@@ -1,7 +1,7 @@
 """How slow is quasi-static, and what do MuJoCo's settings cost? One setting at a time.
 
 ``python -m docs.figures.quasi_static FILE.csv`` sweeps the catenary in motion, in about four
-minutes of CPU time, and writes a row a sweep; `compare.show.figures.quasi_static` draws them.
+minutes of CPU time, and writes a row a sweep; `docs.figures.quasi_static_picture` draws them.
 """
 
 import math
