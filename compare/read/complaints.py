@@ -3,13 +3,10 @@
 import difflib
 import reprlib
 from collections.abc import Sequence
-from dataclasses import fields, is_dataclass
 from pathlib import Path
-from types import NoneType
-from typing import Annotated, Any, get_args, get_origin
 
-from pydantic import BaseModel, ValidationError
-from pydantic.fields import FieldInfo
+from pydantic import ValidationError
+from pydantic_core import PydanticCustomError
 
 from analytic.problem.errors import InputError
 from compare.read.toml import Place
@@ -34,52 +31,48 @@ def shown(value: object) -> str:
     return _brief.repr(value)
 
 
-def complaint(
-    error: ValidationError,
-    schema: object,
-    place: Place,
-    outer: Sequence[str] = (),
-) -> InputError:
-    """What a validation error says, in one line."""
-    parts = error.errors(include_url=False)
-    first = min(parts, key=lambda part: part["type"] not in _UNKNOWN_KEY)
-    inside, allowed = _walk(schema, first["loc"])
-    name = place([*outer, *inside])
-    value = shown(first["input"])
-    context = first.get("ctx", {})
+def complaint(error: ValidationError, place: Place, outer: Sequence[str] = ()) -> InputError:
+    """What a validation error says, in one line; an unknown key explains what else is wrong."""
+    found = error.errors(include_url=False)
+    first = min(found, key=lambda one: one["type"] != UNKNOWN_KEY)
+    inside = _keys(first["loc"])
+    keys = [*outer, *inside]
+    name, value, context = place(keys), shown(first["input"]), first.get("ctx", {})
     match first["type"]:
-        case "extra_forbidden" | "unexpected_keyword_argument":
-            near = difflib.get_close_matches(inside[-1], allowed, n=1)
-            return InputError(
-                name,
-                value,
-                f"one of the keys {', '.join(allowed)}",
-                f"did you mean {near[0]}?" if near else f"remove {shown(inside[-1])}",
-            )
+        case "unknown_key":
+            key, near = context["key"], context["near"]
+            remedy = f"did you mean {near}?" if near else f"remove {shown(key)}"
+            allowed = f"one of the keys {context['allowed']}"
+            return InputError(place([*keys, key]), shown(first["input"][key]), allowed, remedy)
         case "missing":
             return InputError(name, "missing", "given", "add it")
-        case "union_tag_invalid":
-            tag, tags = shown(context["tag"]), context["expected_tags"]
-            return InputError(f"{name}.kind", tag, f"one of {tags}", "choose one")
-        case "union_tag_not_found":
-            return InputError(f"{name}.kind", "missing", "given", "say what it is")
-        case "literal_error":
-            return InputError(name, value, f"one of {context['expected']}", "choose one")
-        case "bool_parsing" | "bool_type":
-            return InputError(name, value, "true or false", "write it without quotes")
-        case "too_short" | "too_long":
-            few = first["type"] == "too_short"
-            allowed_count = context["min_length"] if few else context["max_length"]
-            return InputError(
-                name,
-                value,
-                f"of {'at least' if few else 'at most'} {allowed_count}",
-                "add what is missing" if few else "leave some out",
-            )
+        case "union_tag_invalid" | "union_tag_not_found":
+            tag = shown(context["tag"]) if "tag" in context else "missing"
+            allowed = f"one of {context['expected_tags']}" if "tag" in context else "given"
+            return InputError(f"{name}.kind", tag, allowed, "say what it is")
         case "value_error":
             return _refused(context["error"], value, inside, outer, place)
-    allowed_value = first["msg"].removeprefix("Input should be ").removeprefix("Value should be ")
-    return InputError(name, value, allowed_value, "change it")
+    allowed = first["msg"].removeprefix("Input should be ").removeprefix("Value should be ")
+    return InputError(name, value, allowed, "change it")
+
+
+UNKNOWN_KEY = "unknown_key"
+_OF_KINDS = ("profile", "body")  # tables that are of one of several kinds
+
+
+def _keys(location: Sequence[int | str]) -> list[str]:
+    """The keys of a place; pydantic names the kind of a table, too, which is no key."""
+    of_kinds = location[:1] and location[0] in _OF_KINDS
+    return [str(part) for i, part in enumerate(location) if i != 1 or not of_kinds]
+
+
+def require_known(given: object, allowed: Sequence[str]) -> None:
+    """Refuse a table with an unknown key."""
+    for key in given if isinstance(given, dict) else ():
+        if key not in allowed:
+            near = difflib.get_close_matches(key, allowed, n=1)
+            about = {"key": key, "near": "".join(near), "allowed": ", ".join(allowed)}
+            raise PydanticCustomError(UNKNOWN_KEY, "no known key", about)
 
 
 def _refused(
@@ -91,44 +84,6 @@ def _refused(
         if keys[: len(inside)] == [*inside]:
             return error.called(place([*outer, *keys]))
     return InputError(place([*outer, *inside]), value, "usable", str(error))
-
-
-_UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
-
-
-def _walk(schema: object, location: Sequence[int | str]) -> tuple[list[str], list[str]]:
-    """The keys of a place in a schema, and the keys of the table that the last one is in.
-
-    A location also names the kind of a table that may be of several; no key of the file does.
-    """
-    keys: list[str] = []
-    table, allowed = schema, list(_fields(schema))
-    for part in location:
-        kinds = {name: kind for kind in get_args(table) for name in _kind(kind)}
-        if part in kinds:
-            table = kinds[str(part)]
-        else:
-            keys.append(str(part))
-            allowed = list(_fields(table)) or allowed
-            table = _fields(table).get(str(part))
-            while get_origin(table) is Annotated or NoneType in get_args(table):
-                table = get_args(table)[0]  # of what may be missing, too
-    return keys, allowed
-
-
-def _fields(table: object) -> dict[str, Any]:
-    """The keys that a table may have, with what each of them holds."""
-    if isinstance(table, type) and issubclass(table, BaseModel):
-        return {field.alias or name: field.annotation for name, field in table.model_fields.items()}
-    if isinstance(table, type) and is_dataclass(table):
-        return {field.name: field.type for field in fields(table)}
-    return {}
-
-
-def _kind(table: object) -> tuple[str, ...]:
-    """By which names a table of several kinds is chosen."""
-    field: FieldInfo | None = getattr(table, "model_fields", {}).get("kind")
-    return () if field is None else get_args(field.annotation)
 
 
 def plain_name(text: str) -> str:

@@ -4,10 +4,10 @@ import math
 from dataclasses import fields
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, PlainValidator
+from pydantic import Field, PlainValidator
 
 from analytic import Beam, InputError
-from compare.read.quantities import Dimension, InSI
+from compare.read.quantities import Dimension, InSI, Table
 from compare.read.toml import Place
 from mujoco_models.motion import ConeKind, IntegratorKind, Motion, SolverKind
 
@@ -24,15 +24,13 @@ Density = Annotated[float, PlainValidator(Dimension("kg/m^3"))]
 Contact = Annotated[tuple[Time, float], Field(strict=False)]
 
 
-class MotionTable(BaseModel):
+class MotionTable(Table):
     """How the foot moves and MuJoCo steps; see `mujoco_models.Motion`.
 
     Plain numbers are in natural units, L and the first period T1 of the free vibrissa. Texts with a
     unit need to know T1 in seconds: by ``period`` itself, or by the ``density`` of a round and
     solid vibrissa, whose dimensions then have units, too.
     """
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     period: Time | None = None
     density: Density | None = None

@@ -1,7 +1,7 @@
 """Values of a file: numbers, and texts with a unit; and tables of them, checked."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Annotated, Any, TypeVar, get_args
 
 from pydantic import (
@@ -11,11 +11,12 @@ from pydantic import (
     ConfigDict,
     Field,
     ValidationError,
+    model_validator,
 )
 from pydantic_core import PydanticCustomError
 
 from analytic import InputError
-from compare.read.complaints import complaint, plain_name
+from compare.read.complaints import complaint, plain_name, require_known
 from compare.read.toml import Place
 from compare.read.units import in_si
 
@@ -107,6 +108,18 @@ Two = Annotated[tuple[Length, Length], Field(strict=False)]
 Point = Annotated[Two, BeforeValidator(Several("x, y"))]
 SemiAxes = Annotated[Two, BeforeValidator(Several("along x, along y"))]
 Points = list[Point]
+
+
+def known_keys(kind: type) -> BeforeValidator:
+    """A validator: a table whose keys are fields of a dataclass."""
+
+    def check(given: object) -> object:
+        require_known(given, [field.name for field in fields(kind)])
+        return given
+
+    return BeforeValidator(check)
+
+
 FileName = Annotated[str, AfterValidator(plain_name)]
 
 
@@ -114,6 +127,12 @@ class Table(BaseModel):
     """A table without unknown keys, whose numbers are numbers: no text, no boolean."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, defer_build=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _require_known_keys(cls, given: object) -> object:
+        require_known(given, [field.alias or key for key, field in cls.model_fields.items()])
+        return given
 
     @classmethod
     def quantities(cls) -> list[str]:
@@ -140,7 +159,7 @@ def validated(schema: type[_Schema], tables: Mapping[str, Any], place: Place) ->
     try:
         file = schema.model_validate(tables)
     except ValidationError as error:
-        raise complaint(error, schema, place) from error
+        raise complaint(error, place) from error
     _check_units(file, tables, place)
     return file
 

@@ -24,7 +24,7 @@ from compare.read.complaints import name_of
 from compare.read.job import SpaceJob
 from compare.read.limits import tolerances_of
 from compare.read.profiles import Drawn
-from compare.read.quantities import FileName, Length, Several, Table, validated
+from compare.read.quantities import FileName, Length, Several, Table, known_keys, validated
 from compare.read.tables import BeamTable
 from compare.read.toml import TomlFile
 from mujoco_models.space.settings import SpatialSettings
@@ -135,7 +135,7 @@ class SpaceFile(Table):
     # The contour of a prism, as in the plane.
     profile: Annotated[Drawn, Field(discriminator="kind")] | None = None
     path: PathTable  # the physics
-    mujoco: SpatialSettings = SpatialSettings()  # the numerics of MuJoCo's sweep
+    mujoco: Annotated[SpatialSettings, known_keys(SpatialSettings)] = SpatialSettings()  # the numerics of MuJoCo's sweep
     # Limits of agreement, each with its reason.
     tolerances: Annotated[dict[str, Any], Field(default_factory=dict)]
 

@@ -33,6 +33,7 @@ from compare.read.quantities import (
     RigidityAlong,
     RotationalStiffness,
     Table,
+    known_keys,
     validated,
 )
 from compare.read.toml import Place, TomlFile
@@ -144,7 +145,7 @@ class CaseFile(Table):
     contact: ContactTable = ContactTable()  # the physics
     profile: Annotated[Drawn | MeshTable, Field(discriminator="kind")]  # the physics
     sweep: SweepTable = SweepTable()  # the physics
-    mujoco: Annotated[Settings, Field(default_factory=Settings)]  # the numerics of the simulation
+    mujoco: Annotated[Settings, known_keys(Settings), Field(default_factory=Settings)]  # the numerics of the simulation
     # A model of the user's own, if it is to be swept instead of ours.
     model: ModelTable | None = None
     # How the foot moves, if it is not at rest at every station (`compare.read.motion`).

@@ -83,7 +83,7 @@ class _AxisReader:
         try:
             return Range.model_validate(value)
         except ValidationError as error:
-            raise complaint(error, Range, self._file.place, _place(key)) from error
+            raise complaint(error, self._file.place, _place(key)) from error
 
     def interval(self, key: str, span: Range) -> Interval:
         """A range between two numbers."""

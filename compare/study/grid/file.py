@@ -61,7 +61,7 @@ def _checked(file: TomlFile) -> Study:
     try:
         content = StudyFile.model_validate(tables)
     except ValidationError as error:
-        raise complaint(error, StudyFile, file.place) from error
+        raise complaint(error, file.place) from error
     base = Base(file, content)
     table = content.study
     beams = [base.values[BEAM]] if table.beams is None else table.beams
