@@ -50,6 +50,8 @@ def complaint(error: ValidationError, place: Place, outer: Sequence[str] = ()) -
             tag = shown(context["tag"]) if "tag" in context else "missing"
             allowed = f"one of {context['expected_tags']}" if "tag" in context else "given"
             return InputError(f"{name}.kind", tag, allowed, "say what it is")
+        case "model_type" | "dataclass_type":
+            return InputError(name, value, "a table", "write its keys below its name in brackets")
         case "value_error":
             return _refused(context["error"], value, inside, outer, place)
     allowed = first["msg"].removeprefix("Input should be ").removeprefix("Value should be ")

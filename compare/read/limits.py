@@ -1,17 +1,26 @@
 """Tolerances as data: a ``[tolerances]`` table of a TOML file, every limit with its reason."""
 
-import difflib
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeVar
+
+from pydantic import Field, StringConstraints, ValidationError
 
 from analytic import InputError
 from compare.judge.spatial import SpatialTolerances
 from compare.judge.tolerances import Limit, Tolerances
+from compare.read.complaints import complaint
+from compare.read.quantities import Table
 from compare.read.toml import Place, TomlFile
 
 _Limits = TypeVar("_Limits", Tolerances, SpatialTolerances)
+
+
+class LimitTable(Table):
+    """A limit with its reason."""
+
+    limit: Annotated[float, Field(ge=0)]
+    reason: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
 
 
 def read_tolerances(path: Path, kind: type[_Limits]) -> _Limits:
@@ -24,47 +33,30 @@ def read_tolerances(path: Path, kind: type[_Limits]) -> _Limits:
 
 def tolerances_of(table: Mapping[str, Any], place: Place, kind: type[_Limits]) -> _Limits:
     """What a ``[tolerances]`` table says; what it leaves out keeps its default."""
-    names = [one.name for one in fields(kind) if one.name != "special"]
     general: dict[str, Limit] = {}
     special: dict[str, Limit] = {}
-    for keys, limit in _limits(table, (), place):
-        name = ".".join(keys)
-        if len(keys) > 1:
-            special[name] = limit
-        elif name in names:
-            general[name] = limit
-        else:
-            near = difflib.get_close_matches(name, names, n=1)
-            raise InputError(
-                place(["tolerances", name]),
-                "unknown",
-                f"one of {', '.join(names)}",
-                f"did you mean {near[0]}?" if near else "remove it",
-            )
+    for keys, said in _limits(table, ()):
+        here = place(["tolerances", *keys])
+        if len(keys) == 1 and keys[0] not in kind.general():
+            raise InputError(here, "unknown", f"one of {', '.join(kind.general())}", "correct it")
+        if not isinstance(said, dict):
+            allowed = 'a limit with its reason, { limit = 1e-3, reason = "..." }'
+            raise InputError(here, repr(said), allowed, "say why it is as large as it is")
+        try:
+            found = LimitTable.model_validate(said)
+        except ValidationError as error:
+            raise complaint(error, place, ["tolerances", *keys]) from error
+        limits = general if len(keys) == 1 else special
+        limits[".".join(keys)] = Limit(found.limit, found.reason)
     return kind(**general, special=special)
 
 
 def _limits(
-    table: Mapping[str, Any], keys: tuple[str, ...], place: Place
-) -> Iterator[tuple[tuple[str, ...], Limit]]:
+    table: Mapping[str, Any], outer: tuple[str, ...]
+) -> Iterator[tuple[tuple[str, ...], object]]:
+    """What stands for a limit in a table, and in the tables in it."""
     for key, value in table.items():
-        here: Sequence[str] = ("tolerances", *keys, key)
-        if not isinstance(value, dict):
-            raise InputError(
-                place(here),
-                repr(value),
-                'a limit with its reason, { limit = 1e-3, reason = "..." }',
-                "say why it is as large as it is",
-            )
-        if "limit" not in value:
-            yield from _limits(value, (*keys, key), place)
-            continue
-        reason = value.get("reason")
-        if set(value) - {"limit", "reason"} or not (isinstance(reason, str) and reason.strip()):
-            raise InputError(
-                place(here), repr(value), "a limit and a reason", "say why it is as large as it is"
-            )
-        number = value["limit"]
-        if isinstance(number, bool) or not isinstance(number, int | float) or not number >= 0:
-            raise InputError(place([*here, "limit"]), repr(number), "0 or more", "correct it")
-        yield (*keys, key), Limit(float(number), reason)
+        if isinstance(value, dict) and "limit" not in value:
+            yield from _limits(value, (*outer, key))
+        else:
+            yield (*outer, key), value

@@ -22,7 +22,9 @@ from compare.read.units import in_si
 
 _WITH_UNITS = ("beam", "support", "profile", "sweep", "body", "path")
 
-_EXAMPLES = {
+EXAMPLES = {
+    "N": ("force", "0.2 mN"),
+    "N m": ("moment", "1 N mm"),
     "m": ("length", "50 mm"),
     "1/m": ("inverse length", "0.5 1/mm"),
     "N m^2": ("force times length squared", "2 N mm^2"),
@@ -54,7 +56,7 @@ class Dimension:
                 return InSI(in_si(value, self.unit))
         except (InputError, OverflowError):
             pass
-        what, example = _EXAMPLES[self.unit]
+        what, example = EXAMPLES[self.unit]
         raise PydanticCustomError(
             "quantity",
             "a number, or a text with a known unit of {what}, as '{example}'",
@@ -73,7 +75,7 @@ class Varying(Dimension):
         number, length = Dimension(self.unit), Dimension("m")
         pairs = [pair for pair in value if isinstance(pair, list | tuple) and len(pair) == 2]
         if len(pairs) < len(value):
-            what = _EXAMPLES[self.unit][0]
+            what = EXAMPLES[self.unit][0]
             raise PydanticCustomError(
                 "table",
                 "a number, or a list of pairs [arc length from the clamp, {what}]",
@@ -131,8 +133,13 @@ class Table(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _require_known_keys(cls, given: object) -> object:
-        require_known(given, [field.alias or key for key, field in cls.model_fields.items()])
+        require_known(given, cls.keys())
         return given
+
+    @classmethod
+    def keys(cls) -> list[str]:
+        """Keys that there may be."""
+        return [field.alias or name for name, field in cls.model_fields.items()]
 
     @classmethod
     def quantities(cls) -> list[str]:

@@ -37,7 +37,7 @@ from compare.read.quantities import (
     validated,
 )
 from compare.read.toml import Place, TomlFile
-from compare.read.uncertainty import uncertainties_of
+from compare.read.uncertainty import UncertaintyTable, uncertainties_of
 from mujoco_models.motion import Motion
 from mujoco_models.settings import Settings
 from mujoco_models.user_model.names import ContactKind, OwnModel
@@ -155,7 +155,7 @@ class CaseFile(Table):
     # How far two sweeps of the case may disagree (`compare.read.limits`).
     tolerances: Annotated[dict[str, Any], Field(default_factory=dict)]
     # How well the inputs are known (`compare.read.uncertainty`).
-    uncertainty: Annotated[dict[str, Any], Field(default_factory=dict)]
+    uncertainty: UncertaintyTable = UncertaintyTable()
 
     def physics(self, folder: Path) -> Physics:
         """The vibrissa, how it is held and rubs, and the object, without a sweep."""

@@ -67,7 +67,7 @@ def test_without_the_table_nothing_is_uncertain(tmp_path):
 @pytest.mark.parametrize(
     ("table", "why"),
     [
-        ('length = "0.1 mm"', "say which of the two it is"),
+        ('length = "0.1 mm"', "uncertainty.length = '0.1 mm': must be a table"),
         ('length = { standard = "1 mm", within = "1 mm" }', "say which of the two it is"),
         ("length = { standard = 0.1 }", "with a unit of m"),
         ('length = { standard = "1 N" }', "with a unit of m"),
@@ -75,15 +75,15 @@ def test_without_the_table_nothing_is_uncertain(tmp_path):
         ('length = { standard = "x %" }', "per cent"),
         ('foot_x = { standard = "2 %" }', "with a unit of m"),
         ('friction = { standard = "0.1 N" }', "a plain number"),
-        ("friction = { standard = true }", "a plain number"),
+        ("friction = { standard = true }", "valid number"),
         ("friction = { standard = nan }", "a plain number"),
         ('clamp_stiffness = { standard = "1 N mm" }', "has no clamp_stiffness"),
         ('tip_radius = { standard = "1 um" }', "has no tip_radius"),
         ('lenght = { standard = "1 mm" }', "line 11: uncertainty.lenght"),
-        ('noise = { force_z = "1 mN" }', "a table of force_x"),
+        ('noise = { force_z = "1 mN" }', "noise.force_z = unknown: must be a reading, one of force_x"),
         ('noise = { force_x = "2 %" }', "with a unit of N"),
-        ('correlations = [["length", "radius"]]', "two names and a number"),
-        ("correlations = 3", "two names and a number"),
+        ('correlations = [["length", "radius"]]', "correlations.0.2 = missing"),
+        ("correlations = 3", "must be a valid list"),
         ('correlations = [["length", "radius", 0.5]]', "those are none"),
     ],
 )
