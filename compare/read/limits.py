@@ -36,7 +36,8 @@ def tolerances_of(table: Mapping[str, Any], place: Place, kind: type[_Limits]) -
     general: dict[str, Limit] = {}
     special: dict[str, Limit] = {}
     for keys, said in _limits(table, ()):
-        here = place(["tolerances", *keys])
+        where = ("tolerances", *keys)
+        here = place(where)
         if len(keys) == 1 and keys[0] not in kind.general():
             raise InputError(here, "unknown", f"one of {', '.join(kind.general())}", "correct it")
         if not isinstance(said, dict):
@@ -45,7 +46,7 @@ def tolerances_of(table: Mapping[str, Any], place: Place, kind: type[_Limits]) -
         try:
             found = LimitTable.model_validate(said)
         except ValidationError as error:
-            raise complaint(error, place, ["tolerances", *keys]) from error
+            raise complaint(error, place, where) from error
         limits = general if len(keys) == 1 else special
         limits[".".join(keys)] = Limit(found.limit, found.reason)
     return kind(**general, special=special)

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 import pandas as pd
-from pydantic import TypeAdapter, ValidationError
+from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from analytic import InputError, Readings
 from analytic.problem.arrays import Floats
@@ -16,10 +16,9 @@ from analytic.space import SpatialReadings
 from compare.align.frames import Frame
 from compare.explain.budget import Budget
 from compare.explain.split_space import Parts
-from compare.judge.spatial import GENERAL_IN_SPACE, SpatialTolerances
-from compare.judge.tolerances import GENERAL, Limit, Tolerances
+from compare.judge.spatial import SpatialTolerances
+from compare.judge.tolerances import Limit, Tolerances
 from compare.read.space_readings import is_spatial
-from compare.read.sweep_files import sweep_files
 from compare.validate.validation import Validation
 
 AnyTolerances = TypeVar("AnyTolerances", Tolerances, SpatialTolerances)
@@ -54,35 +53,52 @@ class StoredSpatialRun:
 
 def read_run(folder: Path) -> StoredRun | StoredSpatialRun:
     """Read the folder of a run, or of the two sweeps of one case that nobody compared yet."""
-    reference, candidate = sweep_files(folder)
-    judged = folder / "comparison.json"
+    reference, candidate = _sweeps(folder)
+    judged = read_stored_if_there(folder / "comparison.json", _Judged)
     if is_spatial(reference):
         return StoredSpatialRun(
             SpatialReadings.read(reference),
             SpatialReadings.read(candidate),
-            _limits(judged, SpatialTolerances),
-            _frame(judged),
+            judged.limits(SpatialTolerances) if judged else SpatialTolerances(),
+            judged.frame if judged else "world",
             read_stored_if_there(folder / "budget.json", Parts),
             _body(folder / "body.ply"),
         )
     return StoredRun(
         Readings.read(reference),
         Readings.read(candidate),
-        _limits(judged, Tolerances),
+        judged.limits(Tolerances) if judged else Tolerances(),
         read_stored_if_there(folder / "budget.json", Budget),
-        _validation(folder),
+        _validation(folder, judged),
     )
+
+
+def _sweeps(folder: Path) -> tuple[Path, Path]:
+    """The files of the two sweeps that a run has left."""
+    found = [*folder.glob("mujoco-*.parquet")]
+    sweeps = [path for path in found if not path.name.endswith(".partial.parquet")]
+    if not (folder / "analytic.parquet").is_file() or len(sweeps) != 1:
+        there = ", ".join(sorted(path.name for path in folder.glob("*.parquet"))) or "no sweep"
+        raise InputError(
+            "DIR",
+            f"{folder} ({there[:200]})",
+            "the folder of one run, with analytic.parquet and one mujoco-BEAM.parquet",
+            "make one: vibrissa run CASE --out DIR",
+        )
+    return folder / "analytic.parquet", sweeps[0]
 
 
 def read_stored(file: Path, kind: type[_T]) -> _T:
     """What a JSON file of a run holds, as what it was written from."""
-    content = _json(file)
+    regular_file(file, "file", _LARGEST)
     try:
-        return TypeAdapter(kind).validate_python(content)
+        return TypeAdapter(kind).validate_python(json.loads(file.read_text(encoding="utf-8")))
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(map(str, first["loc"])) or "the whole"
         raise _damaged(file, f"{where}: {first['msg']}") from error
+    except (OSError, ValueError, RecursionError) as error:
+        raise _damaged(file, error) from error
 
 
 def read_stored_if_there(file: Path, kind: type[_T]) -> _T | None:
@@ -90,49 +106,31 @@ def read_stored_if_there(file: Path, kind: type[_T]) -> _T | None:
     return read_stored(file, kind) if file.exists() else None
 
 
-def _limits(file: Path, kind: type[AnyTolerances]) -> AnyTolerances:
-    """The limits that a run was judged by."""
-    if not file.exists():
-        return kind()
-    found = _json(file)
-    in_plane = kind is Tolerances
-    try:
-        reasons = found["tolerance_reasons"]
-        limits = {
-            str(name): Limit(float(value), str(reasons[name]))
-            for name, value in found["tolerances"].items()
-        }
-        if in_plane:
-            limits.setdefault("lateness", Limit(0.0, "not asked"))  # of older runs
-        names = GENERAL if in_plane else GENERAL_IN_SPACE
-        general = {name: limits.pop(name) for name in names}
+class _Judged(BaseModel):
+    """What is looked at of a ``comparison.json``."""
+
+    tolerances: dict[str, float]
+    tolerance_reasons: dict[str, str]
+    frame: Frame = "world"
+    validation: dict[str, Any] | None = None
+
+    def limits(self, kind: type[AnyTolerances]) -> AnyTolerances:
+        """The limits that the run was judged by."""
+        limits = {n: Limit(x, self.tolerance_reasons[n]) for n, x in self.tolerances.items()}
+        general = {name: limits.pop(name) for name in kind.general() if name in limits}
         return kind(**general, special=limits)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise _damaged(file, error) from error
 
 
-def _validation(folder: Path) -> Validation | None:
-    file, table = folder / "comparison.json", folder / "validation.csv"
-    if not (file.exists() and table.exists()):
-        return None
-    found = _json(file)
-    if not isinstance(found, dict) or "validation" not in found:
+def _validation(folder: Path, judged: _Judged | None) -> Validation | None:
+    table = folder / "validation.csv"
+    if judged is None or judged.validation is None or not table.exists():
         return None
     try:
         regular_file(table, "file", _LARGEST)
-        return TypeAdapter(Validation).validate_python(
-            {**found["validation"], "table": pd.read_csv(table)}
-        )
+        stored = {**judged.validation, "table": pd.read_csv(table)}
+        return TypeAdapter(Validation).validate_python(stored)
     except (OSError, ValueError, TypeError) as error:
         raise _damaged(table, error) from error
-
-
-def _frame(file: Path) -> Frame:
-    content = _json(file) if file.exists() else {"frame": "world"}
-    found = content.get("frame") if isinstance(content, dict) else None
-    if found not in ("world", "clamp"):
-        raise _damaged(file, "frame is neither world nor clamp")
-    return "clamp" if found == "clamp" else "world"
 
 
 def _body(file: Path) -> Floats | None:
@@ -148,14 +146,6 @@ def _body(file: Path) -> Floats | None:
     if faces.shape[1:] != (3, 3) or not np.isfinite(faces).all():
         raise _damaged(file, "no triangles")
     return faces
-
-
-def _json(file: Path) -> Any:  # noqa: ANN401  # whatever the file holds
-    regular_file(file, "file", _LARGEST)
-    try:
-        return json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
-        raise _damaged(file, error) from error
 
 
 def _damaged(file: Path, fault: Exception | str) -> InputError:

@@ -3,41 +3,24 @@
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, TypeAlias, TypeVar
+from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, Field
+from pydantic import AliasPath, BaseModel, Field
 
 from analytic import CASE_NAMES, CLAMP_READINGS
 from compare.explain.budget import Budget
 from compare.explain.split import Split
 from compare.read.run_folder import read_stored, read_stored_if_there
 
-_Rms: TypeAlias = dict[str, float | None]  # by reading; None where nothing could be compared
-_Numbers: TypeAlias = dict[str, Any]
 _Record = TypeVar("_Record", "RunRecord", "EnginesRecord")
 
 
-class _Beam(BaseModel):
-    length: Annotated[float, Field(gt=0)]
-
-
-class _Sweep(BaseModel):
-    source: str
-    beam: _Beam
-    stations: Annotated[int, Field(gt=0)]
-    provenance: _Numbers
+def _of_candidate(*keys: str) -> AliasPath:
+    return AliasPath("candidate", *keys)
 
 
 class _Disagreement(BaseModel):
     rms: float | None
-
-
-class _SnapOff(BaseModel):
-    difference: float | None
-
-
-class _Phases(BaseModel):
-    agreement: float | None
 
 
 class ComparisonFile(BaseModel):
@@ -45,9 +28,12 @@ class ComparisonFile(BaseModel):
 
     verdict: str
     disagreement: dict[str, _Disagreement]
-    snap_off: _SnapOff
-    phases: _Phases
-    candidate: _Sweep
+    snap_off: Annotated[float | None, Field(validation_alias=AliasPath("snap_off", "difference"))]
+    phases: Annotated[float | None, Field(validation_alias=AliasPath("phases", "agreement"))]
+    source: Annotated[str, Field(validation_alias=_of_candidate("source"))]
+    length: Annotated[float, Field(gt=0, validation_alias=_of_candidate("beam", "length"))]
+    stations: Annotated[int, Field(gt=0, validation_alias=_of_candidate("stations"))]
+    provenance: Annotated[dict[str, Any], Field(validation_alias=_of_candidate("provenance"))]
 
 
 @dataclass(frozen=True)
@@ -59,33 +45,29 @@ class RunRecord:
     budget: Budget | None
 
     @property
-    def _origin(self) -> _Numbers:
-        return self.comparison.candidate.provenance
-
-    @property
     def case(self) -> str:
         """Name of the case."""
-        return str(self._origin.get("case", self.folder.name))
+        return str(self.comparison.provenance.get("case", self.folder.name))
 
     @property
     def profile(self) -> str:
         """What the object is."""
-        return str(self._origin.get("profile", "contour not recorded"))
+        return str(self.comparison.provenance.get("profile", "contour not recorded"))
 
     @property
     def beam(self) -> str:
         """MuJoCo's beam, or whoever else produced the readings."""
-        return str(self.settings.get("beam", self.comparison.candidate.source))
+        return str(self.settings.get("beam", self.comparison.source))
 
     @property
     def engine(self) -> str:
         """Which version of what, as far as it was recorded."""
-        return str(self._origin.get("engine", "not recorded"))
+        return str(self.comparison.provenance.get("engine", "not recorded"))
 
     @property
-    def settings(self) -> _Numbers:
+    def settings(self) -> dict[str, Any]:
         """The numerics of the candidate."""
-        settings = self._origin.get("settings")
+        settings = self.comparison.provenance.get("settings")
         return settings if isinstance(settings, dict) else {}
 
     @property
@@ -94,7 +76,7 @@ class RunRecord:
         return self.comparison.verdict == "agrees"
 
     @property
-    def rms(self) -> _Rms:
+    def rms(self) -> dict[str, float | None]:
         """Disagreement by reading; None where nothing could be compared."""
         return {name: self.comparison.disagreement[name].rms for name in CLAMP_READINGS}
 
@@ -111,21 +93,19 @@ class RunRecord:
     @property
     def snap_off(self) -> float | None:
         """By how much the snap-offs differ [L]; None unless both sweeps have one."""
-        apart = self.comparison.snap_off.difference
-        return None if apart is None else apart / self.comparison.candidate.beam.length
+        apart = self.comparison.snap_off
+        return None if apart is None else apart / self.comparison.length
 
     @property
     def phases_right(self) -> float | None:
         """Share of stations whose phase is rightly judged from the clamp, in the worse sweep."""
-        return self.comparison.phases.agreement
+        return self.comparison.phases
 
     @property
     def seconds_a_station(self) -> float | None:
         """Time of the simulation; None where it was not taken."""
-        seconds = self._origin.get("seconds")
-        if not isinstance(seconds, int | float):
-            return None
-        return seconds / self.comparison.candidate.stations
+        seconds = self.comparison.provenance.get("seconds")
+        return None if seconds is None else seconds / self.comparison.stations
 
     def part(self, name: str) -> float | None:
         """The largest of the three readings' rms of a part of the budget."""

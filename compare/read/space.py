@@ -135,7 +135,8 @@ class SpaceFile(Table):
     # The contour of a prism, as in the plane.
     profile: Annotated[Drawn, Field(discriminator="kind")] | None = None
     path: PathTable  # the physics
-    mujoco: Annotated[SpatialSettings, known_keys(SpatialSettings)] = SpatialSettings()  # the numerics of MuJoCo's sweep
+    # The numerics of MuJoCo's sweep.
+    mujoco: Annotated[SpatialSettings, known_keys(SpatialSettings)] = SpatialSettings()
     # Limits of agreement, each with its reason.
     tolerances: Annotated[dict[str, Any], Field(default_factory=dict)]
 

@@ -145,7 +145,8 @@ class CaseFile(Table):
     contact: ContactTable = ContactTable()  # the physics
     profile: Annotated[Drawn | MeshTable, Field(discriminator="kind")]  # the physics
     sweep: SweepTable = SweepTable()  # the physics
-    mujoco: Annotated[Settings, known_keys(Settings), Field(default_factory=Settings)]  # the numerics of the simulation
+    # The numerics of the simulation.
+    mujoco: Annotated[Settings, known_keys(Settings), Field(default_factory=Settings)]
     # A model of the user's own, if it is to be swept instead of ours.
     model: ModelTable | None = None
     # How the foot moves, if it is not at rest at every station (`compare.read.motion`).

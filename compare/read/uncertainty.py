@@ -18,6 +18,9 @@ _TABLE = "uncertainty"
 Size: TypeAlias = float | str | None  # in the unit of the case, with a unit, or in per cent
 
 
+_Pair = Annotated[tuple[str, str, float], Field(strict=False)]
+
+
 class InputTable(Table):
     """How well an input is known: its standard uncertainty, or half the width of an interval."""
 
@@ -37,7 +40,7 @@ class UncertaintyTable(Table):
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, InputTable] = Field(init=False)
     noise: dict[str, Size] = Field(default_factory=dict)
-    correlations: list[Annotated[tuple[str, str, float], Field(strict=False)]] = []
+    correlations: list[_Pair] = Field(default_factory=list)
 
     @classmethod
     def keys(cls) -> list[str]:

@@ -130,7 +130,7 @@ def test_limits_stand_in_the_case_file_with_their_reasons(tmp_path):
     assert limits.of("moment_y", "max").reason == "a weak channel"
     assert limits.of("moment_x", "max") == 3e-2
     path.write_text(BALL + '[tolerances]\nevnt = { limit = 1e-3, reason = "x" }\n')
-    with pytest.raises(InputError, match="tolerances.evnt = unknown: must be one of .* event"):
+    with pytest.raises(InputError, match=r"tolerances.evnt = unknown: must be one of .* event"):
         load_space_job(path)
 
 
