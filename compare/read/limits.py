@@ -35,6 +35,7 @@ def tolerances_of(table: Mapping[str, Any], place: Place, kind: type[_Limits]) -
     """What a ``[tolerances]`` table says; what it leaves out keeps its default."""
     general: dict[str, Limit] = {}
     special: dict[str, Limit] = {}
+    keys: tuple[str, ...]
     for keys, said in _limits(table, ()):
         where = ("tolerances", *keys)
         here = place(where)
