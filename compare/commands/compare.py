@@ -1,7 +1,7 @@
 """The command ``compare``: files of readings against another or against a case's closed form."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -24,8 +24,9 @@ from compare.commands.waiting import waiting
 from compare.read.kinds import SPACE, TABLES
 
 if TYPE_CHECKING:
-    from analytic import Beam, Readings
-    from compare.read.job import Job, SpaceJob
+    from analytic import Beam
+    from compare.explain.budget import Budget
+    from compare.read.job import AnyJob, Job
 
 ONE, SEVERAL = "two sweeps in the plane", "several candidates in the plane"
 _STORED = "a reference that is a file"
@@ -98,67 +99,76 @@ def compare(
     raw = kind == ONE and bool(column or reference_column)  # then our files are read as a rig's
     rigs = raw or not no_rigs([*stored, *candidates])
     require_use(context, kind, *([_STORED] if stored else []), *([A_RIG] if rigs else []))
-    from compare.read.job import SpaceJob
-
-    if isinstance(job, SpaceJob) or kind == SPACE:
-        from compare.commands.space import compare_in_space
-
-        known = job if isinstance(job, SpaceJob) else Path(reference)
-        level = number_or_auto("--noise", noise)
-        return compare_in_space(known, candidates[0], out, column, frame, tolerances, level)
     if kind == SEVERAL:
         return _several(reference, job, candidates, out, column, beam, direction)
     given_offset = number_or_auto("--offset", offset)
     given_noise = number_or_auto("--noise", noise)
     with waiting("comparing"):
+        from compare.commands import terminal
+        from compare.commands.pipeline import AnyComparison, AnyReadings, reported
         from compare.comparison import compare as compare_readings
-        from compare.explain.budget import Budget
+        from compare.judge.spatial import SpatialTolerances
         from compare.judge.tolerances import Tolerances
-        from compare.read.assumed import ASSUMED
+        from compare.read.assumed import vibrissa_of
         from compare.read.limits import read_tolerances
         from compare.read.rig import read_measured
-        from compare.read.run_folder import read_stored
 
-        limits = None if tolerances is None else read_tolerances(tolerances, Tolerances)
-        if job is None:
-            path = Path(reference)
-            expected = read_measured(path, reference_beam, reference_column or (), None, direction)
+        limits: Any = None if job is None else job.tolerances
+        if tolerances is not None:
+            in_space: Any = SpatialTolerances
+            limits = read_tolerances(tolerances, in_space if kind == SPACE else Tolerances)
+        expected: AnyReadings
+        measured: AnyReadings
+        if kind == SPACE:
+            from analytic.space import SpatialReadings
+            from compare.read.space_readings import read_space
+
+            expected = job.solve() if job else SpatialReadings.read(Path(reference))
+            held = expected.beam, expected.tangent
+            measured = read_space(candidates[0], *held, column or (), frame)
         else:
-            expected = _closed_form(job)
-            limits = limits or job.tolerances
-        otherwise = None if ASSUMED in expected.provenance else expected.beam
-        measured = read_measured(candidates[0], beam, column or (), otherwise, direction)
-        comparison = compare_readings(
-            expected, measured, limits, offset=given_offset, noise=given_noise
+            expected = (
+                job.solve()
+                if job
+                else read_measured(
+                    Path(reference), reference_beam, reference_column or (), None, direction
+                )
+            )
+            known = vibrissa_of(expected)
+            measured = read_measured(candidates[0], beam, column or (), known, direction)
+        comparison: AnyComparison = compare_readings(
+            expected, measured, limits, offset=given_offset, noise=given_noise, frame=frame
         )
-        known_job = _uncertain(job, uncertainty)
-        if known_job is not None and known_job.uncertainties is not None:
-            numerics = None if budget is None else read_stored(budget, Budget)
+        uncertain = job if uncertainty is None else _uncertain(uncertainty)
+        if uncertain is not None and uncertain.uncertainties is not None:
+            numerics = None if budget is None else _budget(budget)
             comparison = comparison.validated(
-                known_job.case, known_job.uncertainties, budget=numerics
+                uncertain.case, uncertain.uncertainties, budget=numerics
             )
         elif budget is not None:
             raise InputError(
                 "--budget", budget, "beside uncertainties", "add --uncertainty CASE.toml"
             )
-        called = distinct_name(Path(reference)) if job is None else job.case.name
-        default = Path("results") / f"{called}-{distinct_name(candidates[0])}"
-        with output_folder(out or default) as folder:
-            from compare.show.report import write_report
+    called = distinct_name(Path(reference)) if job is None else job.case.name
+    default = Path("results") / f"{called}-{distinct_name(candidates[0])}"
+    with output_folder(out or default) as folder:
+        written = reported(comparison, folder, body=None if job is None else job.body)
+    if kind == SPACE:
+        from analytic.space import reconstruct_space, wrench_complaint
 
-            report = write_report(comparison, folder)
-    from compare.commands import terminal
-
-    terminal.note_rows(expected)
-    terminal.note_rows(measured)
-    terminal.print_comparison(comparison)
-    terminal.print_written(report)
+        complaint = wrench_complaint(reconstruct_space(measured))
+        if complaint is not None:
+            terminal.print_line(f"{measured.source}: {complaint}")
+    else:
+        terminal.note_rows(expected)
+        terminal.note_rows(measured)
+    terminal.print_written(written)
     return AGREES if comparison.agrees else DISAGREES
 
 
 def _several(
     reference: str,
-    job: "Job | None",
+    job: "AnyJob | None",
     files: list[Path],
     out: Path | None,
     column: list[str] | None,
@@ -173,7 +183,7 @@ def _several(
     from analytic import Readings
     from analytic.problem.readings_file import is_ours
     from compare.commands import terminal
-    from compare.read.assumed import ASSUMED
+    from compare.read.assumed import vibrissa_of
     from compare.read.rig import read_measured
     from compare.show.side_by_side import side_by_side
 
@@ -182,8 +192,8 @@ def _several(
             return Readings.read(path)
         return read_measured(path, beam, column or (), otherwise, direction)
 
-    exact = read(Path(reference)) if job is None else _closed_form(job)
-    known = None if ASSUMED in exact.provenance else exact.beam
+    exact: Any = read(Path(reference)) if job is None else job.solve()
+    known = vibrissa_of(exact)
     candidates = {name: read(path, known) for name, path in distinct_names(files).items()}
     with waiting("comparing"):
         found = side_by_side(exact, candidates)
@@ -199,7 +209,7 @@ def _several(
     return AGREES if all(one.agrees for one in found.against.values()) else DISAGREES
 
 
-def _job(reference: str) -> "Job | SpaceJob | None":
+def _job(reference: str) -> "AnyJob | None":
     """The case of that name; None if it is a file of readings."""
     if Path(reference).suffix.lower() in TABLES:
         return None
@@ -208,7 +218,7 @@ def _job(reference: str) -> "Job | SpaceJob | None":
     return load_case(reference)
 
 
-def _kind(job: "Job | SpaceJob | None", stored: list[Path], candidates: list[Path]) -> str:
+def _kind(job: "AnyJob | None", stored: list[Path], candidates: list[Path]) -> str:
     """Whether the sweeps are in space, and of how many candidates."""
     in_space = job is not None and job.kind == SPACE
     if stored:
@@ -223,19 +233,18 @@ def _kind(job: "Job | SpaceJob | None", stored: list[Path], candidates: list[Pat
     return SPACE if in_space else ONE if len(candidates) == 1 else SEVERAL
 
 
-def _closed_form(job: "Job") -> "Readings":
-    from analytic import solve_sweep
-
-    return solve_sweep(job.case)
-
-
-def _uncertain(job: "Job | None", file: Path | None) -> "Job | None":
-    """The case whose inputs are uncertain: the reference itself, or that of a reference file."""
-    if file is None:
-        return job
+def _uncertain(file: Path) -> "Job":
+    """The case whose inputs are uncertain, of a reference that is a file."""
     from compare.read.case import load_job
 
-    found = load_job(str(file))
+    found = load_job(file)
     if found.uncertainties is None:
         raise InputError("--uncertainty", file, "a case file with [uncertainty]", "add the table")
     return found
+
+
+def _budget(file: Path) -> "Budget":
+    from compare.explain.budget import Budget
+    from compare.read.run_folder import read_stored
+
+    return read_stored(file, Budget)

@@ -19,7 +19,7 @@ from compare.commands.compare import compare
 from compare.commands.group import Group
 from compare.commands.inspect import inspect
 from compare.commands.listing import list_what_there_is
-from compare.commands.output import ended_by_signals
+from compare.commands.output import ended_by_signals, warn
 from compare.commands.reconstruct import reconstruct
 from compare.commands.report import report
 from compare.commands.rig import rig
@@ -166,5 +166,5 @@ def _refuse(message: str) -> int:
     line = " ".join(message.split())
     if len(line) > _LONGEST:  # what was given is quoted, however long it is
         line = f"{line[: _LONGEST // 2]} ... {line[-_LONGEST // 2 :]}"
-    typer.echo(f"vibrissa: {line}", err=True)
+    warn(line)
     return BAD_INPUT

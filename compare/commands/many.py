@@ -3,41 +3,44 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from analytic import InputError, Readings
+from analytic import InputError
 from compare.commands import terminal
-from compare.commands.measured_budgets import measured_budget
-from compare.commands.options import AGREES, DISAGREES
+from compare.commands.budget import sweeps_and_budget
+from compare.commands.pipeline import Asked, solved, told
 from compare.read.job import Job
 from compare.read.runs import EngineOutcome
 from compare.show.engines import ManyEngines, write_engines
-from compare.simulate.many import sweep_many
 from engines import Outcome, list_engines
+from engines.apart import sweep_apart
 
 
-def run_many(job: Job, exact: Readings, folder: Path, with_budget: bool) -> int:
-    """Sweep a case with the engines of its job, and write one report of all."""
-    outcomes = swept(job, folder)
+def swept_by_engine(job: Job, folder: Path, asked: Asked) -> bool:
+    """Sweep a case with the engines of its job, and write one report of all; whether all agree."""
+    exact = None if asked.sweep_only else solved(job, folder, asked)
+    outcomes = _swept(job, folder)
     sweeps = {one.engine: one.readings for one in outcomes if one.readings is not None}
-    budget = None
-    if with_budget and "mujoco" in sweeps:
-        budget, _ = measured_budget(job)
+    if exact is None:
+        return all(told(job, x, folder, f"{name}.parquet") for name, x in sweeps.items())
+    budget = sweeps_and_budget(job)[0] if asked.budget and "mujoco" in sweeps else None
     many = ManyEngines.of(job.case, exact, _rows(outcomes), sweeps, budget)
     terminal.print_engines(many)
     for path in write_engines(many, folder):
         terminal.print_written(path)
-    return AGREES if many.agree else DISAGREES
+    return many.agree
 
 
-def swept(job: Job, folder: Path) -> Sequence[Outcome]:
-    """The sweeps of a job's engines, each written to ``ENGINE.parquet``."""
+def _swept(job: Job, folder: Path) -> Sequence[Outcome]:
+    """The sweeps of a job's engines, each written to ``ENGINE.parquet``.
+
+    One after the other: times are compared, and a machine with few cores would lend them unequally.
+    """
+    found = []
     with terminal.progress("engines", len(job.engines)) as advance:
-
-        def keep(one: Outcome) -> None:
-            if one.readings is not None:
-                one.readings.write(folder / f"{one.engine}.parquet")
+        for name in job.engines:
+            found.append(sweep_apart(name, job.case, job.settings, job.timeout))
+            if found[-1].readings is not None:
+                found[-1].readings.write(folder / f"{name}.parquet")
             advance()
-
-        found = sweep_many(job.case, job.settings, job.engines, job.timeout, keep)
     for one in found:
         if one.readings is None:
             terminal.print_line(f"{one.engine}: {one.trouble}")

@@ -8,7 +8,6 @@ from analytic.from_clamp.earlier.methods import NAMES
 from analytic.problem.errors import InputError
 from compare.commands import terminal
 from compare.commands.keep import keep
-from compare.commands.options import AGREES
 from compare.commands.output import output_folder
 from compare.measure.conditions import CONDITIONS, SIMULATED, as_believed, chosen_conditions
 from compare.measure.methods import INFORMED, KNOWN, method_errors
@@ -21,7 +20,7 @@ def compare_methods(
     methods: list[str] | None,
     levels: list[float],
     on: list[str],
-) -> int:
+) -> None:
     """Write the errors of methods under noise, on readings whose contacts are known."""
     names = methods or list(NAMES)
     for one in names:
@@ -50,7 +49,6 @@ def compare_methods(
         title = f"{called} ({truth.source})" if len(tables) == 1 else called
         drawn = picture(tables[0], title) if len(tables) == 1 else side_by_side(every, title)
         keep(folder / "methods.png", drawn)
-    return AGREES
 
 
 def _truths(
@@ -61,7 +59,7 @@ def _truths(
         truth = Readings.read(source)
         yield "exact", truth, truth
         return
-    from compare.commands.engines import simulated
+    from compare.commands.pipeline import simulated
 
     conditions = chosen_conditions(on)
     source.case.require_plain("the table of methods")

@@ -13,7 +13,7 @@ from compare.read.kinds import MODEL, MOTION, PLANE, SPACE
 from mujoco_models.allowed import BeamKind, ObstacleKind
 
 if TYPE_CHECKING:
-    from compare.read.job import Job, SpaceJob
+    from compare.read.job import AnyJob
     from mujoco_models.motion import Motion
 
 AGREES, DISAGREES = 0, 1
@@ -106,7 +106,7 @@ class Changes:
     timestep: float | None = None
     engines: str | None = None
 
-    def load(self, name: str) -> "Job | SpaceJob":
+    def load(self, name: str) -> "AnyJob":
         """The case of that name or TOML file, with the engines that are to sweep it."""
         from compare.read.case import load_case
         from compare.read.job import engines_beside_exact
@@ -116,14 +116,14 @@ class Changes:
             return job
         return replace(job, engines=engines_beside_exact(self.engines))
 
-    def kind(self, job: "Job | SpaceJob") -> str:
+    def kind(self, job: "AnyJob") -> str:
         """What kind of a case it is, with these changes."""
         moved = self.motion or self.speed is not None or self.timestep is not None
         return MOTION if moved and job.kind == PLANE else job.kind
 
-    def made(self, job: "Job | SpaceJob") -> "Job | SpaceJob":
+    def made(self, job: "AnyJob") -> "AnyJob":
         """The job with these changes."""
-        from compare.read.job import SpaceJob
+        from compare.read.job import Job
 
         named: dict[str, Any] = {
             "segments": self.segments,
@@ -132,16 +132,10 @@ class Changes:
             "planar": False if self.spatial else None,
         }
         given = {key: value for key, value in named.items() if value is not None}
-        if isinstance(job, SpaceJob):
-            if self.stations is not None:
-                path = replace(job.case.path, stations=self.stations)
-                job = replace(job, case=replace(job.case, path=path))
-            return replace(job, settings=replace(job.settings, **given))
-        if self.stations is not None:
-            sweep = replace(job.case.sweep, stations=self.stations)
-            job = replace(job, case=replace(job.case, sweep=sweep))
-        settings = replace(job.settings, **given)
-        return replace(job, settings=settings, motion=self._moved(job.motion))
+        stations = job.stations if self.stations is None else self.stations
+        if not isinstance(job, Job):
+            return job.changed(stations, given)
+        return replace(job.changed(stations, given), motion=self._moved(job.motion))
 
     def _moved(self, motion: "Motion | None") -> "Motion | None":
         named: dict[str, Any] = {"speed": self.speed, "timestep": self.timestep}

@@ -10,6 +10,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
 
+import typer
+
 from analytic.problem.errors import InputError
 
 _SIGNALS = {"SIGINT": "interrupted", "SIGTERM": "ended by SIGTERM", "SIGHUP": "ended by SIGHUP"}
@@ -42,6 +44,11 @@ def output_folder(folder: Path) -> Iterator[Path]:
         yield folder
     finally:
         _remove_empty(made)
+
+
+def warn(line: str) -> None:
+    """Say something on standard error, after the command's name."""
+    typer.echo(f"vibrissa: {line}", err=True)
 
 
 def distinct_name(path: Path) -> str:

@@ -11,6 +11,7 @@ from compare.commands.given import A_RIG, no_rigs, require_readings
 from compare.commands.kinds import For, require_use
 from compare.commands.options import (
     AGREES,
+    DISAGREES,
     BeamFile,
     Columns,
     InFrame,
@@ -118,17 +119,23 @@ def reconstruct(
 
             levels = shares("--noise", _LEVELS if noise is None else noise, 3)
             chosen = None if method is None else words(method)
-            code |= compare_methods(source, place, chosen, levels, words(on))
+            compare_methods(source, place, chosen, levels, words(on))
             continue
         share = None if noise is None else shares("--noise", noise, 1)[0]
         folder = place or Path("results") / f"{distinct_name(path)}-reconstructed"
         if kind == SPACE:
-            from compare.commands.space import reconstruct_in_space
+            from compare.commands.space import find_body
+            from compare.read.space_readings import read_space
 
-            code |= reconstruct_in_space(path, known, folder, share or 0.0, column or [], frame)
+            held = (None, None) if known is None else (known.case.beam, known.case.path.tangent)
+            body = None if known is None else known.body
+            found = read_space(path, *held, column or (), frame)
+            with output_folder(folder):
+                if not find_body(found, body, folder, share or 0.0, True):
+                    code = DISAGREES
         else:
             readings = _readings(path, beam, column or [], direction, offset)
-            code |= _in_the_plane(readings, folder, share, friction, words(method or "elastica"))
+            _in_the_plane(readings, folder, share, friction, words(method or "elastica"))
     return code
 
 
@@ -188,7 +195,7 @@ def _in_the_plane(
     noise: float | None,
     friction: str | None,
     methods: list[str],
-) -> int:
+) -> None:
     from analytic import reconstruct as reconstruct_contour
     from analytic import relative_noise, require_beam
     from analytic.from_clamp.reconstruct import doubt
@@ -215,7 +222,6 @@ def _in_the_plane(
             with waiting("drawing"):
                 picture = reconstruction(readings, found)
             keep(folder / f"reconstruction{end}.png", picture)
-    return AGREES
 
 
 def _rubbing(

@@ -7,7 +7,7 @@ import typer
 
 from analytic.problem.errors import InputError
 from compare.commands.options import AGREES, DISAGREES, out_folder
-from compare.commands.output import output_folder
+from compare.commands.output import output_folder, warn
 from compare.commands.waiting import waiting
 
 _MAKE = "make one: vibrissa run CASE --out DIR, or vibrissa study FILE --out DIR"
@@ -30,15 +30,12 @@ def report(
     if not any(folder.glob("*.parquet")) and not any(folder.rglob("*.json")):
         raise InputError("DIR", folder, "the folder of a run, a study, or of runs", _MAKE)
     from compare.commands import terminal
-    from compare.commands.study import warn
-    from compare.comparison import Comparison
+    from compare.commands.pipeline import print_comparison
     from compare.report import write_report
 
     with output_folder(out or folder), waiting("reading"):
         found = write_report(folder, out, warn)
-    if isinstance(found.comparison, Comparison):
-        terminal.print_comparison(found.comparison)
-    elif found.comparison is not None:
-        terminal.print_spatial_comparison(found.comparison, found.parts)
+    if found.comparison is not None:
+        print_comparison(found.comparison, found.parts)
     terminal.print_written(found.path)
     return AGREES if found.comparison is None or found.comparison.agrees else DISAGREES

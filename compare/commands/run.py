@@ -1,13 +1,10 @@
 """The commands ``run`` and ``view``: a case is swept, compared with its closed form, reported."""
 
-from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from analytic.problem.errors import InputError
-from compare.commands.asked import Asked
 from compare.commands.kinds import ANY_CASE, IN_THE_PLANE, For, require_use
 from compare.commands.options import (
     AGREES,
@@ -36,10 +33,6 @@ from compare.commands.options import (
 from compare.commands.output import output_folder
 from compare.commands.waiting import waiting
 from compare.read.kinds import PLANE, SPACE
-
-if TYPE_CHECKING:
-    from analytic import Readings
-    from compare.read.job import Job
 
 _OURS = ("mujoco",)
 
@@ -115,23 +108,13 @@ def run(
 
         check_target(target)
     job = changes.made(loaded)
-    asked = Asked(sweep_only, budget, target, frames if film else None, figures, certified, frame)
-    from compare.read.job import Job
-
     with output_folder(changes.folder(out, job.case.name)) as folder:
-        if not isinstance(job, Job):
-            from compare.commands.space import run_in_space
+        with waiting("loading"):
+            from compare.commands.pipeline import Asked, carry_out
 
-            return run_in_space(job, folder, asked)
-        if not job.engines:
-            return _exact_alone(job, folder, asked)
-        if sweep_only:
-            return _engines_alone(job, folder)
-        if job.engines != _OURS:
-            from compare.commands.many import run_many
-
-            return run_many(job, _solved(job, folder, asked), folder, budget)
-        return _with_mujoco(job, folder, asked)
+        length = frames if film else None
+        asked = Asked(sweep_only, budget, target, length, figures, certified, frame)
+        return AGREES if carry_out(job, folder, asked) else DISAGREES
 
 
 def _done(engines: tuple[str, ...], sweep_only: bool) -> list[str]:
@@ -142,100 +125,6 @@ def _done(engines: tuple[str, ...], sweep_only: bool) -> list[str]:
     if engines and not sweep_only:
         done += [COMPARED] + [WITH_MUJOCO] * (engines == _OURS)
     return done
-
-
-def _solved(job: "Job", folder: Path, asked: Asked) -> "Readings":
-    with waiting("solving"):
-        from analytic import solve_sweep
-
-        exact = solve_sweep(job.case, asked.certified)
-        exact.write(folder / "analytic.parquet")
-    if asked.figures:
-        from analytic import reconstruct
-        from compare.commands.keep import keep
-        from compare.show.figures.geometry import reconstruction
-        from compare.show.figures.paper import paper_figures
-
-        drawn = paper_figures(job.case, exact)
-        if not job.case.beam.varies:
-            drawn["shapes"] = reconstruction(exact, reconstruct(exact))
-        for name, figure in drawn.items():
-            keep(folder / f"{name}.png", figure)
-    return exact
-
-
-def _exact_alone(job: "Job", folder: Path, asked: Asked) -> int:
-    exact = _solved(job, folder, asked)
-    from compare.commands import terminal
-
-    terminal.print_sweep(exact)
-    terminal.print_written(folder / "analytic.parquet")
-    return AGREES if exact.trusted.all() else DISAGREES
-
-
-def _engines_alone(job: "Job", folder: Path) -> int:
-    with waiting("loading"):
-        from compare.commands import terminal
-    if job.engines != _OURS:
-        from compare.commands.many import swept
-
-        for one in swept(job, folder):
-            if one.readings is not None:
-                terminal.print_sweep(one.readings)
-                terminal.print_written(folder / f"{one.engine}.parquet")
-        return AGREES
-    from compare.commands.engines import simulated, sweep_file
-
-    terminal.print_sweep(simulated(job, folder))
-    terminal.print_written(folder / sweep_file(job))
-    return AGREES
-
-
-def _with_mujoco(job: "Job", folder: Path, asked: Asked) -> int:
-    if asked.budget and job.kind == PLANE:
-        from compare.simulate.workers import SWEEPERS, start_server
-
-        start_server(SWEEPERS)  # it imports while we do
-    exact = _solved(job, folder, asked)
-    with waiting("loading MuJoCo"):
-        from compare.commands import budget as split
-        from compare.commands import terminal
-        from compare.commands.engines import simulated, sweep_file, swept_at_rest
-        from compare.comparison import compare
-        from compare.show.animation import write_animation
-        from compare.show.report import write_report
-
-    measured = split.measured(job, asked.target) if asked.budget else None
-    if measured is None:
-        candidate = simulated(job, folder)
-    else:
-        candidate = measured.base
-        candidate.write(folder / sweep_file(job))
-    found = None if measured is None else measured.at_rest
-    comparison = compare(exact, candidate, job.tolerances)
-    if job.uncertainties is not None:
-        with waiting("validating"):
-            comparison = comparison.validated(job.case, job.uncertainties, "candidate", found)
-    film = asked.film(partial(write_animation, exact, candidate), folder)
-    with waiting("drawing"):
-        written = write_report(comparison, folder, found, film)
-    if measured is not None:
-        measured.write(folder)
-    terminal.print_comparison(comparison)
-    if job.kind != PLANE:
-        terminal.print_sweep(candidate)
-    if job.model is not None:
-        from compare.simulate.inspection import faults_of
-
-        for line in faults_of(job.model, job.case.beam):
-            terminal.print_line(line)
-    elif job.motion is not None:
-        rest = swept_at_rest(job)
-        rest.write(folder / "at-rest.parquet")
-        terminal.print_at_rest(compare(exact, rest), compare(rest, candidate))
-    terminal.print_written(written)
-    reached = measured is None or measured.reached
-    return AGREES if comparison.agrees and reached else DISAGREES
 
 
 def view(

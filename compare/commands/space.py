@@ -1,132 +1,25 @@
-"""What the commands do in space: ``run``, ``compare`` and ``reconstruct``."""
+"""What there is in space alone: the body found from the clamp, and the events of a sweep."""
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
-from compare.commands.options import AGREES, DISAGREES
-from compare.commands.output import distinct_name, output_folder
 from compare.commands.waiting import waiting
 
 if TYPE_CHECKING:
-    from analytic.problem.arrays import Floats
     from analytic.space import Body, Cloud, SpatialReadings
-    from compare.align.frames import Frame
-    from compare.commands.asked import Asked
-    from compare.comparison_in_space import SpatialComparison
-    from compare.explain.split_space import Parts
-    from compare.read.job import SpaceJob
-    from compare.show.document import Film
-    from mujoco_models import SpatialSettings
 
 
-def run_in_space(job: "SpaceJob", folder: Path, asked: "Asked") -> int:
-    """Sweep past a body, compare, and find the body from the clamp.
-
-    Writes the readings, the contacts found as a table and as a point cloud with normals, and a
-    picture; with MuJoCo also the comparison and a report.
-    """
-    agrees = True
-    if asked.sweep_only:
-        swept = _mujoco(job, folder)
-    else:
-        swept = _exact(job, folder, asked)
-        if job.engines:
-            comparison = _compared(job, swept, folder, asked)
-            swept, agrees = comparison.candidate, comparison.agrees
-    drawn = bool(job.engines) and not asked.sweep_only  # by the report
-    explained = _points(swept, job.case.body, folder, 0.0, not drawn)
-    diverged = bool((swept.table["status"] == "diverged").any())
-    return AGREES if agrees and explained and not diverged else DISAGREES
-
-
-def reconstruct_in_space(
-    file: Path,
-    known: "SpaceJob | None",
-    folder: Path,
-    noise: float,
-    columns: list[str],
-    frame: "Frame",
-) -> int:
-    """Find the body from a file of readings; the case has the vibrissa, if the file has not."""
-    from compare.read.space_readings import read_space
-
-    if known is None:
-        readings = read_space(file, columns=columns, frame=frame)
-    else:
-        case = known.case
-        readings = read_space(file, case.beam, case.path.tangent, columns, frame)
-    with output_folder(folder):
-        body = None if known is None else known.case.body
-        explained = _points(readings, body, folder, noise, True)
-    diverged = "status" in readings.table and (readings.table["status"] == "diverged").any()
-    return AGREES if explained and not diverged else DISAGREES
-
-
-def _exact(job: "SpaceJob", folder: Path, asked: "Asked") -> "SpatialReadings":
-    from analytic.space import solve_space
-    from compare.commands import terminal
-
-    with waiting("solving"):
-        exact = solve_space(job.case, asked.certified)
-    terminal.print_line(_solved(exact))
-    terminal.print_written(exact.write(folder / "analytic.parquet"))
-    return exact
-
-
-def _mujoco(job: "SpaceJob", folder: Path) -> "SpatialReadings":
-    from compare.commands import terminal
-
-    candidate = _simulated(job, job.settings, folder)
-    terminal.print_line(_solved(candidate))
-    terminal.print_written(candidate.write(folder / f"mujoco-{job.settings.beam}.parquet"))
-    return candidate
-
-
-def _simulated(job: "SpaceJob", settings: "SpatialSettings", folder: Path) -> "SpatialReadings":
-    """MuJoCo's sweep; if it ends early, the stations that there are go into `folder`."""
-    from compare.commands import terminal
-    from compare.simulate.dispatch import simulate
-
-    def keep(part: "SpatialReadings") -> None:
-        terminal.print_written(part.write(folder / f"mujoco-{job.settings.beam}.parquet"))
-
-    with terminal.progress("stations", job.case.path.stations) as advance:
-        return simulate(job.case, settings, advance=advance, keep=keep)
-
-
-def _compared(
-    job: "SpaceJob", exact: "SpatialReadings", folder: Path, asked: "Asked"
-) -> "SpatialComparison":
-    """MuJoCo's sweep, the comparison, its parts and a film if asked for, and the report."""
-    from compare.comparison_in_space import compare_space
-    from compare.explain.split_space import split_space
-    from compare.show.animation.space import write_space_animation
-
-    candidate = _mujoco(job, folder)
-    comparison = compare_space(exact, candidate, job.tolerances, frame=asked.frame)
-    parts = None
-    if asked.budget:
-        parts = split_space(
-            exact, candidate, job.settings, lambda chosen: _simulated(job, chosen, folder)
-        )
-
-    def draw(place: Path, frames: int, advance: Callable[[], None]) -> object:
-        return write_space_animation(exact, candidate, place, job.case.body, frames, advance)
-
-    film = asked.film(draw, folder)
-    write_report(comparison, job.case.body, folder, parts, film)
-    return comparison
-
-
-def _points(
+def find_body(
     readings: "SpatialReadings",
     body: "Body | None",
     folder: Path,
     noise: float,
     with_picture: bool,
 ) -> bool:
-    """Write the contacts found from the clamp; whether a vibrissa can have such readings."""
+    """Write the contacts found from the clamp; whether a vibrissa can have them.
+
+    As a table, as a point cloud with normals and, if wanted, in a picture.
+    """
     from analytic.space import point_cloud, reconstruct_space, wrench_complaint, write_ply
     from compare.commands import terminal
     from compare.commands.keep import keep
@@ -146,71 +39,12 @@ def _points(
         with waiting("drawing"):
             picture = sweep_in_space(SweepScene.of(readings, body))
         keep(folder / "space.png", picture)
-    return complaint is None
+    diverged = "status" in readings.table and bool((readings.table["status"] == "diverged").any())
+    return complaint is None and not diverged
 
 
-def compare_in_space(
-    reference: "SpaceJob | Path",
-    candidate: Path,
-    out: Path | None,
-    column: list[str] | None,
-    frame: Literal["world", "clamp"],
-    tolerances: Path | None,
-    noise: float | Literal["auto"],
-) -> int:
-    """Compare a file of readings in space with another or with a case's closed form."""
-    from compare.commands import terminal
-    from compare.judge.spatial import SpatialTolerances
-    from compare.read.limits import read_tolerances
-    from compare.read.space_readings import read_space
-
-    limits = None if tolerances is None else read_tolerances(tolerances, SpatialTolerances)
-    with waiting("comparing"):
-        from analytic.space import (
-            SpatialReadings,
-            reconstruct_space,
-            solve_space,
-            wrench_complaint,
-        )
-        from compare.comparison_in_space import compare_space
-        from compare.show.document import Film
-
-        body = None
-        if isinstance(reference, Path):
-            exact, called = SpatialReadings.read(reference), distinct_name(reference)
-        else:
-            body, limits = reference.case.body, limits or reference.tolerances
-            exact, called = solve_space(reference.case), reference.case.name
-        measured = read_space(candidate, exact.beam, exact.tangent, column or (), frame)
-        comparison = compare_space(exact, measured, limits, noise=noise, frame=frame)
-    default = Path("results") / f"{called}-{distinct_name(candidate)}"
-    with output_folder(out or default) as folder:
-        film = Film.of(folder) if candidate.parent.resolve() == folder.resolve() else None
-        write_report(comparison, body, folder, film=film)
-        complaint = wrench_complaint(reconstruct_space(measured))
-    if complaint is not None:
-        terminal.print_line(f"{measured.source}: {complaint}")
-    return AGREES if comparison.agrees else DISAGREES
-
-
-def write_report(
-    comparison: "SpatialComparison",
-    body: "Body | Floats | None",
-    folder: Path,
-    parts: "Parts | None" = None,
-    film: "Film | None" = None,
-) -> None:
-    """Write the report and print the verdict."""
-    from compare.commands import terminal
-    from compare.show.report import write_spatial_report
-
-    with waiting("drawing"):
-        written = write_spatial_report(comparison, body, folder, parts, film)
-    terminal.print_spatial_comparison(comparison, parts)
-    terminal.print_written(written)
-
-
-def _solved(readings: "SpatialReadings") -> str:
+def sweep_line(readings: "SpatialReadings") -> str:
+    """What a sweep found: stations, phases, events, the worst residual."""
     table, length = readings.table, readings.beam.length
     counts = table.loc[table["status"] == "ok", "phase"].value_counts()
     parts = [f"{int(readings.trusted.sum())} of {len(table)} stations ok"]

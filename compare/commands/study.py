@@ -8,6 +8,7 @@ import typer
 
 from compare.commands.kinds import For, require_use
 from compare.commands.options import AGREES, DISAGREES, flag, option, out_folder
+from compare.commands.output import warn
 
 HERE, ON_A_CLUSTER, COUNTED = "a study done here", "a study done on a cluster", "a dry run"
 
@@ -81,8 +82,3 @@ def study(
     said = ", ".join(f"{number} {outcome}" for outcome, number in sorted(counts.items()))
     print_line(f"{said or 'nothing to do'}; in {folder}")
     return AGREES if counts.keys() <= {"done"} else DISAGREES
-
-
-def warn(line: str) -> None:
-    """Say on standard error what is wrong with a study's folder."""
-    typer.echo(f"vibrissa: {line}", err=True)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from analytic import InputError, Readings, reconstruct
+from analytic import Beam, InputError, Readings, reconstruct
 from analytic.from_clamp.reconstruct import clearly_loaded
 
 ASSUMED = "vibrissa_assumed"
@@ -41,6 +41,11 @@ def assumed_of(readings: Readings) -> Readings:
             BEAM_WANTED,
         )
     return replace(readings, provenance={**readings.provenance, ASSUMED: "L = EI = 1"})
+
+
+def vibrissa_of(readings: Readings) -> Beam | None:
+    """The vibrissa of a sweep; None if it is assumed."""
+    return None if ASSUMED in readings.provenance else readings.beam
 
 
 def _off_the_contour(found: pd.DataFrame) -> float:

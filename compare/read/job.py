@@ -1,7 +1,7 @@
 """A case, and what is to be done with it."""
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 from analytic import Case
 from compare.judge.spatial import SpatialTolerances
@@ -12,7 +12,8 @@ from mujoco_models.settings import Settings
 from mujoco_models.space.settings import SpatialSettings
 
 if TYPE_CHECKING:
-    from analytic.space import SpatialCase
+    from analytic import Readings
+    from analytic.space import Body, SpatialCase, SpatialReadings
     from compare.validate.stated import Uncertainties
     from mujoco_models.motion import Motion
     from mujoco_models.user_model.names import OwnModel
@@ -53,6 +54,7 @@ class Job:
     model: "OwnModel | None" = None
     engines: tuple[str, ...] = ("mujoco",)
     timeout: float = 600.0
+    body: ClassVar[None] = None
 
     @property
     def kind(self) -> str:
@@ -60,6 +62,23 @@ class Job:
         if self.model is not None:
             return MODEL
         return PLANE if self.motion is None else MOTION
+
+    @property
+    def stations(self) -> int:
+        """How many the sweep has."""
+        return self.case.sweep.stations
+
+    def changed(self, stations: int, numerics: dict[str, Any]) -> "Job":
+        """The same with other stations and numerics."""
+        sweep = replace(self.case.sweep, stations=stations)
+        case = replace(self.case, sweep=sweep)
+        return replace(self, case=case, settings=replace(self.settings, **numerics))
+
+    def solve(self, certified: bool = False) -> "Readings":
+        """The closed form."""
+        from analytic import solve_sweep
+
+        return solve_sweep(self.case, certified)
 
 
 @dataclass(frozen=True)
@@ -82,11 +101,39 @@ class SpaceJob:
     settings: SpatialSettings = field(default_factory=SpatialSettings)
     tolerances: SpatialTolerances = field(default_factory=SpatialTolerances)
     engines: tuple[str, ...] = ("mujoco",)
+    motion: ClassVar[None] = None
+    model: ClassVar[None] = None
+    uncertainties: ClassVar[None] = None
 
     @property
     def kind(self) -> str:
         """In space."""
         return SPACE
+
+    @property
+    def body(self) -> "Body":
+        """What is swept past."""
+        return self.case.body
+
+    @property
+    def stations(self) -> int:
+        """How many the sweep has."""
+        return self.case.path.stations
+
+    def changed(self, stations: int, numerics: dict[str, Any]) -> "SpaceJob":
+        """The same with other stations and numerics."""
+        case = replace(self.case, path=replace(self.case.path, stations=stations))
+        return replace(self, case=case, settings=replace(self.settings, **numerics))
+
+    def solve(self, certified: bool = False) -> "SpatialReadings":
+        """The closed form."""
+        from analytic.space import solve_space
+
+        return solve_space(self.case, certified)
+
+
+AnyJob: TypeAlias = Job | SpaceJob
+"""A case in the plane or in space: both can be solved, swept and compared alike."""
 
 
 def engines_beside_exact(names: str) -> tuple[str, ...]:

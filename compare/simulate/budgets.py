@@ -1,7 +1,7 @@
 """What a disagreement of MuJoCo with the closed form is made of, for any kind of case."""
 
 from collections.abc import Callable, Mapping
-from typing import overload
+from typing import TypeAlias, overload
 
 from analytic import Case, Readings
 from analytic.space import SpatialCase, SpatialReadings, solve_space
@@ -18,6 +18,7 @@ from mujoco_models.settings import Settings
 from mujoco_models.space.settings import SpatialSettings
 from mujoco_models.user_model.names import OwnModel
 
+AnyBudget: TypeAlias = Budget | MotionBudget | Parts
 _SPLIT = 3  # sweeps in space: the one in question, another number of segments, another stiffness
 
 
@@ -48,6 +49,7 @@ def measure_budget(
 ) -> tuple[Parts, Mapping[str, SpatialReadings]]: ...
 
 
+@overload
 def measure_budget(
     case: Case | SpatialCase,
     settings: Settings | SpatialSettings | None = None,
@@ -55,7 +57,17 @@ def measure_budget(
     *,
     motion: Motion | None = None,
     model: OwnModel | None = None,
-) -> tuple[Budget | MotionBudget | Parts, Mapping[str, Readings] | Mapping[str, SpatialReadings]]:
+) -> tuple[AnyBudget, Mapping[str, Readings] | Mapping[str, SpatialReadings]]: ...
+
+
+def measure_budget(
+    case: Case | SpatialCase,
+    settings: Settings | SpatialSettings | None = None,
+    advance: Callable[[], None] = lambda: None,
+    *,
+    motion: Motion | None = None,
+    model: OwnModel | None = None,
+) -> tuple[AnyBudget, Mapping[str, Readings] | Mapping[str, SpatialReadings]]:
     """Measure what MuJoCo's disagreement with the closed form is made of, by controlled changes.
 
     Parameters

@@ -45,6 +45,18 @@ def simulate(
 ) -> SpatialReadings: ...
 
 
+@overload
+def simulate(
+    case: Case | SpatialCase,
+    settings: Settings | SpatialSettings,
+    motion: Motion | None = None,
+    model: OwnModel | None = None,
+    engine: str = MUJOCO,
+    advance: Callable[[], None] = _nothing,
+    keep: Callable[..., None] = _nothing,
+) -> Readings | SpatialReadings: ...
+
+
 def simulate(
     case: Case | SpatialCase,
     settings: Settings | SpatialSettings,

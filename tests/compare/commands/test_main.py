@@ -89,7 +89,7 @@ def test_units(tmp_path):
         (("segments = 10", "segmens = 10"), "did you mean segments?"),
         (("segments = 10", 'beam = "rope"'), "mujoco.beam = 'rope'"),
         (("stations = 30", "stations = 1"), "sweep.stations = 1"),
-        (("[sweep]", '[sweep]\ndirection = "up"'), "sweep.direction = 'up': must be one of 'left'"),
+        (("[sweep]", '[sweep]\ndirection = "up"'), "sweep.direction = 'up': must be 'left'"),
         (("[sweep]", "[sweeep]"), "did you mean sweep?"),
         (("0.4]", "1.4]"), "below 1 L"),
         (("0.4]", "0.001]"), "above the foot line"),
