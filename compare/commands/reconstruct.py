@@ -127,9 +127,10 @@ def reconstruct(
             from compare.commands.space import find_body
             from compare.read.space_readings import read_space
 
-            held = (None, None) if known is None else (known.case.beam, known.case.path.tangent)
             body = None if known is None else known.body
-            found = read_space(path, *held, column or (), frame)
+            held = None if known is None else known.case.beam
+            tangent = None if known is None else known.case.path.tangent
+            found = read_space(path, held, tangent, column or (), frame)
             with output_folder(folder):
                 if not find_body(found, body, folder, share or 0.0, True):
                     code = DISAGREES

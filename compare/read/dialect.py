@@ -9,9 +9,9 @@ import io
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import compress
+from itertools import compress, islice
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple
 
 import pandas as pd
 
@@ -21,44 +21,38 @@ from compare.read.units import is_unit
 
 _LARGEST = 512_000_000  # bytes; 10^6 rows of four columns have 80 MB
 _LOOKED_AT = 200  # lines that decide
-_BLANKS = r"\s+"
 _MISSING = frozenset({"", "nan", "na", "n/a", "null", "none", "#n/a", "-"})
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?|[+-]?(inf|infinity)", re.IGNORECASE)
+_COMMA_IS_POINT = str.maketrans(",.", ".,")
 
 
-@dataclass(frozen=True)
-class Dialect:
+class Dialect(NamedTuple):
     """How a table is written."""
 
-    separator: str  # between cells: ``","``, ``";"``, a tab, or a pattern for blanks
+    separator: str | None  # between cells; None for blanks
     decimal: str  # ``"."`` or ``","``
 
     def cells(self, line: str) -> list[str]:
         """The cells of a line."""
-        parts = line.split() if self.separator == _BLANKS else line.split(self.separator)
-        return [part.strip().strip('"').strip() for part in parts]
+        return [part.strip().strip('"').strip() for part in line.split(self.separator)]
+
+    def pointed(self, text: str) -> str:
+        """A text whose numbers have a decimal point."""
+        return text.translate(_COMMA_IS_POINT) if self.decimal == "," else text
 
     def weight(self, cell: str) -> int:
         """What a cell says for its line being a row of numbers."""
         if cell.lower() in _MISSING:
             return 0
-        written = "?" if self.decimal == "," and "." in cell else self.with_point(cell)
-        return 1 if _NUMBER.fullmatch(written) else -1
-
-    def with_point(self, cell: Any) -> Any:  # noqa: ANN401  # an empty cell is no text
-        """A cell with a decimal point, if it is a number."""
-        if self.decimal == "," and isinstance(cell, str):
-            pointed = cell.replace(",", ".")
-            return pointed if _NUMBER.fullmatch(pointed) else cell
-        return cell
+        return 1 if _NUMBER.fullmatch(self.pointed(cell)) else -1
 
 
-_DIALECTS = tuple(
+_DIALECTS = [
     Dialect(separator, decimal)
-    for separator in (";", "\t", ",", _BLANKS)
+    for separator in (";", "\t", ",", None)
     for decimal in (".", ",")
     if separator != decimal
-)
+]
 
 
 @dataclass(frozen=True)
@@ -69,15 +63,12 @@ class TextTable:
     # are not all numbers are texts.
     frame: pd.DataFrame
     path: Path  # the file
-    text: str  # what is in it
-    first: int  # line of its first row
+    lines: list[int]  # where its rows stand
     units: dict[str, str]  # units of the columns, if a line between the names and the data has them
 
     def place(self, row: int) -> str:
         """Where a row stands."""
-        filled = (number for number, line in _filled(self.text) if number >= self.first)
-        number = next((n for i, n in enumerate(filled) if i == row), self.first + row)
-        return f"line {number} of {self.path}"
+        return f"line {self.lines[row]} of {self.path}"
 
 
 def read_text_table(path: Path) -> TextTable:
@@ -89,7 +80,8 @@ def read_text_table(path: Path) -> TextTable:
         raise InputError(
             "readings file", path, "readable", f"check it ({error.strerror})"
         ) from error
-    head = [line for _, line in _first(text)]
+    looked_at = list(islice(_filled(text), _LOOKED_AT))
+    head = [line for _, line in looked_at]
     dialect = max(_DIALECTS, key=lambda one: _rows(one, head)[1])  # of equals the first
     begin, count = _rows(dialect, head)
     if not count:
@@ -99,15 +91,15 @@ def read_text_table(path: Path) -> TextTable:
             "a table of numbers, its columns named in the line before",
             "export it as CSV",
         )
-    numbered = list(_first(text))
-    first, line = numbered[begin]
-    width = len(dialect.cells(line))
-    before = [line for _, line in numbered[:begin]]
-    units = _units(dialect, before, width)
-    names = _distinct(_names(dialect, before[:-1] if units else before, width))
-    _check_widths(dialect, text, first, width, path)
-    frame = _parsed(dialect, text, first, names, path)
-    return TextTable(frame, path, text, first, dict(zip(names, units, strict=False)))
+    first, width = looked_at[begin][0], len(dialect.cells(head[begin]))
+    units = _units(dialect, head[:begin], width)
+    names = _names(dialect, head[: begin - bool(units)], width)
+    rows = [(number, line) for number, line in _filled(text) if number >= first]
+    if '"' not in text:  # a separator in quotes is none; the parser sees to it
+        _require_width(dialect, rows, width, path)
+    frame = _parsed(dialect, "\n".join(line for _, line in rows), names, path)
+    lines = [number for number, _ in rows]
+    return TextTable(frame, path, lines, dict(zip(names, units, strict=False)))
 
 
 def _decoded(content: bytes) -> str:
@@ -125,13 +117,6 @@ def _filled(text: str) -> Iterator[tuple[int, str]]:
         stripped = line.strip()
         if stripped and not stripped.startswith(("#", "%")):
             yield number, line.rstrip("\r\n")
-
-
-def _first(text: str) -> Iterator[tuple[int, str]]:
-    for index, found in enumerate(_filled(text)):
-        if index == _LOOKED_AT:
-            return
-        yield found
 
 
 def _rows(dialect: Dialect, lines: list[str]) -> tuple[int, int]:
@@ -152,7 +137,11 @@ def _rows(dialect: Dialect, lines: list[str]) -> tuple[int, int]:
 def _names(dialect: Dialect, before: list[str], width: int) -> list[str]:
     """The columns' names: the last line before the data, if it has as many cells."""
     named = _cells(dialect, before[-1], width) if before else []
-    return [name or str(i) for i, name in enumerate(named, 1)] or [str(i + 1) for i in range(width)]
+    names = [name or str(i) for i, name in enumerate(named or [""] * width, 1)]
+    return [  # the second of equal ones with its number
+        name if names.index(name) == i else f"{name}.{names[:i].count(name)}"
+        for i, name in enumerate(names)
+    ]
 
 
 def _cells(dialect: Dialect, line: str, width: int) -> list[str]:
@@ -172,28 +161,20 @@ def _units(dialect: Dialect, before: list[str], width: int) -> list[str]:
     return units if is_row else []
 
 
-def _check_widths(dialect: Dialect, text: str, first: int, width: int, path: Path) -> None:
+def _require_width(dialect: Dialect, rows: list[tuple[int, str]], width: int, path: Path) -> None:
     """Refuse lines with too many or too few cells: their numbers may be another column's."""
-    if '"' in text:  # a separator in quotes is none; the parser sees to it
-        return
-    for number, line in _filled(text):
-        if dialect.separator == _BLANKS:
-            found = len(line.split())
-        else:
-            found = line.count(dialect.separator) + 1
-        if number >= first and found != width:
-            raise InputError(
-                f"line {number} of {path}", f"{found} cells", f"{width}, as line {first}", "fix it"
-            )
+    for number, line in rows:
+        found = len(line.split(dialect.separator))
+        if found != width:
+            where, allowed = f"line {number} of {path}", f"{width}, as line {rows[0][0]}"
+            raise InputError(where, f"{found} cells", allowed, "fix it")
 
 
-def _parsed(dialect: Dialect, text: str, first: int, names: list[str], path: Path) -> pd.DataFrame:
-    rows = "\n".join(line for number, line in _filled(text) if number >= first)
+def _parsed(dialect: Dialect, rows: str, names: list[str], path: Path) -> pd.DataFrame:
     try:
         frame = pd.read_csv(
-            io.StringIO(rows),
-            sep=dialect.separator,
-            decimal=dialect.decimal,
+            io.StringIO(dialect.pointed(rows)),
+            sep=dialect.separator or r"\s+",
             header=None,
             names=range(len(names)),
             skipinitialspace=True,
@@ -201,22 +182,8 @@ def _parsed(dialect: Dialect, text: str, first: int, names: list[str], path: Pat
             low_memory=False,
         )
     except (ValueError, pd.errors.ParserError) as error:
+        why = " ".join(str(error).split())
         raise InputError(
-            f"readings file {path}",
-            "unreadable",
-            "a table of numbers",
-            " ".join(str(error).split()),
+            f"readings file {path}", "unreadable", "a table of numbers", why
         ) from error
-    if dialect.decimal == ",":  # a column with a text in it is left to the next reader
-        for name, column in frame.items():
-            if not pd.api.types.is_numeric_dtype(column):
-                frame[name] = [dialect.with_point(cell) for cell in column]
     return frame.set_axis(names, axis=1)
-
-
-def _distinct(names: list[str]) -> list[str]:
-    """The names, the second of equal ones with its number."""
-    return [
-        name if names.index(name) == i else f"{name}.{names[:i].count(name)}"
-        for i, name in enumerate(names)
-    ]
