@@ -28,9 +28,7 @@ def nothing_is_ignored():
 @pytest.fixture
 def in_turn(monkeypatch):
     """Budgets are swept in this process."""
-    for module in ("controlled", "moving"):
-        monkeypatch.setattr(f"compare.simulate.{module}.Workers", InTurn)
-    monkeypatch.setattr("compare.simulate.workers.start_server", lambda preload: None)
+    monkeypatch.setattr("compare.simulate.workers.Workers", InTurn)
 
 
 @cache

@@ -119,16 +119,6 @@ def _of_a_case(case: str) -> "Inspection":
     job = load_case(case)
     if not isinstance(job, Job) or job.model is None:
         raise InputError("MODEL", case, "a model, or a case with one", "or ask for --float32")
-    from compare.simulate.inspection import Inspection
-    from mujoco_models import inspect_model
+    from compare.simulate.inspection import Inspection, measured_beam
 
-    own = job.model
-    found = inspect_model(
-        own.file,
-        foot=own.foot,
-        force=own.force,
-        torque=own.torque,
-        geoms=own.geoms,
-        site=own.site,
-    )
-    return Inspection(found, job.case.beam)
+    return Inspection(measured_beam(job.model), job.case.beam)

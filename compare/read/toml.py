@@ -15,14 +15,8 @@ Place: TypeAlias = Callable[[Sequence[str]], str]
 """What an error calls a key: where it is, and its name."""
 
 _LARGEST = 2_000_000  # bytes: some 50,000 points; what is slower to parse than to compute
-_DEEPEST = 32  # tables in tables
-_LONGEST = 10_000  # keys of one table
 _SHOWN = 60  # characters of a key
 _WIDEST = 1024  # bits of an integer; beyond that it fits no float, and Python may not print it
-
-_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
-_DOTTED = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_DEEPEST}}}")
-"""A key in more tables than there may be."""
 
 # What may hold a newline or a bracket that ends no statement, else brackets and newlines.
 _TOKEN = re.compile(
@@ -50,9 +44,8 @@ class TomlFile:
         regular_file(path, what, _LARGEST)
         try:
             text = path.read_bytes().decode("utf-8")
-            if _DOTTED.search(text):
-                raise RecursionError  # the parser takes memory as the square of the depth
             tables = tomllib.loads(text)
+            wide = list(_wide_integers(tables, ()))
         except OSError as error:
             reason = error.strerror or type(error).__name__
             raise InputError(what, path, "readable", f"check the path ({reason})") from error
@@ -61,14 +54,11 @@ class TomlFile:
                 what, path, "text in UTF-8", f"save it as UTF-8 ({error.reason})"
             ) from error
         except RecursionError as error:
-            raise InputError(
-                what, path, f"at most {_DEEPEST} levels deep", "take brackets away"
-            ) from error
+            raise InputError(what, path, "fewer levels deep", "take brackets away") from error
         except ValueError as error:  # tomllib's own, and an integer of thousands of digits
             raise InputError(what, path, "valid TOML", f"correct it: {error}") from error
-        _check_extent(tables, what, path)
         file = cls(path, text.replace("\r\n", "\n"), tables)
-        for keys, bits in _wide_integers(tables, ()):
+        for keys, bits in wide:
             raise InputError(
                 file.place(keys), f"an integer of {bits} bits", "less than 1e308", "correct it"
             )
@@ -155,26 +145,3 @@ def _wide_integers(value: object, keys: tuple[str, ...]) -> Iterator[tuple[tuple
     elif isinstance(value, list):
         for inner in value:
             yield from _wide_integers(inner, keys)
-
-
-def _check_extent(tables: dict[str, Any], what: str, path: Path) -> None:
-    """Refuse tables that nobody wrote by hand; whoever walks through them later may recurse."""
-    level: list[Any] = [tables]
-    for _ in range(_DEEPEST):
-        for table in level:
-            if isinstance(table, dict) and len(table) > _LONGEST:
-                raise InputError(
-                    f"{what} {path}",
-                    f"with a table of {len(table)} keys",
-                    f"at most {_LONGEST} keys a table",
-                    "is it the right file?",
-                )
-        level = [
-            inner
-            for table in level
-            for inner in (table.values() if isinstance(table, dict) else table)
-            if isinstance(inner, dict | list)
-        ]
-        if not level:
-            return
-    raise InputError(what, path, f"at most {_DEEPEST} levels deep", "take brackets away")

@@ -1,15 +1,13 @@
 """The budget of a case: all the sweeps that it takes, on all cores."""
 
-from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import BrokenExecutor
-from contextlib import contextmanager
+from collections.abc import Callable
 
 from analytic import Case, InputError, Readings, solve_sweep
 from analytic.problem.mirror import facing
 from compare.explain.budget import Budget, budget
 from compare.explain.changes import controlled_changes
 from compare.explain.variations import on_polygon, variations
-from compare.simulate.workers import SWEEPERS, Workers, available_cores
+from compare.simulate.workers import SWEEPERS, running
 from mujoco_models import simulate_sweep
 from mujoco_models.settings import Settings
 
@@ -20,51 +18,19 @@ def budget_at_rest(
     """The budget of a sweep at rest in the plane, and its sweeps."""
     smooth = has_primitive(case)
     changes = controlled_changes(settings, smooth, has_corners(case, settings))
-    with _sweeping(case, changes, advance) as await_all:
+    # Equal settings are swept once, and the longest first, so that no core waits for it at the end.
+    # As a sweep to the left: in a mirror it is turned here, where tables are loaded.
+    longest_first = sorted(set(changes.values()), key=lambda one: -one.segments)
+    sweeps = {one: (simulate_sweep, _leftward(case), one) for one in longest_first}
+    with running(sweeps, advance, SWEEPERS) as swept:
         exact, varied, faceted = solve_sweep(case), variations(case), None
         if smooth and settings.obstacle == "mesh":
             past_facets = on_polygon(case, settings.contour_points)
             # A check, which must not cost the budget the stations where it has no solution.
             if (past_facets.table["status"] != "diverged").all():
                 faceted = past_facets
-        runs = await_all()
+        runs = {name: facing(case, swept[one].result()) for name, one in changes.items()}
     return budget(exact, runs, varied, faceted), runs
-
-
-def simulate_all(
-    case: Case, changes: Mapping[str, Settings], advance: Callable[[], None] = lambda: None
-) -> dict[str, Readings]:
-    """Sweep one case with many settings, a process each; equal settings are swept once."""
-    with _sweeping(case, changes, advance) as await_all:
-        return await_all()
-
-
-@contextmanager
-def _sweeping(
-    case: Case, changes: Mapping[str, Settings], advance: Callable[[], None]
-) -> Iterator[Callable[[], dict[str, Readings]]]:
-    """Begin all sweeps; what it yields waits for them."""
-    # The longest first, so that no core waits for it at the end.
-    longest_first = sorted(set(changes.values()), key=lambda s: -s.segments)
-    with Workers(min(len(longest_first), available_cores()), SWEEPERS) as pool:
-        sweeps = {
-            # As a sweep to the left: in a mirror it is turned here, where tables are loaded.
-            settings: pool.submit(simulate_sweep, _leftward(case), settings)
-            for settings in longest_first
-        }
-        for sweep in sweeps.values():
-            sweep.add_done_callback(lambda _: advance())
-
-        def await_all() -> dict[str, Readings]:
-            try:
-                return {
-                    name: facing(case, sweeps[settings].result())
-                    for name, settings in changes.items()
-                }
-            except BrokenExecutor as error:
-                raise MemoryError("the system ended a worker process") from error
-
-        yield await_all
 
 
 def has_primitive(case: Case) -> bool:

@@ -89,14 +89,13 @@ class Inspection:
         }
 
 
+def measured_beam(model: OwnModel) -> MeasuredBeam:
+    """What the vibrissa of a user's model is."""
+    names = {name: getattr(model, name) for name in ("foot", "force", "torque", "geoms", "site")}
+    return inspect_model(model.file, **names)
+
+
 def faults_of(model: OwnModel, stated: Beam) -> list[str]:
     """What is wrong with a user's model."""
-    found = inspect_model(
-        model.file,
-        foot=model.foot,
-        force=model.force,
-        torque=model.torque,
-        geoms=model.geoms,
-        site=model.site,
-    )
-    return [str(one) for one in Inspection(found, stated).remarks if one.kind == "fault"]
+    inspection = Inspection(measured_beam(model), stated)
+    return [str(one) for one in inspection.remarks if one.kind == "fault"]

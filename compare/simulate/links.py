@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import root
 
 from analytic.problem.arrays import Floats
 from compare.measure.cantilever import tip_of
@@ -12,9 +13,8 @@ from mujoco_models.inspect.measured import MeasuredBeam
 
 _FEWEST = 4  # joints: two of them are ends, and the others have to be alike
 _ALIKE = 1e-3  # relative; of the lengths of links that are one length
-_ITERATIONS = 100
-_LARGEST_ROTATION = 0.2  # rad, of a joint in an iteration
-_AT_REST = 1e-12  # rad
+_AT_REST = 1e-12  # relative change of the rotations
+_BALANCED = 1e-10  # rad
 
 
 @dataclass(frozen=True)
@@ -88,19 +88,14 @@ def tips_of_chain(places: Floats, compliances: Floats, loads: Floats) -> Floats:
     return np.array(tips)
 
 
-def _at_rest(lengths: Floats, compliances: Floats, load: float, rotations: Floats) -> Floats:
-    """Rotations of the joints, by Newton's method; a joint's moment is the load times its lever."""
-    n = np.arange(len(rotations))
-    outer = np.maximum(n[:, None], n)
-    for _ in range(_ITERATIONS):
-        slopes = np.cumsum(rotations)
-        levers = np.cumsum((lengths * np.cos(slopes))[::-1])[::-1]
-        asides = np.cumsum((lengths * np.sin(slopes))[::-1])[::-1]
-        off = load * compliances * levers - rotations
-        if np.abs(off).max() < _AT_REST:
-            return rotations
-        # A joint's lever falls with a rotation by what the links beyond both are aside.
-        slope = np.eye(len(rotations)) + load * compliances[:, None] * asides[outer]
-        step = np.linalg.solve(slope, off)
-        rotations = rotations + step * min(1.0, _LARGEST_ROTATION / np.abs(step).max())
-    raise ArithmeticError(f"a chain of {len(rotations)} links does not come to rest")
+def _at_rest(lengths: Floats, compliances: Floats, load: float, start: Floats) -> Floats:
+    """Rotations of the joints; a joint's moment is the load times its lever."""
+
+    def off(rotations: Floats) -> Floats:
+        levers = np.cumsum((lengths * np.cos(np.cumsum(rotations)))[::-1])[::-1]
+        return np.asarray(load * compliances * levers - rotations)
+
+    found = root(off, start, tol=_AT_REST)
+    if np.abs(found.fun).max() > _BALANCED:
+        raise ArithmeticError(f"a chain of {len(start)} links does not come to rest")
+    return np.asarray(found.x)

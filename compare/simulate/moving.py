@@ -1,7 +1,7 @@
 """The budget of a sweep in motion: all the sweeps that it takes, on all cores."""
 
 from collections.abc import Callable, Mapping
-from concurrent.futures import BrokenExecutor
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -14,9 +14,10 @@ from compare.explain.motion import (
     slower_and_finer_of_model,
 )
 from compare.simulate.dispatch import simulate
+from compare.simulate.inspection import measured_beam
 from compare.simulate.means import sweep_as_means
 from compare.simulate.rigidity import by_its_clamp
-from compare.simulate.workers import Workers, available_cores
+from compare.simulate.workers import running
 from mujoco_models.errors import DivergedError
 from mujoco_models.inspect.measured import MeasuredBeam
 from mujoco_models.motion import Motion
@@ -53,16 +54,7 @@ def budget_of_model(
     ``at rest`` is of our chain with as many links. ``beam`` is the closed form of the vibrissa that
     was measured less that of the one that is stated.
     """
-    from mujoco_models import inspect_model  # MuJoCo is imported only where it is used
-
-    found = inspect_model(
-        model.file,
-        foot=model.foot,
-        force=model.force,
-        torque=model.torque,
-        geoms=model.geoms,
-        site=model.site,
-    )
+    found = measured_beam(model)
     # What is soft about the model's contacts is a part of its own.
     at_rest = replace(settings, segments=max(len(found.joints), 2))
     of_model = slower_and_finer_of_model(model, motion)
@@ -96,16 +88,10 @@ def _as_measured(case: Case, found: MeasuredBeam) -> Case:
 def _swept(
     sweeps: Mapping[str, tuple[Any, ...]], advance: Callable[[], None]
 ) -> dict[str, Readings]:
-    """All sweeps, each a function and what it takes, but for optional ones that diverge."""
-    with Workers(min(len(sweeps), available_cores())) as pool:
-        running = {name: pool.submit(*sweep) for name, sweep in sweeps.items()}
-        for sweep in running.values():
-            sweep.add_done_callback(lambda _: advance())
-        try:
-            diverged = [
-                name for name in OPTIONAL
-                if name in running and isinstance(running[name].exception(), DivergedError)
-            ]  # fmt: skip
-            return {n: sweep.result() for n, sweep in running.items() if n not in diverged}
-        except BrokenExecutor as error:
-            raise MemoryError("the system ended a worker process") from error
+    """All sweeps, but for optional ones that diverge."""
+    with running(sweeps, advance) as swept:
+        runs = {}
+        for name, sweep in swept.items():
+            with suppress(*[DivergedError] * (name in OPTIONAL)):
+                runs[name] = sweep.result()
+        return runs

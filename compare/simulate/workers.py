@@ -1,12 +1,12 @@
 """Worker processes: they start, or an error says why not, and end with their leader."""
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor
 from contextlib import contextmanager
 from multiprocessing import current_process, get_all_start_methods, get_context, parent_process
 from threading import Thread
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pebble import ProcessExpired, ProcessFuture, ProcessPool
 
@@ -17,6 +17,7 @@ SWEEPERS = ("mujoco_models.sweep.sweep", "mujoco_models.simulate")
 _START = 120.0  # s; a worker is there within one or two, on a crowded machine within ten
 
 T = TypeVar("T")
+K = TypeVar("K", bound=Hashable)
 
 
 def available_cores() -> int:
@@ -36,9 +37,11 @@ class Workers:
         if getattr(current_process(), "_inheriting", False):
             # A worker reads its leader's script first, and that would start workers without end.
             raise SystemExit(1)
-        server = preload and _has_server()
+        server = preload and "forkserver" in get_all_start_methods()
         if server:
-            start_server(preload)
+            from multiprocessing import forkserver
+
+            forkserver.set_forkserver_preload(list(preload))
         context = get_context("forkserver" if server else "spawn")
         self._pool = ProcessPool(count, initializer=_end_with_leader, context=context)
         try:
@@ -78,21 +81,24 @@ class Workers:
             self.end()
 
 
-def start_server(preload: tuple[str, ...]) -> None:
-    """Let a server import what its workers share, while their leader goes on.
+@contextmanager
+def running(
+    tasks: Mapping[K, tuple[Any, ...]],
+    advance: Callable[[], None],
+    preload: tuple[str, ...] = (),
+) -> Iterator[Mapping[K, ProcessFuture[Any]]]:
+    """Tasks that workers do while their leader goes on, each a function and what it takes.
 
-    Does nothing where there is no such server, or if it runs already.
+    `advance` is called after each.
     """
-    if _has_server():
-        from multiprocessing import forkserver
-
-        forkserver.set_forkserver_preload(list(preload))
-        with _nothing_from_here():
-            forkserver.ensure_running()
-
-
-def _has_server() -> bool:
-    return "forkserver" in get_all_start_methods()
+    with Workers(min(len(tasks), available_cores()), preload) as pool:
+        found = {name: pool.submit(*task) for name, task in tasks.items()}
+        for one in found.values():
+            one.add_done_callback(lambda _: advance())
+        try:
+            yield found
+        except BrokenExecutor as error:
+            raise MemoryError("the system ended a worker process") from error
 
 
 @contextmanager

@@ -140,7 +140,7 @@ def _station(case: Case, settings: Settings) -> Figure:
 
 
 def _budget(case: Case, settings: Settings) -> None:
-    with patch("compare.simulate.controlled.Workers", InTurn):  # whose time is not lost sight of
+    with patch("compare.simulate.workers.Workers", InTurn):  # whose time is not lost sight of
         measure_budget(case, settings)
 
 

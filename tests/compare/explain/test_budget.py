@@ -24,7 +24,7 @@ from compare.explain.budget import Budget, budget
 from compare.explain.changes import controlled_changes
 from compare.explain.variations import on_polygon, variations
 from compare.simulate.budgets import measure_budget
-from compare.simulate.controlled import has_corners, has_primitive, simulate_all
+from compare.simulate.controlled import has_corners, has_primitive
 from mujoco_models import Settings, simulate_sweep
 
 pytestmark = pytest.mark.usefixtures("in_turn")
@@ -96,7 +96,7 @@ def test_the_limit_is_the_exact_solution_on_the_same_polygon(case):
     points = 12_800
     sweeps = {n: Settings(segments=n, contour_points=points) for n in (80, 160)}
     allowed = 1.2e-4 if case.name == "two-circles" else 1e-4
-    runs = simulate_all(case, {str(n): settings for n, settings in sweeps.items()})
+    runs = {str(n): simulate_sweep(case, settings) for n, settings in sweeps.items()}
     exact = on_polygon(case, points)
     kept = exact.trusted & (exact.table["phase"] != "free").to_numpy()
     kept &= case.foot_x - exact.snap_off > 5e-3 * np.ptp(case.foot_x)

@@ -159,17 +159,6 @@ def test_a_case_with_units_remembers_that_it_is_in_si(tmp_path):
     assert not load_job(str(path)).case.beam.si
 
 
-def test_a_key_in_many_tables_takes_no_memory(tmp_path):
-    """The parser took 6 GB for it."""
-    for part in ("a", '"a b"', "'a'"):
-        key = " . ".join([part] * 100_000)
-        begin = time.process_time()
-        assert "at most 32 levels deep" in refused(tmp_path, f"{key} = 1\n")
-        assert "at most 32 levels deep" in refused(tmp_path, f"[{key}]\n")
-        assert time.process_time() - begin < 5
-    assert "levels" not in refused(tmp_path, "x" * 1_000_000 + " = 1\n" + "# 1.2.3, " * 50_000)
-
-
 def test_a_mesh_without_a_scale_beside_units(tmp_path):
     """Its numbers are metres: far out of reach if they were millimetres."""
     import trimesh
