@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from pydantic import Field, PlainValidator
 
 from analytic import Beam, InputError
-from compare.read.quantities import Dimension, InSI, Table
+from compare.read.quantities import PLAIN, Dimension, InSI, Table
 from compare.read.toml import Place
 from mujoco_models.motion import ConeKind, IntegratorKind, Motion, SolverKind
 
@@ -17,10 +17,10 @@ _FIRST_ROOT = 1.8751040687119611  # of cos(x) cosh(x) = -1: the first vibration 
 _OF_A_MODEL = ("speed", "ramp", "average", "cutoff", "contact_stiffness")
 
 
-Speed = Annotated[float, PlainValidator(Dimension("m/s"))]
-Time = Annotated[float, PlainValidator(Dimension("s"))]
-Rate = Annotated[float, PlainValidator(Dimension("1/s"))]
-Density = Annotated[float, PlainValidator(Dimension("kg/m^3"))]
+Speed = Annotated[float, PlainValidator(Dimension("m/s")), PLAIN]
+Time = Annotated[float, PlainValidator(Dimension("s")), PLAIN]
+Rate = Annotated[float, PlainValidator(Dimension("1/s")), PLAIN]
+Density = Annotated[float, PlainValidator(Dimension("kg/m^3")), PLAIN]
 Contact = Annotated[tuple[Time, float], Field(strict=False)]
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Annotated, Any, TypeVar, get_args
+from typing import Annotated, Any, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -10,6 +10,8 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    PlainSerializer,
+    PlainValidator,
     ValidationError,
     model_validator,
 )
@@ -41,9 +43,13 @@ class InSI(float):
     """A number that was given with a unit."""
 
 
+class Bare(float):
+    """A number that could have been given with a unit."""
+
+
 @dataclass(frozen=True)
 class Dimension:
-    """A validator: a number, or a text with a unit of `unit`, which becomes SI and `InSI`."""
+    """A validator: a number, or a text with a unit of `unit`, which becomes SI."""
 
     unit: str
 
@@ -51,7 +57,7 @@ class Dimension:
         """The number."""
         try:
             if isinstance(value, int | float) and not isinstance(value, bool):
-                return float(value)
+                return Bare(value)
             if isinstance(value, str):
                 return InSI(in_si(value, self.unit))
         except (InputError, OverflowError):
@@ -100,12 +106,18 @@ class Several:
         raise PydanticCustomError("several", "{count} {what}, [{names}]", context)
 
 
-Length = Annotated[float, BeforeValidator(Dimension("m"))]
-PerLength = Annotated[float, BeforeValidator(Dimension("1/m"))]
+def _plain(value: Any) -> Any:  # noqa: ANN401  # a quantity, or pairs of them
+    """The same as numbers that do not remember how they were given."""
+    return tuple(map(_plain, value)) if isinstance(value, tuple) else float(value)
+
+
+PLAIN = PlainSerializer(_plain, when_used="unless-none")
+Length = Annotated[float, PlainValidator(Dimension("m")), PLAIN]
+PerLength = Annotated[float, PlainValidator(Dimension("1/m")), PLAIN]
 Pairs = tuple[tuple[float, float], ...]
-RigidityAlong = Annotated[float | Pairs, BeforeValidator(Varying("N m^2"))]
-CurvatureAlong = Annotated[float | Pairs, BeforeValidator(Varying("1/m"))]
-RotationalStiffness = Annotated[float, BeforeValidator(Dimension("N m/rad"))]
+RigidityAlong = Annotated[float | Pairs, PlainValidator(Varying("N m^2")), PLAIN]
+CurvatureAlong = Annotated[float | Pairs, PlainValidator(Varying("1/m")), PLAIN]
+RotationalStiffness = Annotated[float, PlainValidator(Dimension("N m/rad")), PLAIN]
 Two = Annotated[tuple[Length, Length], Field(strict=False)]
 Point = Annotated[Two, BeforeValidator(Several("x, y"))]
 SemiAxes = Annotated[Two, BeforeValidator(Several("along x, along y"))]
@@ -128,7 +140,9 @@ FileName = Annotated[str, AfterValidator(plain_name)]
 class Table(BaseModel):
     """A table without unknown keys, whose numbers are numbers: no text, no boolean."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, defer_build=True)
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, strict=True, defer_build=True, validate_default=True
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -141,22 +155,6 @@ class Table(BaseModel):
         """Keys that there may be."""
         return [field.alias or name for name, field in cls.model_fields.items()]
 
-    @classmethod
-    def quantities(cls) -> list[str]:
-        """Keys that may have a unit."""
-        return [
-            name
-            for name, field in cls.model_fields.items()
-            if _has_dimension([*field.metadata, field.annotation])
-        ]
-
-
-def _has_dimension(parts: list[Any]) -> bool:
-    return any(
-        isinstance(getattr(part, "func", None), Dimension) or _has_dimension(list(get_args(part)))
-        for part in parts
-    )
-
 
 _Schema = TypeVar("_Schema", bound=Table)
 
@@ -167,49 +165,39 @@ def validated(schema: type[_Schema], tables: Mapping[str, Any], place: Place) ->
         file = schema.model_validate(tables)
     except ValidationError as error:
         raise complaint(error, place) from error
-    _check_units(file, tables, place)
+    _require_units(file, place)
     return file
 
 
-def _check_units(file: Table, tables: Mapping[str, Any], place: Place) -> None:
+def _require_units(file: Table, place: Place) -> None:
     """Refuse dimensions with and without units side by side, also those left to a default."""
     bare: list[list[str]] = []
     united: list[list[str]] = []
     left_out: list[list[str]] = []
-    for name in filter(type(file).model_fields.__contains__, _WITH_UNITS):
-        if getattr(file, name) is None:
-            continue
-        given, schema = tables.get(name, {}), type(getattr(file, name))
+    for name in _WITH_UNITS:
+        table: Any = getattr(file, name, None)
         # A shape whose scale has a unit is itself in units of the scale.
-        relative = name == "profile" and isinstance(given.get("scale"), str)
-        for key in schema.quantities():
-            number = key != "scale" and not relative
-            if key not in given:  # a scale of 1 is a factor
-                default = schema.model_fields[key].default
-                left_out += [[name, key]] if number and any(_numbers(default)) else []
-                continue
-            for value in _numbers(given[key]):
-                if isinstance(value, str):
+        relative = name == "profile" and isinstance(getattr(table, "scale", None), InSI)
+        for key, value in table or ():
+            for number in _numbers(value):
+                if isinstance(number, InSI):
                     united.append([name, key])
-                elif value != 0 and (number or key == "scale"):  # 0 needs no unit
+                elif not (isinstance(number, Bare) and number):  # 0 needs no unit
+                    continue
+                elif key in table.model_fields_set and (key == "scale" or not relative):
                     bare.append([name, key])
-    if bare and united:
-        raise InputError(
-            place(bare[0]),
-            "without a unit",
-            f"given with a unit, as {united[0][-1]} is",
-            "write all dimensions with units, or none",
-        )
-    if left_out and united:
-        raise InputError(
-            place(left_out[0]),
-            "missing",
-            f"given with a unit, as {united[0][-1]} is",
-            "add it: its default is a number without a unit",
-        )
+                elif key != "scale" and not relative:  # a scale of 1 is a factor
+                    left_out.append([name, key])
+    for wrong, given, remedy in (
+        (bare, "without a unit", "write all dimensions with units, or none"),
+        (left_out, "missing", "add it: its default is a number without a unit"),
+    ):
+        if wrong and united:
+            allowed = f"given with a unit, as {united[0][-1]} is"
+            raise InputError(place(wrong[0]), given, allowed, remedy)
 
 
-def _numbers(value: Any) -> list[Any]:  # noqa: ANN401
+def _numbers(value: object) -> list[object]:
     """The numbers of a quantity, a pair of them, or a list of pairs."""
     if isinstance(value, list | tuple):
         return [number for part in value for number in _numbers(part)]

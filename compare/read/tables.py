@@ -2,14 +2,9 @@
 
 import math
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, Self
+from typing import Annotated, Any, NamedTuple
 
-from pydantic import (
-    Field,
-    ModelWrapValidatorHandler,
-    PrivateAttr,
-    model_validator,
-)
+from pydantic import Field
 
 from analytic import (
     Beam,
@@ -29,6 +24,7 @@ from compare.read.profiles import Drawn, MeshTable
 from compare.read.quantities import (
     CurvatureAlong,
     FileName,
+    InSI,
     Length,
     RigidityAlong,
     RotationalStiffness,
@@ -52,14 +48,6 @@ class BeamTable(Table):
     radius: Length | None = None
     tip_radius: Length | None = None
     natural_curvature: CurvatureAlong = 0.0
-    _si: bool = PrivateAttr(default=False)
-
-    @model_validator(mode="wrap")
-    @classmethod
-    def _remember_units(cls, given: object, validated: ModelWrapValidatorHandler[Self]) -> Self:
-        table = validated(given)
-        table._si = isinstance(given, dict) and isinstance(given.get("length"), str)
-        return table
 
     def build(self) -> Beam:
         """The vibrissa; its radius is by default the same share of its length as in `Beam()`."""
@@ -70,7 +58,7 @@ class BeamTable(Table):
             radius,
             tip_radius=self.tip_radius,
             natural_curvature=self.natural_curvature,
-            si=self._si,
+            si=isinstance(self.length, InSI),
         )
 
 
