@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import TypeAlias, get_args
 
@@ -250,20 +251,16 @@ def _sweeps(readings: Readings) -> list[tuple[Direction, Readings]]:
     """The sweeps that rows in the order of time make up."""
     foot_x = readings.values("foot_x")
     turns = _turns(foot_x)
-    travel = np.abs(np.diff(foot_x[turns]))
-    if (travel >= _WHOLE_SWEEP * np.ptp(foot_x)).all():
-        # The row at a turn belongs to the sweep that ends there.
-        begins = [0, *(turn + 1 for turn in turns[1:-1])]
-        ends = [*(turn + 1 for turn in turns[1:-1]), len(foot_x)]
-        parts = [
-            replace(readings, table=readings.table.iloc[begin:end].reset_index(drop=True))
-            for begin, end in zip(begins, ends, strict=True)
-        ]
-        ways: list[Direction] = ["left" if foot_x[b] > foot_x[e - 1] else "right"
-                                 for b, e in zip(begins, ends, strict=True)]  # fmt: skip
-    else:  # in no order: only the side to which the vibrissa bends shows which way it was swept
-        parts, ways = [readings], ["right" if readings.bends_left else "left"]
-    return [(way, _in_order(part, way)) for part, way in zip(parts, ways, strict=True)]
+    travel = np.abs(np.diff(foot_x[[0, *turns, -1]]))
+    if (travel < _WHOLE_SWEEP * np.ptp(foot_x)).any():
+        # In no order: only the side to which the vibrissa bends shows which way it was swept.
+        way: Direction = "right" if readings.bends_left else "left"
+        return [(way, _in_order(readings, way))]
+    # The row at a turn belongs to the sweep that ends there.
+    edges = [0, *(turn + 1 for turn in turns), len(foot_x)]
+    tables = [readings.table.iloc[begin:end] for begin, end in pairwise(edges)]
+    parts = [replace(readings, table=one.reset_index(drop=True)) for one in tables]
+    return [(_way(one), _in_order(one, _way(one))) for one in parts]
 
 
 def _way(readings: Readings) -> Direction:
@@ -272,24 +269,15 @@ def _way(readings: Readings) -> Direction:
 
 
 def _turns(foot_x: Floats) -> list[int]:
-    """First row, rows where the stage turns for good, and last row."""
+    """Rows where the stage turns for good."""
     steps = np.diff(foot_x)
     if (steps >= 0).all() or (steps <= 0).all():
-        return [0, len(foot_x) - 1]
+        return []
+    from scipy.signal import find_peaks  # slow to load, and few sweeps turn
+
     least = _TURN * float(np.ptp(foot_x))
-    turns, way, farthest = [0], 0, 0
-    values = foot_x.tolist()
-    for i, x in enumerate(values):
-        ahead = x - values[farthest]
-        if way == 0:
-            if abs(ahead) >= least:
-                way, farthest = (1 if ahead > 0 else -1), i
-        elif ahead * way >= 0:
-            farthest = i
-        elif -ahead * way >= least:
-            turns.append(farthest)
-            way, farthest = -way, i
-    return [*turns, len(values) - 1]
+    found = (find_peaks(x, prominence=least, plateau_size=1)[1] for x in (foot_x, -foot_x))
+    return sorted(int(row) for one in found for row in one["right_edges"])
 
 
 def _in_order(readings: Readings, way: Direction) -> Readings:
