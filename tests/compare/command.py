@@ -16,6 +16,13 @@ class Done:
     stdout: str
     stderr: str
 
+    def refused(self, *said: str) -> None:
+        """It was bad input, in one line that says so."""
+        assert self.returncode == 2, self.stdout + self.stderr
+        assert self.stderr.count("\n") == 1, self.stderr
+        for part in said:
+            assert part in self.stderr
+
 
 def vibrissa(*arguments, cwd) -> Done:
     """The command in this process: a fresh one would take longer to import than to run."""

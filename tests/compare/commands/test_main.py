@@ -99,10 +99,7 @@ def test_units(tmp_path):
 def test_bad_case_files(tmp_path, change, said):
     (tmp_path / "case.toml").write_text(CASE.replace(*change))
     done = vibrissa("run", "case.toml", "--out", "out", cwd=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1, done.stderr
-    assert said in done.stderr
-    assert "Traceback" not in done.stderr
+    done.refused(said)
     assert not (tmp_path / "out").exists()
 
 
@@ -121,17 +118,14 @@ def test_bad_case_files(tmp_path, change, said):
 )
 def test_bad_commands(tmp_path, arguments, said):
     done = vibrissa(*arguments, cwd=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1, done.stderr
-    assert said in done.stderr
+    done.refused(said)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_an_output_folder_that_cannot_be(tmp_path):
     (tmp_path / "file").write_text("")
     done = vibrissa("run", "parabola", "--engine", "exact", "--out", "file", cwd=tmp_path)
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1
+    done.refused()
 
 
 def test_cases_are_listed(tmp_path):
