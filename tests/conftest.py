@@ -29,6 +29,7 @@ def nothing_is_ignored():
 def in_turn(monkeypatch):
     """Budgets are swept in this process."""
     monkeypatch.setattr("compare.simulate.workers.Workers", InTurn)
+    monkeypatch.setattr("compare.simulate.workers.start_server", lambda preload: None)
 
 
 @cache

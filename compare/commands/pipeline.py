@@ -54,6 +54,10 @@ def carry_out(job: AnyJob, folder: Path, asked: Asked) -> bool:
         return swept_by_engine(job, folder, asked)
     if asked.sweep_only and job.engines:
         return told(job, simulated(job, folder), folder, sweep_file(job))
+    if asked.budget and job.kind == PLANE:
+        from compare.simulate.workers import SWEEPERS, start_server
+
+        start_server(SWEEPERS)  # it imports while we do
     exact = solved(job, folder, asked)
     if job.engines:
         return _compared_with_mujoco(job, exact, folder, asked)

@@ -94,7 +94,3 @@ class SpatialTolerances(Limits):
     def _is_special(name: str) -> bool:
         component, _, kind = name.partition(".")
         return component in COMPONENTS and kind in KINDS
-
-
-GENERAL_IN_SPACE = SpatialTolerances.general()
-"""Names of the limits that hold for every component."""

@@ -333,10 +333,6 @@ def is_smooth_model(readings: "Readings") -> bool:
     return bool(np.abs(np.diff(slope)).max() < _CORNER)
 
 
-GENERAL = Tolerances.general()
-"""Names of the limits that hold for every reading and phase."""
-
-
 def as_limit(name: str, value: float) -> Limit:
     """A limit of that name, checked."""
     if isinstance(value, Limit):

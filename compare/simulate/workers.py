@@ -37,11 +37,9 @@ class Workers:
         if getattr(current_process(), "_inheriting", False):
             # A worker reads its leader's script first, and that would start workers without end.
             raise SystemExit(1)
-        server = preload and "forkserver" in get_all_start_methods()
+        server = preload and _has_server()
         if server:
-            from multiprocessing import forkserver
-
-            forkserver.set_forkserver_preload(list(preload))
+            start_server(preload)
         context = get_context("forkserver" if server else "spawn")
         self._pool = ProcessPool(count, initializer=_end_with_leader, context=context)
         try:
@@ -79,6 +77,23 @@ class Workers:
             self._pool.join()
         else:
             self.end()
+
+
+def start_server(preload: tuple[str, ...]) -> None:
+    """Let a server import what its workers share, while their leader goes on.
+
+    Does nothing where there is no such server, or if it runs already.
+    """
+    if _has_server():
+        from multiprocessing import forkserver
+
+        forkserver.set_forkserver_preload(list(preload))
+        with _nothing_from_here():
+            forkserver.ensure_running()
+
+
+def _has_server() -> bool:
+    return "forkserver" in get_all_start_methods()
 
 
 @contextmanager
