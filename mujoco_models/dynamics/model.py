@@ -7,6 +7,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.errors import InputError
+from mujoco_models.beams.layout import Layout
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.dynamics.moving import SteppedModel
 from mujoco_models.model.clamp import Clamp, by_sensors
@@ -19,7 +20,7 @@ from mujoco_models.obstacles.protocol import Obstacle
 
 # (beta L)^4 = 12.36 of the first free vibration of a cantilever gives the mass per length with
 # which it takes the time 1: mass = EI (beta L)^4 (T1/2 pi)^2/L^4.
-_MASS = 1.8751040687119611**4 / (2 * np.pi) ** 2
+MASS = 1.8751040687119611**4 / (2 * np.pi) ** 2
 _FIRST = 2 * np.pi  # rad/T1
 _CARRIAGE = 1e9  # times the vibrissa's mass: nothing the vibrissa does moves the foot
 # Of MuJoCo's solver; its cost goes with the square of what is out of balance. With 1e-10 a sweep of
@@ -121,7 +122,7 @@ class MovingModel(SteppedModel):
         """By the force on a heavy carriage that accelerates it so."""
         self.time = self.now
         change = -speed - float(self.data.qvel[0])
-        self.data.qfrc_applied[0] = _CARRIAGE * _MASS * change / self.model.opt.timestep
+        self.data.qfrc_applied[0] = _CARRIAGE * MASS * change / self.model.opt.timestep
         if self._leaves_out:
             self._leave_out()
         self._advance()
@@ -198,22 +199,32 @@ def _spec(
         name="drive",
         type=mujoco.mjtJoint.mjJNT_SLIDE,
         axis=[1, 0, 0],
-        armature=_CARRIAGE * _MASS,
+        armature=_CARRIAGE * MASS,
     )
-    stub = float(beam.layout.joints[0]) or _STUB
-    volumes = [stub, *(beam.layout.lengths * beam.layout.thickness**2).tolist()]
+    give_mass(spec, beam.layout, motion)
+    set_options(spec, motion)
+    spec.option.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
+    return spec
+
+
+def give_mass(spec: mujoco.MjSpec, layout: Layout, motion: Motion) -> None:
+    """Give the links of a beam their masses, and its joints dampers and armature."""
+    stub = float(layout.joints[0]) or _STUB
+    volumes = [stub, *(layout.lengths * layout.thickness**2).tolist()]
     capsules = [g for g in spec.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE and g.mass > 0]
     for capsule, volume in zip(capsules, volumes, strict=True):
-        capsule.mass = _MASS * volume
+        capsule.mass = MASS * volume
     dampers = 2 * motion.damping_ratio / _FIRST
-    hinges = [j for j in spec.joints if j.type == mujoco.mjtJoint.mjJNT_HINGE]
-    for hinge, compliance in zip(hinges, beam.layout.compliances.tolist(), strict=True):
-        hinge.armature = motion.armature * motion.timestep**2 / compliance
-        hinge.damping[0] = dampers / compliance
+    bends = [j for j in spec.joints if j.type != mujoco.mjtJoint.mjJNT_SLIDE]
+    for joint, compliance in zip(bends, layout.compliances.tolist(), strict=True):
+        joint.armature = motion.armature * motion.timestep**2 / compliance
+        joint.damping[0] = dampers / compliance
+
+
+def set_options(spec: mujoco.MjSpec, motion: Motion) -> None:
+    """How MuJoCo steps the model."""
     option = spec.option
     option.timestep = motion.timestep
     option.integrator = _INTEGRATORS[motion.integrator]
     option.solver, option.cone = _SOLVERS[motion.solver], _CONES[motion.cone]
     option.tolerance, option.impratio = _TOLERANCE, motion.impratio
-    option.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
-    return spec

@@ -49,7 +49,11 @@ class Probe:
 
 def probe_of(path: Path, radius: float) -> Probe | None:
     """A model with a ball, in memory, if it is stepped by ``discrete``."""
-    spec = mujoco.MjSpec.from_file(str(path))
+    return probe_in(mujoco.MjSpec.from_file(str(path)), radius)
+
+
+def probe_in(spec: mujoco.MjSpec, radius: float) -> Probe | None:
+    """The same of a model that is to be compiled."""
     if spec.option.integrator != mujoco.mjtIntegrator.mjINT_DISCRETE:
         return None
     ball = spec.worldbody.add_body(name=_NAME, mocap=True)

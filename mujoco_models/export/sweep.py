@@ -1,0 +1,93 @@
+"""What is written, swept as it is: by MuJoCo's steps alone."""
+
+import math
+from collections.abc import Callable
+from dataclasses import asdict, replace
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from analytic.problem.readings import Readings
+from mujoco_models.beams.protocol import FOOT
+from mujoco_models.dynamics.moving import SteppedModel
+from mujoco_models.dynamics.record import StationMeans
+from mujoco_models.dynamics.sweep import Passes, start_of
+from mujoco_models.export.whisker import PREFIX, Whisker
+from mujoco_models.model.clamp import Clamp, by_sensors
+from mujoco_models.model.contacts import NOWHERE
+
+_AT_TIP = 1e-2  # L
+
+
+def sweep_exported(
+    whisker: Whisker, advance: Callable[[], None] = lambda: None
+) -> Readings:
+    """Sweep what is written past its obstacle, from the text of its file."""
+    case, motion = whisker.case, whisker.motion
+    record = StationMeans(case.foot_x / case.beam.length, motion.average)
+    model = _Written(replace(whisker, start=start_of(record, motion)))
+    about = {"settings": asdict(whisker.settings)}
+    source = f"exported {whisker.settings.beam}"
+    passes = Passes(model, case, motion, source, about)
+    return passes.swept(record, passes.on, advance, lambda _: None)
+
+
+class _Written(SteppedModel):
+    """A model as MuJoCo reads it, moved by its motor."""
+
+    def __init__(self, whisker: Whisker) -> None:
+        compiled = mujoco.MjModel.from_xml_string(whisker.xml())
+        super().__init__(compiled, "mesh", whisker.period, follows_inertia=False)
+        self._unit, self._beam = whisker.case.beam.length / whisker.period, whisker.case.beam
+        self._foot = self.model.body(PREFIX + FOOT).id
+        layout = whisker.beam.layout
+        self._joints = layout.joints.tolist()
+        self._first = self.model.nbody - len(self._joints)  # body of the first link
+        mujoco.mj_forward(self.model, self.data)
+
+    @property
+    def foot_x(self) -> float:
+        """Where the foot is [L]."""
+        return float(self.data.xpos[self._foot, 0]) / self._beam.length
+
+    @property
+    def touches(self) -> bool:
+        """Whether a contact is loaded."""
+        return bool(self.data.ncon and self.data.contact.dist.min() < 0)
+
+    def clamp(self) -> Clamp:
+        """By the sensors."""
+        fx, fy, mz = by_sensors(self.data)
+        force, moment = self._beam.force_unit, self._beam.moment_unit
+        return Clamp(fx / force, fy / force, mz / moment)
+
+    def state(self, speed: float) -> dict[str, Any]:
+        """The deepest contact."""
+        if not self.touches:
+            return {"phase": "free", **NOWHERE, "penetration": 0.0, "status": "ok"}
+        contact, unit = self.data.contact, self._beam.length
+        deepest = int(contact.dist.argmin())
+        place, body = contact.pos[deepest], self.model.geom_bodyid[contact.geom[deepest].max()]
+        along = float(np.linalg.norm(place - self.data.xpos[body])) / unit
+        s = self._joints[body - self._first] + along if body >= self._first else along
+        # MuJoCo's normal goes from the first geom to the second, and the world's come first.
+        normal = contact.frame[deepest, :3]
+        return {
+            "phase": "tip" if s > 1 - _AT_TIP else "tangent",
+            "contact_angle": math.atan2(normal[0], -normal[1]),
+            "contact_arc_length": s,
+            "contact_x": float(place[0] / unit),
+            "contact_y": float(place[1] / unit),
+            "penetration": -float(contact.dist[deepest]) / unit,
+            "status": "ok",
+        }
+
+    def step(self, speed: float) -> None:
+        """By the motor."""
+        self.time = self.now
+        self.data.ctrl[0] = -speed * self._unit
+        self._advance()
+
+    def _follow_inertia(self) -> None:
+        """Nothing does."""
