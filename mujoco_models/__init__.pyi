@@ -2,6 +2,8 @@ from .beams.available import available_beams as available_beams
 from .errors import ClampError as ClampError
 from .errors import DivergedError as DivergedError
 from .inspect.measured import MeasuredBeam as MeasuredBeam
+from .model.solref import from_solref as from_solref
+from .model.solref import to_solref as to_solref
 from .motion import Motion as Motion
 from .settings import Settings as Settings
 from .simulate import inspect_model as inspect_model

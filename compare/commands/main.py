@@ -16,6 +16,7 @@ from typer.exceptions import TyperException
 from analytic.problem.errors import InputError
 from compare.commands.calibrate import calibrate
 from compare.commands.compare import compare
+from compare.commands.export import export
 from compare.commands.group import Group
 from compare.commands.inspect import inspect
 from compare.commands.listing import list_what_there_is
@@ -43,7 +44,7 @@ app = typer.Typer(
 COMMANDS: dict[str, tuple[Callable[..., int], ...]] = {
     "Sweep and compare": (run, compare, view),
     "What the clamp says": (reconstruct, calibrate, rig),
-    "Models": (inspect,),
+    "Models": (inspect, export),
     "Many": (study, report),
     "Trust": (verify,),
     "What there is": (list_what_there_is,),

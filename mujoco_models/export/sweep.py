@@ -1,13 +1,13 @@
 """What is written, swept as it is: by MuJoCo's steps alone."""
 
 import math
-from collections.abc import Callable
 from dataclasses import asdict, replace
 from typing import Any
 
 import mujoco
 import numpy as np
 
+from analytic.problem.mirror import leftward
 from analytic.problem.readings import Readings
 from mujoco_models.beams.protocol import FOOT
 from mujoco_models.dynamics.moving import SteppedModel
@@ -20,17 +20,29 @@ from mujoco_models.model.contacts import NOWHERE
 _AT_TIP = 1e-2  # L
 
 
-def sweep_exported(
-    whisker: Whisker, advance: Callable[[], None] = lambda: None
-) -> Readings:
-    """Sweep what is written past its obstacle, from the text of its file."""
+def sweep_exported(whisker: Whisker) -> Readings:
+    """Sweep what is written to the left past its obstacle, from the text of its file."""
     case, motion = whisker.case, whisker.motion
-    record = StationMeans(case.foot_x / case.beam.length, motion.average)
-    model = _Written(replace(whisker, start=start_of(record, motion)))
-    about = {"settings": asdict(whisker.settings)}
-    source = f"exported {whisker.settings.beam}"
-    passes = Passes(model, case, motion, source, about)
-    return passes.swept(record, passes.on, advance, lambda _: None)
+    model = _Written(beside(whisker))
+    passes = Passes(
+        model,
+        case,
+        motion,
+        f"exported {whisker.settings.beam}",
+        {"settings": asdict(whisker.settings)},
+    )
+    return passes.swept(_stations(whisker), passes.on, lambda: None, lambda _: None)
+
+
+def beside(whisker: Whisker) -> Whisker:
+    """The vibrissa where its sweep begins, with the obstacle."""
+    start = start_of(_stations(whisker), whisker.motion)
+    return replace(whisker, start=start if whisker.case.sweep.direction == "left" else -start)
+
+
+def _stations(whisker: Whisker) -> StationMeans:
+    case = leftward(whisker.case)
+    return StationMeans(case.foot_x / case.beam.length, whisker.motion.average)
 
 
 class _Written(SteppedModel):

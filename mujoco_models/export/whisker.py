@@ -13,6 +13,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
+from analytic.problem.mirror import leftward
 from mujoco_models.beams.kinds import build
 from mujoco_models.beams.protocol import FOOT, Beam
 from mujoco_models.beams.vibrissa import Vibrissa
@@ -26,7 +27,10 @@ from mujoco_models.obstacles.protocol import GEOM
 from mujoco_models.settings import Settings
 
 PREFIX = "whisker_"
-CARRIAGE, MOTOR = "carriage", "motor"
+PASTE = f"""\
+In a robot: <asset><model name="whisker" file="whisker.xml"/></asset> and, in what holds it,
+<attach model="whisker" body="{PREFIX}foot" prefix=""/>, or MjSpec's attach_body. Carriage and motor
+stay behind; the robot's own <option> needs this time step, integrator and Jacobian."""
 _INERTIA = 1e6  # of the carriage, in masses of the vibrissa, which does nothing to it
 _GAIN = _INERTIA * MASS / 0.01  # of the motor, which has the carriage at its speed in T1/100
 _HALF_DEPTH = 0.5  # L, of the obstacle
@@ -38,7 +42,7 @@ _LEAST = 1.01e-15  # MuJoCo's least inertia of a body that moves
 class Whisker:
     """A vibrissa with its numerics, to be written in the units of its case."""
 
-    case: Case  # of a sweep to the left
+    case: Case
     settings: Settings
     motion: Motion
     period: float  # T1 in the case's unit of time
@@ -50,9 +54,10 @@ class Whisker:
         vibrissa = Vibrissa.of(self.case.beam, self.case.clamp_stiffness)
         return build(self.settings, np.inf, vibrissa)
 
-    def xml(self) -> str:
-        """As MJCF."""
-        return str(self.spec().to_xml())
+    def xml(self, *said: str) -> str:
+        """As MJCF, with lines that say what it is."""
+        comment = "\n".join(("<!--", *said, PASTE, "-->\n")) if said else ""
+        return f"{comment}{self.spec().to_xml()}"
 
     def spec(self) -> mujoco.MjSpec:
         """The vibrissa on a carriage that a motor moves, and the obstacle."""
@@ -64,13 +69,13 @@ class Whisker:
         _name(own, beam)
         spec = mujoco.MjSpec()
         spec.modelname = "whisker"
-        carriage = spec.worldbody.add_body(name=CARRIAGE, pos=[self.start or 0.0, 0, 0])
+        carriage = spec.worldbody.add_body(name="carriage", pos=[self.start or 0.0, 0, 0])
         carriage.add_joint(
             name="rail", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1, 0, 0], armature=_INERTIA * MASS
         )
         carriage.add_frame().attach_body(own.body(FOOT), PREFIX, "")
         motor = spec.add_actuator(
-            name=MOTOR, trntype=mujoco.mjtTrn.mjTRN_JOINT, target="rail",
+            name="motor", trntype=mujoco.mjtTrn.mjTRN_JOINT, target="rail",
             biastype=mujoco.mjtBias.mjBIAS_AFFINE,
         )  # fmt: skip
         motor.gainprm[0], motor.biasprm[2] = _GAIN, -_GAIN
@@ -144,7 +149,7 @@ class Whisker:
                 for geom, weight in zip(geoms.tolist(), weights, strict=True)
             ])  # fmt: skip
         weights[0] = weights[1]  # that of the clamp, which hardly moves
-        return weights
+        return np.asarray(weights)
 
     @property
     def friction(self) -> float:
@@ -158,9 +163,13 @@ class Whisker:
 
     def _add_obstacle(self, spec: mujoco.MjSpec) -> None:
         """As a prism whose contour has the settings' points."""
-        prism = Prism.of(self.case, self.settings.contour_points, self.settings.corner_radius)
+        prism = Prism.of(
+            leftward(self.case), self.settings.contour_points, self.settings.corner_radius
+        )
         length = self.case.beam.length
         polygon = length * np.vstack([prism.vertices, prism.outline[-1]])
+        if self.case.sweep.direction == "right":
+            polygon[:, 0] *= -1
         inner = np.append((polygon[len(polygon) // 2] + polygon.mean(axis=0)) / 2, 0.0)
         depth = _HALF_DEPTH * length
         ends = [np.insert(polygon, 2, z, axis=1) for z in (-depth, depth)]

@@ -1,0 +1,87 @@
+"""The coarsest model in motion with a wanted error, by sweeping what would be written.
+
+No closed form is asked: the reference is MuJoCo at rest, with many segments and hard contacts.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic import Case, InputError
+from analytic.problem.mirror import leftward
+from compare.simulate.fastest import error_of
+from mujoco_models import simulate_sweep
+from mujoco_models.allowed import BeamKind
+from mujoco_models.errors import DivergedError
+from mujoco_models.export.sweep import sweep_exported
+from mujoco_models.export.whisker import Whisker
+from mujoco_models.motion import Motion
+from mujoco_models.settings import Settings
+
+REFERENCE = 80  # segments at rest: some 3e-4 rms off
+_SHARE = 0.8  # of the wanted error; the rest is the reference's own, and for what rounds the file
+# Segments, time step [T1] and contact stiffness [EI/L^3], from coarse to fine: so stiff that a sweep
+# at 0.1 L/T1 does not chatter, and then harder, for slower ones.
+LADDER = (
+    (10, 1 / 25, 2.5e3),
+    (20, 1 / 25, 2.5e3),
+    (20, 1 / 50, 1e4),
+    (20, 1 / 100, 1e4),
+    (40, 1 / 50, 1e4),
+    (40, 1 / 100, 1e4),
+    (40, 1 / 100, 4e4),
+    (80, 1 / 100, 4e4),
+    (80, 1 / 200, 4e4),
+    (80, 1 / 200, 1.6e5),
+    (160, 1 / 200, 1.6e5),
+)
+_IN_VAIN = 4  # rungs without a better one: what is left is the speed's
+_POINTS = 400, 8.0, 3200  # of the contour: at least, over the wanted error, and at most
+
+
+@dataclass(frozen=True)
+class Prescription:
+    """A model, and what was measured of it."""
+
+    whisker: Whisker
+    error: float  # rms of the worst reading, relative to its largest magnitude
+
+
+def prescribe(
+    case: Case,
+    beam: BeamKind,
+    motion: Motion,
+    period: float,
+    error: float,
+    advance: Callable[[], None] = lambda: None,
+) -> Prescription:
+    """Refine segments, time step and contacts until the error is reached."""
+    if case.friction:
+        raise InputError(
+            "contact.friction", case.friction, "0 where a model is chosen by its error",
+            "leave it out, and set condim and friction of the written geoms",
+        )  # fmt: skip
+    least, over_error, most = _POINTS
+    settings = Settings(beam=beam, contour_points=int(min(max(over_error / error, least), most)))
+    case = leftward(case)
+    reference = simulate_sweep(case, replace(settings, beam="chain", segments=REFERENCE))
+    found = []
+    for segments, step, stiffness in LADDER:
+        moved = replace(motion, timestep=step, contact_stiffness=stiffness, solref=None)
+        whisker = Whisker(case, replace(settings, segments=segments), moved, period)
+        try:
+            off = error_of(reference, sweep_exported(whisker))
+        except DivergedError:
+            off = math.inf
+        advance()
+        if off <= _SHARE * error:
+            return Prescription(whisker, off)
+        found.append(off)
+        if len(found) - int(np.argmin(found)) > _IN_VAIN:
+            break
+    raise InputError(
+        "--error", error, f"at least {min(found) / _SHARE:.1e} at {motion.speed:g} L/T1",
+        "ask for less, or for a lower --speed",
+    )  # fmt: skip

@@ -1,0 +1,107 @@
+"""From a contact's stiffness and damping to MuJoCo's parameters, and back."""
+
+import math
+from collections.abc import Sequence
+
+from analytic.problem.errors import InputError
+
+_LARGEST = 0.9999  # MuJoCo's own limits of an impedance
+_LEAST = 1e-4
+
+
+def to_solref(
+    stiffness: float, damping: float, inverse_mass: float, impedance: float = 0.9
+) -> tuple[tuple[float, float], tuple[float, float, float]]:
+    """MuJoCo's parameters of a contact that is as stiff and as damped as stated.
+
+    Parameters
+    ----------
+    stiffness : float
+        Force over depth at rest, of one contact [N/m].
+    damping : float
+        Force over speed of approach [N s/m]. The contact is critically damped with
+        2 sqrt(stiffness (1 - impedance)/inverse_mass)/(1 - impedance).
+    inverse_mass : float
+        Of the two bodies along the normal, as MuJoCo takes it: the sum of their
+        ``body_invweight0[:, 0]``; with ``integrator="discrete"`` less, see `README.md` [1/kg].
+    impedance : float
+        MuJoCo's d, the same at all depths.
+
+    Returns
+    -------
+    solref : tuple of float
+        In MuJoCo's direct form, (-k, -b).
+    solimp : tuple of float
+        (d, d, width); of equal impedances the width does not matter.
+
+    Raises
+    ------
+    InputError
+        If a number is not positive, or the impedance is not from 0.0001 to 0.9999.
+    """
+    for name, value in (
+        ("stiffness", stiffness), ("damping", damping), ("inverse_mass", inverse_mass),
+    ):  # fmt: skip
+        if not (value > 0 and math.isfinite(value)):
+            raise InputError(name, value, "a positive finite number", "correct it")
+    if not _LEAST <= impedance <= _LARGEST:
+        raise InputError("impedance", impedance, f"{_LEAST} to {_LARGEST}", "0.9 is MuJoCo's")
+    yielding = (1 - impedance) * inverse_mass
+    return (-stiffness * yielding, -damping * yielding), (impedance, impedance, 1e-3)
+
+
+def from_solref(
+    solref: Sequence[float],
+    solimp: Sequence[float],
+    inverse_mass: float,
+    depth: float = 0.0,
+    timestep: float = 0.0,
+) -> tuple[float, float]:
+    """Stiffness and damping of a contact with MuJoCo's parameters.
+
+    Parameters
+    ----------
+    solref : sequence of float
+        Two of them, in either form: (time constant [s], damping ratio), or (-k, -b).
+    solimp : sequence of float
+        Impedance at no depth and at `width`, width [m], and, if they are not MuJoCo's 0.5 and 2,
+        midpoint and power.
+    inverse_mass : float
+        As of `to_solref` [1/kg].
+    depth : float
+        Where it is asked for: an impedance that changes with the depth makes a contact's force
+        another function of it [m].
+    timestep : float
+        MuJoCo takes no time constant below twice this [s].
+
+    Returns
+    -------
+    stiffness : float
+        Force over depth at rest [N/m].
+    damping : float
+        Force over speed of approach [N s/m].
+    """
+    first, second = solref[:2]
+    d = _impedance(list(solimp), depth)
+    largest = min(max(solimp[1], _LEAST), _LARGEST)
+    if first > 0:
+        constant = max(first, 2 * timestep)
+        k, b = 1 / (largest * constant * second) ** 2, 2 / (largest * constant)
+    else:
+        k, b = -first / largest**2, -second / largest
+    yielding = (1 - d) * inverse_mass
+    return k * d**2 / yielding, b * d / yielding
+
+
+def _impedance(solimp: list[float], depth: float) -> float:
+    """MuJoCo's d at a depth: a power of it up to the midpoint, and the same turned round after."""
+    low, high = (min(max(x, _LEAST), _LARGEST) for x in solimp[:2])
+    width, middle, power = (*solimp[2:], *(1e-3, 0.5, 2.0)[len(solimp) - 2 :])
+    x = min(depth / width, 1.0) if width > 0 else 1.0
+    if power == 1:
+        share = x
+    elif x <= middle:
+        share = x**power / middle ** (power - 1)
+    else:
+        share = 1 - (1 - x) ** power / (1 - middle) ** (power - 1)
+    return low + share * (high - low)
