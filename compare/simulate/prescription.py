@@ -22,8 +22,8 @@ from mujoco_models.settings import Settings
 
 REFERENCE = 80  # segments at rest: some 3e-4 rms off
 _SHARE = 0.8  # of the wanted error; the rest is the reference's own, and for what rounds the file
-# Segments, time step [T1] and contact stiffness [EI/L^3], from coarse to fine: so stiff that a sweep
-# at 0.1 L/T1 does not chatter, and then harder, for slower ones.
+# Segments, time step [T1] and contact stiffness [EI/L^3], from coarse to fine: as stiff as a sweep
+# at 0.1 L/T1 takes without chatter, and then harder, for slower ones.
 LADDER = (
     (10, 1 / 25, 2.5e3),
     (20, 1 / 25, 2.5e3),
@@ -38,7 +38,7 @@ LADDER = (
     (160, 1 / 200, 1.6e5),
 )
 _IN_VAIN = 4  # rungs without a better one: what is left is the speed's
-_POINTS = 400, 8.0, 3200  # of the contour: at least, over the wanted error, and at most
+_POINTS = 400, 4.0, 3200  # of the contour: at least, over the wanted error, and at most
 
 
 @dataclass(frozen=True)
