@@ -31,7 +31,7 @@ def sweep_exported(whisker: Whisker) -> Readings:
         f"exported {whisker.settings.beam}",
         {"settings": asdict(whisker.settings)},
     )
-    return passes.swept(_stations(whisker), passes.on, lambda: None, lambda _: None)
+    return passes.swept(_stations(whisker), lambda: None, lambda _: None)
 
 
 def beside(whisker: Whisker) -> Whisker:
@@ -100,6 +100,3 @@ class _Written(SteppedModel):
         self.time = self.now
         self.data.ctrl[0] = -speed * self._unit
         self._advance()
-
-    def _follow_inertia(self) -> None:
-        """Nothing does."""

@@ -14,6 +14,7 @@ LACKING = (
     "URDF has no springs, sensors, contact parameters or time step: each joint's stiffness stands "
     "beside it as a comment, for whatever reads it to set"
 )
+_LEAST = 1.1e-14  # what MuJoCo takes for a moment of inertia in URDF
 _ALONG = f"{np.pi / 2:.9g} 0 0"  # a cylinder's axis is z, a link's y
 
 
@@ -41,7 +42,7 @@ def _add_link(root: Element, model: mujoco.MjModel, number: int) -> None:
     turn = np.zeros(9)
     mujoco.mju_quat2Mat(turn, model.body_iquat[number])
     axes = turn.reshape(3, 3)
-    inertia = (axes * model.body_inertia[number]) @ axes.T
+    inertia = (axes * np.maximum(model.body_inertia[number], _LEAST)) @ axes.T
     names = {"ixx": (0, 0), "iyy": (1, 1), "izz": (2, 2), "ixy": (0, 1), "ixz": (0, 2),
              "iyz": (1, 2)}  # fmt: skip
     SubElement(inertial, "inertia", {k: _text(inertia[[i], j]) for k, (i, j) in names.items()})

@@ -18,7 +18,7 @@ _BENDS = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_BALL))
 _SLENDER = (int(mujoco.mjtGeom.mjGEOM_CAPSULE), int(mujoco.mjtGeom.mjGEOM_CYLINDER))
 _SPHERE = int(mujoco.mjtGeom.mjGEOM_SPHERE)
 _GOES_ON = 0.8  # cosine; links of a vibrissa are bent by less
-_ALIGNED = 1e-3  # rad and lengths of a link; a geom of the foot that goes on as the vibrissa does
+_ALIGNED = 0.03  # lengths of a link; a geom of the foot that goes on as the vibrissa, or its arc
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
 """What `vibrissa export` writes is what it says: the vibrissa, and its error when it is swept."""
 
+import re
 from dataclasses import replace
 
 import mujoco
@@ -80,6 +81,7 @@ def test_contacts_are_as_stiff_as_stated(tmp_path):
         assert geom.stiffness == pytest.approx(whisker.contact_stiffness, rel=1e-3)
 
 
+@pytest.mark.filterwarnings("ignore::UserWarning")  # MuJoCo says which options it leaves behind
 @beams
 def test_it_is_pasted_into_a_robot(beam, tmp_path):
     whisker = wire()
@@ -148,7 +150,7 @@ def test_what_cannot_be_written_is_a_line(words, line, tmp_path):
     (tmp_path / "wire.toml").write_text(CASES["wire"])
     done = vibrissa("export", "wire.toml", *words, cwd=tmp_path)
     assert done.returncode == 2 and done.stderr.count("\n") == 1
-    assert __import__("re").match(f"vibrissa: {line}", done.stderr), done.stderr
+    assert re.match(f"vibrissa: {line}", done.stderr), done.stderr
 
 
 @pytest.mark.slow
