@@ -212,7 +212,7 @@ def give_mass(spec: mujoco.MjSpec, layout: Layout, motion: Motion) -> None:
     stub = float(layout.joints[0]) or _STUB
     volumes = [stub, *(layout.lengths * layout.thickness**2).tolist()]
     capsules = [g for g in spec.geoms if g.type == mujoco.mjtGeom.mjGEOM_CAPSULE and g.mass > 0]
-    for capsule, volume in zip(capsules, volumes, strict=True):
+    for capsule, volume in zip(capsules, volumes[-len(capsules) :], strict=True):
         capsule.mass = MASS * volume
     dampers = 2 * motion.damping_ratio / _FIRST
     bends = [j for j in spec.joints if j.type != mujoco.mjtJoint.mjJNT_SLIDE]

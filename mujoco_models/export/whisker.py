@@ -66,6 +66,9 @@ class Whisker:
         beam = self.beam
         own = beam.spec(self.case.radius)
         give_mass(own, beam.layout, self.motion)
+        if self.settings.beam == "cable":  # its first segment begins before the clamp
+            half = float(beam.layout.joints[int(beam.layout.clamp_turns)])
+            own.body("B_first").geoms[0].fromto = [half, 0, 0, 2 * half, 0, 0]
         _name(own, beam)
         spec = mujoco.MjSpec()
         spec.modelname = "whisker"
@@ -73,6 +76,8 @@ class Whisker:
         carriage.add_joint(
             name="rail", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1, 0, 0], armature=_INERTIA * MASS
         )
+        carriage.explicitinertial = True  # of its own, or a clamp that turns has too small a stub
+        carriage.mass, carriage.inertia = MASS, [MASS, MASS, MASS]
         carriage.add_frame().attach_body(own.body(FOOT), PREFIX, "")
         motor = spec.add_actuator(
             name="motor", trntype=mujoco.mjtTrn.mjTRN_JOINT, target="rail",
@@ -95,6 +100,7 @@ class Whisker:
         moment, mass = force * length, force * time**2 / length
         for body in spec.bodies:
             body.pos = body.pos * length
+            body.mass, body.inertia = body.mass * mass, body.inertia * mass * length**2
         for site in spec.sites:
             site.pos, site.size = site.pos * length, site.size * length
         for geom in spec.geoms:

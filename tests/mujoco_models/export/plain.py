@@ -44,7 +44,8 @@ def worst_rms(exact, readings):
     foot_x = exact.values("foot_x")
     kept = (exact.table["phase"] != "free").to_numpy()
     if exact.snap_off is not None:
-        kept &= np.abs(foot_x - foot_x[0]) < abs(exact.snap_off - foot_x[0]) - 0.04 * np.ptp(foot_x)
+        way, end = np.abs(foot_x - foot_x[0]), abs(exact.snap_off - foot_x[0])
+        kept = kept & (way < end - 0.04 * np.ptp(foot_x))
     assert kept.sum() > 20
     return max(
         float(np.sqrt(np.mean((own - wanted)[kept] ** 2)) / np.nanmax(np.abs(wanted)))
