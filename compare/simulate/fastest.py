@@ -40,7 +40,7 @@ def find_fastest(
 ) -> Fastest:
     """Sweep at other speeds until the fastest one with a wanted error is known to a tenth."""
     swept = {_speed(runs[name]): runs[name] for name in THREE_SPEEDS if name in runs}
-    error = {speed: error_of(exact, readings) for speed, readings in swept.items()}
+    error = {speed: _error(exact, readings) for speed, readings in swept.items()}
     at_rest = _rms(exact, runs["rest"])
     slowest, quickest = _SPEEDS
     for _ in range(_TRIES):
@@ -69,7 +69,7 @@ def find_fastest(
         except DivergedError:
             error[speed] = math.inf
         else:
-            error[speed] = error_of(exact, swept[speed])
+            error[speed] = _error(exact, swept[speed])
     good = [v for v in error if error[v] <= target]
     if not good:
         least = min(error.values())
@@ -83,8 +83,7 @@ def find_fastest(
     return Fastest(target, best, error[best], seconds, at_rest, dict(sorted(error.items())))
 
 
-def error_of(exact: Readings, moved: Readings) -> float:
-    """What a sweep in motion is off by; infinite if too little of it can be trusted."""
+def _error(exact: Readings, moved: Readings) -> float:
     touched = (exact.table["phase"] != "free").to_numpy()
     if (touched & ~moved.trusted).sum() > _CHATTER * touched.sum():
         return math.inf

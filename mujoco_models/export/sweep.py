@@ -16,6 +16,7 @@ from mujoco_models.dynamics.sweep import Passes, start_of
 from mujoco_models.export.whisker import PREFIX, Whisker
 from mujoco_models.model.clamp import Clamp, by_sensors
 from mujoco_models.model.contacts import NOWHERE
+from mujoco_models.model.spec import compiled
 
 _AT_TIP = 1e-2  # L
 
@@ -49,8 +50,8 @@ class _Written(SteppedModel):
     """A model as MuJoCo reads it, moved by its motor."""
 
     def __init__(self, whisker: Whisker) -> None:
-        compiled = mujoco.MjModel.from_xml_string(whisker.xml())
-        super().__init__(compiled, "mesh", whisker.period, follows_inertia=False)
+        read = compiled(mujoco.MjSpec.from_string(whisker.xml()))
+        super().__init__(read, "mesh", whisker.period, follows_inertia=False)
         self._unit, self._beam = whisker.case.beam.length / whisker.period, whisker.case.beam
         self._foot = self.model.body(PREFIX + FOOT).id
         layout = whisker.beam.layout

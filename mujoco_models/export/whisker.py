@@ -29,11 +29,12 @@ from mujoco_models.settings import Settings
 PREFIX = "whisker_"
 PASTE = f"""\
 In a robot: <asset><model name="whisker" file="whisker.xml"/></asset> and, in what holds it,
-<attach model="whisker" body="{PREFIX}foot" prefix=""/>, or MjSpec's attach_body. Carriage and motor
-stay behind; the robot's own <option> needs this time step, integrator and Jacobian."""
+<attach model="whisker" body="{PREFIX}foot" prefix="left_"/>, or MjSpec's attach_body. Carriage and
+motor stay behind; the robot's own <option> needs this time step, integrator and Jacobian."""
 _INERTIA = 1e6  # of the carriage, in masses of the vibrissa, which does nothing to it
 _GAIN = _INERTIA * MASS / 0.01  # of the motor, which has the carriage at its speed in T1/100
 _HALF_DEPTH = 0.5  # L, of the obstacle
+_BALL = 0.02  # L, of the carriage
 _SPECK = 1e-4  # L; see `add_hull`
 _LEAST = 1.01e-15  # MuJoCo's least inertia of a body that moves
 
@@ -76,8 +77,11 @@ class Whisker:
         carriage.add_joint(
             name="rail", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1, 0, 0], armature=_INERTIA * MASS
         )
-        carriage.explicitinertial = True  # of its own, or a clamp that turns has too small a stub
-        carriage.mass, carriage.inertia = MASS, [MASS, MASS, MASS]
+        # It needs a mass of its own, where the clamp turns and what is fixed to it is next to none.
+        carriage.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[_BALL, 0, 0], pos=[0, -_BALL, 0], mass=MASS,
+            contype=0, conaffinity=0,
+        )  # fmt: skip
         carriage.add_frame().attach_body(own.body(FOOT), PREFIX, "")
         motor = spec.add_actuator(
             name="motor", trntype=mujoco.mjtTrn.mjTRN_JOINT, target="rail",
@@ -100,7 +104,6 @@ class Whisker:
         moment, mass = force * length, force * time**2 / length
         for body in spec.bodies:
             body.pos = body.pos * length
-            body.mass, body.inertia = body.mass * mass, body.inertia * mass * length**2
         for site in spec.sites:
             site.pos, site.size = site.pos * length, site.size * length
         for geom in spec.geoms:

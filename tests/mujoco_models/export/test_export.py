@@ -45,6 +45,9 @@ CASES = {
         '["40 mm", "50 mm"], ["20 mm", "120 mm"]]\n',
     ),
 }
+CASES["not-to-the-end"] = CASES["tapered"].replace(
+    "stations = 60", 'stations = 60\nstop = "-80 mm"'
+)
 CASES = {name: text.replace("MORE", "") for name, text in CASES.items()}
 beams = pytest.mark.parametrize("beam", available_beams())
 
@@ -167,7 +170,16 @@ def test_what_is_written_meets_the_error(name, tmp_path):
 @pytest.mark.slow
 @beams
 def test_every_beam_meets_the_error(beam, tmp_path):
-    exported("tapered", beam, tmp_path, 0.01)
+    exported("not-to-the-end" if beam == "cable" else "tapered", beam, tmp_path, 0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif("cable" not in available_beams(), reason="MuJoCo 4 has no cables")
+def test_a_cable_slips_off_sideways_before_the_end(tmp_path):
+    """It bends in all directions; without friction nothing holds it where the object recedes."""
+    (tmp_path / "case.toml").write_text(CASES["tapered"])
+    done = vibrissa("export", "case.toml", "--beam", "cable", cwd=tmp_path)
+    assert done.returncode == 2 and "slip off sideways" in done.stderr
 
 
 def exported(name, beam, folder, error):
