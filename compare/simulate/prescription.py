@@ -60,9 +60,9 @@ def prescribe(
     advance: Callable[[], None] = lambda: None,
 ) -> Prescription:
     """Refine segments, time step and contacts until the error is reached."""
-    if case.friction:
+    if case.friction or motion.friction:
         raise InputError(
-            "contact.friction", case.friction, "0 where a model is chosen by its error",
+            "friction", motion.friction or case.friction, "0 where a model is chosen by its error",
             "leave it out, and set condim and friction of the written geoms",
         )  # fmt: skip
     least, over_error, most = _POINTS

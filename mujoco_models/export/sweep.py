@@ -1,11 +1,9 @@
 """What is written, swept as it is: by MuJoCo's steps alone."""
 
-import math
 from dataclasses import asdict, replace
 from typing import Any
 
 import mujoco
-import numpy as np
 
 from analytic.problem.mirror import leftward
 from analytic.problem.readings import Readings
@@ -15,10 +13,7 @@ from mujoco_models.dynamics.record import StationMeans
 from mujoco_models.dynamics.sweep import Passes, start_of
 from mujoco_models.export.whisker import PREFIX, Whisker
 from mujoco_models.model.clamp import Clamp, by_sensors
-from mujoco_models.model.contacts import NOWHERE
 from mujoco_models.model.spec import compiled
-
-_AT_TIP = 1e-2  # L
 
 
 def sweep_exported(whisker: Whisker) -> Readings:
@@ -54,9 +49,6 @@ class _Written(SteppedModel):
         super().__init__(read, "mesh", whisker.period, follows_inertia=False)
         self._unit, self._beam = whisker.case.beam.length / whisker.period, whisker.case.beam
         self._foot = self.model.body(PREFIX + FOOT).id
-        layout = whisker.beam.layout
-        self._joints = layout.joints.tolist()
-        self._first = self.model.nbody - len(self._joints)  # body of the first link
         mujoco.mj_forward(self.model, self.data)
 
     @property
@@ -76,25 +68,8 @@ class _Written(SteppedModel):
         return Clamp(fx / force, fy / force, mz / moment)
 
     def state(self, speed: float) -> dict[str, Any]:
-        """The deepest contact."""
-        if not self.touches:
-            return {"phase": "free", **NOWHERE, "penetration": 0.0, "status": "ok"}
-        contact, unit = self.data.contact, self._beam.length
-        deepest = int(contact.dist.argmin())
-        place, body = contact.pos[deepest], self.model.geom_bodyid[contact.geom[deepest].max()]
-        along = float(np.linalg.norm(place - self.data.xpos[body])) / unit
-        s = self._joints[body - self._first] + along if body >= self._first else along
-        # MuJoCo's normal goes from the first geom to the second, and the world's come first.
-        normal = contact.frame[deepest, :3]
-        return {
-            "phase": "tip" if s > 1 - _AT_TIP else "tangent",
-            "contact_angle": math.atan2(normal[0], -normal[1]),
-            "contact_arc_length": s,
-            "contact_x": float(place[0] / unit),
-            "contact_y": float(place[1] / unit),
-            "penetration": -float(contact.dist[deepest]) / unit,
-            "status": "ok",
-        }
+        """Whether it touches; where, is not asked."""
+        return {"phase": "tangent" if self.touches else "free", "status": "ok"}
 
     def step(self, speed: float) -> None:
         """By the motor."""

@@ -136,8 +136,7 @@ class Whisker:
         impedance = self.motion.solimp
         for capsule in capsules:
             capsule.contype, capsule.conaffinity, capsule.priority = 0, 1, 1
-            capsule.condim = 3 if self.friction else 1
-            capsule.friction[0] = self.friction
+            capsule.condim, capsule.friction[0] = 1, 0
             capsule.solimp[:3] = [impedance, impedance, 1e-3 * self.case.beam.length]
         for capsule, weight in zip(capsules, self._weights(spec).tolist(), strict=True):
             soft = self.contact_stiffness * (1 - impedance) * weight
@@ -159,11 +158,6 @@ class Whisker:
             ])  # fmt: skip
         weights[0] = weights[1]  # that of the clamp, which hardly moves
         return np.asarray(weights)
-
-    @property
-    def friction(self) -> float:
-        """Coulomb's coefficient."""
-        return self.case.friction if self.motion.friction is None else self.motion.friction
 
     @property
     def contact_stiffness(self) -> float:
