@@ -13,8 +13,7 @@ from compare.comparison_in_space import SpatialComparison, compare_space
 from compare.explain.budget import Budget
 from compare.explain.likely import likely_cause
 from compare.judge.allowance import NoiseAllowance, noise_allowance
-from compare.judge.failure import Failure
-from compare.judge.failures import failures
+from compare.judge.failures import Failure, failures
 from compare.judge.judged import Judged, Number
 from compare.judge.spatial import SpatialTolerances
 from compare.judge.tolerances import Tolerances, checked_limits
@@ -30,7 +29,6 @@ if TYPE_CHECKING:
 
     from compare.align.frames import Frame
 
-_SHOWN = 6  # failures in the short form
 _OF_95 = 1.96  # standard deviations: half the width of an interval that holds 95 % of a normal
 
 
@@ -108,41 +106,8 @@ class Comparison(Judged[Readings], Measurement):
         """
         return self.candidate.plot(self.reference.plot())
 
-    def lines(self) -> Iterator[str]:
-        """The verdict, the disagreement of each reading, and what failed, for a terminal.
-
-        Yields
-        ------
-        str
-            A line.
-        """
-        verdict = "agrees with" if self.agrees else "disagrees with"
-        compared = self.alignment.counts["compared"]
-        yield (
-            f"{self.candidate.source} {verdict} {self.reference.source} "
-            f"({compared} of {len(self.candidate.table)} stations compared)"
-        )
-        if self.likely is not None:
-            yield f"  likely: {self.likely}"
-        for name, d in self.disagreement.items():
-            limit = self.tolerances.of_sweep(name)
-            yield f"  {name:9} rms {d.rms:.1e}  max {d.max:.1e}  allowed {limit:.1e} rms"
-        for name, event in self.events.items():
-            if event.difference is not None:
-                yield f"  {name:13} {event.reference:.5g} {event.difference:+.1e}"
-        for failure in self.exceeded[:_SHOWN]:
-            yield f"  failed: {failure.clause}"
-        if len(self.exceeded) > _SHOWN:
-            yield f"  and {len(self.exceeded) - _SHOWN} more, see .failures"
-        if self.remark is not None:
-            yield f"  {self.remark}"
-
     def _failures(self) -> Iterator[Failure]:
         return failures(self, self.tolerances, self.noise)
-
-    @property
-    def _conventional(self) -> bool:
-        return self.tolerances.conventional
 
     def _own(self) -> dict[str, Any]:
         agreement = self.phase_agreement()
@@ -267,8 +232,6 @@ def compare(
     allowance = noise_allowance(reference, level)
     widened = {
         name: replace(event, uncertainty=event.uncertainty + allowance.transitions.get(name, 0.0))
-        for name, event in found.transitions.items()
+        for name, event in found.events.items()
     }
-    return Comparison(
-        **(vars(found) | {"transitions": widened}), tolerances=tolerances, noise=allowance
-    )
+    return Comparison(**(vars(found) | {"events": widened}), tolerances=tolerances, noise=allowance)

@@ -10,11 +10,10 @@ from analytic.space import SpatialReadings
 from compare.align.frames import Frame
 from compare.align.travel import check_same_stations
 from compare.judge.allowance import SpatialAllowance, spatial_allowance
-from compare.judge.failure import Failure
-from compare.judge.failures_in_space import failures_in_space
+from compare.judge.failures import Failure, failures_in_space
 from compare.judge.judged import Judged, Number
 from compare.judge.spatial import SpatialTolerances
-from compare.judge.tolerances import checked_limits
+from compare.judge.tolerances import checked_limits, in_segments
 from compare.measure.in_space import SpatialMeasurement, measure_in_space
 from compare.sense.given import checked_sweep
 from compare.sense.occurrence import Occurrence
@@ -45,45 +44,12 @@ class SpatialComparison(Judged[SpatialReadings], SpatialMeasurement):
         sizes = {name: one.rms for name, one in self.disagreement.items()}
         return max(sizes, key=lambda name: np.nan_to_num(sizes[name]))
 
-    def lines(self) -> Iterator[str]:
-        """The verdict and what it rests on, for a terminal.
-
-        Yields
-        ------
-        str
-            A line.
-        """
-        name, length, contact = self.largest, self.reference.beam.length, self.contact
-        one = self.disagreement[name]
-        known = (
-            f"contact {contact.rms:.1e} L rms"
-            if contact.stations
-            else "contact known at no station"
-        )
-        yield (
-            f"{self.candidate.source} {'agrees' if self.agrees else 'disagrees'} with "
-            f"{self.reference.source}: {name} {one.rms:.1e} rms, the worst "
-            f"({self.tolerances.of(name, 'rms'):g} allowed); {known}; "
-            f"{int(self.compared.sum())} of {len(self.compared)} stations compared"
-        )
-        for event, pair in self.events.items():
-            if pair.reference is not None and pair.difference is not None:
-                wide = f" +- {pair.uncertainty / length:.1e} L" if pair.uncertainty else ""
-                yield (
-                    f"  {event:12} {pair.reference / length:.5f} L "
-                    f"{pair.difference / length:+.1e} L{wide}"
-                )
-        for failure in self.exceeded:
-            yield f"  failed: {failure.clause}"
-        if self.remark is not None:
-            yield f"  {self.remark}"
+    def _beside(self) -> Iterator[str]:
+        known = f"{self.contact.rms:.1e} L rms" if self.contact.stations else "at no station known"
+        yield f"  contact   {known}"
 
     def _failures(self) -> Iterator[Failure]:
         return failures_in_space(self, self.tolerances, self.noise)
-
-    @property
-    def _conventional(self) -> bool:
-        return self.tolerances.conventional_for(self.candidate)
 
     def _own(self) -> dict[str, Any]:
         off = {name: asdict(one) for name, one in self.disagreement.items()}
@@ -150,6 +116,8 @@ def compare_space(
     reference = checked_sweep("reference", reference, SpatialReadings)
     candidate = checked_sweep("candidate", candidate, SpatialReadings)
     tolerances = checked_limits(tolerances, SpatialTolerances)
+    if not in_segments(candidate):
+        tolerances = tolerances.by_convention()
     check_same_stations(reference, candidate)
     scales = component_scales(reference)
     level = component_levels(reference, candidate, noise, scales)

@@ -29,12 +29,7 @@ def clamp_axes(tangent: Floats) -> Floats:
 
 def components(readings: SpatialReadings, frame: Frame = "world") -> dict[str, Floats]:
     """The six components of a sweep in a frame."""
-    axes = _axes(readings, frame)
-    return {
-        name: column
-        for names in (COMPONENTS[:3], COMPONENTS[3:])
-        for name, column in zip(names, (readings.values(*names) @ axes.T).T, strict=True)
-    }
+    return _turned(readings, _axes(readings, frame))
 
 
 def from_frame(readings: SpatialReadings, frame: Frame) -> SpatialReadings:
@@ -42,12 +37,15 @@ def from_frame(readings: SpatialReadings, frame: Frame) -> SpatialReadings:
     axes = _axes(readings, frame)
     if frame == "world":
         return readings
-    rotated = {
+    return replace(readings, table=readings.table.assign(**_turned(readings, axes.T)))
+
+
+def _turned(readings: SpatialReadings, axes: Floats) -> dict[str, Floats]:
+    return {
         name: column
         for names in (COMPONENTS[:3], COMPONENTS[3:])
-        for name, column in zip(names, (readings.values(*names) @ axes).T, strict=True)
+        for name, column in zip(names, (readings.values(*names) @ axes.T).T, strict=True)
     }
-    return replace(readings, table=readings.table.assign(**rotated))
 
 
 def _axes(readings: SpatialReadings, frame: Frame) -> Floats:

@@ -18,7 +18,6 @@ _FEWEST = 8  # stations that a fit is worth something with
 _FOLD = 2  # last stations before a snap-off: the readings' slope grows without bound there
 _SCAN = 4  # trial offsets a station of the reference
 _MOST = 4000  # trial offsets, and stations that they are tried on
-_AT_ONCE = 50_000  # stations of trials in memory: what the processor keeps at hand
 _HUBER = 2.5  # standard deviations; stations that are farther off count by their sign only
 _ROUND_OFF = 1e-13  # of the largest magnitude
 _USELESS = 0.05  # L; a less certain offset blurs whole phases
@@ -137,16 +136,14 @@ def offset_fits(
     for name, number in (("reference", curve.stations), ("candidate", int(loaded.sum()))):
         if number < _FEWEST:
             raise _ambiguous(f"{number} trusted stations of the {name} in contact")
-    scale = np.array([*scales(reference).values()])
-    seen = np.stack([candidate.values(name) for name in CLAMP_READINGS]) / scale[:, None]
+    seen = np.stack([candidate.values(n) / size for n, size in scales(reference).items()])
     x = candidate.values("foot_x")
-    starts = _scan(curve, x, seen, loaded, candidate.trusted, scale)
     near: list[float] = []
-    for start in starts:
-        plain = _fit(curve, x[loaded], seen[:, loaded], start, scale, robust=False)
+    for start in _scan(curve, x, seen, loaded, candidate.trusted):
+        plain = _fit(curve, x[loaded], seen[:, loaded], start, robust=False)
         if plain is not None and not np.isclose(near, plain.value, 0, _ONE * curve.spacing).any():
             near.append(plain.value)
-    tried = (_fit(curve, x[loaded], seen[:, loaded], value, scale, robust=True) for value in near)
+    tried = (_fit(curve, x[loaded], seen[:, loaded], value, robust=True) for value in near)
     fits = [fit for fit in tried if fit is not None]
     if not fits:
         raise _ambiguous(f"fewer than {_FEWEST} stations in a phase of the reference")
@@ -160,7 +157,7 @@ class _Curve:
     pieces: list[tuple[float, float, Callable[..., Any]]]
     x: Floats
     values: Floats
-    """Shape (3, stations), by ascending `x`; zero where free."""
+    """Over the largest magnitudes, shape (3, stations), by ascending `x`; zero where free."""
     stations: int
     spacing: float
     ends: tuple[float, float]
@@ -169,7 +166,7 @@ class _Curve:
     @classmethod
     def of(cls, reference: Readings, judged: Classification) -> "_Curve":
         x = reference.values("foot_x")
-        values = np.stack([reference.values(name) for name in CLAMP_READINGS])
+        values = np.stack([reference.values(n) / size for n, size in scales(reference).items()])
         touching = np.isin(judged.phase, ("tip", "tangent"))
         places = locate_transitions(reference, judged)
         cuts = [c for c in (places["phase_b_start"], places["phase_b_end"]) if c is not None]
@@ -196,15 +193,8 @@ class _Curve:
             (float(ends[0]), float(ends[1])),
         )
 
-    def inside(self, x: Floats) -> Booleans:
-        """Whether each `x` lies within a piece."""
-        found = np.zeros(len(x), dtype=bool)
-        for low, high, _ in self.pieces:
-            found |= (x >= low) & (x <= high)
-        return found
-
     def smooth(self, x: Floats) -> tuple[Floats, Floats]:
-        """Readings, and their derivatives, shape (3, len(x)); every `x` within a piece."""
+        """Readings, and their derivatives, shape (3, len(x)); NaN where `x` is within no piece."""
         found = np.full((2, len(CLAMP_READINGS), len(x)), np.nan)
         for low, high, spline in self.pieces:
             here = (x >= low) & (x <= high)
@@ -213,7 +203,7 @@ class _Curve:
 
 
 def _scan(
-    curve: _Curve, x: Floats, seen: Floats, loaded: Booleans, trusted: Booleans, scale: Floats
+    curve: _Curve, x: Floats, seen: Floats, loaded: Booleans, trusted: Booleans
 ) -> list[float]:
     """The offsets at the lowest minima of a coarse scan, the lowest first."""
     low, high = x[loaded].min(), x[loaded].max()
@@ -227,45 +217,38 @@ def _scan(
     felt = np.where(loaded, seen, 0.0)[:, tried]
     least = min(loaded.sum(), curve.stations) / 2
 
-    def missed(trials: Floats) -> Floats:
-        """Mean square at each of some offsets; infinite where too little is in common."""
-        there = x[tried] - trials[:, None]
+    def missed(trial: float) -> float:
+        """Mean square at an offset; infinite where too little is in common."""
+        there = x[tried] - trial
         known = (there >= curve.x[0]) & (there <= curve.x[-1])
         common = known & (there >= first) & (there <= last) & loaded[tried]
-        enough = common.sum(axis=1) * stride >= least
-        there, known = there[enough], known[enough]
-        square = np.zeros(len(there))
-        for row, one, size in zip(curve.values, felt, scale, strict=True):
-            miss = np.where(known, one - np.interp(there, curve.x, row) / size, 0.0)
-            square += np.einsum("ij,ij->i", miss, miss)
-        found = np.full(len(trials), np.inf)
-        found[enough] = square / (len(felt) * known.sum(axis=1))
-        return found
+        if common.sum() * stride < least:
+            return np.inf
+        due = [np.interp(there[known], curve.x, row) for row in curve.values]
+        return float(np.mean((felt[:, known] - np.array(due)) ** 2))
 
-    pieces = np.array_split(trials, count * len(tried) // _AT_ONCE + 1)
-    misfit = np.concatenate([missed(piece) for piece in pieces])
+    misfit = np.array([missed(trial) for trial in trials.tolist()])
     padded = np.concatenate([[np.inf], misfit, [np.inf]])
     minima = np.flatnonzero(np.isfinite(misfit) & (misfit <= padded[:-2]) & (misfit <= padded[2:]))
     return [float(trials[i]) for i in minima[np.argsort(misfit[minima])][:3]]
 
 
-def _fit(
-    curve: _Curve, x: Floats, seen: Floats, start: float, scale: Floats, *, robust: bool
-) -> OffsetFit | None:
+def _fit(curve: _Curve, x: Floats, seen: Floats, start: float, *, robust: bool) -> OffsetFit | None:
     """Gauss and Newton's method from `start`; None where it leads out of the reference.
 
     Plain least squares first, each reading over its largest magnitude: the scatter that the
     readings are then weighed by is known only near the best offset.
     """
-    value, inside = start, curve.inside(x - start)
+    value, inside = start, np.ones(len(x), dtype=bool)
     iterations = _ITERATIONS if robust else _PLAIN
     for iteration in range(iterations):
+        due, slope = curve.smooth(x - value)
         # Towards the end the same stations, so that none comes and goes.
         settled = robust and iteration >= iterations // 2
-        inside = curve.inside(x - value) & (inside if settled else True)
+        inside = np.isfinite(due[0]) & (inside if settled else True)
         if inside.sum() < _FEWEST:
             return None
-        due, slope = (rows / scale[:, None] for rows in curve.smooth(x[inside] - value))
+        due, slope = due[:, inside], slope[:, inside]
         miss = seen[:, inside] - due
         scatter = np.median(np.abs(miss), axis=1, keepdims=True) / MEDIAN_OF_NORMAL + _ROUND_OFF
         scatter = scatter if robust else np.ones_like(scatter)

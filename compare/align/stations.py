@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from analytic import CLAMP_READINGS, InputError, Readings
-from analytic.problem.arrays import Booleans, Floats, Integers, Words
+from analytic.problem.arrays import Booleans, Floats, Integers
 from compare.sense.phases import Classification
 
 _SAME_STATION = 1e-9  # L; nearer foot positions are one and the same
@@ -68,35 +68,28 @@ def align(
             "overlapping",
             "sweep a common stretch, or check units and origin of foot_x",
         )
-    nearest = _nearest(x_ref, x)
+    order = np.argsort(x_ref)
+    between = (x_ref[order][1:] + x_ref[order][:-1]) / 2
+    nearest = order[np.searchsorted(between, x, side="right")]
     same = np.abs(x_ref[nearest] - x) <= _SAME_STATION * length
 
-    state = reference_phase.phase[nearest]
-    stretch = _stretches(reference_phase.phase)
-    covering = np.where(same, stretch[nearest], _covering(x_ref, stretch, x))
-    state = np.where(same, state, _stretch_phase(reference_phase.phase, stretch, covering))
-
-    reasons = np.select(
-        [
-            candidate_phase.phase == "",
-            outside,
-            covering < 0,
-            state == "",
-            (state == "free") & (candidate_phase.phase == "free"),
-            dropped & (candidate_phase.phase == "free"),
-            (state == "free") | (candidate_phase.phase == "free"),
-        ],
-        [
-            "untrusted",
-            "outside",
-            "between_phases",
-            "reference_untrusted",
-            "free",
-            "dropped",
-            "one_free",
-        ],
-        "compared",
-    )
+    phase = reference_phase.phase
+    starts = np.flatnonzero(np.append(True, phase[1:] != phase[:-1]))
+    stretch = np.searchsorted(starts, nearest, side="right") - 1
+    covering = np.where(same, stretch, _covering(x_ref, starts, x))
+    state = np.where(same, phase[nearest], np.where(covering < 0, "", phase[starts[covering]]))
+    idle = candidate_phase.phase == "free"
+    # The first that holds, in the order of the reasons.
+    why_not = {
+        "untrusted": candidate_phase.phase == "",
+        "outside": outside,
+        "between_phases": covering < 0,
+        "reference_untrusted": state == "",
+        "free": (state == "free") & idle,
+        "dropped": dropped & idle,
+        "one_free": (state == "free") | idle,
+    }
+    reasons = np.select([*why_not.values()], [*why_not], "compared")
     compared = reasons == "compared"
     columns = {
         "station": np.flatnonzero(compared),
@@ -104,29 +97,19 @@ def align(
         "phase": state[compared],
         "contact_arc_length": length * (1 - reference_phase.shortfall[nearest][compared]),
     }
-    groups = _groups(np.where(compared & ~same, covering, -1))
-    for name in CLAMP_READINGS:
-        values = reference.values(name)
-        there = values[nearest]
-        for one, here in groups:
-            on = slice(*np.searchsorted(stretch, [one, one + 1]))
-            there[here] = _interpolate(x_ref[on], values[on], x[here])
-        columns[f"{name}_reference"] = there[compared]
+    values = np.stack([reference.values(name) for name in CLAMP_READINGS])
+    there, ends = values[:, nearest], np.append(starts, len(x_ref))
+    between_two = np.flatnonzero(compared & ~same)
+    for group in pd.Series(between_two).groupby(covering[between_two]).indices.values():
+        here = between_two[group]
+        one = covering[here[0]]
+        on = slice(ends[one], ends[one + 1])
+        there[:, here] = interpolant(x_ref[on], values[:, on])(x[here])
+    for name, row in zip(CLAMP_READINGS, there, strict=True):
+        columns[f"{name}_reference"] = row[compared]
         columns[f"{name}_candidate"] = candidate.values(name)[compared]
-    counts = {reason: int((reasons == reason).sum()) for reason in _REASONS}
+    counts = {reason: int((reasons == reason).sum()) for reason in ("compared", *why_not)}
     return Alignment(pd.DataFrame(columns), counts)
-
-
-_REASONS = (
-    "compared",
-    "free",
-    "one_free",
-    "untrusted",
-    "dropped",
-    "reference_untrusted",
-    "between_phases",
-    "outside",
-)
 
 
 def _same_beam(reference: Readings, candidate: Readings) -> bool:
@@ -141,24 +124,8 @@ def _same_beam(reference: Readings, candidate: Readings) -> bool:
     )
 
 
-def _nearest(x_ref: Floats, x: Floats) -> Integers:
-    order = np.argsort(x_ref)
-    ordered = x_ref[order]
-    right = np.clip(np.searchsorted(ordered, x), 1, len(ordered) - 1)
-    nearer = np.where(x - ordered[right - 1] < ordered[right] - x, right - 1, right)
-    return np.asarray(order[nearer])
-
-
-def _stretches(
-    phase: Words,
-) -> Integers:
-    """Number of the uninterrupted stretch of one phase that each station belongs to."""
-    return np.cumsum(np.append(False, phase[1:] != phase[:-1]))
-
-
-def _covering(x_ref: Floats, stretch: Integers, x: Floats) -> Integers:
+def _covering(x_ref: Floats, starts: Integers, x: Floats) -> Integers:
     """The stretch with stations on both sides of each `x`, the last of several; -1 for none."""
-    starts = np.flatnonzero(np.diff(stretch, prepend=-1))
     low, high = np.minimum.reduceat(x_ref, starts), np.maximum.reduceat(x_ref, starts)
     order = np.argsort(x, kind="stable")
     first, last = np.searchsorted(x[order], low), np.searchsorted(x[order], high, side="right")
@@ -166,27 +133,6 @@ def _covering(x_ref: Floats, stretch: Integers, x: Floats) -> Integers:
     for one in np.flatnonzero(first < last):
         covering[order[first[one] : last[one]]] = one
     return covering
-
-
-def _groups(covering: Integers) -> list[tuple[int, Integers]]:
-    """The stations that each stretch covers, by its number."""
-    order = np.argsort(covering, kind="stable")
-    numbers, starts = np.unique(covering[order], return_index=True)
-    parts = np.split(order, starts[1:])
-    return [(int(n), part) for n, part in zip(numbers, parts, strict=True) if n >= 0]
-
-
-def _stretch_phase(
-    phase: Words,
-    stretch: Integers,
-    wanted: Integers,
-) -> Words:
-    first = np.searchsorted(stretch, np.maximum(wanted, 0))
-    return np.where(wanted < 0, "", phase[first])
-
-
-def _interpolate(x_ref: Floats, values: Floats, x: Floats) -> Floats:
-    return np.asarray(interpolant(x_ref, values)(x), dtype=float)
 
 
 def interpolant(x: Floats, values: Floats) -> Callable[..., Any]:

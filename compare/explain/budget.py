@@ -1,8 +1,7 @@
 """The budget of a disagreement, from readings alone."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,14 +12,16 @@ from compare.explain.convergence import convergence
 from compare.explain.oscillation import without_oscillation
 from compare.explain.parts import (
     SAFETY,
-    Part,
+    Parted,
     Shared,
+    Step,
+    as_uncertain,
     by_reading,
     common_stations,
+    extrapolated,
     observed_order,
     parts_of,
-    root_of_squares,
-    with_unexplained,
+    unexplained,
 )
 from compare.explain.suspects import Suspect, suspects
 from compare.explain.variations import shifted_inward, stretched
@@ -48,23 +49,16 @@ _LEFT, _UNSURE = 0.1, 1 / 3
 
 
 @dataclass(frozen=True)
-class Budget:
-    """What the disagreement of two sweeps is made of."""
+class Budget(Parted):
+    """What the disagreement of two sweeps is made of; ``corner`` only if there are sharp ones.
 
-    # `Part` by name and reading; ``corner`` only if MuJoCo's object has sharp ones.
-    parts: dict[str, dict[str, Part]]
-    # Root mean square by reading, over the stations in contact and trusted in all sweeps: fewer
-    # than a comparison's, where some of them failed to settle.
-    disagreement: dict[str, float]
+    It closes if both what is unexplained and its uncertainty are small against the disagreement or
+    against `UNRESOLVED`.
+    """
+
     by_phase: dict[str, dict[str, dict[str, float]]]  # root mean square by part, reading and phase
-    order: float  # observed order of convergence in the number of segments
-    # Whether what is unexplained lies within the uncertainty of the parts, and both are small
-    # against the disagreement or against `UNRESOLVED`.
-    closes: bool
-    blame: str  # the part that dominates
     # Faults of the physics that would explain what the numerics do not, likeliest first.
     suspects: tuple[Suspect, ...]
-    stations: int  # compared stations
     # Root mean square of the disagreement, without facets, by number of segments and reading.
     convergence: dict[int, dict[str, float]]
     # What the closed form says of two parts, with no simulator in it, as root mean square by
@@ -73,10 +67,6 @@ class Budget:
     # Whether it lies within an uncertainty that is not small: then the budget neither closes nor
     # shows that something is missing.
     undecided: bool = False
-
-    def to_dict(self) -> dict[str, Any]:
-        """What ``budget.json`` holds."""
-        return asdict(self)
 
 
 def budget(
@@ -109,67 +99,58 @@ def budget(
     _, middle, finest = refined
     from_two = finest + (finest - middle) / (2**order - 1)
     hard = "sharp" if "sharp" in run else "smooth"  # but for its contacts, which are harder next
-    signals = {
-        "discretisation": run["stiff"] - limit,
-        "facets": run["calm"] - run["smooth"],
-        "softness": (run[hard] - run["stiff"]) * STIFFER / (STIFFER - 1),
-        "unrest": run["base"] - run["calm"],
+    unrest = run["base"] - run["calm"]
+    steps: dict[str, Step] = {
+        "discretisation": (
+            run["stiff"] - limit,
+            np.hypot(SAFETY * (rms(finest - limit) + rms(limit - from_two)), doubt),
+        ),
+        "facets": (run["calm"] - run["smooth"], rms(unrest)),
+        "softness": extrapolated(run[hard], run["stiff"], STIFFER),
+        "unrest": as_uncertain(unrest),
         # What is out of balance shows in the sensors, too: that is unrest, and counted there.
-        "sensor": _sensor(runs["calm"], shared),
-        "extension": stretched(signatures, base.values("extension")[kept]),
+        "sensor": as_uncertain(_sensor(runs["calm"], shared)),
+        "extension": as_uncertain(stretched(signatures, base.values("extension")[kept])),
     }
     if "sharp" in run:  # linear in the edges' radius
-        signals["corner"] = (run["smooth"] - run["sharp"]) * SHARPER / (SHARPER - 1)
+        steps["corner"] = extrapolated(run["smooth"], run["sharp"], SHARPER)
     total = shared.off(base)
-    signals = with_unexplained(total, signals)
-    sizes = {name: rms(part) for name, part in signals.items()}
-    uncertainty = {
-        "discretisation": np.hypot(SAFETY * (rms(finest - limit) + rms(limit - from_two)), doubt),
-        "facets": sizes["unrest"],
-        "softness": SAFETY * sizes["softness"] / (STIFFER - 1),
-        "unrest": sizes["unrest"],
-        "sensor": sizes["sensor"],
-        "extension": sizes["extension"],
-    }
-    if "corner" in sizes:
-        uncertainty["corner"] = SAFETY * sizes["corner"] / (SHARPER - 1)
-    uncertainty["unexplained"] = root_of_squares(uncertainty.values())
-    unresolved = np.hypot(uncertainty["unexplained"], UNRESOLVED)
-    within = bool((sizes["unexplained"] <= unresolved).all())
-    whole = rms(total)
+    rest, unsure = steps["unexplained"] = unexplained(total, steps)
+    unresolved, whole = np.hypot(unsure, UNRESOLVED), rms(total)
+    within = bool((rms(rest) <= unresolved).all())
     resolved = bool(
-        (sizes["unexplained"] <= np.hypot(UNRESOLVED, _LEFT * whole)).all()
-        and (uncertainty["unexplained"] <= np.hypot(UNRESOLVED, _UNSURE * whole)).all()
+        (rms(rest) <= np.hypot(UNRESOLVED, _LEFT * whole)).all()
+        and (unsure <= np.hypot(UNRESOLVED, _UNSURE * whole)).all()
     )
     phase = exact.table["phase"].to_numpy()[kept]
     shifted = shifted_inward(
         signatures, base.values("penetration")[kept] / beam.length, beam.radius / beam.length
     )
     checks = {"softness": shifted}
-    names = [name for name in PARTS if name in signals]
     if faceted is not None:
         # A vibrissa curved towards the object touches a straight facet twice, with no readings.
         solved = common_stations(exact, [faceted], tolerances.snap_off_window)[kept]
         if solved.any():
             checks["facets"] = shared.off(faceted)[:, solved]
+    parts = parts_of(PARTS, steps)
     return Budget(
-        parts_of(names, sizes, uncertainty),
-        by_reading(total),
-        {
+        parts=parts,
+        disagreement=by_reading(total),
+        order=order,
+        closes=within and resolved,
+        blame=max(parts, key=lambda name: float(np.linalg.norm(rms(steps[name][0])))),
+        stations=int(kept.sum()),
+        by_phase={
             name: {
-                reading: {str(p): float(rms(part[i, phase == p])) for p in np.unique(phase)}
-                for i, reading in enumerate(CLAMP_READINGS)
+                reading: {str(p): float(rms(row[phase == p])) for p in np.unique(phase)}
+                for reading, row in zip(CLAMP_READINGS, signal, strict=True)
             }
-            for name, part in signals.items()
+            for name, (signal, _) in steps.items()
         },
-        order,
-        within and resolved,
-        max(names, key=lambda name: float(np.linalg.norm(sizes[name]))),
-        suspects(signals["unexplained"], signatures, float(np.linalg.norm(unresolved))),
-        int(kept.sum()),
-        convergence(exact, [runs[name] for name in REFINED], kept),
-        {name: by_reading(check) for name, check in checks.items()},
-        within and not resolved,
+        suspects=suspects(rest, signatures, float(np.linalg.norm(unresolved))),
+        convergence=convergence(exact, [runs[name] for name in REFINED], kept),
+        checks={name: by_reading(check) for name, check in checks.items()},
+        undecided=within and not resolved,
     )
 
 

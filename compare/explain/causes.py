@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -17,6 +18,47 @@ from compare.measure.measurement import Measurement
 _STEP = 1e-3  # of a length, and so on: the size that a signature is taken from
 _FEWEST = 4  # stations of a stretch whose slope is worth something
 
+# What a fault is called, and the least and the largest value that it leaves, in its unit: what is
+# off by more would hardly be the same experiment.
+_SOLVED: dict[Fault, tuple[str, float, float]] = {
+    "length": ("length of the vibrissa {size:+.2%} off", 0.8, 1.2),
+    "radius": (
+        "radius of the vibrissa {off:+.2e} off (it is {stated:.2e}), or the object's surface as "
+        "much too low",
+        -math.inf,
+        math.inf,
+    ),
+    "clamp": (
+        "discretisation of first order: the vibrissa is rigid over its first {size:.2%}, as with a "
+        "whole rigid segment at the clamp",
+        0.0,
+        0.2,
+    ),
+    "clamp_compliance": (
+        "clamp stiffness about {inverse:.3g}, not {stated_inverse:.3g}: the clamp gives way "
+        "otherwise than stated",
+        0.0,
+        math.inf,
+    ),
+    "friction": (
+        "friction about {value:.3g}, not {stated:.3g}: the object rubs otherwise than stated",
+        0.0,
+        1.0,
+    ),
+    "natural_curvature": (
+        "natural curvature about {value:+.3g}, not {stated:.3g}: the vibrissa at rest is bent "
+        "otherwise than stated",
+        -1.5,
+        1.5,
+    ),
+    "tip_radius": (
+        "tip radius about {value:.2e}, not {stated:.2e}: the vibrissa is a cone, or another one",
+        -1.0,
+        -0.05,
+    ),
+}
+_LARGEST = {"radius": 0.1, "clamp_compliance": 2.0}  # of which only the change is limited
+
 
 @dataclass(frozen=True)
 class Cause:
@@ -27,7 +69,7 @@ class Cause:
     # magnitudes.
     signature: Floats
     lowest: float  # sizes that such a fault can have
-    highest: float  # sizes that such a fault can have
+    highest: float
     # What a fault of a size adds, of the signature's shape, where that is more than linear and can
     # be solved; None if that size cannot.
     change: Callable[[float], Floats | None] | None = None
@@ -35,37 +77,21 @@ class Cause:
 
 def causes(found: Measurement, table: pd.DataFrame, true: Floats, scale: Floats) -> Iterator[Cause]:
     """The known faults, those that need the contour last."""
-    length = found.reference.beam.length
     # A radius that is a third off makes the rigidity 0.2 to 3.2 times what it should be.
     yield Cause("flexural rigidity {:+.2%} off: all readings scale alike".format, true, -0.8, 2.2)
+    text = "foot_x {:+.2e} off, the same at all stations: an offset (or a lag), see `--offset auto`"
     # Farther off the readings are no longer linear in it; `offset` is there for that.
-    yield Cause(
-        "foot_x {:+.2e} off, the same at all stations: an offset (or a lag), see "
-        "`--offset auto`".format,
-        -slopes(table, true),
-        -0.1 * length,
-        0.1 * length,
-    )
-    progress = np.linspace(0, 1, true.shape[1])
-    for i, name in enumerate(CLAMP_READINGS):
-        yield Cause(
-            f"gain of {name} {{:+.2%}} off, the other readings are right".format,
-            _only(i, true[i], true),
-            -0.8,
-            2.0,
-        )
-        yield Cause(
-            f"zero of {name} off by {{:+.2e}} of its largest magnitude at all stations".format,
-            _only(i, np.ones_like(progress), true),
-            -2.0,
-            2.0,
-        )
-        yield Cause(
-            f"drift of {name} by {{:+.2e}} of its largest magnitude over the sweep".format,
-            _only(i, progress, true),
-            -2.0,
-            2.0,
-        )
+    most = 0.1 * found.reference.beam.length
+    yield Cause(text.format, -slopes(table, true), -most, most)
+    of_largest = "of its largest magnitude"
+    for one, name, row in zip(np.eye(3), CLAMP_READINGS, true, strict=True):
+        only = one[:, None]
+        text = f"gain of {name} {{:+.2%}} off, the other readings are right"
+        yield Cause(text.format, only * row, -0.8, 2.0)
+        text = f"zero of {name} off by {{:+.2e}} {of_largest} at all stations"
+        yield Cause(text.format, only * np.ones_like(row), -2.0, 2.0)
+        text = f"drift of {name} by {{:+.2e}} {of_largest} over the sweep"
+        yield Cause(text.format, only * np.linspace(0, 1, len(row)), -2.0, 2.0)
     exact = Resolved.of(found.reference, table["foot_x"].to_numpy())
     if exact is not None:
         yield from _solved(exact, table, scale)
@@ -73,107 +99,57 @@ def causes(found: Measurement, table: pd.DataFrame, true: Floats, scale: Floats)
 
 def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cause]:
     """The faults whose signatures the closed form gives, where it can be solved with them."""
-    case, beam, length = exact.case, exact.case.beam, exact.case.beam.length
-    held = f"{case.clamp_stiffness:.3g}" if math.isfinite(case.clamp_stiffness) else "rigid"
-
-    def stated(fault: Fault) -> float:
-        return QUANTITIES[fault].value(case) / (unit_of(fault, case) or math.nan)
-
-    def clamp_stiffness(softer: float) -> float:
-        by = softer * unit_of("clamp_compliance", case)
-        return QUANTITIES["clamp_compliance"].larger(case, by).clamp_stiffness
-
-    bent, cone = stated("natural_curvature"), -stated("tip_radius")
-    said: dict[Fault, tuple[Callable[[float], str], float, float]] = {
-        # What is off by more would hardly be the same experiment.
-        "length": ("length of the vibrissa {:+.2%} off".format, -0.2, 0.2),
-        "radius": (
-            lambda size: (
-                f"radius of the vibrissa {size * length:+.2e} off (it is {beam.radius:.2e}),"
-                " or the object's surface as much too low"
-            ),
-            -0.1,
-            0.1,
-        ),
-        "clamp": (
-            "discretisation of first order: the vibrissa is rigid over its first {:.2%}, as with a "
-            "whole rigid segment at the clamp".format,
-            0.0,
-            0.2,
-        ),
-        "clamp_compliance": (
-            lambda size: (
-                f"clamp stiffness about {clamp_stiffness(size):.3g}, not {held}:"
-                " the clamp gives way otherwise than stated"
-            ),
-            -stated("clamp_compliance"),
-            2.0,
-        ),
-        "friction": (
-            lambda size: (
-                f"friction about {case.friction + size:.3g}, not {case.friction:.3g}: the object"
-                " rubs otherwise than stated"
-            ),
-            -case.friction,
-            1.0 - case.friction,
-        ),
-        "natural_curvature": (
-            lambda size: (
-                f"natural curvature about {(bent + size) / length:+.3g}, not {bent / length:.3g}:"
-                " the vibrissa at rest is bent otherwise than stated"
-            ),
-            -1.5 - bent,
-            1.5 - bent,
-        ),
-        "tip_radius": (
-            lambda size: (
-                f"tip radius about {(cone - size) * beam.radius:.2e}, not"
-                f" {cone * beam.radius:.2e}: the vibrissa is a cone, or another one"
-            ),
-            cone - 1.0,
-            cone - 0.05,
-        ),
-    }
-    for fault, (text, lowest, highest) in said.items():
+    for fault, (_, least, most) in _SOLVED.items():
+        stated, unit = _stated(exact, fault)
+        lowest, highest = least - stated / unit, most - stated / unit
+        if fault in _LARGEST:
+            lowest, highest = max(lowest, -_LARGEST[fault]), _LARGEST[fault]
         if not lowest < highest:
             continue  # what varies along the vibrissa has no such number
-
-        def change(size: float, fault: Fault = fault) -> Floats | None:
-            added = exact.change(fault, size)
-            return None if added is None else added / scale[:, None]
-
+        change = partial(_change, exact, fault, scale)
         # Bent to one side, a vibrissa may lean over the object and not be solved.
         steps = ((step, change(step)) for step in (_STEP, -_STEP))
         slope = next((added / step for step, added in steps if added is not None), None)
         if slope is None:
             continue
-        yield Cause(text, slope, lowest, highest, change)
+        yield Cause(partial(_text, exact, fault), slope, lowest, highest, change)
         if fault == "radius":
-            force = np.hypot(
-                *(table[f"{name}_reference"].to_numpy() for name in CLAMP_READINGS[:2])
-            )
-            yield Cause(
-                "softness: the contact gives way by up to {:.1e} L".format,
-                -slope * force / force.max(),
-                0.0,
-                0.1,
-            )
+            force = np.hypot(*table[["force_x_reference", "force_y_reference"]].to_numpy().T)
+            text = "softness: the contact gives way by up to {:.1e} L"
+            yield Cause(text.format, -slope * force / force.max(), 0.0, 0.1)
+
+
+def _stated(exact: Resolved, fault: Fault) -> tuple[float, float]:
+    """What the reference has of it, and its unit."""
+    if fault == "clamp":
+        return 0.0, 1.0
+    return QUANTITIES[fault].value(exact.case), unit_of(fault, exact.case) or math.nan
+
+
+def _text(exact: Resolved, fault: Fault, size: float) -> str:
+    stated, unit = _stated(exact, fault)
+    value = stated + size * unit
+    inverse, stated_inverse = (1 / x if x > 0 else math.inf for x in (value, stated))
+    return _SOLVED[fault][0].format(
+        size=size,
+        off=size * unit,
+        value=value,
+        stated=stated,
+        inverse=inverse,
+        stated_inverse=stated_inverse,
+    )
+
+
+def _change(exact: Resolved, fault: Fault, scale: Floats, size: float) -> Floats | None:
+    added = exact.change(fault, size)
+    return None if added is None else added / scale[:, None]
 
 
 def slopes(table: pd.DataFrame, true: Floats) -> Floats:
     """Derivative of the readings by the foot position, phase by phase."""
     slope = np.full_like(true, np.nan)
     phase, x = table["phase"].to_numpy(), table["foot_x"].to_numpy()
-    ends = np.flatnonzero(phase[1:] != phase[:-1]) + 1
-    for begin, end in zip(np.append(0, ends), np.append(ends, len(x)), strict=True):
-        if end - begin >= _FEWEST and np.ptp(x[begin:end]) > 0:
-            here = slice(begin, end)
+    for here in np.split(np.arange(len(x)), np.flatnonzero(phase[1:] != phase[:-1]) + 1):
+        if len(here) >= _FEWEST and np.ptp(x[here]) > 0:
             slope[:, here] = interpolant(x[here], true[:, here])(x[here], 1)
     return slope
-
-
-def _only(i: int, values: Floats, true: Floats) -> Floats:
-    """A signature in one reading alone."""
-    signature = np.zeros_like(true)
-    signature[i] = values
-    return signature

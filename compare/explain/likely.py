@@ -11,7 +11,7 @@ from compare.explain.fit import Explanation, fitted
 from compare.explain.wiring import misread
 from compare.judge.allowance import NoiseAllowance
 from compare.judge.tolerances import Tolerances
-from compare.measure.disagreement import before_snap_off
+from compare.measure.disagreement import before_snap_off, rms
 from compare.measure.measurement import Measurement
 
 _CONVINCING = 0.9  # fraction of the disagreement, its scatter apart, that one cause must explain
@@ -50,10 +50,23 @@ def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) 
     table = table[~window & sound].reset_index(drop=True)
     if len(table) < _FEWEST:
         return "; ".join(notes) or None
+    scale = np.array([found.disagreement[name].scale for name in CLAMP_READINGS])
+    true, seen = (
+        np.stack([table[f"{name}_{which}"] for name in CLAMP_READINGS]) / scale[:, None]
+        for which in ("reference", "candidate")
+    )
+    error = seen - true
     short = _short(found)
-    if (notes or short) and _agrees(found, table, limits, noise):
+    if (notes or short) and _agrees(error, limits, noise):
         return "; ".join([*notes, *short])
-    cause = _lone(found, table, limits, noise) or _cause(found, table)
+    cause = _lone(error, table["foot_x"].to_numpy(), limits, noise)
+    if cause is None and np.sqrt(np.mean(error**2)) >= _ROUND_OFF:
+        jumps = np.array([scatter(row) for row in error])
+        cause = (
+            _unrest(found, error)
+            or _scattered(found, error, jumps, scale)
+            or _fitting(found, table, true, seen, scale, jumps)
+        )
     return (
         "; ".join([*notes, f"beside that {cause}" if notes else cause] if cause else notes) or None
     )
@@ -77,17 +90,14 @@ def _short(found: Measurement) -> list[str]:
     ]
 
 
-def _lone(
-    found: Measurement, table: pd.DataFrame, limits: Tolerances, noise: NoiseAllowance
-) -> str | None:
+def _lone(error: Floats, foot_x: Floats, limits: Tolerances, noise: NoiseAllowance) -> str | None:
     """Single stations that are far off, if all others agree or nearly all of it is theirs."""
-    error = (_values(table, "candidate") - _values(table, "reference")) / _scale(found)[:, None]
     size = np.abs(error).max(axis=0)
     off = size > _FAR_OFF * np.median(size)
     neighbours = np.append(off[1:], False) & off
     if not off.any() or neighbours.any() or off.mean() > _SELDOM:
         return None
-    agree = _agrees(found, table[~off], limits, noise)
+    agree = _agrees(error[:, ~off], limits, noise)
     if not agree and np.sum(error[:, ~off] ** 2) > (1 - _CONVINCING) * np.sum(error**2):
         return None
     worst = int(size.argmax())
@@ -95,34 +105,16 @@ def _lone(
     return (
         f"single stations: {off.sum()} of {len(off)} compared {'is' if off.sum() == 1 else 'are'} "
         f"off by up to {size[worst]:.1e} of the largest {reading} (at foot_x = "
-        f"{table['foot_x'].iloc[worst]:.4g}); "
+        f"{foot_x[worst]:.4g}); "
         + ("all others agree" if agree else "nearly all of the disagreement is theirs")
     )
 
 
-def _agrees(
-    found: Measurement, table: pd.DataFrame, limits: Tolerances, noise: NoiseAllowance
-) -> bool:
-    """Whether the readings agree at the stations of `table`."""
-    scale = _scale(found)
-    error = (_values(table, "candidate") - _values(table, "reference")) / scale[:, None]
-    rms = np.sqrt(np.mean(error**2, axis=1))
-    allowed = [noise.rms(limits.of_sweep(name), name, len(table)) for name in CLAMP_READINGS]
-    return bool((rms <= allowed).all())
-
-
-def _cause(found: Measurement, table: pd.DataFrame) -> str | None:
-    scale = _scale(found)
-    true, seen = (_values(table, which) / scale[:, None] for which in ("reference", "candidate"))
-    error = seen - true
-    if np.sqrt(np.mean(error**2)) < _ROUND_OFF:
-        return None
-    jumps = np.array([scatter(row) for row in error])
-    return (
-        _unrest(found, error)
-        or _scattered(found, error, jumps, scale)
-        or _fitting(found, table, true, seen, scale, jumps)
-    )
+def _agrees(error: Floats, limits: Tolerances, noise: NoiseAllowance) -> bool:
+    """Whether the readings agree at some stations, by what they are off by there."""
+    stations = error.shape[1]
+    allowed = [noise.rms(limits.of_sweep(name), name, stations) for name in CLAMP_READINGS]
+    return bool((rms(error) <= allowed).all())
 
 
 def _unrest(found: Measurement, error: Floats) -> str | None:
@@ -259,11 +251,3 @@ def _rest(best: Explanation, all_: float, noise: float) -> float:
 
 def _beyond(one: Explanation, noise: float) -> float:
     return max(one.left - _UNSURE * noise, 0.0)
-
-
-def _scale(found: Measurement) -> Floats:
-    return np.array([found.disagreement[name].scale for name in CLAMP_READINGS])
-
-
-def _values(table: pd.DataFrame, which: str) -> Floats:
-    return np.stack([table[f"{name}_{which}"].to_numpy() for name in CLAMP_READINGS])

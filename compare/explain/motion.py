@@ -1,24 +1,24 @@
 """The budget of a sweep in motion: what motion and contacts add to what is there at rest."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from analytic import Readings
-from analytic.problem.arrays import Floats
 from compare.explain.budget import UNRESOLVED
 from compare.explain.parts import (
     SAFETY,
-    Part,
+    Parted,
     Shared,
+    Step,
+    as_uncertain,
     by_reading,
     common_stations,
+    extrapolated,
     observed_order,
     parts_of,
-    root_of_squares,
-    with_unexplained,
+    unexplained,
 )
 from compare.judge.tolerances import Tolerances
 from compare.measure.disagreement import rms
@@ -47,29 +47,18 @@ _LEFT = 0.1  # of the disagreement; what may stay unexplained
 
 
 @dataclass(frozen=True)
-class MotionBudget:
-    """What the disagreement of a sweep in motion with the closed form is made of."""
+class MotionBudget(Parted):
+    """What the disagreement of a sweep in motion with the closed form is made of.
 
-    # `Part` by name and reading, those of `PARTS` that there are sweeps for: ``damping``, in
-    # proportion to the damping ratio; ``rate``, what else a slower sweep does not have; ``time
-    # step``, what a shorter one does not have; ``contact model``, of the user's contacts instead of
-    # ours; ``softness``, of ours in a user's model instead of hard ones; ``solver``, of another one
-    # than Newton's, or of its iterations; ``beam``, of what was measured instead of what is stated;
-    # ``at rest``, of the same model and our contacts; ``unexplained``.
-    parts: dict[str, dict[str, Part]]
-    # Root mean square by reading, over the stations in contact and trusted in all sweeps.
-    disagreement: dict[str, float]
-    order: float  # observed order in the speed, halved or doubled twice
-    # Whether what is unexplained lies within the uncertainty of the parts, or is less than a tenth
-    # of the disagreement.
-    closes: bool
-    blame: str  # the part that dominates, less what it is uncertain by
-    stations: int  # compared stations
+    Its parts are those of `PARTS` that there are sweeps for: ``damping``, in proportion to the
+    damping ratio; ``rate``, what else a slower sweep does not have; ``time step``, what a shorter
+    one does not have; ``contact model``, of the user's contacts instead of ours; ``softness``, of
+    ours in a user's model instead of hard ones; ``solver``, of another one than Newton's, or of its
+    iterations; ``beam``, of what was measured instead of what is stated; ``at rest``, of the same
+    model and our contacts. The one to blame dominates less what it is uncertain by.
+    """
+
     left_out: tuple[str, ...] = ()  # sweeps that diverged, and whose part there is none of
-
-    def to_dict(self) -> dict[str, Any]:
-        """What ``motion-budget.json`` holds."""
-        return asdict(self)
 
 
 def slower_and_finer(motion: Motion) -> dict[str, Motion]:
@@ -130,46 +119,40 @@ def motion_budget(
     coarse, fine = fast - middle, middle - slow
     order = observed_order(coarse, fine, nominal=1.0, least=_LEAST_ORDER)
     limit = slow - fine / (2**order - 1)
-    signals = {"rate": run["base"] - limit}
-    unsure = {"rate": SAFETY * rms(slow - limit)}
+    steps: dict[str, Step] = {"rate": (run["base"] - limit, SAFETY * rms(slow - limit))}
     if "undamped" in run:
         # As much again as was measured is extrapolated, and as uncertain.
-        signals["damping"] = 2 * (run["base"] - run["undamped"])
-        signals["rate"] -= signals["damping"]
-        unsure["damping"] = rms(run["base"] - run["undamped"])
-    signals["time step"] = 2 * (last - run["fine"])  # of first order, as its contacts are
+        damping = 2 * (run["base"] - run["undamped"])
+        steps["rate"] = steps["rate"][0] - damping, steps["rate"][1]
+        steps["damping"] = damping, np.zeros(3)
+    # Of first order, as its contacts are.
+    steps["time step"] = as_uncertain(2 * (last - run["fine"]))
     for name, other in (("contact model", "ours"), ("solver", "newton")):
         if other in run:
-            signals[name] = last - run[other]
+            steps[name] = last - run[other], np.zeros(3)
     if "stiff" in run:  # less what half the time step does
         softer = run.get("ours", last) - (last - run["fine"])
-        signals["softness"] = (softer - run["stiff"]) * _STIFFER / (_STIFFER - 1)
-        unsure["softness"] = SAFETY * rms(signals["softness"]) / (_STIFFER - 1)
+        steps["softness"] = extrapolated(softer, run["stiff"], _STIFFER)
     if "beam" in run:
-        signals["beam"] = shared.off(runs["beam"])
-    signals["at rest"] = shared.off(runs["rest"])
+        steps["beam"] = shared.off(runs["beam"]), np.zeros(3)
+    at_rest = shared.off(runs["rest"])
+    steps["at rest"] = as_uncertain(at_rest) if of_our_chain else (at_rest, np.zeros(3))
     total = shared.off(runs["base"])
-    signals = with_unexplained(total, signals)
-    sizes = {name: rms(part) for name, part in signals.items()}
-    uncertainty = {name: unsure.get(name, np.zeros(3)) for name in signals}
-    uncertainty["time step"] = sizes["time step"]
-    if of_our_chain:
-        uncertainty["at rest"] = sizes["at rest"]
-    # What is rate and what damping does not matter to what is left.
-    left = (u for name, u in uncertainty.items() if name != "damping")
-    uncertainty["unexplained"] = root_of_squares(left)
-    if "damping" in uncertainty:
-        uncertainty["rate"] = np.hypot(uncertainty["rate"], uncertainty["damping"])
-    allowed = np.hypot(UNRESOLVED, np.maximum(uncertainty["unexplained"], _LEFT * rms(total)))
+    rest, unsure = steps["unexplained"] = unexplained(total, steps)
+    if "damping" in steps:  # what is rate and what damping does not matter to what is left
+        doubt = rms(run["base"] - run["undamped"])
+        steps["damping"] = steps["damping"][0], doubt
+        steps["rate"] = steps["rate"][0], np.hypot(steps["rate"][1], doubt)
+    allowed = np.hypot(UNRESOLVED, np.maximum(unsure, _LEFT * rms(total)))
+    sure = {
+        name: float(np.linalg.norm(np.maximum(rms(signal) - uncertainty, 0.0)))
+        for name, (signal, uncertainty) in steps.items()
+    }
     return MotionBudget(
-        parts_of((name for name in PARTS if name in sizes), sizes, uncertainty),
-        by_reading(total),
-        order,
-        bool((sizes["unexplained"] <= allowed).all()),
-        max(sizes, key=lambda name: float(np.linalg.norm(_sure(sizes[name], uncertainty[name])))),
-        int(kept.sum()),
+        parts=parts_of(PARTS, steps),
+        disagreement=by_reading(total),
+        order=order,
+        closes=bool((rms(rest) <= allowed).all()),
+        blame=max(sure, key=sure.__getitem__),
+        stations=int(kept.sum()),
     )
-
-
-def _sure(size: Floats, uncertainty: Floats) -> Floats:
-    return np.maximum(size - uncertainty, 0.0)

@@ -1,7 +1,8 @@
 """What every budget has: sweeps over the stations that all share, and the parts of a whole."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -16,12 +17,35 @@ SAFETY = 1.25
 what the finest grid says, and from what the two finest alone would make of it."""
 
 
+Step: TypeAlias = tuple[Floats, Floats]
+"""A part at every station, shape (3, stations), and how uncertain its root mean square is, (3,)."""
+
+
 @dataclass(frozen=True)
 class Part:
     """One part of the disagreement of one reading, relative to its largest magnitude."""
 
     rms: float
     uncertainty: float
+
+
+@dataclass(frozen=True)
+class Parted:
+    """What every disagreement that was taken apart has."""
+
+    parts: dict[str, dict[str, Part]]  # by name and reading
+    # Root mean square by reading, over the stations in contact and trusted in all sweeps: fewer
+    # than a comparison's, where some of them failed to settle.
+    disagreement: dict[str, float]
+    order: float  # observed, in the number of segments or in the speed
+    # Whether what is unexplained lies within the uncertainty of the parts, and is small.
+    closes: bool
+    blame: str  # the part that dominates
+    stations: int  # compared stations
+
+    def to_dict(self) -> dict[str, Any]:
+        """What the budget's JSON file holds."""
+        return asdict(self)
 
 
 @dataclass(frozen=True)
@@ -62,26 +86,34 @@ def common_stations(exact: Readings, runs: Iterable[Readings], window: float) ->
     return kept
 
 
-def with_unexplained(whole: Floats, signals: Mapping[str, Floats]) -> dict[str, Floats]:
-    """The parts of a whole, and what they leave of it."""
-    return {**signals, "unexplained": whole - np.sum(list(signals.values()), axis=0)}
+def as_uncertain(signal: Floats) -> Step:
+    """A part that is as uncertain as it is large."""
+    return signal, rms(signal)
 
 
-def root_of_squares(uncertainties: Iterable[Floats]) -> Floats:
-    """The uncertainty of a sum."""
-    return np.asarray(np.sqrt(np.sum([u**2 for u in uncertainties], axis=0)))
+def extrapolated(more: Floats, less: Floats, factor: float) -> Step:
+    """A part that falls in proportion, from two sweeps of which one has less of it by a factor."""
+    signal = (more - less) * factor / (factor - 1)
+    return signal, SAFETY * rms(signal) / (factor - 1)
 
 
-def parts_of(
-    names: Iterable[str], sizes: Mapping[str, Floats], uncertainties: Mapping[str, Floats]
-) -> dict[str, dict[str, Part]]:
-    """The parts by name and reading."""
+def unexplained(whole: Floats, steps: Mapping[str, Step]) -> Step:
+    """What the parts leave of a whole, as uncertain as all of them."""
+    signals, uncertainties = zip(*steps.values(), strict=True)
+    return whole - np.sum(signals, axis=0), np.sqrt(np.sum(np.square(uncertainties), axis=0))
+
+
+def parts_of(names: Iterable[str], steps: Mapping[str, Step]) -> dict[str, dict[str, Part]]:
+    """The parts by name and reading, those of the names that there are."""
     return {
         name: {
-            reading: Part(float(sizes[name][i]), float(uncertainties[name][i]))
-            for i, reading in enumerate(CLAMP_READINGS)
+            reading: Part(*sizes)
+            for reading, *sizes in zip(
+                CLAMP_READINGS, rms(steps[name][0]).tolist(), steps[name][1].tolist(), strict=True
+            )
         }
         for name in names
+        if name in steps
     }
 
 

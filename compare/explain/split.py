@@ -7,7 +7,7 @@ of its own shows what another model of the same rod does.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from analytic import CLAMP_READINGS, Readings
@@ -84,17 +84,7 @@ class Split:
 
     def to_dict(self) -> dict[str, Any]:
         """What ``engines.json`` holds of it."""
-        return {
-            "subject": self.subject,
-            "twin": self.twin,
-            "disagreement": self.disagreement,
-            "implementation": self.implementation,
-            "model": self.model,
-            "others": self.others,
-            "snap_off": self.snap_off,
-            "blame": self.blame,
-            "sentence": self.sentence,
-        }
+        return {**asdict(self), "blame": self.blame, "sentence": self.sentence}
 
 
 def split(

@@ -9,30 +9,10 @@ from analytic import CLAMP_READINGS
 from analytic.problem.arrays import Floats
 from compare.explain.fit import Explanation, fitted
 
-# What a reading is larger by, and which unit was taken for which: the file's for the stated one.
-_FORCES = {
-    1e3: "mN taken for N",
-    1e-3: "N taken for mN",
-    9.80665: "N taken for kgf",
-    1 / 9.80665: "kgf taken for N",
-    101.9716: "gf taken for N",
-    1 / 101.9716: "N taken for gf",
-    4.448222: "N taken for lbf",
-    1 / 4.448222: "lbf taken for N",
-}
-_MOMENTS = {
-    **_FORCES,
-    1e6: "mN mm taken for N m",
-    1e-6: "N m taken for mN mm",
-    1e3: "N mm taken for N m, or mN m for N m",
-    1e-3: "N m taken for N mm, or for mN m",
-    1e2: "N cm taken for N m",
-    1e-2: "N m taken for N cm",
-    10.0: "N mm taken for N cm",
-    0.1: "N cm taken for N mm",
-    25.4: "mm taken for inches",
-    1 / 25.4: "inches taken for mm",
-}
+# Units in those that they are taken for, or that are taken for them.
+_FORCES = {"mN": 1e-3, "kgf": 9.80665, "gf": 9.80665e-3, "lbf": 4.448222}
+_MOMENTS = {**_FORCES, "mN mm": 1e-6, "N mm or mN m": 1e-3, "N cm": 1e-2}
+_LENGTHS = {("N mm", "N cm"): 10.0, ("mm", "inches"): 25.4}
 _SAME_UNIT = 0.02  # of the factor; as far as a model's own error may move it
 _DEAD = 0.01  # of the reading's variance: what of it a dead channel still shows
 _FOLLOWS = 0.5  # fraction of a small reading's variance that follows the load, if it is alive
@@ -105,21 +85,27 @@ def _units(true: Floats, seen: Floats) -> Iterator[Explanation]:
     for groups in ([[0]], [[1]], [[2]], [[0, 1]], [[0, 1, 2]], [[0, 1], [2]]):
         scaled, said = true.copy(), {}
         for rows in groups:
-            if not true[rows].any():
-                continue
-            factor = float(np.sum(true[rows] * seen[rows]) / np.sum(true[rows] ** 2))
-            units = _MOMENTS if rows == [2] else _FORCES
-            unit = min(
-                units, key=lambda known: abs(np.log(abs(factor)) - np.log(known)) if factor else 1.0
-            )
+            weight = np.sum(true[rows] ** 2)
+            factor = float(np.sum(true[rows] * seen[rows]) / weight) if weight > 0 else 0.0
+            known = _factors(of_moment=rows == [2])
+            unit = min(known, key=lambda one: abs(np.log(max(factor, 1e-99) / one)))
             if abs(factor / unit - 1) > _SAME_UNIT:
                 continue
             scaled[rows] *= factor
             names = " and ".join(CLAMP_READINGS[i] for i in rows)
             names = names if len(rows) < len(CLAMP_READINGS) else "all readings"
-            said[unit] = f"{names} in another unit: {factor:.4g} times what is due ({units[unit]}?)"
+            said[unit] = f"{names} in another unit: {factor:.4g} times what is due ({known[unit]}?)"
         if len(said) == len(groups):  # of one factor it is one mistake
             yield Explanation(", ".join(said.values()), float(np.sum((seen - scaled) ** 2)))
+
+
+def _factors(of_moment: bool) -> dict[float, str]:
+    """What a reading is larger by, and which unit was taken for which."""
+    newton, units = ("N m", _MOMENTS) if of_moment else ("N", _FORCES)
+    pairs = {(name, newton): 1 / size for name, size in units.items()}
+    pairs |= _LENGTHS if of_moment else {}
+    pairs |= {(taken_for, name): 1 / factor for (name, taken_for), factor in pairs.items()}
+    return {factor: f"{name} taken for {taken_for}" for (name, taken_for), factor in pairs.items()}
 
 
 def _dead(true: Floats, seen: Floats) -> Iterator[Explanation]:

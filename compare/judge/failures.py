@@ -1,45 +1,177 @@
-"""What exceeds the limits of agreement, in sentences that say where, by how much and why so."""
+"""What exceeds the limits of agreement: where, by how much, how much is allowed, and why so."""
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 
 from analytic import Readings
-from compare.judge.allowance import NoiseAllowance
-from compare.judge.failure import Failure, allowed, excess, plus_minus, where_allowed
-from compare.judge.tolerances import Limit, Tolerances
+from compare.judge.allowance import Allowance, NoiseAllowance, SpatialAllowance
+from compare.judge.spatial import SpatialTolerances
+from compare.judge.tolerances import Limit, Limits, Tolerances
 from compare.measure.disagreement import Disagreement
+from compare.measure.in_space import SpatialMeasurement
 from compare.measure.measurement import Measurement
+from compare.sense.occurrence import Occurrence
 from compare.sense.record import direction
 
 
+@dataclass(frozen=True)
+class Failure:
+    """One limit that is exceeded."""
+
+    name: str  # the reading, event or part of the record that it is about
+    found: str  # what is wrong with it, with its number
+    allowed: str  # how much is allowed, or what to do
+    reason: str = ""  # why so much
+    excess: float = math.inf  # how many times what is allowed; infinite for what must not be at all
+
+    @property
+    def clause(self) -> str:
+        """The same as part of a sentence."""
+        return f"{self.name} ({self.found}; {self.allowed})"
+
+    def __str__(self) -> str:
+        """The whole sentence."""
+        why = f" ({self.reason})" if self.reason else ""
+        return f"{self.name}: {self.found}; {self.allowed}{why}"
+
+
 def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> Iterator[Failure]:
-    """Every limit that is exceeded: what, where, how much, how much is allowed, and why so."""
-    yield from _record(found)
+    """Every limit that is exceeded in the plane."""
+    yield from _order(found)
     yield from _contact(found)
-    for name, d in found.disagreement.items():
-        yield from _reading(name, d, limits, noise)
-    yield from _phases(found, limits, noise)
-    yield from _events(found, limits)
-    yield from _stations(found, limits)
+    yield from _components(found.disagreement, limits, noise, "foot_x = {:.6g}", 1.0)
+    asked = limits.limits()
+    for which, right in found.phase_agreement().items():
+        judged = f"{right:.1%} judged rightly from the clamp"
+        phases = asked["phase_agreement"]
+        yield from _phases(f"phases of the {which}", judged, right, phases, noise.phase_agreement)
+    events = {name: (event, asked["transition"]) for name, event in found.transitions.items()}
+    events["snap_off"] = found.snap_off, _of_snap_off(found, asked)
+    yield from _events(found, events, found.beyond())
+    counts, stations = found.alignment.counts, len(found.candidate.table)
+    untrusted = counts["untrusted"] + counts["dropped"]
+    yield from _stations(untrusted, stations, asked["untrusted"], "; ".join(_reasons(found)))
 
 
-def _record(found: Measurement) -> Iterator[Failure]:
-    record = found.records["candidate"]
+def failures_in_space(
+    found: SpatialMeasurement, limits: SpatialTolerances, noise: SpatialAllowance
+) -> Iterator[Failure]:
+    """Every limit that is exceeded in space."""
+    asked, length = limits.limits(), found.reference.beam.length
+    if not found.compared.any():
+        counts = f"reference {found.statuses['reference']}, candidate {found.statuses['candidate']}"
+        yield Failure("contact", f"at no station do both touch ({counts})", "none can be compared")
+    yield from _components(found.disagreement, limits, noise, "{:.4g} L of the way", length)
+    one, limit = found.contact, asked["contact"]
+    widened = math.hypot(limit, noise.contact)
+    said = f"{one.rms:.2e} L rms, {one.max:.1e} L at most"
+    yield from _beyond("contact", said, one.rms, limit, widened, noise.contact, " L")
+    unknown, some = one.asked - one.stations, asked["untrusted"]
+    said = f"at {unknown} of {one.asked} compared stations the clamp's readings are of no contact"
+    yield from _more("contact", said, unknown, some, (some + noise.unknown) * one.asked)
+    if found.phase_agreement is not None:
+        said = f"{found.phase_agreement:.1%} of the compared stations are in the same phase"
+        yield from _phases("phases", said, found.phase_agreement, asked["phase_agreement"])
+    events = {name: (event, asked["event"]) for name, event in found.events.items()}
+    yield from _events(found, events)
+    stations = int(found.reference.trusted.sum())
+    yield from _stations(found.untrusted, stations, some, "the reference has readings there")
+
+
+def _beyond(
+    name: str,
+    found: str,
+    size: float,
+    limit: Limit,
+    widened: float,
+    noise: float = 0.0,
+    unit: str = "",
+) -> Iterator[Failure]:
+    """A size beyond its limit, which noise or an uncertainty widens."""
+    if size > widened:
+        beside = f" beside noise of {noise:.1e}{unit}" if noise else ""
+        most = f"allowed {limit:.2e}{unit}{beside}"
+        yield Failure(name, found, most, limit.reason, size / widened if widened else math.inf)
+
+
+def _more(name: str, found: str, count: int, limit: Limit, most: float) -> Iterator[Failure]:
+    """More stations than the fraction of them that may be so."""
+    if count > most:
+        excess = count / most if most else math.inf
+        yield Failure(name, found, f"allowed {limit:.1%}", limit.reason, excess)
+
+
+def _components(
+    found: Mapping[str, Disagreement], limits: Limits, noise: Allowance, place: str, unit: float
+) -> Iterator[Failure]:
+    """Root mean squares and the largest differences, at a place in a unit of the travel."""
+    for name, one in found.items():
+        level = noise.level[name]
+        most = max(one.rms_by_phase, key=one.rms_by_phase.__getitem__, default="")
+        which = f", most in phase {most}" if most else ""
+        asked = [(which, one.rms, limits.of(name, "rms"), one.stations)]
+        for phase, rms in one.rms_by_phase.items():
+            if (special := limits.of_phase(name, phase)) is not None:
+                asked.append((f" in phase {phase}", rms, special, one.stations_by_phase[phase]))
+        for where, rms, limit, stations in asked:
+            widened = noise.rms(limit, name, stations)
+            said = f"rms {rms:.2e} of its largest magnitude{where}"
+            yield from _beyond(name, said, rms, limit, widened, level)
+        for phase, peak in one.peaks.items():
+            limit = limits.of(name, "max", phase)
+            widened = noise.max(limit, name, one.stations)
+            said = (
+                f"off by {peak.size:.2e} of its largest magnitude at {place.format(peak.at / unit)}"
+                + (f" in phase {phase}" if phase else "")
+                + ("" if math.isnan(peak.arc_length) else f", arc length {peak.arc_length:.4g}")
+            )
+            yield from _beyond(name, said, peak.size, limit, widened, level)
+
+
+def _phases(
+    name: str, found: str, right: float, limit: Limit, clear: float = 1.0
+) -> Iterator[Failure]:
+    """It follows from the readings: the headline only if nothing else fails."""
+    if right < limit * clear:
+        yield Failure(name, found, f"asked {limit:.1%}", limit.reason, 1.0)
+
+
+def _events(
+    found: Measurement | SpatialMeasurement,
+    events: Mapping[str, tuple[Occurrence, Limit]],
+    beyond: Iterable[str] = (),
+) -> Iterator[Failure]:
+    length = found.reference.beam.length
+    for name, (event, limit) in events.items():
+        if event.agrees(limit * length):
+            continue
+        if event.difference is not None:
+            wide = event.uncertainty / length
+            apart = event.difference / length
+            said = f"{apart:+.2e} L apart" + (f" +- {wide:.1e} L" if wide else "")
+            yield from _beyond(name, said, abs(apart), limit, limit + wide, unit=" L")
+            continue
+        which, at = "reference", event.reference
+        if at is None:
+            which, at = "candidate", event.candidate
+        covers = ", beyond the stretch that the candidate covers" if name in beyond else ""
+        said = f"only in the {which}, at {(at or 0.0) / length:.5g} L{covers}"
+        yield Failure(name, said, f"allowed {limit:.2e} L", limit.reason)
+
+
+def _stations(untrusted: int, stations: int, limit: Limit, why: str) -> Iterator[Failure]:
+    said = f"{untrusted} of {stations} are not to be trusted" + (f" ({why})" if why else "")
+    yield from _more("stations", said, untrusted, limit, limit * stations)
+
+
+def _order(found: Measurement) -> Iterator[Failure]:
     if found.order.note is not None:
-        wrong, _, compared = found.order.note.partition("; ")
-        steps = f" ({record.retreats} of {len(record.missing) - 1} steps lead back)"
-        yield Failure(
-            "order",
-            wrong + (steps if record.retreats else "") + f"; {compared}",
-            f"its {wrong}",
-            "write the rows in the order of the motion"
-            if found.order.backwards_from is None
-            else "write foot_x as it counts in the world, along x",
-        )
+        yield Failure("order", found.order.note, "write the rows and foot_x as the motion goes")
     if found.order.opposite:
         yield Failure(
             "direction",
             "foot_x and moment_z of the candidate run opposite to the reference's",
-            "it was swept in the opposite direction",
             "compare with a reference swept the same way (`[sweep] direction`), or with the mirror "
             "image (`Readings.mirrored`) if the object is symmetric",
         )
@@ -47,123 +179,18 @@ def _record(found: Measurement) -> Iterator[Failure]:
 
 def _contact(found: Measurement) -> Iterator[Failure]:
     counts = found.alignment.counts
-    compared = next(iter(found.disagreement.values())).stations
-    if compared:
-        return
-    if counts["compared"]:
-        yield Failure(
-            "contact",
-            f"all {counts['compared']} stations in contact in both sweeps lie in the window before "
-            "the snap-off",
-            "no station can be compared but just before the snap-off",
-            "sweep more stations",
-        )
+    if next(iter(found.disagreement.values())).stations:
         return
     touching = int((found.judged["reference"].phase != "free").sum())
-    if not (found.judged["candidate"].phase == "").all() and counts["one_free"]:
-        yield Failure(
-            "contact",
-            f"the candidate touches at none of the {touching} stations where the reference does",
-            f"it touches at none of the {touching} stations where the reference does",
-            "it must touch where the reference touches",
-        )
-        return
     reasons = ", ".join(f"{n} {reason}" for reason, n in counts.items() if n)
+    said = f"no station in contact in both sweeps ({reasons})"
+    if counts["compared"]:
+        said = f"all {counts['compared']} stations in contact in both are next to the snap-off"
+    elif counts["one_free"] and not (found.judged["candidate"].phase == "").all():
+        said = f"the candidate touches at none of the {touching} stations where the reference does"
     yield Failure(
-        "contact",
-        f"no station in contact in both sweeps ({reasons})",
-        f"no station can be compared ({reasons})",
-        "sweep a stretch where both touch, or see why stations are not trusted",
+        "contact", said, "sweep a stretch where both touch, or see why stations are not trusted"
     )
-
-
-def _reading(
-    name: str, d: Disagreement, limits: Tolerances, noise: NoiseAllowance
-) -> Iterator[Failure]:
-    limit = limits.of_sweep(name)
-    widened = noise.rms(limit, name, d.stations)
-    if d.rms > widened:
-        worst = max(d.rms_by_phase, key=lambda phase: d.rms_by_phase[phase])
-        yield Failure(
-            name,
-            f"rms {d.rms:.2e} of its largest magnitude, most in phase {worst} "
-            f"({d.rms_by_phase[worst]:.2e})",
-            f"{name} is off by {d.rms:.1e} rms{where_allowed(limit, noise.level[name])}, "
-            f"most in phase {worst}",
-            allowed(limit, noise.level[name]),
-            excess(d.rms, widened),
-        )
-    for phase, rms in d.rms_by_phase.items():
-        asked = limits.of_phase(name, phase)
-        if asked is None:
-            continue
-        widened = noise.rms(asked, name, d.stations_by_phase[phase])
-        if rms > widened:
-            yield Failure(
-                name,
-                f"rms {rms:.2e} of its largest magnitude in phase {phase}",
-                f"{name} is off by {rms:.1e} rms in phase {phase}"
-                f"{where_allowed(asked, noise.level[name])}",
-                allowed(asked, noise.level[name]),
-                excess(rms, widened),
-            )
-    for phase, peak in d.peaks.items():
-        limit = limits.of_reading("max", name, phase)
-        widened = noise.max(limit, name, d.stations)
-        if peak.size > widened:
-            yield Failure(
-                name,
-                f"off by {peak.size:.2e} of its largest magnitude at foot_x = {peak.at:.6g} in "
-                f"phase {phase}, the contact at arc length {peak.arc_length:.4g}",
-                f"{name} is off by {peak.size:.1e} at foot_x = {peak.at:.6g}"
-                f"{where_allowed(limit, noise.level[name])}",
-                allowed(limit, noise.level[name]),
-                excess(peak.size, widened),
-            )
-
-
-def _phases(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> Iterator[Failure]:
-    limit = limits.limits()["phase_agreement"]
-    for which, right in found.phase_agreement().items():
-        if right < limit * noise.phase_agreement:
-            yield Failure(
-                f"phases of the {which}",
-                f"{right:.1%} judged rightly from the clamp",
-                f"{right:.1%} of the {which}'s phases follow from its clamp readings where "
-                f"{float(limit):.1%} must",
-                f"asked {float(limit):.1%} ({limit.reason})",
-                1.0,  # it follows from the readings: the headline only if nothing else fails
-            )
-
-
-def _events(found: Measurement, tolerances: Tolerances) -> Iterator[Failure]:
-    limits, length = tolerances.limits(), found.reference.beam.length
-    beyond = found.beyond()
-    events = {name: (event, limits["transition"]) for name, event in found.transitions.items()}
-    events["snap_off"] = found.snap_off, _of_snap_off(found, limits)
-    for name, (event, limit) in events.items():
-        if event.agrees(limit * length):
-            continue
-        most = allowed(Limit(limit * length, limit.reason))
-        if event.difference is None:
-            which = "candidate" if event.candidate is None else "reference"
-            covers = f", beyond the stretch {_stretch(found)}" if name in beyond else ""
-            yield Failure(
-                name,
-                f"at foot_x = {_position(event.candidate)} instead of {_position(event.reference)}"
-                f"{covers}",
-                f"{name} is missing in the {which}{covers}",
-                most,
-            )
-            continue
-        yield Failure(
-            name,
-            f"at foot_x = {_position(event.candidate)} instead of {_position(event.reference)}, "
-            f"{event.difference:+.2e}{plus_minus(event.uncertainty)} apart",
-            f"{name} is {event.difference:+.1e} away{where_allowed(Limit(limit * length))}",
-            most,
-            excess(abs(event.difference), limit * length + event.uncertainty),
-        )
 
 
 def _of_snap_off(found: Measurement, limits: Mapping[str, Limit]) -> Limit:
@@ -174,43 +201,16 @@ def _of_snap_off(found: Measurement, limits: Mapping[str, Limit]) -> Limit:
     return Limit(limit + late, f"{limit:.1e} early or late ({limit.reason}); late, {late.reason}")
 
 
-def _stations(found: Measurement, limits: Tolerances) -> Iterator[Failure]:
-    limit = limits.limits()["untrusted"]
-    counts, all_ = found.alignment.counts, len(found.candidate.table)
-    untrusted = counts["untrusted"] + counts["dropped"]
-    if untrusted <= limit * all_:
+def _reasons(found: Measurement) -> Iterator[str]:
+    """Why stations of the candidate are not to be trusted, and where."""
+    if missing := int(found.records["candidate"].missing.sum()):
+        yield f"{missing} of them lack a number"
+    if dropped := found.alignment.counts["dropped"]:
+        yield f"{dropped} of them are filled with zeros amid contact"
+    candidate: Readings = found.candidate
+    if "status" not in candidate.table:
         return
-    missing = int(found.records["candidate"].missing.sum())
-    reasons = [f"{missing} of them lack a number"] if missing else []
-    if counts["dropped"]:
-        reasons.append(f"{counts['dropped']} of them are filled with zeros amid contact")
-    reasons += _statuses(found.candidate)
-    why = f" ({'; '.join(reasons)})" if reasons else ""
-    yield Failure(
-        "stations",
-        f"{untrusted} of {all_} of the candidate are not to be trusted{why}",
-        f"{untrusted} of its {all_} stations are not to be trusted{why} where {float(limit):.1%} "
-        "may be",
-        f"allowed {float(limit):.1%} ({limit.reason})",
-        excess(untrusted, limit * all_),
-    )
-
-
-def _statuses(readings: Readings) -> Iterator[str]:
-    """How many stations have which status that speaks against them, and where."""
-    if "status" not in readings.table:
-        return
-    length = readings.beam.length
-    for status, foot_x in readings.table.groupby("status", sort=False)["foot_x"]:
+    for status, foot_x in candidate.table.groupby("status", sort=False)["foot_x"]:
         if status != "ok":
-            where = f"{foot_x.iloc[0] / length:.4g} to {foot_x.iloc[-1] / length:.4g} L"
-            yield f"{len(foot_x)} {status}, foot_x {where}"
-
-
-def _stretch(found: Measurement) -> str:
-    foot_x = found.candidate.values("foot_x")
-    return f"that it covers, {_position(foot_x.min())} to {_position(foot_x.max())}"
-
-
-def _position(x: float | None) -> str:
-    return "nowhere" if x is None else f"{x:.6g}"
+            first, last = foot_x.iloc[[0, -1]] / candidate.beam.length
+            yield f"{len(foot_x)} {status}, foot_x {first:.4g} to {last:.4g} L"

@@ -8,12 +8,14 @@ from html import escape
 from typing import Any, TypeAlias
 
 from compare.judge.allowance import Allowance
-from compare.judge.failure import Failure
+from compare.judge.failures import Failure
 from compare.judge.tolerances import CONVENTION, Limits
-from compare.measure.sweep_pair import Sweep, SweepPair
+from compare.measure.disagreement import Sweep, SweepPair
 from compare.sense.occurrence import Occurrence
 
 Number: TypeAlias = float | int | bool | None
+
+_SHOWN = 6  # failures in the short form
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -34,11 +36,6 @@ class Judged(SweepPair[Sweep]):
     def _failures(self) -> Iterator[Failure]:
         raise NotImplementedError
 
-    @property
-    def _conventional(self) -> bool:
-        """Whether nothing but convention stands behind some limit."""
-        raise NotImplementedError
-
     def _own(self) -> dict[str, Any]:
         """What ``comparison.json`` holds beside what all comparisons have."""
         raise NotImplementedError
@@ -50,15 +47,38 @@ class Judged(SweepPair[Sweep]):
         """The events of the metrics, by name; None for one that is in neither sweep."""
         raise NotImplementedError
 
+    def _beside(self) -> Iterator[str]:
+        """Lines on what else is compared than the components."""
+        yield from ()
+
     def lines(self) -> Iterator[str]:
-        """The verdict and what it rests on, for a terminal.
+        """The verdict, the disagreement of each component, and what failed, for a terminal.
 
         Yields
         ------
         str
             A line.
         """
-        raise NotImplementedError
+        yield (
+            f"{self.candidate.source} {'agrees' if self.agrees else 'disagrees'} with "
+            f"{self.reference.source} ({self._own_metrics()['stations_compared']} of "
+            f"{len(self.candidate.table)} stations compared)"
+        )
+        if self.likely is not None:
+            yield f"  likely: {self.likely}"
+        for name, one in self.disagreement.items():
+            limit = self.tolerances.of_sweep(name)
+            yield f"  {name:9} rms {one.rms:.1e}  max {one.max:.1e}  allowed {limit:.1e} rms"
+        yield from self._beside()
+        for name, event in self.events.items():
+            if event.difference is not None:
+                yield f"  {name:13} {event.reference:.5g} {event.difference:+.1e}"
+        for failure in self.exceeded[:_SHOWN]:
+            yield f"  failed: {failure.clause}"
+        if len(self.exceeded) > _SHOWN:
+            yield f"  and {len(self.exceeded) - _SHOWN} more, see .failures"
+        if self.remark is not None:
+            yield f"  {self.remark}"
 
     @cached_property
     def exceeded(self) -> tuple[Failure, ...]:
@@ -88,7 +108,7 @@ class Judged(SweepPair[Sweep]):
     @property
     def remark(self) -> str | None:
         """What is to be known of the limits that are exceeded; None if there is nothing."""
-        return CONVENTION if self.exceeded and self._conventional else None
+        return CONVENTION if self.exceeded and self.tolerances.conventional else None
 
     def to_dict(self) -> dict[str, Any]:
         """What ``comparison.json`` holds.

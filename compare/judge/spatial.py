@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
 
 from compare.align.frames import COMPONENTS
-from compare.judge.tolerances import KINDS, Limit, Limits, as_limit
-
-if TYPE_CHECKING:  # limits are checked before pandas is needed
-    from analytic.space import SpatialReadings
+from compare.judge.tolerances import KINDS, Limit, Limits
 
 
 @dataclass(frozen=True)
@@ -53,44 +48,4 @@ class SpatialTolerances(Limits):
     event: float = Limit(5e-3, "half a station of two hundred on a way of 2 L")
     phase_agreement: float = Limit(0.95, "the stations beside a change of phase")
     untrusted: float = Limit(5e-3, "one station of 200 may fail to settle")
-    _SPECIAL_NAMES: ClassVar[str] = (
-        f"COMPONENT.KIND, a component of {', '.join(COMPONENTS)}, a kind of {', '.join(KINDS)}"
-    )
-
-    def of(self, component: str, kind: str) -> Limit:
-        """The limit of a component: its own if there is one.
-
-        Parameters
-        ----------
-        component : str
-            As ``"force_x"``.
-        kind : str
-            ``"rms"`` or ``"max"``.
-
-        Returns
-        -------
-        Limit
-            With its reason.
-        """
-        return as_limit(kind, self.special.get(f"{component}.{kind}", getattr(self, kind)))
-
-    def conventional_for(self, candidate: SpatialReadings) -> bool:
-        """Whether some limit is a default that nothing but convention stands behind.
-
-        Parameters
-        ----------
-        candidate : SpatialReadings
-            Whoever made it: nothing does for a source that does not record its segments.
-
-        Returns
-        -------
-        bool
-            False if all limits were asked for.
-        """
-        settings = candidate.provenance.get("settings")
-        return not (isinstance(settings, Mapping) and "segments" in settings) and bool(self.usual())
-
-    @staticmethod
-    def _is_special(name: str) -> bool:
-        component, _, kind = name.partition(".")
-        return component in COMPONENTS and kind in KINDS
+    _SPECIAL = tuple(f"{name}.{kind}" for name in COMPONENTS for kind in KINDS)

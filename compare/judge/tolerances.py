@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -13,11 +13,13 @@ from compare.sense.given import checked
 
 if TYPE_CHECKING:  # limits are checked before pandas is needed
     from analytic import Readings
+    from analytic.space import SpatialReadings
 
 Kind: TypeAlias = Literal["rms", "max"]
 
 CONTACT_PHASES = PHASES[1:]
 KINDS = ("rms", "max")
+_READINGS_IN_PHASES = [f"{name}.{phase}" for name in CLAMP_READINGS for phase in CONTACT_PHASES]
 _PEAK = 10  # times the rms, at the worst station
 _QUASI_STATIC = 1e-2  # rms; flexural rigidity 5 % off is 2.7e-2 or more in all named cases
 _CORNER = 0.2  # rad; what a smooth contour of 181 points turns by at none of them
@@ -51,25 +53,21 @@ class Limits:
     """Limits by name, and special ones by dotted name; each subclass has fields of its own."""
 
     special: Mapping[str, float] = field(default_factory=dict, kw_only=True)
-    _SPECIAL_NAMES: ClassVar[str]
+    _SPECIAL: ClassVar[tuple[str, ...]]  # names that special limits may have
+    _OF_ANY_SOURCE: ClassVar[frozenset[str]] = frozenset()  # limits whose reasons hold for all
 
     @classmethod
     def general(cls) -> tuple[str, ...]:
         """Names of the limits that are not special."""
         return tuple(f.name for f in fields(cls) if f.name != "special")
 
-    @staticmethod
-    def _is_special(name: str) -> bool:
-        raise NotImplementedError
-
     def __post_init__(self) -> None:
         for name in self.general():
             object.__setattr__(self, name, as_limit(name, getattr(self, name)))
         for name in self.special:
-            if not self._is_special(name):
-                raise InputError(
-                    f"tolerances.{name}", "unknown", self._SPECIAL_NAMES, "correct the name"
-                )
+            if name not in self._SPECIAL:
+                known = f"one of {', '.join(self._SPECIAL)}"
+                raise InputError(f"tolerances.{name}", "unknown", known, "correct the name")
         special = {name: as_limit(name, value) for name, value in self.special.items()}
         object.__setattr__(self, "special", special)
 
@@ -84,6 +82,39 @@ class Limits:
         named = {name: getattr(self, name) for name in self.general()} | dict(self.special)
         return {name: as_limit(name, value) for name, value in named.items()}
 
+    def of(self, component: str, kind: Kind, phase: str = "") -> Limit:
+        """The limit of a component: the most special that there is.
+
+        Parameters
+        ----------
+        component : str
+            As ``"force_x"``.
+        kind : {"rms", "max"}
+            Over all stations, or at one.
+        phase : str
+            That it is asked of; of all if left out.
+
+        Returns
+        -------
+        Limit
+            With its reason.
+        """
+        found = self._most_special(
+            f"{component}.{phase}.{kind}", f"{component}.{kind}", f"{phase}.{kind}"
+        )
+        return as_limit(kind, getattr(self, kind)) if found is None else found
+
+    def of_sweep(self, component: str) -> Limit:
+        """The limit of a component's rms over all stations."""
+        return self.of(component, "rms")
+
+    def of_phase(self, component: str, phase: str) -> Limit | None:
+        """The limit of a component's rms in one phase; None if none was asked for."""
+        return self._most_special(f"{component}.{phase}.rms", f"{phase}.rms")
+
+    def _most_special(self, *names: str) -> Limit | None:
+        return next((as_limit(n, self.special[n]) for n in names if n in self.special), None)
+
     def usual(self) -> set[str]:
         """Names of the limits that nobody asked for.
 
@@ -95,6 +126,17 @@ class Limits:
         return {
             n for n in self.general() if getattr(self, n).reason == getattr(type(self), n).reason
         }
+
+    def by_convention(self) -> Self:
+        """The same limits for a source that the defaults' reasons do not hold for."""
+        names = self.usual() - self._OF_ANY_SOURCE
+        plain: dict[str, Any] = {name: Limit(getattr(self, name), _DEFAULT) for name in names}
+        return replace(self, **plain)
+
+    @property
+    def conventional(self) -> bool:
+        """Whether some limit is a default that nothing but convention stands behind."""
+        return any(getattr(self, name).reason == _DEFAULT for name in self.general())
 
 
 _Kind = TypeVar("_Kind", bound=Limits)
@@ -158,9 +200,11 @@ class Tolerances(Limits):
     snap_off: float = Limit(3e-3, "the rms limit times the foot's travel in the last phase")
     lateness: float = Limit(0.0, "at rest nothing lets go late")
     untrusted: float = Limit(5e-3, "one station of 200 may fail to settle")
-    _SPECIAL_NAMES: ClassVar[str] = (
-        f"READING.KIND, PHASE.KIND or READING.PHASE.KIND, a reading of {', '.join(CLAMP_READINGS)},"
-        f" a phase of {', '.join(CONTACT_PHASES)}, a kind of {', '.join(KINDS)}"
+    _OF_ANY_SOURCE = frozenset({"snap_off_window", "lateness"})
+    _SPECIAL = tuple(
+        f"{where}.{kind}"
+        for where in (*CLAMP_READINGS, *CONTACT_PHASES, *_READINGS_IN_PHASES)
+        for kind in KINDS
     )
 
     def suited_to(self, candidate: "Readings") -> "Tolerances":
@@ -176,14 +220,8 @@ class Tolerances(Limits):
         Tolerances
             Limits that were asked for keep their reasons.
         """
-        defaults, suited = self.usual(), self
-        if not is_smooth_model(candidate):
-            plain: dict[str, Any] = {
-                name: Limit(getattr(self, name), reason)
-                for name, reason in _CONVENTIONS.items()
-                if name in defaults
-            }
-            suited = replace(self, **plain)
+        defaults = self.usual()
+        suited = self if is_smooth_model(candidate) else self.by_convention()
         rate = Rate.of(candidate)
         if rate is None:
             return suited
@@ -234,97 +272,25 @@ class Tolerances(Limits):
             ),
         }
 
-    @property
-    def conventional(self) -> bool:
-        """Whether some limit is a default that nothing but convention stands behind."""
-        return any(getattr(self, name).reason == why for name, why in _CONVENTIONS.items())
-
-    def of_reading(self, kind: Kind, reading: str, phase: str) -> Limit:
-        """The limit at one station: the most special that there is.
-
-        Parameters
-        ----------
-        kind : str
-            ``"rms"`` or ``"max"``.
-        reading : str
-            Name of the clamp reading.
-        phase : str
-            ``"tip"`` or ``"tangent"``.
-
-        Returns
-        -------
-        Limit
-            With its reason.
-        """
-        for name in (f"{reading}.{phase}.{kind}", f"{reading}.{kind}", f"{phase}.{kind}"):
-            if name in self.special:
-                return as_limit(name, self.special[name])
-        return as_limit(kind, getattr(self, kind))
-
-    def of_sweep(self, reading: str) -> Limit:
-        """The limit of a reading's rms over all phases.
-
-        Parameters
-        ----------
-        reading : str
-            Name of the clamp reading.
-
-        Returns
-        -------
-        Limit
-            With its reason.
-        """
-        return as_limit("rms", self.special.get(f"{reading}.rms", self.rms))
-
-    def of_phase(self, reading: str, phase: str) -> Limit | None:
-        """The limit of a reading's rms in one phase.
-
-        Parameters
-        ----------
-        reading : str
-            Name of the clamp reading.
-        phase : str
-            ``"tip"`` or ``"tangent"``.
-
-        Returns
-        -------
-        Limit or None
-            None if none was asked for.
-        """
-        for name in (f"{reading}.{phase}.rms", f"{phase}.rms"):
-            if name in self.special:
-                return as_limit(name, self.special[name])
-        return None
-
-    @staticmethod
-    def _is_special(name: str) -> bool:
-        *where, kind = name.split(".")
-        allowed = [[r] for r in CLAMP_READINGS] + [[p] for p in CONTACT_PHASES]
-        allowed += [[r, p] for r in CLAMP_READINGS for p in CONTACT_PHASES]
-        return kind in KINDS and where in allowed
-
 
 CONVENTION = (
     "note: the default limits are no more than a convention for this source: give limits of your "
     "own, each with its reason (`--tolerances FILE`, in Python `Tolerances`, in space "
     "`SpatialTolerances`)"
 )
-"""What is to be said where one of `_CONVENTIONS` is exceeded."""
-_CONVENTIONS = {
-    "rms": "the default",
-    "max": "the default, ten times that of the rms",
-    "transition": "the default, a hundredth of the length",
-    "snap_off": "the default",
-    "phase_agreement": "the default: one station of a hundred may fall beside a transition",
-    "untrusted": "the default: one station of 200 may lack a number",
-}
-"""Reasons of the default limits for sources other than the one that they were made for."""
+"""What is to be said where one of these is exceeded."""
+_DEFAULT = "the default"
+
+
+def in_segments(readings: "Readings | SpatialReadings") -> bool:
+    """Whether a sweep is of a beam in segments, as far as it says."""
+    settings = readings.provenance.get("settings")
+    return isinstance(settings, Mapping) and "segments" in settings
 
 
 def is_smooth_model(readings: "Readings") -> bool:
     """Whether a sweep is of a beam in segments past a smooth contour, as far as it says."""
-    settings = readings.provenance.get("settings")
-    if not (isinstance(settings, Mapping) and "segments" in settings):
+    if not in_segments(readings):
         return False
     contour = np.asarray(readings.provenance.get("contour", []), dtype=float)
     if contour.ndim != 2 or contour.shape[1] < 3:

@@ -1,15 +1,19 @@
 """How far two aligned sweeps are apart: component by component, phase by phase."""
 
 from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
 
 import numpy as np
 import pandas as pd
 
 from analytic import Readings
 from analytic.problem.arrays import Booleans, Floats, Words
+from analytic.space import SpatialReadings
 from compare.sense.noise import scales
 from compare.sense.occurrence import Occurrence
 from compare.sense.record import direction
+
+Sweep = TypeVar("Sweep", Readings, SpatialReadings)
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,16 @@ class Disagreement:
     def stations(self) -> int:
         """How many stations `rms` and `max` are over."""
         return sum(self.stations_by_phase.values())
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SweepPair(Generic[Sweep]):
+    """Two sweeps, and how far each component of the candidate is off along their travel."""
+
+    reference: Sweep
+    candidate: Sweep
+    disagreement: dict[str, Disagreement]
+    events: dict[str, Occurrence]
 
 
 def disagreement(

@@ -12,9 +12,7 @@ from analytic.space import SpatialReadings, reconstruct_space
 from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT
 from compare.align.frames import Frame, components
 from compare.align.travel import travel_of
-from compare.measure.disagreement import Disagreement, disagreement, rms
-from compare.measure.sweep_pair import SweepPair
-from compare.sense.occurrence import Occurrence
+from compare.measure.disagreement import Disagreement, SweepPair, disagreement, rms
 from compare.sense.spatial_events import paired_events
 from compare.sense.touching import TouchingStations, touching
 
@@ -72,7 +70,6 @@ class SpatialMeasurement(SweepPair[SpatialReadings]):
     compared: Booleans
     contact: ContactDisagreement
     phase_agreement: float | None
-    events: dict[str, Occurrence]
     statuses: dict[str, dict[str, int]]
     untrusted: int
     touching: TouchingStations
@@ -95,12 +92,12 @@ def measure_in_space(
         reference,
         candidate,
         _disagreements(reference, candidate, frame, compared, travel),
+        paired_events(reference, candidate, travel, on),
         frame,
         travel,
         compared,
         _contacts(reference, candidate, on.clear),
         same,
-        paired_events(reference, candidate, travel, on),
         {"reference": _counted(reference), "candidate": _counted(candidate)},
         int((reference.trusted & ~candidate.trusted).sum()),
         on,

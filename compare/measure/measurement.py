@@ -17,8 +17,7 @@ from compare.align.offset import (
 from compare.align.order import RowOrder, in_order
 from compare.align.stations import Alignment, align
 from compare.align.units import check_unit_of_length, in_units_of
-from compare.measure.disagreement import disagreements
-from compare.measure.sweep_pair import SweepPair
+from compare.measure.disagreement import SweepPair, disagreements
 from compare.sense.noise import scales
 from compare.sense.occurrence import Occurrence
 from compare.sense.phases import Classification, classify, confusion
@@ -40,14 +39,12 @@ class Measurement(SweepPair[Readings]):
         The compared stations, and why the others are not.
     disagreement : dict of Disagreement
         By clamp reading.
+    events : dict of Occurrence
+        ``first_contact``, ``phase_b_start``, ``phase_b_end``, ``snap_off``.
     judged : dict of Classification
         The phases that the clamp readings show, of ``"reference"`` and ``"candidate"``.
     confusion : dict of pandas.DataFrame
         Those against the contact truth, where the source recorded it.
-    transitions : dict of Occurrence
-        ``first_contact``, ``phase_b_start``, ``phase_b_end``.
-    snap_off : Occurrence
-        The end of contact.
     offset : Offset
         What was taken from the candidate's ``foot_x`` before anything else.
     records : dict of Record
@@ -59,16 +56,19 @@ class Measurement(SweepPair[Readings]):
     alignment: Alignment
     judged: dict[str, Classification]
     confusion: dict[str, pd.DataFrame]
-    transitions: dict[str, Occurrence]
-    snap_off: Occurrence
     offset: Offset
     records: dict[str, Record]
     order: RowOrder
 
     @property
-    def events(self) -> dict[str, Occurrence]:
-        """The transitions and the snap-off, by name."""
-        return {**self.transitions, "snap_off": self.snap_off}
+    def transitions(self) -> dict[str, Occurrence]:
+        """Where one phase gives way to the next, by name."""
+        return {name: self.events[name] for name in TRANSITIONS}
+
+    @property
+    def snap_off(self) -> Occurrence:
+        """The end of contact."""
+        return self.events["snap_off"]
 
     def phase_agreement(self) -> dict[str, float]:
         """Fraction of stations whose judged phase is the true one.
@@ -166,11 +166,13 @@ def measure(
     ends = snap_off(reference, judged["reference"]), snap_off(candidate, judged["candidate"])
     snap = Occurrence(ends[0][0], ends[1][0], ends[0][1] + ends[1][1] + shift.uncertainty)
     sweeps: Mapping[str, Readings] = {"reference": reference, "candidate": candidate}
-    events = {which: locate_transitions(sweep, judged[which]) for which, sweep in sweeps.items()}
+    one, other = (locate_transitions(sweep, judged[which]) for which, sweep in sweeps.items())
+    events = {name: Occurrence(one[name], other[name], shift.uncertainty) for name in TRANSITIONS}
     return Measurement(
         reference,
         candidate,
         disagreements(reference, alignment.table, snap, window),
+        {**events, "snap_off": snap},
         alignment,
         judged,
         {
@@ -178,13 +180,6 @@ def measure(
             for which, sweep in sweeps.items()
             if "phase" in sweep.table
         },
-        {
-            name: Occurrence(
-                events["reference"][name], events["candidate"][name], shift.uncertainty
-            )
-            for name in TRANSITIONS
-        },
-        snap,
         shift,
         records,
         order,

@@ -1,6 +1,6 @@
 """What uncertain inputs do to the readings: derivatives of the closed form, and samples of it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -32,23 +32,18 @@ class Sensitivities:
     def at(self, foot_x: Floats) -> "Sensitivities":
         """The same at other foot positions, interpolated."""
         order = np.argsort(self.foot_x)
-        known = self.foot_x[order]
-        right = np.clip(np.searchsorted(known, foot_x), 1, len(known) - 1)
-        weight = np.clip((foot_x - known[right - 1]) / np.diff(known)[right - 1], 0, 1)
 
         def between(values: Floats) -> Floats:
-            values = values[..., order]
-            low, high = values[..., right - 1], values[..., right]
-            return np.where(
-                weight == 0, low, np.where(weight == 1, high, low + weight * (high - low))
-            )
+            rows = values.reshape(-1, len(order))[:, order]
+            there = [np.interp(foot_x, self.foot_x[order], row) for row in rows]
+            return np.reshape(there, (*values.shape[:-1], len(foot_x)))
 
-        return Sensitivities(
-            foot_x,
-            between(self.readings),
-            self.snap_off,
-            between(self.samples),
-            between(self.predicted),
+        return replace(
+            self,
+            foot_x=foot_x,
+            readings=between(self.readings),
+            samples=between(self.samples),
+            predicted=between(self.predicted),
         )
 
 

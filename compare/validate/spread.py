@@ -10,7 +10,6 @@ from analytic.problem.arrays import Floats
 
 COVERED = 0.9545
 """Share of right models whose disagreement stays within the expanded uncertainty."""
-_STEPS = 40  # of a bisection: to more digits than anybody needs
 NOISE, NUMERICS, SECOND_ORDER = "noise", "numerics", "second order"
 
 
@@ -68,18 +67,13 @@ class Spread:
 
     def shrink(self, error: float, name: str) -> float | None:
         """How small an uncertainty has to be for an error to stand out."""
+        from scipy.optimize import brentq  # slow to load
 
-        def hides(factor: float) -> bool:
+        def beyond(factor: float) -> float:
             with_it = {} if name in (NOISE, NUMERICS) else {SECOND_ORDER: factor}
             u_val, expand = self.limits({name: factor, **with_it})
-            return expand * u_val >= error
+            return expand * u_val - error
 
-        if not hides(1.0):
+        if beyond(1.0) < 0:
             return 1.0
-        if hides(0.0):
-            return None
-        low, high = 0.0, 1.0
-        for _ in range(_STEPS):
-            middle = (low + high) / 2
-            low, high = (low, middle) if hides(middle) else (middle, high)
-        return low
+        return None if beyond(0.0) >= 0 else float(brentq(beyond, 0.0, 1.0))

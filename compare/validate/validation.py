@@ -1,5 +1,6 @@
 """The verdict of a validation: is the disagreement larger than what is uncertain about it?"""
 
+import math
 from dataclasses import asdict, dataclass, field
 from typing import Any, ClassVar, Literal, TypeAlias
 
@@ -10,10 +11,10 @@ from pydantic import ConfigDict
 from analytic import CLAMP_READINGS, Case, InputError, Readings
 from analytic.from_clamp.noise import reading_noise
 from analytic.problem.arrays import Booleans, Floats
-from compare.explain.budget import PARTS, Budget
+from compare.explain.budget import Budget
 from compare.judge.allowance import NoiseAllowance
 from compare.judge.tolerances import Tolerances
-from compare.measure.disagreement import before_snap_off
+from compare.measure.disagreement import before_snap_off, rms
 from compare.measure.measurement import Measurement
 from compare.validate.sensitivities import Sensitivities, sensitivities
 from compare.validate.spread import NOISE, NUMERICS, SECOND_ORDER, Spread
@@ -277,20 +278,16 @@ def _noise(
     data: Readings, stated: Uncertainties, asked: NoiseAllowance | None, scale: Floats
 ) -> tuple[Floats, str]:
     """Standard deviation of the noise of the data, over each reading's largest magnitude."""
-    estimated = reading_noise(data)
-    given = {} if asked is None else {n: x for n, x in asked.level.items() if x > 0}
-    levels, sources = [], {}
-    for name, size in zip(CLAMP_READINGS, scale, strict=True):
-        if name in stated.noise:
-            sources[name], level = "stated", stated.noise[name] / size
-        elif name in given:
-            sources[name], level = "of the comparison", given[name]
-        else:
-            sources[name], level = "estimated from the data", estimated[name] / size
-        levels.append(level)
-    if len(set(sources.values())) == 1:
-        return np.array(levels), sources[CLAMP_READINGS[0]]
-    return np.array(levels), ", ".join(f"{name} {source}" for name, source in sources.items())
+    sizes = dict(zip(CLAMP_READINGS, scale.tolist(), strict=True))
+    known = {n: ("estimated from the data", x / sizes[n]) for n, x in reading_noise(data).items()}
+    if asked is not None:
+        known |= {n: ("of the comparison", x) for n, x in asked.level.items() if x > 0}
+    known |= {n: ("stated", x / sizes[n]) for n, x in stated.noise.items()}
+    sources, levels = zip(*(known[name] for name in CLAMP_READINGS), strict=True)
+    if len(set(sources)) == 1:
+        return np.array(levels), sources[0]
+    said = (f"{name} {source}" for name, source in zip(CLAMP_READINGS, sources, strict=True))
+    return np.array(levels), ", ".join(said)
 
 
 def _numerics(
@@ -301,25 +298,22 @@ def _numerics(
     Of a budget's parts only sizes are known, by reading and phase; each is taken for one error that
     is the same at all stations.
     """
-    rows = len(table)
+    shape = (len(CLAMP_READINGS), len(table))
     if budget is not None:
-        phase = table["phase"].to_numpy()
-        parts = [name for name in PARTS if name in budget.by_phase and name != "unexplained"]
-        sizes = np.zeros((len(parts), len(CLAMP_READINGS), rows))
-        for i, part in enumerate(parts):
-            for j, reading in enumerate(CLAMP_READINGS):
-                one = budget.parts[part][reading]
-                by_phase = budget.by_phase[part][reading]
-                for name in np.unique(phase):
-                    size = np.hypot(by_phase.get(str(name), one.rms), one.uncertainty)
-                    sizes[i, j, phase == name] = size
-        return sizes, "the budget's parts"
+
+        def size(part: str, reading: str, phase: str) -> float:
+            one = budget.parts[part][reading]
+            return math.hypot(budget.by_phase[part][reading].get(phase, one.rms), one.uncertainty)
+
+        parts = [name for name in budget.by_phase if name != "unexplained"]
+        sizes = [[[size(p, r, n) for n in table["phase"]] for r in CLAMP_READINGS] for p in parts]
+        return np.reshape(sizes, (len(parts), *shape)), "the budget's parts"
     source = found.reference if simulation == "reference" else found.candidate
     columns = [name for name in ("residual_boundary", "residual_moment") if name in source.table]
     if columns:
         worst = float(np.nanmax(source.table[columns].to_numpy(dtype=float), initial=0.0))
-        return np.full((1, 3, rows), worst), "the closed form's residuals"
-    return np.zeros((0, 3, rows)), "nothing: the simulation is taken for exact"
+        return np.full((1, *shape), worst), "the closed form's residuals"
+    return np.zeros((0, *shape)), "nothing: the simulation is taken for exact"
 
 
 def _spread(
@@ -346,13 +340,10 @@ def _spread(
 def _difference(error: Floats, spread: Spread) -> Difference:
     u_val, expand = spread.limits()
     shares = spread.shares()
-    of_numerics, of_data = shares.get(NUMERICS, 0.0), shares[NOISE]
-    of_inputs = max(1 - of_numerics - of_data, 0.0) if u_val > 0 else 0.0
-    u_num, u_input, u_data = (
-        u_val * float(np.sqrt(fraction)) for fraction in (of_numerics, of_inputs, of_data)
-    )
-    size = float(np.sqrt(np.mean(error**2)))
-    return Difference(size, u_num, u_input, u_data, u_val, expand, shares)
+    others = (shares.get(NUMERICS, 0.0), shares[NOISE])
+    of_inputs = max(1 - sum(others), 0.0) if u_val > 0 else 0.0
+    u_num, u_data, u_input = (u_val * math.sqrt(share) for share in (*others, of_inputs))
+    return Difference(float(rms(error)), u_num, u_input, u_data, u_val, expand, shares)
 
 
 def _ratio(second: Floats, first: Floats) -> float:

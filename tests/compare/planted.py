@@ -1,7 +1,8 @@
 """Budgets with planted numbers."""
 
 from analytic import CLAMP_READINGS
-from compare.explain.budget import PARTS, Budget, Part
+from compare.explain.budget import PARTS, Budget
+from compare.explain.parts import Part
 from compare.explain.suspects import Suspect
 
 
@@ -28,6 +29,15 @@ def planted(
     checks = {"softness": dict.fromkeys(CLAMP_READINGS, 1e-9)}
     disagreement = dict.fromkeys(CLAMP_READINGS, size)
     return Budget(
-        parts, disagreement, by_phase, 2.0, closes, blame, suspects, 190, convergence, checks,
-        undecided,
-    )  # fmt: skip
+        parts=parts,
+        disagreement=disagreement,
+        order=2.0,
+        closes=closes,
+        blame=blame,
+        stations=190,
+        by_phase=by_phase,
+        suspects=suspects,
+        convergence=convergence,
+        checks=checks,
+        undecided=undecided,
+    )

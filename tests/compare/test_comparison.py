@@ -13,11 +13,11 @@ from analytic import (
     Sweep,
     circle,
     find_events,
-    named_case,
     solve_sweep,
 )
 from analytic.from_clamp.noise import reading_noise
-from compare import Tolerances, assert_agreement, classify, compare
+from compare import Tolerances, classify, compare
+from compare.sense.noise import with_noise
 from compare.sense.phases import confusion
 from compare.sense.transitions import locate_transitions
 
@@ -26,14 +26,8 @@ def changed(sweep: Readings, **columns) -> Readings:
     return Readings(sweep.table.assign(**columns), sweep.beam, "changed", sweep.provenance)
 
 
-def noisy(sweep: Readings, level: float, seed: int = 1) -> Readings:
-    rng = np.random.default_rng(seed)
-    columns = {
-        name: sweep.values(name)
-        + level * np.abs(sweep.values(name)).max() * rng.standard_normal(len(sweep.table))
-        for name in CLAMP_READINGS
-    }
-    return changed(sweep, **columns)
+def noisy(sweep: Readings, level: float) -> Readings:
+    return with_noise(sweep, dict.fromkeys(CLAMP_READINGS, level), 1)
 
 
 def test_a_sweep_agrees_with_itself(exact):
@@ -63,42 +57,6 @@ def test_nothing_is_interpolated_across_the_snap_off(case, exact):
     left_out = found.alignment.counts["between_phases"] + found.alignment.counts["outside"]
     assert left_out >= near.sum()
     assert found.disagreement["force_x"].max < 1e-9
-
-
-@pytest.mark.parametrize("reading", CLAMP_READINGS)
-def test_a_wrong_gain_is_found_under_its_reading(exact, reading):
-    found = compare(exact, changed(exact, **{reading: exact.values(reading) * 1.01}))
-    assert not found.agrees
-    assert any(line.startswith(reading) for line in found.failures)
-    others = set(CLAMP_READINGS) - {reading}
-    assert all(found.disagreement[name].rms == 0 for name in others)
-    assert 0.005 < found.disagreement[reading].max < 0.0101
-
-
-@pytest.mark.parametrize(
-    ("fault", "made"),
-    [
-        ("stiffer by 1 %", lambda case: replace(case, beam=Beam(flexural_rigidity=1.01))),
-        ("radius forgotten", lambda case: replace(case, beam=Beam(radius=0.0))),
-        ("shorter by 1 %", lambda case: replace(case, beam=Beam(length=0.99))),
-        (
-            "object 0.01 lower",
-            lambda case: replace(case, beam=Beam(radius=0.015)),  # about the same shift
-        ),
-    ],
-)
-def test_planted_faults_are_found(fault, made):
-    """The candidate claims to be the same vibrissa, but was made with another one."""
-    case = named_case("catenary")
-    grid = Sweep(200, float(case.foot_x[0]), float(case.foot_x[-1]))
-    exact = solve_sweep(replace(case, sweep=grid))
-    wrong = solve_sweep(made(replace(case, sweep=Sweep(200, 2.42, float(case.foot_x[-1])))))
-    claimed = Readings(wrong.table, exact.beam, fault, wrong.provenance)
-    found = compare(exact, claimed)
-    assert not found.agrees
-    assert max(d.rms for d in found.disagreement.values()) > 4e-3
-    with pytest.raises(AssertionError, match="allowed"):
-        assert_agreement(exact, claimed)
 
 
 def test_stations_that_did_not_settle_are_left_out(exact):

@@ -66,19 +66,16 @@ def with_own_error(sweep: Readings, rng: np.random.Generator, size: float) -> Re
     return replace(sweep, table=sweep.table.assign(**columns))
 
 
-def _other(**change: float) -> Callable[[Case, np.random.Generator], Readings]:
-    """The sweep of another vibrissa over the same stations, which claims to be the case's."""
+Swept = Callable[[Case, np.random.Generator], Readings]
+Sensor = Callable[[Readings, np.random.Generator], Readings]
 
-    def swept(case: Case, rng: np.random.Generator) -> Readings:
-        beam = replace(case.beam, **{n: getattr(case.beam, n) * (1 + x) for n, x in change.items()})
-        start, stop = (float(x) for x in case.foot_x[[0, -1]])
-        start += 0.05  # clear of the object for a longer vibrissa too
-        wrong = solve_sweep(
-            replace(case, beam=beam, sweep=replace(case.sweep, start=start, stop=stop))
-        )
-        return replace(wrong, beam=case.beam)
 
-    return swept
+def _of(case: Case, earlier: float = 0.0, **beam: float) -> Readings:
+    """The sweep of another vibrissa, begun clear of the object, which claims to be the case's."""
+    start, stop = (float(x) for x in case.foot_x[[0, -1]])
+    sweep = replace(case.sweep, start=start + earlier, stop=stop)
+    wrong = solve_sweep(replace(case, beam=replace(case.beam, **beam), sweep=sweep))
+    return replace(wrong, beam=case.beam)
 
 
 def _between(rng: np.random.Generator, low: float, high: float) -> float:
@@ -86,14 +83,17 @@ def _between(rng: np.random.Generator, low: float, high: float) -> float:
     return float(rng.uniform(low, high) * rng.choice([-1, 1]))
 
 
-def _beam(name: str, low: float, high: float) -> Callable[[Case, np.random.Generator], Readings]:
+def _beam(name: str, low: float, high: float, sign: bool = True) -> Swept:
+    """A number of the beam that is off by a fraction of it."""
+
     def swept(case: Case, rng: np.random.Generator) -> Readings:
-        return _other(**{name: _between(rng, low, high)})(case, rng)
+        by = _between(rng, low, high) if sign else float(rng.uniform(low, high))
+        return _of(case, 0.05, **{name: getattr(case.beam, name) * (1 + by)})
 
     return swept
 
 
-def _held(**support: tuple[float, float]) -> Callable[[Case, np.random.Generator], Readings]:
+def _held(**support: tuple[float, float]) -> Swept:
     """The sweep of a vibrissa held otherwise, of which nothing is said."""
 
     def swept(case: Case, rng: np.random.Generator) -> Readings:
@@ -107,31 +107,19 @@ def _softer(case: Case, rng: np.random.Generator) -> Readings:
     return solve_sweep(replace(case, clamp_stiffness=SOFT * (1 + _between(rng, 0.1, 0.3))))
 
 
-def _shaped(**shape: tuple[float, float]) -> Callable[[Case, np.random.Generator], Readings]:
-    """The sweep of a vibrissa of another shape, of which nothing is said."""
-
-    def swept(case: Case, rng: np.random.Generator) -> Readings:
-        numbers = {name: float(rng.uniform(*limits)) for name, limits in shape.items()}
-        if "natural_curvature" in numbers:
-            numbers["natural_curvature"] *= rng.choice([-1, 1])
-        else:
-            numbers["tip_radius"] *= case.beam.radius
-        start, stop = (float(x) for x in case.foot_x[[0, -1]])
-        sweep = replace(case.sweep, start=start + 0.3, stop=stop)  # clear of the object
-        return solve_sweep(replace(case, beam=replace(case.beam, **numbers), sweep=sweep))
-
-    return swept
+def _curved(case: Case, rng: np.random.Generator) -> Readings:
+    return _of(case, 0.3, natural_curvature=_between(rng, 0.05, 0.4))
 
 
-def _nearer(case: Case, rng: np.random.Generator) -> Readings:
-    return _other(radius=rng.uniform(1.5, 5))(case, rng)
+def _tapered(case: Case, rng: np.random.Generator) -> Readings:
+    return _of(case, 0.3, tip_radius=float(rng.uniform(0.5, 0.95)) * case.beam.radius)
 
 
 def _columns(sweep: Readings, **columns: np.ndarray) -> Readings:
     return replace(sweep, table=sweep.table.assign(**columns))
 
 
-def _one(act: Callable[[np.ndarray, np.random.Generator], np.ndarray]) -> "Sensor":
+def _one(act: Callable[[np.ndarray, np.random.Generator], np.ndarray]) -> Sensor:
     """A mistake in one reading, drawn at random."""
 
     def made(sweep: Readings, rng: np.random.Generator) -> Readings:
@@ -139,6 +127,13 @@ def _one(act: Callable[[np.ndarray, np.random.Generator], np.ndarray]) -> "Senso
         return _columns(sweep, **{name: act(sweep.values(name), rng)})
 
     return made
+
+
+def _each(act: Callable[[np.ndarray, np.random.Generator], np.ndarray]) -> Sensor:
+    """The same in every reading."""
+    return lambda sweep, rng: _columns(
+        sweep, **{name: act(sweep.values(name), rng) for name in CLAMP_READINGS}
+    )
 
 
 def _largest(values: np.ndarray) -> float:
@@ -149,22 +144,17 @@ def _offset(sweep: Readings, rng: np.random.Generator) -> Readings:
     return _columns(sweep, foot_x=sweep.values("foot_x") + _between(rng, 0.01, 0.03))
 
 
-def _tare(sweep: Readings, rng: np.random.Generator) -> Readings:
-    return _columns(
-        sweep,
-        **{
-            name: sweep.values(name) + _between(rng, 0.03, 0.1) * _largest(sweep.values(name))
-            for name in CLAMP_READINGS
-        },
-    )
+def _zero(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    return values + _between(rng, 0.03, 0.1) * _largest(values)
+
+
+def _drifting(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    by = _between(rng, 0.05, 0.2) * _largest(values)
+    return values + by * np.linspace(0, 1, len(values))
 
 
 def _swapped(sweep: Readings, rng: np.random.Generator) -> Readings:
     return _columns(sweep, force_x=sweep.values("force_y"), force_y=sweep.values("force_x"))
-
-
-def _negated(sweep: Readings, rng: np.random.Generator) -> Readings:
-    return _columns(sweep, **{name: -sweep.values(name) for name in CLAMP_READINGS})
 
 
 def _turned(sweep: Readings, rng: np.random.Generator) -> Readings:
@@ -217,13 +207,11 @@ def _stretch(sweep: Readings, rng: np.random.Generator) -> slice:
     return slice(begin, begin + int(rng.uniform(0.05, 0.15) * rows))
 
 
-def _lost(value: float) -> "Sensor":
+def _lost(value: float) -> Sensor:
     def made(sweep: Readings, rng: np.random.Generator) -> Readings:
-        here = _stretch(sweep, rng)
-        columns = {name: sweep.values(name).copy() for name in CLAMP_READINGS}
-        for column in columns.values():
-            column[here] = value
-        return _columns(sweep, **columns)
+        table = sweep.table.copy()
+        table.loc[table.index[_stretch(sweep, rng)], list(CLAMP_READINGS)] = value
+        return replace(sweep, table=table)
 
     return made
 
@@ -241,10 +229,6 @@ def _clipped(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     return np.clip(values, -limit, limit)
 
 
-def _free(sweep: Readings, rng: np.random.Generator) -> Readings:
-    return _columns(sweep, **{name: 0 * sweep.values(name) for name in CLAMP_READINGS})
-
-
 def _two(sweep: Readings, rng: np.random.Generator) -> Readings:
     """Two gains and a zero that have nothing to do with each other."""
     x, m = sweep.values("force_x"), sweep.values("moment_z")
@@ -260,9 +244,6 @@ def _loud(sweep: Readings, rng: np.random.Generator) -> Readings:
     return with_noise(sweep, level, int(rng.integers(1 << 30)))
 
 
-Sensor = Callable[[Readings, np.random.Generator], Readings]
-
-
 @dataclass(frozen=True)
 class Mistake:
     """What is planted, and the words that name it; none where nothing should be named.
@@ -273,7 +254,7 @@ class Mistake:
     """
 
     named: str | None
-    swept: Callable[[Case, np.random.Generator], Readings] | None = None
+    swept: Swept | None = None
     sensed: Sensor | None = None
     recorded: Sensor | None = None
     must: bool = True
@@ -283,28 +264,23 @@ class Mistake:
 MISTAKES: dict[str, Mistake] = {
     "flexural rigidity": Mistake("flexural rigidity", _beam("flexural_rigidity", 0.03, 0.3)),
     "length": Mistake("length of the vibrissa", _beam("length", 0.01, 0.03)),
-    "radius": Mistake("radius of the vibrissa", _nearer),
+    "radius": Mistake("radius of the vibrissa", _beam("radius", 1.5, 5, sign=False)),
     "soft clamp": Mistake("clamp stiffness", _held(clamp_stiffness=(5.0, 50.0))),
     "clamp stiffness": Mistake("clamp stiffness", _softer, stated={"clamp_stiffness": SOFT}),
     "friction": Mistake("friction", _held(friction=(0.05, 0.2))),
     "friction stated": Mistake("friction", _held(friction=(0.3, 0.5)), stated={"friction": 0.2}),
-    "natural curvature": Mistake("natural curvature", _shaped(natural_curvature=(0.05, 0.4))),
-    "taper": Mistake("tip radius", _shaped(tip_radius=(0.5, 0.95))),
+    "natural curvature": Mistake("natural curvature", _curved),
+    "taper": Mistake("tip radius", _tapered),
     "offset of the stage": Mistake("foot_x", sensed=_offset),
     "gain": Mistake("gain of", sensed=_one(lambda v, rng: v * (1 + _between(rng, 0.05, 0.3)))),
-    "zero": Mistake(
-        "zero of", sensed=_one(lambda v, rng: v + _between(rng, 0.03, 0.1) * _largest(v))
-    ),
-    "gravity": Mistake("constant load", sensed=_tare),
-    "drift": Mistake(
-        "drift of",
-        sensed=_one(
-            lambda v, rng: v + _between(rng, 0.05, 0.2) * _largest(v) * np.linspace(0, 1, len(v))
-        ),
-    ),
+    "zero": Mistake("zero of", sensed=_one(_zero)),
+    "gravity": Mistake("constant load", sensed=_each(_zero)),
+    "drift": Mistake("drift of", sensed=_one(_drifting)),
     "axes swapped": Mistake("force_x and force_y swapped", sensed=_swapped),
     "one sign": Mistake("opposite sign of", sensed=_one(lambda v, rng: -v)),
-    "all signs": Mistake("all three readings have the opposite sign", sensed=_negated),
+    "all signs": Mistake(
+        "all three readings have the opposite sign", sensed=_each(lambda v, rng: -v)
+    ),
     "sensor turned": Mistake("sensor turned by", sensed=_turned),
     "sensor displaced": Mistake("along the vibrissa off the clamp", sensed=_displaced),
     "unit of one": Mistake(
@@ -322,7 +298,7 @@ MISTAKES: dict[str, Mistake] = {
     "dropout": Mistake("filled with zeros", recorded=_lost(0.0)),
     "spikes": Mistake("single stations", recorded=_one(_spiked)),
     "saturation": Mistake("cut off at the extreme", recorded=_one(_clipped)),
-    "no contact": Mistake("never touches", recorded=_free),
+    "no contact": Mistake("never touches", recorded=_each(lambda v, rng: 0 * v)),
     "noise": Mistake("noise: differences jump", sensed=_loud),
     "two at once": Mistake("zero of moment_z", sensed=_two, must=False),
     "a coarse model": Mistake(None, sensed=_coarse, must=False),

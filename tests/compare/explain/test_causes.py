@@ -10,9 +10,9 @@ import pytest
 from analytic import CLAMP_READINGS, Beam, Case, Readings, Sweep, named_case, polygon, solve_sweep
 from compare import assert_agreement, compare
 from compare.align.offset import without_offset
-from compare.explain.budget import Budget
 from compare.sense.noise import with_noise
 from mujoco_models import Settings
+from tests.compare.planted import planted
 from tests.conftest import exact_sweep, simulated_sweep
 
 
@@ -186,13 +186,9 @@ def test_the_message_names_the_cause_or_the_budgets():
     exact, stiff = exact_sweep("catenary"), swept(Beam(flexural_rigidity=1.01))(case)
     with pytest.raises(AssertionError, match=r"(?s)mine disagrees.*likely: flexural rigidity"):
         assert_agreement(exact, stiff)
-    budget = object.__new__(Budget)
-    object.__setattr__(budget, "blame", "facets")
-    with pytest.raises(AssertionError, match="by its budget the largest part is facets"):
-        assert_agreement(exact, stiff, budget=budget)
-    object.__setattr__(budget, "undecided", True)
-    with pytest.raises(AssertionError, match="is facets, but the budget is undecided"):
-        assert_agreement(exact, stiff, budget=budget)
+    for undecided, said in ((False, "facets"), (True, "facets, but the budget is undecided")):
+        with pytest.raises(AssertionError, match=f"by its budget the largest part is {said}"):
+            assert_agreement(exact, stiff, budget=planted("facets", undecided=undecided))
     coarse = simulated_sweep("catenary", Settings(segments=10))
     with pytest.raises(AssertionError, match="the readings alone do not show why"):
         assert_agreement(exact, coarse)

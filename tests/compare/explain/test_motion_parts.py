@@ -1,12 +1,19 @@
 """The arithmetic of a budget in motion: one known part each, found to the last digit but six."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS
-from compare.explain.motion import MotionBudget, motion_budget
+from compare.explain.motion import (
+    MotionBudget,
+    motion_budget,
+    slower_and_finer,
+    slower_and_finer_of_model,
+)
+from mujoco_models import Motion, OwnModel
 from tests.compare.synthetic import (
     EXACT,
     MOTION,
@@ -109,3 +116,38 @@ def test_when_a_budget_closes_and_what_it_blames(sizes, closes, blame):
     runs = {name: run if name == "rest" else added(run, more) for name, run in runs.items()}
     found = motion_budget(EXACT, runs)
     assert (found.closes, found.blame) == (closes, blame)
+
+
+def test_a_models_stiffer_contacts_are_ours():
+    model = OwnModel(Path("my.xml"))
+    found = slower_and_finer_of_model(model, Motion(speed=0.08))
+    stiff, motion = found["stiff"]
+    assert (stiff.contact, stiff.stiffness, stiff.timestep) == ("ours", 4, 0.5)
+    assert motion.speed == 0.02
+    assert "stiff" not in slower_and_finer_of_model(model, Motion(solref=(0.7, 1.0)))
+
+
+def test_what_a_motion_has_not_is_no_part():
+    found = motion_budget(EXACT, in_motion(Motion(speed=0.08), rate=1e-3))
+    assert set(found.parts) == {"rate", "damping", "time step", "at rest", "unexplained"}
+
+
+def test_a_slow_motion_has_faster_neighbours():
+    """Slower ones would take seven times as long; the limit lies on the other side of the base."""
+    slow = Motion(speed=0.004)
+    motions = slower_and_finer(slow)
+    assert {"half", "quarter"}.isdisjoint(motions)
+    assert motions["double"].speed == 2 * slow.speed
+    assert motions["fine"].speed == motions["fourfold"].speed == 4 * slow.speed
+    assert motions["undamped"].speed == slow.speed
+
+
+def test_the_contacts_are_the_same_in_all_of_them():
+    motions = slower_and_finer(plain := Motion(speed=0.08))
+    assert {m.stiffness for m in motions.values()} == {plain.stiffness}
+    assert motions["fine"].timestep == plain.timestep / 2
+    assert motions["quarter"].speed == plain.speed / 4
+    stock = slower_and_finer(Motion(speed=0.08, solref=(0.7, 1.0)))
+    assert {m.solref for name, m in stock.items() if name != "ours"} == {(0.7, 1.0)}
+    assert stock["ours"].solref is None
+    assert stock["ours"].speed == stock["quarter"].speed

@@ -141,6 +141,7 @@ def test_what_swings_from_joint_to_joint_is_discretisation():
         ({"softness": 0.1, "missing": 0.09}, True, False),  # a tenth of the whole may be left
         ({"softness": 0.1, "missing": 0.12}, False, True),  # 5/36 are uncertain
         ({"softness": 0.1, "missing": 0.15}, False, False),
+        ({"facets": 0.1, "unexplained": 5e-3}, False, False),  # small, and nothing is uncertain
         ({"facets": 1e-2, "unrest": 2e-3}, True, False),  # a third of the whole may be uncertain
         ({"facets": 1e-2, "unrest": 3e-3}, False, True),
     ],

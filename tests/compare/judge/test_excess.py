@@ -80,6 +80,6 @@ def test_the_most_special_limit_holds():
     special = {"tip.max": 0.5, "force_x.max": 0.25, "force_x.tip.max": 0.125, "tip.rms": 0.75}
     limits = Tolerances(max=1.0, rms=2.0, special=special)
     asked = (("force_x", "tip"), ("force_x", "tangent"), ("force_y", "tip"), ("force_y", "tangent"))
-    assert [limits.of_reading("max", *one) for one in asked] == [0.125, 0.25, 0.5, 1.0]
+    assert [limits.of(r, "max", p) for r, p in asked] == [0.125, 0.25, 0.5, 1.0]
     assert [limits.of_phase(*one) for one in asked] == [0.75, None, 0.75, None]
     assert limits.of_sweep("force_x") == 2.0
