@@ -6,7 +6,7 @@ from pathlib import Path
 from analytic import InputError
 from compare.commands import terminal
 from compare.commands.budget import sweeps_and_budget
-from compare.commands.pipeline import Asked, solved, told
+from compare.commands.pipeline import Asked, printed, solved
 from compare.read.job import Job
 from compare.read.runs import EngineOutcome
 from compare.show.engines import ManyEngines, write_engines
@@ -20,7 +20,7 @@ def swept_by_engine(job: Job, folder: Path, asked: Asked) -> bool:
     outcomes = _swept(job, folder)
     sweeps = {one.engine: one.readings for one in outcomes if one.readings is not None}
     if exact is None:
-        return all(told(job, x, folder, f"{name}.parquet") for name, x in sweeps.items())
+        return all(printed(job, x, folder, f"{name}.parquet") for name, x in sweeps.items())
     budget = sweeps_and_budget(job)[0] if asked.budget and "mujoco" in sweeps else None
     many = ManyEngines.of(job.case, exact, _rows(outcomes), sweeps, budget)
     terminal.print_engines(many)

@@ -53,7 +53,7 @@ def carry_out(job: AnyJob, folder: Path, asked: Asked) -> bool:
 
         return swept_by_engine(job, folder, asked)
     if asked.sweep_only and job.engines:
-        return told(job, simulated(job, folder), folder, sweep_file(job))
+        return printed(job, simulated(job, folder), folder, sweep_file(job))
     if asked.budget and job.kind == PLANE:
         from compare.simulate.workers import SWEEPERS, start_server
 
@@ -61,7 +61,7 @@ def carry_out(job: AnyJob, folder: Path, asked: Asked) -> bool:
     exact = solved(job, folder, asked)
     if job.engines:
         return _compared_with_mujoco(job, exact, folder, asked)
-    possible = told(job, exact, folder, _ANALYTIC)
+    possible = printed(job, exact, folder, _ANALYTIC)
     return possible and (job.body is not None or bool(exact.trusted.all()))
 
 
@@ -82,7 +82,7 @@ def _compared_with_mujoco(job: AnyJob, exact: AnyReadings, folder: Path, asked: 
     written = reported(comparison, folder, budget, film, job.body)
     if split is not None:
         split.write(folder)
-    possible = job.kind == PLANE or told(job, candidate, folder)
+    possible = job.kind == PLANE or printed(job, candidate, folder)
     if job.model is not None:
         from compare.simulate.inspection import faults_of
 
@@ -183,7 +183,7 @@ def print_comparison(comparison: AnyComparison, budget: AnyBudget) -> None:
         terminal.print_spatial_comparison(comparison, budget)
 
 
-def told(job: AnyJob, readings: AnyReadings, folder: Path, name: str | None = None) -> bool:
+def printed(job: AnyJob, readings: AnyReadings, folder: Path, name: str | None = None) -> bool:
     """Print what a sweep found, and in space find the body from it; whether that could be."""
     if job.body is None:
         terminal.print_sweep(readings)

@@ -69,13 +69,37 @@ class Job:
         return self.case.sweep.stations
 
     def changed(self, stations: int, numerics: dict[str, Any]) -> "Job":
-        """The same with other stations and numerics."""
+        """The same with other stations and numerics.
+
+        Parameters
+        ----------
+        stations : int
+            How many the sweep has.
+        numerics : dict
+            Settings of MuJoCo by name; the others stay.
+
+        Returns
+        -------
+        Job
+            Everything else as it is.
+        """
         sweep = replace(self.case.sweep, stations=stations)
         case = replace(self.case, sweep=sweep)
         return replace(self, case=case, settings=replace(self.settings, **numerics))
 
     def solve(self, certified: bool = False) -> "Readings":
-        """The closed form."""
+        """The closed form.
+
+        Parameters
+        ----------
+        certified : bool
+            Whether every station is proved to rest, and how exact it is.
+
+        Returns
+        -------
+        Readings
+            One row per station.
+        """
         from analytic import solve_sweep
 
         return solve_sweep(self.case, certified)
@@ -121,12 +145,36 @@ class SpaceJob:
         return self.case.path.stations
 
     def changed(self, stations: int, numerics: dict[str, Any]) -> "SpaceJob":
-        """The same with other stations and numerics."""
+        """The same with other stations and numerics.
+
+        Parameters
+        ----------
+        stations : int
+            How many the sweep has.
+        numerics : dict
+            Settings of MuJoCo by name; the others stay.
+
+        Returns
+        -------
+        SpaceJob
+            Everything else as it is.
+        """
         case = replace(self.case, path=replace(self.case.path, stations=stations))
         return replace(self, case=case, settings=replace(self.settings, **numerics))
 
     def solve(self, certified: bool = False) -> "SpatialReadings":
-        """The closed form."""
+        """The closed form.
+
+        Parameters
+        ----------
+        certified : bool
+            Whether every station is proved to rest, and how exact it is.
+
+        Returns
+        -------
+        SpatialReadings
+            One row per station.
+        """
         from analytic.space import solve_space
 
         return solve_space(self.case, certified)

@@ -7,8 +7,8 @@ import textwrap
 import pytest
 
 from analytic import InputError, named_case
+from compare.commands import many
 from compare.read.case import load_job
-from compare.simulate import many
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
 from compare.study.work.perform import perform

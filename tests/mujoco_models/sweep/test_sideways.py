@@ -213,7 +213,7 @@ def test_planar_is_a_yes_or_no(tmp_path):
     assert load_job(str(file)).settings.planar is False
     file.write_text(profile + 'planar = "perhaps"\n', encoding="utf-8")
     with pytest.raises(
-        InputError, match=r"line 6: mujoco\.planar = 'perhaps': must be true or fal"
+        InputError, match=r"line 6: mujoco\.planar = 'perhaps': must be a valid boolean"
     ):
         load_job(str(file))
 
