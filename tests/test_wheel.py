@@ -72,6 +72,8 @@ COMMANDS = (
     (0, "study grid.toml --out grid --workers 1"),
     (0, "report grid"),
     (0, "report runs --out page"),
+    (0, "verify --out verified"),
+    (0, "export mine.toml --error 0.3"),
 )
 # Those that start processes of their own are started as users do, which takes one process each.
 STARTED = ("--budget", "study ")

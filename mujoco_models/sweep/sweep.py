@@ -1,7 +1,6 @@
 """A sweep in MuJoCo: from case and settings to a walk through all stations."""
 
 import time
-from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from importlib.metadata import version
@@ -56,7 +55,7 @@ def follow(
     keep: Callable[[Readings], None] = lambda _: None,
 ) -> Readings:
     """Go to all stations, one after the other."""
-    doubts: Counter[str] = Counter()
+    doubts: dict[str, int] = {}
     about = {**about, "obstacle": walk.model.obstacle.label, "unsettled": doubts}
     recorder = Recorder(case, source, about, lambda: walk.events, case.foot_x, begun=begun)
     rows, count = recorder.rows, len(case.foot_x)
@@ -64,7 +63,8 @@ def follow(
         for number, target in enumerate(case.foot_x / case.beam.length, start=1):
             try:
                 walk.go_to(float(target))
-                doubts.update([walk.doubt] if walk.doubt else [])
+                if walk.doubt:
+                    doubts[walk.doubt] = doubts.get(walk.doubt, 0) + 1
                 rows.append(walk.row())
             except DivergedError as error:
                 rows.append(DIVERGED)

@@ -344,8 +344,8 @@ def test_the_report_of_a_run_again(tmp_path, request):
     for name, content in (
         ("body.ply", b"ply\n"),
         ("budget.json", b'{"whole": []}'),
-        ("comparison.json", b'{"frame": "clamp"}'),
         ("mujoco-chain.parquet", b""),
+        ("comparison.json", b'{"frame": "clamp"}'),
     ):
         (tmp_path / "out" / name).write_bytes(content)
         done = vibrissa("report", "out", cwd=tmp_path)

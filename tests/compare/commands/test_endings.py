@@ -12,9 +12,8 @@ import pytest
 
 from analytic import Readings
 from compare.commands.output import Ended, ended_by_signals
-from compare.study.keep.database import NAME
 from compare.study.keep.reading import read_rows
-from compare.study.keep.store import TABLE_FILE
+from compare.study.keep.store import PLAN_FILE, TABLE_FILE
 
 COMMAND = [sys.executable, "-c", "from compare.commands.main import main; main()"]
 
@@ -62,7 +61,7 @@ def children(process):
 
 
 def stored(folder):
-    return len(read_rows(folder, lambda _: None)) if (folder / NAME).is_file() else 0
+    return len(read_rows(folder, lambda _: None)) if (folder / PLAN_FILE).is_file() else 0
 
 
 @pytest.mark.slow

@@ -70,7 +70,7 @@ case = Case(profile=circle(1.0, (0.0, 0.4)), sweep=Sweep(40))
 found = simulate_sweep(case, Settings(segments=10))
 assert found.snap_off is not None
 sent = pickle.dumps(found)
-print("loaded", *sorted(set(sys.modules) & {"pandas", "pyarrow", "scipy.optimize"}))
+print("loaded", *sorted(set(sys.modules) & {"pandas", "pyarrow"}))
 assert pickle.loads(sent).table.equals(found.table)
 """
 

@@ -49,7 +49,6 @@ def rig(path, rigidity):
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("undrawn")
 def test_a_disagreement_within_and_beyond_what_is_uncertain(tmp_path):
     (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
     for rigidity, resolved in ((2.06e-6, False), (2.3e-6, True)):

@@ -129,7 +129,7 @@ ANY = {
     "ratio": st.floats(0.05, 1),
     "grade": st.floats(-0.8, 0.8),
     "natural": st.tuples(st.floats(-0.6, 0.4), st.floats(-0.6, 0.4)),
-    "compliance": st.floats(0, 1),
+    "compliance": st.just(0) | st.floats(1e-149, 1),
     "friction": st.floats(0, 0.7),
     "height": st.floats(0.25, 0.6),
     "size": st.floats(0.8, 2),
