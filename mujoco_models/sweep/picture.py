@@ -11,40 +11,98 @@ from mujoco_models.model.contacts import Contacts
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 # Gauss and Legendre's rule from the unbent joint to the bent one: where, and with which weight.
 _RULE = list(zip(((1 + _NODES) / 2).tolist(), (_WEIGHTS / 2).tolist(), strict=True))
+_MOVES = 8  # from beads to beads; two are usual, where a beam slides over a needle
+_FARTHER = 2 ** np.arange(8) - 1  # reaches: where the contact is looked for, all at once
 
 
 class Picture:
     """What of a `Balance` Newton's method needs, without an engine."""
 
-    def __init__(self, model: Balance, loaded: Collection[int], reach: int = 0) -> None:
+    def __init__(
+        self, model: Balance, loaded: Collection[int], reach: int = 0, *, follow: bool = False
+    ) -> None:
         self._model, self.layout, self.obstacle = model, model.layout, model.obstacle
         self.contact_stiffness = model.contact_stiffness
         self.contact_curvature = model.contact_curvature
         self.stiffness = model.stiffness
-        begin, end = max(min(loaded) - reach, 0), max(loaded) + reach + 1
+        self._reach, self._moves = reach, _MOVES if follow else 0
+        self._angles = np.zeros(len(self.layout.joints))
+        self._joints = self._along = self.layout.base.T
+        self._looked: tuple[float, int] | None = None  # with the foot and by the window
+        self._seen: Contacts | None = None
+        first, last = min(loaded), max(loaded)
+        self._width = last - first
+        self._show(first)
+
+    def _show(self, first: int) -> None:
+        """Look at as many beads as touched at first, from one on, and those about them."""
+        begin, end = max(first - self._reach, 0), first + self._width + self._reach + 1
         self._beads: Integers = np.arange(begin, min(end, len(self.layout.beads)))
         self._links = self.layout.links[self._beads]
+        self._places = self.layout.beads[self._beads]
+        self.radii = self._model.lookout.radii[self._beads]
         self._none = np.zeros(len(self._beads), dtype=bool)
-        self.radii = model.lookout.radii[self._beads]
 
     def look(self, foot_x: float, angles: Floats) -> Contacts | None:
         """Where a configuration touches; what else is asked is of that."""
-        layout, links, no = self.layout, self._links, self._none
+        looked = foot_x, self._model.lookout.window
+        if angles is self._angles and looked == self._looked:
+            return self._seen
+        layout, self._angles, self._looked = self.layout, angles, looked
         heading = layout.headings + angles.cumsum()
-        along = np.array([-np.sin(heading), np.cos(heading)])
-        self._angles, self._joints = angles, np.zeros(along.shape)
-        self._joints[:, 1:] = (layout.chords * along)[:, :-1].cumsum(axis=1)
+        self._along = np.array([-np.sin(heading), np.cos(heading)])
+        self._joints = np.zeros(self._along.shape)
+        self._joints[:, 1:] = (layout.chords * self._along)[:, :-1].cumsum(axis=1)
         self._joints[0] += foot_x + layout.base[0, 0]
         self._joints[1] += layout.base[0, 1]
-        (across, onward), ahead = layout.from_links[:, self._beads], along[:, links]
+        self._seen = self._contacts()
+        for _ in range(self._moves):
+            nearer = self._nearer(self._seen)
+            if nearer is None:
+                break
+            self._show(max(nearer - self._width // 2, 0))
+            self._seen = self._contacts()
+        return self._seen
+
+    def _contacts(self) -> Contacts | None:
+        """Those of the beads that are looked at."""
+        points, no = self._points(self._beads), self._none
+        gap = self.obstacle.gap(self._model.lookout.window, points)
+        if gap is None:
+            return None
+        distance, normal = gap[0] - self.radii, gap[1]
+        return Contacts(
+            self._beads, self._links, no, points, self._places, normal, distance, no, False
+        )
+
+    def _points(self, beads: Integers) -> Floats:
+        """Where beads are, shape (n_beads, 2) [L]."""
+        links, (across, onward) = self.layout.links[beads], self.layout.from_links[:, beads]
+        ahead = self._along[:, links]
         points = self._joints[:, links] + onward * ahead
         points[0] += across * ahead[1]
         points[1] -= across * ahead[0]
-        gap = self.obstacle.gap(self._model.lookout.window, points.T)
+        return np.asarray(points.T)
+
+    def _nearer(self, contacts: Contacts | None) -> int | None:
+        """A bead about which the nearest one may be, if that is not in the midst of those seen.
+
+        Along a beam the distance from a convex object falls, and then it rises.
+        """
+        if contacts is None:
+            return None
+        nearest, last = int(contacts.distance.argmin()), len(self._beads) - 1
+        if 0 < nearest < last:
+            return None
+        way = self._reach if nearest else -self._reach
+        onward = self._beads[nearest] + way * _FARTHER
+        onward = onward[(onward >= 0) & (onward < len(self.layout.beads))]
+        if len(onward) == 1:
+            return None  # there the beam ends
+        gap = self.obstacle.gap(self._model.lookout.window, self._points(onward))
         if gap is None:
             return None
-        distance, places = gap[0] - self.radii, layout.beads[self._beads]
-        return Contacts(self._beads, links, no, points.T, places, gap[1], distance, no, False)
+        return int(onward[(gap[0] - self._model.lookout.radii[onward]).argmin()])
 
     def joint_positions(self) -> Floats:
         """Where the joints are."""
@@ -58,6 +116,13 @@ class Picture:
     def slides(self, contacts: Contacts) -> Booleans:
         """No bead does."""
         return self._none[: len(contacts.link)]
+
+    def energy(self, contacts: Contacts) -> float:
+        """That of the springs and of what is pressed in."""
+        angles, depth = self._angles, np.minimum(contacts.distance, 0)
+        toward = sum(w * (1 - x) * self.stiffness(x * angles) for x, w in _RULE)
+        bent = float(angles @ (angles * toward))
+        return bent + self.contact_stiffness / 2 * float(depth @ depth)
 
     def is_inside(self, contacts: Contacts) -> bool:
         """Whether a bead is so deep in the object that it may be pushed out on the far side."""

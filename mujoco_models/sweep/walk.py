@@ -5,12 +5,14 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from mujoco_models.beams.layout import OF_CURVATURE
 from mujoco_models.errors import ClampError
 from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import NOWHERE
 from mujoco_models.model.stance import Stance
 from mujoco_models.sweep.descent import descend
 from mujoco_models.sweep.forecast import forecast
+from mujoco_models.sweep.minimum import minimum
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.rest import relax
 from mujoco_models.sweep.state import State, turned
@@ -57,7 +59,10 @@ class Walk(Generic[Model]):
         self._budget = self._numerics.budget
         self._lost: str | None = None
         self._dead_end: tuple[float, str] | None = None  # where no step leads on, and why
+        self._smooth = True  # no step was taken in vain at this station and the last one
         self._curved = not model.layout.vibrissa.is_straight
+        turn = model.obstacle.largest_curvature * model.layout.spacing
+        self._sharp = turn > 2 * OF_CURVATURE
         self.snap_off: float | None = None
         self.doubt: str | None = None
 
@@ -101,7 +106,7 @@ class Walk(Generic[Model]):
     def _advance(self, target: float, limit: int) -> str | None:
         """Go to `target`; why not, if that is not possible."""
         least, walls = self._numerics.smallest_step, Walls()
-        step = target - self._foot_x
+        step, in_vain = target - self._foot_x, False
         while True:
             trial = self._onward(self._in_pace(step), target)
             if walls:
@@ -112,6 +117,7 @@ class Walk(Generic[Model]):
                 walls.leave_behind(trial, target)
                 step *= 2
             else:
+                self._smooth, in_vain = False, True
                 ended = abs(trial - self._foot_x) <= least
                 step = (trial - self._foot_x) / 2
                 if self._dead_end and self._dead_end[0] == self._foot_x:
@@ -127,6 +133,7 @@ class Walk(Generic[Model]):
                 walls.leave_behind(self._foot_x, target)
                 step = target - self._foot_x
             if self._foot_x == target:
+                self._smooth = not in_vain
                 return None
             if self.model.evaluations > limit:
                 return f"not at rest after {self._budget} evaluations"
@@ -241,9 +248,10 @@ class Walk(Generic[Model]):
     def _forecast(self, foot_x: float) -> State:
         """Where the beam should come to rest, by the solver's own picture or as it went so far."""
         guess = self._guess(foot_x)
-        if not guess.forces:
+        if not guess.forces or not (self._sharp or self._smooth):
             return guess
-        return forecast(self.model, foot_x, guess, self._numerics) or guess
+        foreseen = minimum if self._sharp else forecast
+        return foreseen(self.model, foot_x, guess, self._numerics) or guess
 
     def _guess(self, foot_x: float) -> State:
         """The last state, carried on along the branch; so is the place of its load."""
