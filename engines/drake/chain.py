@@ -217,6 +217,10 @@ class DrakeChain:
         """Never; where they had to, there is no such chain."""
         return False
 
+    def hold_beads(self) -> bool:
+        """They never slide."""
+        return False
+
     def slides(self, contacts: Contacts) -> Booleans:
         """None does."""
         return np.zeros(len(contacts.link), dtype=bool)

@@ -70,6 +70,9 @@ class Balance(Mechanics, Protocol):
         If any has been moved, the engine's answer is out of date.
         """
 
+    def hold_beads(self) -> bool:
+        """Let all beads be where they were at first; whether any was elsewhere."""
+
     def clamp(self) -> Clamp:
         """The clamp's action on the vibrissa, as the engine's own sensor or reaction has it."""
 

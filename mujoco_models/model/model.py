@@ -187,6 +187,10 @@ class BeamModel:
         curvature = self.contact_curvature(contacts.slope)
         return self._sliding.slide(contacts, curvature, self.joint_positions())
 
+    def hold_beads(self) -> bool:
+        """Let all beads be where they were at first."""
+        return self._sliding.hold()
+
     def slides(self, contacts: Contacts) -> Booleans:
         """Which contacts are of a link whose beads slide."""
         return self._sliding.slides(contacts)

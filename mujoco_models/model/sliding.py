@@ -67,6 +67,15 @@ class SlidingBeads:
         self._guided = there == tangential  # or it is a joint that touches, a material point
         return self._shift(link, there)
 
+    def hold(self) -> bool:
+        """Put all beads where they were at first."""
+        moved, self._guided = self._link is not None, False
+        if self._link is not None:
+            back = np.flatnonzero(self._layout.links == self._link)
+            self._put(back, self._home[back])
+            self._link = None
+        return moved
+
     def slides(self, contacts: Contacts) -> Booleans:
         """Which contacts are of a link whose beads slide."""
         if not self._guided:

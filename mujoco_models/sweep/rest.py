@@ -27,6 +27,7 @@ def relax(
     *,
     leave: State | None = None,
     stay: float | None = None,
+    held: bool = False,
 ) -> State:
     """Bring the beam to rest with its foot at `foot_x`, from `start`."""
     lookout, obstacle = model.lookout, model.obstacle
@@ -42,7 +43,7 @@ def relax(
             window, best, vain = lookout.window, State(state.angles, state.forces), 0
         before, residual = residual, _largest(model.imbalance(foot_x, state.angles))
         contacts = model.contacts()
-        if model.slide_beads(contacts):
+        if not held and model.slide_beads(contacts):
             residual = _largest(model.imbalance(foot_x, state.angles))
             contacts = model.contacts()
         imbalance = residual

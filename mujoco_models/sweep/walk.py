@@ -105,12 +105,12 @@ class Walk(Generic[Model]):
 
     def _advance(self, target: float, limit: int) -> str | None:
         """Go to `target`; why not, if that is not possible."""
-        least, walls = self._numerics.smallest_step, Walls()
+        least, walls = self._numerics.smallest_step, Walls(self._numerics.smallest_step)
         step, in_vain = target - self._foot_x, False
         while True:
             trial = self._onward(self._in_pace(step), target)
             if walls:
-                trial = walls.aim(self._foot_x, self._follows)
+                trial = walls.aim([*self._trail, (self._foot_x, self._state)], self._follows)
             state, ended = self._near_rest(trial), False
             if self._follows(state):
                 self._accept(trial, state)
@@ -243,7 +243,12 @@ class Walk(Generic[Model]):
     ) -> State:
         """At rest, if Newton's method gets there; it stops where it is sure to leave a state."""
         model, numerics = self.model, self._numerics
-        return relax(model, foot_x, start, self._tolerance, numerics, leave=leave, stay=stay)
+        state = relax(model, foot_x, start, self._tolerance, numerics, leave=leave, stay=stay)
+        short = abs(foot_x - self._foot_x) < numerics.confirm_step
+        if state.settled or not short or not model.hold_beads():
+            return state
+        # A bead that slides past a joint may not come to rest; one that stays leans a little.
+        return relax(model, foot_x, start, self._tolerance, numerics, leave=leave, held=True)
 
     def _forecast(self, foot_x: float) -> State:
         """Where the beam should come to rest, by the solver's own picture or as it went so far."""
