@@ -16,7 +16,7 @@ import numpy as np
 from analytic.problem.arrays import Complexes, Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.contours.polygon import Polygon
-from mujoco_models.obstacles.corners import Corners, ends_sharp, upright
+from mujoco_models.obstacles.corners import SHARP, Corners, ends_sharp, upright
 from mujoco_models.obstacles.faceted import Faceted, own_ends, touchable
 from mujoco_models.obstacles.window import HALF_DEPTH, add_room, write_prism
 from mujoco_models.settings import Settings
@@ -62,13 +62,15 @@ class Prism(Faceted):
         body = case.profile.scaled(1 / case.beam.length)
         inscribed = body.outline(last, first, points)
         ends = case.centreline.at(np.array([last, first]))
-        own = own_ends(case)
-        cut = ~np.array(own)
+        cut = ~np.array(own_ends(case))
         heading = np.column_stack([np.cos(ends.alpha), np.sin(ends.alpha)])
         beyond = inscribed[[0, -1]] + _BEYOND * heading * [[-1], [1]]
         vertices = np.concatenate([beyond[:1][cut[:1]], inscribed, beyond[1:][cut[1:]]])
         exact = isinstance(body, Polygon)
-        return cls(vertices, touchable(case), exact, case.radius, corner_radius, own)
+        # A smooth contour that ends upright has no corner there, though its facets have.
+        sharp = ~cut & (exact | (np.pi / 2 - np.abs(ends.alpha) > SHARP))
+        left, right = sharp.tolist()
+        return cls(vertices, touchable(case), exact, case.radius, corner_radius, (left, right))
 
     @property
     def label(self) -> str:
