@@ -44,7 +44,8 @@ from mujoco_models import Settings, available_beams, simulate_sweep
 from mujoco_models.beams.layout import OF_CURVATURE, bead_spacing
 from mujoco_models.obstacles.kinds import place
 
-KINDS = ("round", "needle", "small", "smooth", "polygon", "mesh")
+KINDS = ("round", "needle", "small", "smooth", "polygon", "mixed", "mesh")
+CORNERED = ("polygon", "mixed", "mesh")
 _TIMES = 10.0  # an error that is more times what is expected is silent
 _SLOW = 100.0  # ms a station
 _EDGE = 0.02  # L; so near to a snap-off, phases may differ
@@ -93,19 +94,20 @@ def trial(seed: int, folder: Path, kind: str | None = None) -> Trial:
 
 
 def _drawn(kind: str, draw: np.random.Generator, file: Path) -> Trial:
-    height = float(draw.uniform(0.15, 0.85))
+    height = float(draw.uniform(0.03, 0.85))
     profile = {
         "round": _round, "needle": _needle, "small": _small,
-        "smooth": _smooth, "polygon": _polygon, "mesh": lambda d, h: _mesh(d, h, file),
+        "smooth": _smooth, "polygon": _polygon, "mixed": _mixed,
+        "mesh": lambda d, h: _mesh(d, h, file),
     }[kind](draw, height)  # fmt: skip
     beam = Beam(radius=float(np.exp(draw.uniform(np.log(0.001), np.log(0.012)))))
     settings = Settings(
         beam=str(draw.choice(available_beams())),  # type: ignore[arg-type]
-        segments=int(draw.integers(10, 121)),
+        segments=int(np.exp(draw.uniform(np.log(5), np.log(120)))),
         contour_points=int(np.exp(draw.uniform(np.log(100), np.log(5000)))),
         contact_stiffness=float(np.exp(draw.uniform(np.log(1e4), np.log(5e7)))),
     )
-    sweep = Sweep(stations=int(draw.choice([12, 30, 60, 120])))
+    sweep = Sweep(stations=int(np.exp(draw.uniform(np.log(3), np.log(200)))))
     return Trial(kind, Case(beam=beam, profile=profile, sweep=sweep), settings)
 
 
@@ -165,6 +167,24 @@ def _polygon(draw: np.random.Generator, height: float) -> Contour:
     return polygon(points, f"{corners}-gon")
 
 
+def _mixed(draw: np.random.Generator, height: float) -> Contour:
+    """Sharp corners, and between them sides that are straight or bowed, a little or more."""
+    corners, size = int(draw.integers(3, 7)), np.exp(draw.uniform(np.log(0.2), np.log(2), size=2))
+    angles = 2 * np.pi * (np.arange(corners) + 0.4 * draw.random(corners)) / corners
+    ends = size * np.column_stack([np.cos(angles), np.sin(angles)])
+    sides = []
+    for here, there in zip(ends, np.roll(ends, -1, axis=0), strict=True):
+        along = np.sort(draw.random(int(draw.integers(0, 12))))[:, None]
+        bow = 0.0 if draw.random() < 0.3 else float(np.exp(draw.uniform(np.log(1e-7), np.log(0.1))))
+        outward = np.array([there[1] - here[1], here[0] - there[0]])
+        sides.append(here + along * (there - here) + bow * along * (1 - along) * outward)
+    points = np.concatenate([x for pair in zip(ends[:, None], sides, strict=True) for x in pair])
+    turn = draw.uniform(0, 6.28)
+    points = points @ np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    points[:, 1] += height - points[:, 1].min()
+    return polygon(points, f"mixed {len(points)}-gon")
+
+
 def _mesh(draw: np.random.Generator, height: float, file: Path) -> Contour:
     size = float(np.exp(draw.uniform(np.log(0.15), np.log(1.2))))
     kind = int(draw.integers(5))
@@ -197,7 +217,7 @@ def judge(made: Trial, reference: Readings, found: Readings, seconds: float) -> 
     for where in snap:
         if where is not None:
             away &= np.abs(x - where) > _EDGE
-    if made.kind in ("polygon", "mesh"):
+    if made.kind in CORNERED:
         away &= ~beside_a_jump(made.case, x)
     beam, angle = explained(made, found.provenance["obstacle"], exact["force_y"].abs().max())
     force = float(np.hypot(exact["force_x"], exact["force_y"]).max())
@@ -245,7 +265,7 @@ def explained(made: Trial, obstacle: str, force: float) -> tuple[float, float]:
     """
     settings, case = made.settings, made.case
     beam = 3 / settings.segments**2 + force / settings.contact_stiffness / case.beam.radius / 10
-    if made.kind in ("polygon", "mesh"):  # where a joint's sphere still holds a corner a little
+    if made.kind in CORNERED:  # where a joint's sphere still holds a corner a little
         return beam, 1e-3
     normal, chord = (
         float(found[1]) if (found := re.search(f"{name} error ([^ ]+) ", obstacle)) else 0.0
