@@ -131,11 +131,13 @@ class Prism(Faceted):
         from_origin = np.subtract(points, origin, order="C").view(complex).T
         number = np.arange(len(points))
         facet: Integers = self._inner.searchsorted(points[:, 0])
-        for _ in range(_FEET):
-            facet = self._under(points, facet)
+        for step in range(_FEET + 1):
+            far = step == _FEET
+            facet = self._at_vertex(points) if far else self._under(points, facet)
             first = np.minimum(np.maximum(facet - _EITHER_SIDE, 0), last)
             ends = self._in_plane.take(first + self._about) - complex(*origin)
-            ends = ends.astype(np.complex64).astype(complex)  # as in MuJoCo
+            if not far:  # or what rounds vertices is more than what one is nearer than the next
+                ends = ends.astype(np.complex64).astype(complex)  # as in MuJoCo
             begin, run = ends[:-1], ends[1:] - ends[:-1]
             off = from_origin - begin
             share = off / run
@@ -170,6 +172,15 @@ class Prism(Faceted):
         across = points[:, 0] - bound * aside - begin
         foot = begin + across / (1 + curvature * np.maximum(bound, 0))
         return np.asarray(self._inner.searchsorted(foot))
+
+    def _at_vertex(self, points: Floats) -> Integers:
+        """The facets that begin at the vertices nearest to the points, shape (n,).
+
+        Far off the tip of a needle, steps from foot to foot go past it again and again.
+        """
+        apart = np.ascontiguousarray(points).view(complex) - self._in_plane
+        facet: Integers = np.abs(apart).argmin(axis=1)
+        return np.minimum(facet, len(self.facet_angles) - 1)
 
     def place(self, slope: Floats) -> Floats:
         """The number of the vertex at which the slope angle is passed."""

@@ -313,3 +313,13 @@ def test_the_nearest_facet_of_a_needle():
     window = obstacle.window_of(float(obstacle.place(np.zeros(1))[0]))
     found, _ = obstacle.gap(window, points)
     np.testing.assert_allclose(found, exact, atol=1e-9)  # single precision from the tip on
+
+
+def test_the_distance_of_a_needle_from_far_away():
+    """Far off, what rounds vertices is more than what one facet is nearer than the next one."""
+    obstacle = Prism.of(NEEDLE, 1600)
+    draw = np.random.default_rng(4)
+    points = np.column_stack([draw.uniform(-0.3, 0.3, 200), draw.uniform(0, 0.24, 200)])
+    exact = [obstacle.clearance(point)[0] for point in points]
+    for window in range(0, obstacle.windows, 10):
+        np.testing.assert_allclose(obstacle.gap(window, points)[0], exact, atol=1e-6)
