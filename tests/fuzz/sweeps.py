@@ -44,7 +44,8 @@ from mujoco_models import Settings, available_beams, simulate_sweep
 from mujoco_models.beams.layout import OF_CURVATURE, bead_spacing
 from mujoco_models.obstacles.kinds import place
 
-KINDS = ("round", "needle", "small", "smooth", "polygon", "mixed", "mesh")
+USUAL = ("round", "needle", "small", "smooth", "polygon", "mesh")
+KINDS = (*USUAL, "mixed")
 CORNERED = ("polygon", "mixed", "mesh")
 _TIMES = 10.0  # an error that is more times what is expected is silent
 _SLOW = 100.0  # ms a station
@@ -82,19 +83,22 @@ class Outcome:
     flags: tuple[str, ...]
 
 
-def trial(seed: int, folder: Path, kind: str | None = None) -> Trial:
-    """The trial of this seed; a mesh's file is put into `folder`."""
+def trial(seed: int, folder: Path, kind: str | None = None, wide: bool = False) -> Trial:
+    """The trial of this seed; a mesh's file is put into `folder`.
+
+    A wide one may have three stations, five segments and an object next to the clamp.
+    """
     draw = np.random.default_rng(seed)
     while True:
-        chosen = kind or str(draw.choice(KINDS))
+        chosen = kind or str(draw.choice(KINDS if wide else USUAL))
         try:
-            return _drawn(chosen, draw, folder / f"{seed}.stl")
+            return _drawn(chosen, draw, folder / f"{seed}.stl", wide)
         except (InputError, ValueError):  # out of reach, under the foot, nothing cut
             continue
 
 
-def _drawn(kind: str, draw: np.random.Generator, file: Path) -> Trial:
-    height = float(draw.uniform(0.03, 0.85))
+def _drawn(kind: str, draw: np.random.Generator, file: Path, wide: bool) -> Trial:
+    height = float(draw.uniform(0.03 if wide else 0.15, 0.85))
     profile = {
         "round": _round, "needle": _needle, "small": _small,
         "smooth": _smooth, "polygon": _polygon, "mixed": _mixed,
@@ -103,12 +107,16 @@ def _drawn(kind: str, draw: np.random.Generator, file: Path) -> Trial:
     beam = Beam(radius=float(np.exp(draw.uniform(np.log(0.001), np.log(0.012)))))
     settings = Settings(
         beam=str(draw.choice(available_beams())),  # type: ignore[arg-type]
-        segments=int(np.exp(draw.uniform(np.log(5), np.log(120)))),
+        segments=_spread(draw, 5, 120) if wide else int(draw.integers(10, 121)),
         contour_points=int(np.exp(draw.uniform(np.log(100), np.log(5000)))),
         contact_stiffness=float(np.exp(draw.uniform(np.log(1e4), np.log(5e7)))),
     )
-    sweep = Sweep(stations=int(np.exp(draw.uniform(np.log(3), np.log(200)))))
-    return Trial(kind, Case(beam=beam, profile=profile, sweep=sweep), settings)
+    stations = _spread(draw, 3, 200) if wide else int(draw.choice([12, 30, 60, 120]))
+    return Trial(kind, Case(beam=beam, profile=profile, sweep=Sweep(stations)), settings)
+
+
+def _spread(draw: np.random.Generator, low: float, high: float) -> int:
+    return int(np.exp(draw.uniform(np.log(low), np.log(high))))
 
 
 def _round(draw: np.random.Generator, height: float) -> Contour:
@@ -283,7 +291,7 @@ def main(count: int, seed: int, kind: str | None = None) -> list[tuple[Trial, Ou
     console, results = Console(width=190), []
     with tempfile.TemporaryDirectory() as folder:
         for number in range(seed, seed + count):
-            made = trial(number, Path(folder), kind)
+            made = trial(number, Path(folder), kind, wide=True)
             begun = time.process_time()
             outcome: Outcome | str
             try:

@@ -7,11 +7,11 @@ import pytest
 
 from analytic import CLAMP_READINGS, Sweep
 from mujoco_models import simulate_sweep
-from tests.fuzz.sweeps import Outcome, main, trial
+from tests.fuzz.sweeps import KINDS, Outcome, main, trial
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["round", "small", "smooth", "needle", "polygon"])
+@pytest.mark.parametrize("kind", KINDS)
 def test_random_sweeps_have_no_silent_error(kind):
     for made, outcome in main(2, 7_000, kind):
         assert isinstance(outcome, Outcome), (made.label, outcome)
