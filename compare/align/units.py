@@ -21,7 +21,7 @@ _FITS, _BETTER = 0.1, 0.5  # rms over the largest magnitude, and times that of t
 def in_units_of(reference: Readings, candidate: Readings) -> Readings:
     """The candidate, a clamp reading in a far smaller or larger unit put right."""
     with np.errstate(divide="ignore", invalid="ignore"):  # a dead channel has no unit
-        decades = np.log10(_magnitudes(candidate) / _magnitudes(reference))
+        decades = np.log10(_magnitudes(candidate)) - np.log10(_magnitudes(reference))
     far = (np.abs(decades) > np.log10(_SUSPICIOUS)) & (np.abs(decades) < _FARTHEST)
     if not far.any():
         return candidate
