@@ -7,76 +7,114 @@ from typing import Any
 
 from analytic import Readings
 from compare.commands import terminal
-from compare.commands.keep import keep
-from compare.commands.pipeline import AnyBudget, AnyReadings
+from compare.commands.pipeline import AnyReadings
 from compare.explain.budget import Budget
 from compare.explain.split_space import Parts
-from compare.read.job import AnyJob, Job
+from compare.read.job import AnyJob, Job, SpaceJob
+from compare.show.budgets import budget_summary
+from compare.show.document import Text
 from compare.show.report import budget_files
-from compare.simulate.budgets import measure_budget, sweeps_of_budget
-from compare.simulate.dispatch import simulate
+from compare.simulate.budgets import measure_budget
+from compare.simulate.dispatch import simulate_in_the_plane
 from compare.simulate.fastest import Fastest, find_fastest
-from compare.simulate.target import follow_advice
+from compare.simulate.target import Followed, follow_advice
 from mujoco_models.motion import Motion
+
+_SWEEPS = "sweeps of the budget"
 
 
 @dataclass(frozen=True)
 class Measured:
-    """A budget that was measured, printed, and is to be kept."""
+    """MuJoCo's sweep, and its budget if that was measured and printed."""
 
-    base: AnyReadings  # MuJoCo's sweep that it is of
-    on_page: Budget | Parts | None = None  # what the report shows; nothing in motion
+    base: AnyReadings
+    budget: Budget | None = None  # what the report shows in the plane; nothing in motion
+    parts: Parts | None = None  # in space
     reached: bool = True  # the target at rest, if there is one
     contents: Mapping[str, Any] = field(default_factory=dict)  # of files, by name
-    runs: Mapping[str, AnyReadings] = field(default_factory=dict)  # that are kept
+    runs: Mapping[str, Readings] = field(default_factory=dict)  # that are kept
 
     def write(self, folder: Path) -> None:
         """Write what the report does not."""
         for name, readings in self.runs.items():
             readings.write(folder / f"{name}.parquet")
         for name, content in self.contents.items():
-            keep(folder / name, content)
-
-
-def sweeps_and_budget(job: AnyJob) -> tuple[AnyBudget, Mapping[str, Any]]:
-    """The budget of a job, and its sweeps."""
-    count = sweeps_of_budget(job.settings, job.motion, job.model)
-    with terminal.progress("sweeps of the budget", count) as advance:
-        return measure_budget(job.case, job.settings, advance, motion=job.motion, model=job.model)
+            terminal.keep(folder / name, content)
 
 
 def measured(job: AnyJob, target: float | None) -> Measured:
     """Measure and print the budget of a job, and what to do for a wanted error."""
-    found, runs = sweeps_and_budget(job)
-    base = runs["base"]
-    if not isinstance(job, Job):  # printed with the verdict
-        return Measured(base, found)
-    if job.motion is not None:
-        terminal.print_budget(found, job.case.name)
-        content = found.to_dict()
-        if target is not None:
-            fastest = _fastest(job, runs, target)
-            content["fastest"] = fastest.to_dict()
-            terminal.print_fastest(fastest)
-        return Measured(base, contents={"motion-budget.json": content}, runs=runs)
-    terminal.print_budget(found, job.case.name)
+    if isinstance(job, SpaceJob):  # printed with the verdict
+        with terminal.progress(_SWEEPS) as advance:
+            parts, swept = measure_budget(job.case, job.settings, advance)
+        return Measured(swept["base"], parts=parts)
+    return _at_rest(job, target) if job.motion is None else _in_motion(job, job.motion, target)
+
+
+def budget_at_rest(job: Job) -> tuple[Budget, Mapping[str, Readings]]:
+    """The budget of a job at rest in the plane, and its sweeps."""
+    with terminal.progress(_SWEEPS) as advance:
+        return measure_budget(job.case, job.settings, advance)
+
+
+def _at_rest(job: Job, target: float | None) -> Measured:
+    found, runs = budget_at_rest(job)
+    _print(job, *budget_summary(found))
     if target is None:
-        return Measured(base, found)
+        return Measured(runs["base"], found)
     advice = follow_advice(job.case, found, runs, target)
-    terminal.print_advice(advice)
+    terminal.show(*map(Text, _advised(advice)))
     contents = {"budget.json": budget_files(found, advice.to_dict())["budget.json"]}
-    return Measured(base, found, advice.reached, contents)
+    return Measured(runs["base"], found, reached=advice.reached, contents=contents)
 
 
-def _fastest(job: Job, runs: Mapping[str, Readings], target: float) -> Fastest:
+def _in_motion(job: Job, motion: Motion, target: float | None) -> Measured:
+    with terminal.progress(_SWEEPS) as advance:
+        found, runs = measure_budget(
+            job.case, job.settings, advance, motion=motion, model=job.model
+        )
+    _print(job, *budget_summary(found))
+    content = found.to_dict()
+    if target is not None:
+        fastest = _fastest(job, motion, runs, target)
+        content["fastest"] = fastest.to_dict()
+        tried = ", ".join(f"{v:.3g}: {error:.1e}" for v, error in fastest.tried.items())
+        terminal.print_line(
+            f"Fastest for {target:g}: {fastest.speed:.3g} L/T1, {fastest.error:.1e} rms, "
+            f"{fastest.seconds:.1f} s; {fastest.at_rest:.1e} is left at rest."
+        )
+        terminal.print_line(f"  {tried}")
+    return Measured(runs["base"], contents={"motion-budget.json": content}, runs=runs)
+
+
+def _fastest(job: Job, motion: Motion, runs: Mapping[str, Readings], target: float) -> Fastest:
     """The fastest motion of a job with a wanted error."""
-    motion = job.motion or Motion()
     if job.model is None and motion.solref is None:
         motion = replace(motion, contact_stiffness=motion.stiffness)
 
     def move(speed: float) -> Readings:
         other = replace(motion, speed=speed)
         with terminal.progress(f"{speed:.3g} L/T1", job.stations) as advance:
-            return simulate(job.case, job.settings, other, job.model, advance=advance)
+            return simulate_in_the_plane(job.case, job.settings, other, job.model, advance=advance)
 
     return find_fastest(job.solve(), runs, move, target)
+
+
+def _print(job: Job, *summary: Any) -> None:  # noqa: ANN401
+    terminal.show(Text("", strong=f"Budget of {job.case.name}"), *summary)
+
+
+def _advised(advice: Followed) -> list[str]:
+    """The advised settings, with what was predicted and measured of them."""
+    settings, predicted = advice.predicted.settings, advice.predicted
+    mesh = f" of {settings.contour_points} points" if settings.obstacle == "mesh" else ""
+    said = [
+        f"Cheapest for {advice.target:g}: {settings.beam} of {settings.segments} segments, "
+        f"{settings.obstacle}{mesh}, contact stiffness {settings.contact_stiffness:.1e}."
+    ]
+    for what, one in (("predicted", predicted), ("measured", advice)):
+        took = 1e3 * one.seconds_a_station
+        said.append(f"  {what}: {one.error:.1e} rms, {took:.1f} ms a station")
+    if not advice.reached:
+        said.append("  The target was missed: ask for a little less.")
+    return said

@@ -60,6 +60,7 @@ def calibrate(
     from analytic import calibrate as calibrate_case
     from analytic import relative_noise
     from compare.commands import terminal
+    from compare.commands.sweep_lines import note_rows
     from compare.read.case import load_job
     from compare.read.rig import read_measured
     from compare.sense.record import without_dropouts
@@ -71,9 +72,7 @@ def calibrate(
         sizes = None if level == "auto" else relative_noise(readings, level)
         found = calibrate_case(readings, known, words(fit), sizes)
     with output_folder(out or Path("results") / f"{distinct_name(file)}-calibrated") as folder:
-        from compare.commands.keep import keep
-
-        terminal.note_rows(readings)
+        note_rows(readings)
         terminal.show(*calibration_summary(found))
-        keep(folder / "calibration.json", calibration_document(found))
+        terminal.keep(folder / "calibration.json", calibration_document(found))
     return AGREES if found.explains else DISAGREES

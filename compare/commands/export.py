@@ -57,8 +57,7 @@ def export(
     if not 0 < error < 1:
         raise InputError("--error", error, "between 0 and 1", "0.01 is usual")
     with waiting("loading"):
-        from compare.commands.keep import keep
-        from compare.commands.terminal import print_line, progress
+        from compare.commands import terminal
         from compare.read.case import load_job
         from compare.simulate.prescription import LADDER, prescribe
         from mujoco_models.beams.available import require
@@ -76,7 +75,7 @@ def export(
     motion = replace(motion, integrator="discrete", speed=motion.speed if speed is None else speed)
     wanted = replace(job.case, beam=made)
     with output_folder(out.parent):
-        with progress("models", len(LADDER)) as advance:
+        with terminal.progress("models", len(LADDER)) as advance:
             found = prescribe(wanted, kind, motion, period, error, advance)
         whisker = replace(found.whisker, case=wanted)
         said = _lines(found, error, made.si)
@@ -85,8 +84,8 @@ def export(
         else:
             text = (beside(whisker) if obstacle else whisker).xml(*said)
         for line in said:
-            print_line(line)
-        keep(out, text)
+            terminal.print_line(line)
+        terminal.keep(out, text)
     return AGREES
 
 

@@ -25,19 +25,18 @@ def evaluate(job: Job | SpaceJob, folder: Path, stiffnesses: str) -> int:
         raise InputError("mujoco-warp", version or "missing", _WARP, trouble)
     with output_folder(folder) as place:
         from compare.commands import terminal
-        from compare.commands.keep import keep
-        from compare.show.float32 import picture, sentence
+        from compare.show.float32 import losses_table, picture, sentence
         from engines.warp.gate import by_stiffness, gate
 
         steps = len(wanted) * job.case.sweep.stations
         with terminal.progress("single precision", steps) as advance:
             table = gate(job.case, job.settings, wanted, advance)
         found = by_stiffness(table)
-        terminal.print_float32(found, job.case.name)
+        terminal.show(losses_table(found, job.case.name))
         terminal.print_line(sentence(found, version or ""))
         for name, rows in (("stations", table), ("float32", found)):
-            keep(place / f"{name}.csv", rows)
-        keep(place / "float32.png", picture(found, job.case.name))
+            terminal.keep(place / f"{name}.csv", rows)
+        terminal.keep(place / "float32.png", picture(found, job.case.name))
         lost = found.loc[found["contact_stiffness"] == own, "lost"].sum()
         return DISAGREES if lost else AGREES
 

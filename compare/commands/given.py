@@ -4,7 +4,6 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-from analytic.problem.errors import InputError
 from analytic.problem.files import regular_file
 
 A_RIG = "a file that no engine wrote"
@@ -14,12 +13,6 @@ def require_readings(files: Iterable[Path]) -> None:
     """Refuse files of readings that are not there."""
     for file in files:
         regular_file(file, "readings file", sys.maxsize)
-
-
-def require_folder(folder: Path, remedy: str) -> None:
-    """Refuse a folder that is not there."""
-    if not folder.is_dir():
-        raise InputError("DIR", folder, "a folder that is there", remedy)
 
 
 def no_rigs(files: Iterable[Path]) -> bool:

@@ -87,10 +87,8 @@ def inspect(
     for line in inspection.lines():
         terminal.print_line(line)
     if out is not None:
-        from compare.commands.keep import keep
-
         with output_folder(out) as folder:
-            keep(folder / "inspection.json", inspection.to_dict())
+            terminal.keep(folder / "inspection.json", inspection.to_dict())
     return AGREES if inspection.sound else DISAGREES
 
 

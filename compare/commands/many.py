@@ -5,25 +5,31 @@ from pathlib import Path
 
 from analytic import InputError
 from compare.commands import terminal
-from compare.commands.budget import sweeps_and_budget
-from compare.commands.pipeline import Asked, printed, solved
+from compare.commands.budget import budget_at_rest
+from compare.commands.pipeline import Asked, draw_paper_figures, printed, solved
 from compare.read.job import Job
 from compare.read.runs import EngineOutcome
-from compare.show.engines import ManyEngines, write_engines
+from compare.show.engines import ManyEngines, outcomes_table, parts_table, write_engines
 from engines import Outcome, list_engines
 from engines.apart import sweep_apart
 
 
 def swept_by_engine(job: Job, folder: Path, asked: Asked) -> bool:
     """Sweep a case with the engines of its job, and write one report of all; whether all agree."""
-    exact = None if asked.sweep_only else solved(job, folder, asked)
+    exact = None if asked.sweep_only else solved(job, folder, asked.certified)
+    if exact is not None and asked.figures:
+        draw_paper_figures(job, exact, folder)
     outcomes = _swept(job, folder)
     sweeps = {one.engine: one.readings for one in outcomes if one.readings is not None}
     if exact is None:
         return all(printed(job, x, folder, f"{name}.parquet") for name, x in sweeps.items())
-    budget = sweeps_and_budget(job)[0] if asked.budget and "mujoco" in sweeps else None
+    budget = budget_at_rest(job)[0] if asked.budget and "mujoco" in sweeps else None
     many = ManyEngines.of(job.case, exact, _rows(outcomes), sweeps, budget)
-    terminal.print_engines(many)
+    terminal.show(outcomes_table({many.case.name: many.outcomes}))
+    if many.parts():
+        terminal.show(parts_table({many.case.name: many.parts()}))
+    if many.split is not None:
+        terminal.print_line(many.split.sentence)
     for path in write_engines(many, folder):
         terminal.print_written(path)
     return many.agree

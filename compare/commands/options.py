@@ -118,33 +118,30 @@ class Changes:
 
     def kind(self, job: "AnyJob") -> str:
         """What kind of a case it is, with these changes."""
-        moved = self.motion or self.speed is not None or self.timestep is not None
+        moved = self.motion or self._given("speed", "timestep")
         return MOTION if moved and job.kind == PLANE else job.kind
 
     def made(self, job: "AnyJob") -> "AnyJob":
         """The job with these changes."""
         from compare.read.job import Job
 
-        named: dict[str, Any] = {
-            "segments": self.segments,
-            "beam": self.beam,
-            "obstacle": self.obstacle,
-            "planar": False if self.spatial else None,
-        }
-        given = {key: value for key, value in named.items() if value is not None}
+        given = self._given("segments", "beam", "obstacle")
+        given |= {"planar": False} if self.spatial else {}
         stations = job.stations if self.stations is None else self.stations
         if not isinstance(job, Job):
             return job.changed(stations, given)
         return replace(job.changed(stations, given), motion=self._moved(job.motion))
 
     def _moved(self, motion: "Motion | None") -> "Motion | None":
-        named: dict[str, Any] = {"speed": self.speed, "timestep": self.timestep}
-        given = {key: value for key, value in named.items() if value is not None}
+        given = self._given("speed", "timestep")
         if motion is None and not (self.motion or given):
             return None
         from mujoco_models.motion import Motion
 
         return replace(motion or Motion(), **given)
+
+    def _given(self, *names: str) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
     def folder(self, out: Path | None, case: str) -> Path:
         """Where the results go by default: runs that differ do not overwrite each other."""

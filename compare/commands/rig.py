@@ -26,7 +26,7 @@ def rig(
     becomes a file for `compare` and `reconstruct`.
     """
     from compare.commands import terminal
-    from compare.commands.keep import keep
+    from compare.commands.sweep_lines import print_passes
     from compare.measure.repeats import repeat
     from compare.read.passes import read_passes, without_gaps
     from compare.read.rig_file import read_rig
@@ -42,9 +42,9 @@ def rig(
         ):
             repeats[one.name, other.name] = repeat(without_gaps(one), without_gaps(other))
     with output_folder(out or Path("results") / f"{distinct_name(files[0])}-passes") as folder:
-        terminal.print_passes(passes, repeats)
+        print_passes(passes, repeats)
         for one in passes:
             terminal.print_written(one.readings.write(folder / f"{one.name}.parquet"))
-        keep(folder / "passes.json", passes_document(passes, repeats))
-        keep(folder / "passes.png", picture(passes))
+        terminal.keep(folder / "passes.json", passes_document(passes, repeats))
+        terminal.keep(folder / "passes.png", picture(passes))
     return AGREES

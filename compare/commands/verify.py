@@ -33,7 +33,6 @@ def verify(
     with output_folder(out or Path("results/verify")) as folder:
         from pandas import DataFrame
 
-        from compare.commands.keep import keep
         from compare.show.html import html
         from compare.verify import record
         from compare.verify.page import drawn, summary, verdict, verified
@@ -45,7 +44,7 @@ def verify(
                 advance()
         found = verdict(rows)
         terminal.show(summary(rows), found)
-        keep(folder / "report.html", html(verified(rows)))
-        keep(folder / "verify.png", drawn(rows))
-        keep(folder / "verify.csv", DataFrame([asdict(row) for row in rows]))
+        terminal.keep(folder / "report.html", html(verified(rows)))
+        terminal.keep(folder / "verify.png", drawn(rows))
+        terminal.keep(folder / "verify.csv", DataFrame([asdict(row) for row in rows]))
     return AGREES if found.good else DISAGREES

@@ -14,15 +14,7 @@ from compare.read.toml import Place
 _LONGEST_NAME = 100
 
 
-class _Brief(reprlib.Repr):
-    def repr_int(self, x: int, level: int) -> str:
-        try:
-            return super().repr_int(x, level)
-        except ValueError:  # Python refuses to write thousands of digits
-            return f"an integer of {x.bit_length()} bits"
-
-
-_brief = _Brief()
+_brief = reprlib.Repr()
 _brief.maxstring = _brief.maxother = 80
 
 
@@ -55,7 +47,7 @@ def complaint(error: ValidationError, place: Place, outer: Sequence[str] = ()) -
         case "value_error":
             return _refused(context["error"], value, inside, outer, place)
     allowed = first["msg"].removeprefix("Input should be ").removeprefix("Value should be ")
-    return InputError(name, value, allowed, "change it")
+    return InputError(name, value, allowed.replace("valid tuple", "list"), "change it")
 
 
 UNKNOWN_KEY = "unknown_key"

@@ -7,8 +7,7 @@ found from the lines themselves: that reading counts under which the most lines 
 
 import io
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from itertools import compress, islice
 from pathlib import Path
 from typing import NamedTuple
@@ -17,6 +16,7 @@ import pandas as pd
 
 from analytic.problem.errors import InputError
 from analytic.problem.files import regular_file
+from analytic.problem.places import Place, row_number
 from compare.read.units import is_unit
 
 _LARGEST = 512_000_000  # bytes; 10^6 rows of four columns have 80 MB
@@ -55,23 +55,17 @@ _DIALECTS = [
 ]
 
 
-@dataclass(frozen=True)
-class TextTable:
-    """A table in a text file."""
+class RawTable(NamedTuple):
+    """A table as its source has it."""
 
     # Its columns, called ``"1"``, ``"2"``, ... if the file does not name them; those whose cells
     # are not all numbers are texts.
     frame: pd.DataFrame
-    path: Path  # the file
-    lines: list[int]  # where its rows stand
-    units: dict[str, str]  # units of the columns, if a line between the names and the data has them
-
-    def place(self, row: int) -> str:
-        """Where a row stands."""
-        return f"line {self.lines[row]} of {self.path}"
+    place: Place = row_number  # where a row stands
+    units: Mapping[str, str] = {}  # of columns, if a line between the names and the data has them
 
 
-def read_text_table(path: Path) -> TextTable:
+def read_text_table(path: Path) -> RawTable:
     """A table in a text file, whoever wrote it."""
     regular_file(path, "readings file", _LARGEST)
     try:
@@ -98,8 +92,9 @@ def read_text_table(path: Path) -> TextTable:
     if '"' not in text:  # a separator in quotes is none; the parser sees to it
         _require_width(dialect, rows, width, path)
     frame = _parsed(dialect, "\n".join(line for _, line in rows), names, path)
-    lines = [number for number, _ in rows]
-    return TextTable(frame, path, lines, dict(zip(names, units, strict=False)))
+    return RawTable(
+        frame, lambda row: f"line {rows[row][0]} of {path}", dict(zip(names, units, strict=False))
+    )
 
 
 def _decoded(content: bytes) -> str:

@@ -1,8 +1,7 @@
 """The ``[motion]`` table of a case file: natural units, or quantities with units."""
 
 import math
-from dataclasses import fields
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field, PlainValidator
 
@@ -22,6 +21,7 @@ Time = Annotated[float, PlainValidator(Dimension("s")), PLAIN]
 Rate = Annotated[float, PlainValidator(Dimension("1/s")), PLAIN]
 Density = Annotated[float, PlainValidator(Dimension("kg/m^3")), PLAIN]
 Contact = Annotated[tuple[Time, float], Field(strict=False)]
+_POSITIVE = Field(gt=0, allow_inf_nan=False)
 
 
 class MotionTable(Table):
@@ -32,8 +32,8 @@ class MotionTable(Table):
     solid vibrissa, whose dimensions then have units, too.
     """
 
-    period: Time | None = None
-    density: Density | None = None
+    period: Annotated[Time, _POSITIVE] | None = None
+    density: Annotated[Density, _POSITIVE] | None = None
     speed: Speed = Motion.speed
     timestep: Time = Motion.timestep
     integrator: IntegratorKind = Motion.integrator
@@ -53,15 +53,12 @@ class MotionTable(Table):
     def build(self, beam: Beam) -> Motion:
         """The motion."""
         period = self._period(beam)
-        times = self.timestep, self.ramp, *(self.solref or ())[:1]
-        given = [x for x in (self.speed, *times, self.cutoff) if isinstance(x, InSI)]
-        if given and period is None:
-            raise InputError(
-                "motion",
-                "with quantities that have units",
-                "with the period T1 of the free vibrissa, or its density, too",
-                'add period = "28 ms" or density = "7850 kg/m^3", or give numbers in L and T1',
-            )
+        numbers = self.model_dump(exclude={"period", "density"})
+        natural = {"speed": beam.length / (period or 1.0), "timestep": period, "ramp": period,
+                   "cutoff": 1 / period if period else None}  # fmt: skip
+        solref = self.solref and (_over(self.solref[0], period), self.solref[1])
+        for name, unit in natural.items():
+            numbers[name] = _over(getattr(self, name), unit if period else None)
         if isinstance(self.speed, InSI) and not beam.si:
             raise InputError(
                 "motion.speed",
@@ -69,15 +66,7 @@ class MotionTable(Table):
                 "a number, in L/T1, where the vibrissa's length has no unit",
                 "give the length with a unit, or the speed without",
             )
-        unit = period or 1.0
-        natural: dict[str, Any] = {f.name: getattr(self, f.name) for f in fields(Motion)}
-        natural["speed"] = _over(self.speed, beam.length / unit)
-        natural["timestep"], natural["ramp"] = _over(self.timestep, unit), _over(self.ramp, unit)
-        if self.solref is not None:
-            natural["solref"] = (_over(self.solref[0], unit), self.solref[1])
-        if self.cutoff is not None:
-            natural["cutoff"] = _over(self.cutoff, 1 / unit)
-        return Motion(**natural)
+        return Motion(**{**numbers, "solref": solref})
 
     def of_a_model(self, beam: Beam, place: Place) -> Motion:
         """The motion of a user's own model, which brings most of it with it."""
@@ -93,9 +82,6 @@ class MotionTable(Table):
 
     def _period(self, beam: Beam) -> float | None:
         """T1 [s], if it can be known."""
-        for name, value in (("period", self.period), ("density", self.density)):
-            if value is not None and not (value > 0 and math.isfinite(value)):
-                raise InputError(f"motion.{name}", value, "positive", "correct it")
         if self.period is not None and self.density is not None:
             raise InputError(
                 "motion.density", self.density, "left out where the period is given", "take one"
@@ -122,5 +108,15 @@ def first_period(beam: Beam, density: float) -> float:
     return 2 * math.pi * (beam.length / _FIRST_ROOT) ** 2 * slowness
 
 
-def _over(value: float, unit: float) -> float:
-    return float(value) / unit if isinstance(value, InSI) else float(value)
+def _over(value: float | None, unit: float | None) -> float | None:
+    """A number in natural units: a plain one is, and one in SI is divided by the unit."""
+    if not isinstance(value, InSI):
+        return None if value is None else float(value)
+    if unit is None:
+        raise InputError(
+            "motion",
+            "with quantities that have units",
+            "with the period T1 of the free vibrissa, or its density, too",
+            'add period = "28 ms" or density = "7850 kg/m^3", or give numbers in L and T1',
+        )
+    return float(value) / unit

@@ -10,7 +10,7 @@ import pandas as pd
 from analytic import CLAMP_READINGS, SENSED, Direction, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.table import as_numbers
-from compare.read.dialect import TextTable, read_text_table
+from compare.read.dialect import RawTable, read_text_table
 from compare.read.kinds import TEXTS
 from compare.read.rig import cells, read_sweeps
 from compare.read.rig_file import Rig
@@ -87,7 +87,7 @@ def _of_file(path: Path, rig: Rig) -> Iterator[Pass]:
         yield _pass(name, direction, readings, rig)
 
 
-def _calibrated(table: TextTable, rig: Rig, path: Path) -> pd.DataFrame:
+def _calibrated(table: RawTable, rig: Rig, path: Path) -> pd.DataFrame:
     """The sensed quantities, in SI if there are units, the readings with their constant zero.
 
     That is taken off later: a cell of 0 amid contact is a dropout, wherever the zero is.
@@ -104,7 +104,7 @@ def _calibrated(table: TextTable, rig: Rig, path: Path) -> pd.DataFrame:
     return pd.DataFrame(found)
 
 
-def _groups(table: TextTable, rig: Rig, path: Path) -> Floats:
+def _groups(table: RawTable, rig: Rig, path: Path) -> Floats:
     """The number of the group of passes that each row belongs to."""
     column = rig.passes.column
     if column is None:
@@ -152,15 +152,9 @@ def _pass(name: str, direction: Direction, raw: Readings, rig: Rig) -> Pass:
 
 def _free(foot_x: Floats, rig: Rig) -> tuple[Booleans, Booleans] | None:
     """The stretches before and after the contact; None if none is stated."""
-    before, after = (
-        np.abs(foot_x - foot_x[end]) <= stretch
-        for end, stretch in ((0, rig.passes.free_before), (-1, rig.passes.free_after))
-    )
-    if rig.passes.free_before == 0 and rig.passes.free_after == 0:
-        return None
-    if rig.passes.free_before == 0:
-        before = after
-    return before, after if rig.passes.free_after > 0 else before
+    ends = (0, rig.passes.free_before), (-1, rig.passes.free_after)
+    stated = [np.abs(foot_x - foot_x[end]) <= stretch for end, stretch in ends if stretch > 0]
+    return (stated[0], stated[-1]) if stated else None
 
 
 def _zero(

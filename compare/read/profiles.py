@@ -16,7 +16,7 @@ from analytic import (
     through_points,
     two_circles,
 )
-from compare.read.quantities import Length, PerLength, Point, Points, SemiAxes, Table
+from compare.read.quantities import Length, PerLength, Point, Points, Table
 
 
 class ProfileTable(Table):
@@ -63,7 +63,7 @@ class EllipseTable(ProfileTable):
 
     factory = staticmethod(ellipse)
     kind: Literal["ellipse"]
-    semi_axes: SemiAxes
+    semi_axes: Point
     lowest: Point
 
 

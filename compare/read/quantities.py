@@ -36,7 +36,6 @@ EXAMPLES = {
     "1/s": ("rate", "500 Hz"),
     "kg/m^3": ("density", "7850 kg/m^3"),
 }
-_COUNTS = {2: "two", 3: "three"}
 
 
 class InSI(float):
@@ -90,22 +89,6 @@ class Varying(Dimension):
         return tuple((length(s), number(x)) for s, x in pairs)
 
 
-@dataclass(frozen=True)
-class Several:
-    """A validator: as many values as `names` has, which it is called by where there are not."""
-
-    names: str
-    what: str = "lengths"
-
-    def __call__(self, value: object) -> object:
-        """The values."""
-        count = len(self.names.split(", "))
-        if isinstance(value, list | tuple) and len(value) == count:
-            return value
-        context = {"count": _COUNTS[count], "what": self.what, "names": self.names}
-        raise PydanticCustomError("several", "{count} {what}, [{names}]", context)
-
-
 def _plain(value: Any) -> Any:  # noqa: ANN401  # a quantity, or pairs of them
     """The same as numbers that do not remember how they were given."""
     return tuple(map(_plain, value)) if isinstance(value, tuple) else float(value)
@@ -118,9 +101,7 @@ Pairs = tuple[tuple[float, float], ...]
 RigidityAlong = Annotated[float | Pairs, PlainValidator(Varying("N m^2")), PLAIN]
 CurvatureAlong = Annotated[float | Pairs, PlainValidator(Varying("1/m")), PLAIN]
 RotationalStiffness = Annotated[float, PlainValidator(Dimension("N m/rad")), PLAIN]
-Two = Annotated[tuple[Length, Length], Field(strict=False)]
-Point = Annotated[Two, BeforeValidator(Several("x, y"))]
-SemiAxes = Annotated[Two, BeforeValidator(Several("along x, along y"))]
+Point = Annotated[tuple[Length, Length], Field(strict=False)]
 Points = list[Point]
 
 

@@ -1,8 +1,6 @@
 """Readings from a rig: its own files, columns and units, a vibrissa described elsewhere."""
 
-import re
-from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -15,11 +13,10 @@ from numpy.typing import ArrayLike
 from analytic import Beam, Direction, InputError, Readings
 from analytic.problem.arrays import Floats
 from analytic.problem.files import as_path
-from analytic.problem.places import Place, row_number
 from analytic.problem.readings_file import is_ours
 from analytic.problem.table import as_numbers
 from compare.read.assumed import BEAM_WANTED, assumed_of
-from compare.read.dialect import read_text_table
+from compare.read.dialect import RawTable, read_text_table
 from compare.read.kinds import TEXTS
 from compare.read.tables import read_beam
 from compare.read.units import DIMENSIONS, OWN_UNITS, unit_in_si
@@ -27,7 +24,6 @@ from compare.read.units import DIMENSIONS, OWN_UNITS, unit_in_si
 Source: TypeAlias = "str | Path | pd.DataFrame | Mapping[str, ArrayLike]"
 
 _TURN = 0.02  # of the stage's travel; a shorter way back is the stage's noise
-_BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
 _WHOLE_SWEEP = 0.5  # of the stage's travel; what goes less far is no sweep of its own
 
 
@@ -121,15 +117,15 @@ def read_sweeps(
             readings = replace(readings, beam=given, provenance=provenance)
         sweeps = [(_way(readings), readings)]
     else:
-        table, place, units = raw_table(source)
-        table, used, own = renamed(table, columns, place, _called(source), units)
+        raw = raw_table(source)
+        table, used, own = renamed(raw, columns, _called(source))
         if used:
             _check_beam(beam, given or otherwise)
         units_used = {name: x for name, x in (("units", used), (OWN_UNITS, own)) if x}
         provenance = {**units_used, **held}
         beam_of_all = given or otherwise or assumed
         source_ = f"measured, {_called(source)}"
-        sweeps = _sweeps(Readings.of(table, beam_of_all, source_, provenance, place))
+        sweeps = _sweeps(Readings.of(table, beam_of_all, source_, provenance, raw.place))
     return [(way, assumed_of(one) if one.beam is assumed else one) for way, one in sweeps]
 
 
@@ -155,37 +151,35 @@ def _called(source: Source) -> str:
     return Path(source).name if isinstance(source, str | Path) else "table"
 
 
-def raw_table(source: Source) -> tuple[pd.DataFrame, Place, dict[str, str]]:
-    """The table, where its rows stand, and units that it gives itself, by column."""
+def raw_table(source: Source) -> RawTable:
+    """The table, as it is."""
     if isinstance(source, pd.DataFrame):
-        return source, row_number, {}
+        return RawTable(source)
     if isinstance(source, Mapping):
         try:
-            return pd.DataFrame(dict(source)), row_number, {}
+            return RawTable(pd.DataFrame(dict(source)))
         except (ValueError, TypeError) as error:
             raise InputError(
                 "readings", "no table", "columns of one length by name", str(error)
             ) from error
     path = Path(source)
     if path.suffix == ".parquet" or is_ours(path):
-        return Readings.read_table(path), row_number, {}
+        return RawTable(Readings.read_table(path))
     if path.suffix.lower() not in TEXTS:
         raise InputError(
             "readings file", path, f"named *.parquet, *{', *'.join(TEXTS)}", "rename it"
         )
-    found = read_text_table(path)
-    return found.frame, found.place, found.units
+    return read_text_table(path)
 
 
 def renamed(
-    table: pd.DataFrame,
+    raw: RawTable,
     columns: Sequence[str],
-    place: Place,
     called: str,
-    units: Mapping[str, str],
     dimensions: Mapping[str, str] = DIMENSIONS,
 ) -> tuple[pd.DataFrame, dict[str, str], dict[str, str]]:
     """The table with the sensed quantities under their own names and, with units, in SI."""
+    table, place, units = raw
     sensed = tuple(dimensions)
     named: dict[str, Floats] = {}
     used: dict[str, str] = {}
@@ -218,13 +212,11 @@ def renamed(
     found = table.assign(**named)
     missing = [name for name in sensed if name not in found]
     if missing and not table.columns.empty:
-        first = missing[0]
-        example = _example(first, table.columns, units, dimensions[first])
         raise InputError(
             f"columns of {called}",
             ", ".join(map(str, table.columns[:20])),
             f"at least {', '.join(sensed)}",
-            f"name them with --column {example}",
+            f"name them with --column {missing[0]}=COLUMN:{dimensions[missing[0]]}",
         )
     return found, used, own
 
@@ -235,16 +227,6 @@ def cells(table: pd.DataFrame, column: str, called: object, remedy: str) -> pd.S
         return table[column]
     there = ", ".join(map(str, table.columns[:20]))
     raise InputError(f"column {column!r} of {called}", "missing", f"one of {there}", remedy)
-
-
-def _example(name: str, columns: Iterable[object], units: Mapping[str, str], dimension: str) -> str:
-    """How the user may name a column: the first whose unit, in brackets or below, can be right."""
-    for column in map(str, columns):
-        unit = units.get(column) or next(iter(_BRACKETS.findall(column)), "")
-        with suppress(InputError):
-            unit_in_si(unit, dimension)
-            return f"{name}='{column}:{unit}'"
-    return f"{name}=COLUMN:{dimension}"
 
 
 def _sweeps(readings: Readings) -> list[tuple[Direction, Readings]]:

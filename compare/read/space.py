@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
 from analytic import InputError
 from analytic.space import (
@@ -24,15 +24,13 @@ from compare.read.complaints import name_of
 from compare.read.job import SpaceJob
 from compare.read.limits import tolerances_of
 from compare.read.profiles import Drawn
-from compare.read.quantities import FileName, Length, Several, Table, known_keys, validated
+from compare.read.quantities import FileName, Length, Point, Table, known_keys, validated
 from compare.read.tables import BeamTable
 from compare.read.toml import TomlFile
 from mujoco_models.space.settings import SpatialSettings
 
-_Three = BeforeValidator(Several("x, y, z", "numbers"))
-Place = Annotated[tuple[Length, Length, Length], Field(strict=False), _Three]
-Way = Annotated[tuple[float, float, float], Field(strict=False), _Three]
-OnBase = Annotated[tuple[Length, Length], Field(strict=False), BeforeValidator(Several("x, z"))]
+Place = Annotated[tuple[Length, Length, Length], Field(strict=False)]
+Way = Annotated[tuple[float, float, float], Field(strict=False)]
 
 
 class BodyTable(Table):
@@ -108,7 +106,7 @@ class SolidTable(BodyTable):
 class PathTable(Table):
     """The way of the foot."""
 
-    points: Annotated[list[OnBase], Field(min_length=2)]
+    points: Annotated[list[Point], Field(min_length=2)]
     height: Length = 0.0
     tangent: Way = (0.0, 1.0, 0.0)
     stations: int = 200

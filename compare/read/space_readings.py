@@ -66,8 +66,7 @@ def read_space(
     """
     if is_ours(path) and not columns:
         return SpatialReadings.read(path, beam, tangent)
-    table, place, units = raw_table(path)
-    table, used, _ = renamed(table, columns, place, path.name, units, DIMENSIONS_IN_SPACE)
+    table, used, _ = renamed(raw_table(path), columns, path.name, DIMENSIONS_IN_SPACE)
     held = Beam() if beam is None else beam
     if used and not held.si:
         raise InputError(

@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from analytic import (
     Beam,
@@ -32,7 +32,7 @@ from compare.read.quantities import (
     known_keys,
     validated,
 )
-from compare.read.toml import Place, TomlFile
+from compare.read.toml import TomlFile
 from compare.read.uncertainty import UncertaintyTable, uncertainties_of
 from mujoco_models.motion import Motion
 from mujoco_models.settings import Settings
@@ -117,10 +117,15 @@ class ModelTable(Table):
         return OwnModel(path if path.exists() else shipped_models().get(self.file, path), **names)
 
 
+def _of_known_engines(names: str) -> str:
+    engines_beside_exact(names)
+    return names
+
+
 class EngineTable(Table):
     """Which engines sweep the case, and how long each may take [s]."""
 
-    name: str = "mujoco"
+    name: Annotated[str, AfterValidator(_of_known_engines)] = "mujoco"
     timeout: Annotated[float, Field(gt=0, le=86_400)] = 600.0
 
 
@@ -215,18 +220,9 @@ def job_in_the_plane(file: TomlFile) -> Job:
         motion,
         uncertainties_of(found.uncertainty, case, file.place),
         None if own is None else own.build(file.path.parent),
-        _engines_of(found, file.place),
+        engines_beside_exact(found.engine.name),
         found.engine.timeout,
     )
-
-
-def _engines_of(case: CaseFile, place: Place) -> tuple[str, ...]:
-    try:
-        return engines_beside_exact(case.engine.name)
-    except InputError as error:
-        raise InputError(
-            place(["engine", "name"]), repr(case.engine.name), "names of engines", str(error)
-        ) from error
 
 
 def read_beam(path: Path) -> tuple[Beam, dict[str, Any]]:

@@ -2,9 +2,9 @@
 
 import re
 import tomllib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -16,18 +16,8 @@ Place: TypeAlias = Callable[[Sequence[str]], str]
 
 _LARGEST = 2_000_000  # bytes: some 50,000 points; what is slower to parse than to compute
 _SHOWN = 60  # characters of a key
-_WIDEST = 1024  # bits of an integer; beyond that it fits no float, and Python may not print it
-
-# What may hold a newline or a bracket that ends no statement, else brackets and newlines.
-_TOKEN = re.compile(
-    r'"""(?:\\.|[^\\])*?"{3,5}'
-    r"|'''.*?'{3,5}"
-    r'|"(?:\\.|[^"\\\n])*"'
-    r"|'[^'\n]*'"
-    r"|#[^\n]*"
-    r"|[\[{]|[\]}]|\n",
-    re.DOTALL,
-)
+_LOOKED_AT = 200  # lines that may state a key
+_NO_FLOAT = re.compile(r"\d{309}|0[xob][\da-f_]{256}", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -43,88 +33,42 @@ class TomlFile:
         """Read a file."""
         regular_file(path, what, _LARGEST)
         try:
-            text = path.read_bytes().decode("utf-8")
-            tables = tomllib.loads(text)
-            wide = list(_wide_integers(tables, ()))
+            text = path.read_bytes().decode("utf-8").replace("\r\n", "\n")
         except OSError as error:
             reason = error.strerror or type(error).__name__
             raise InputError(what, path, "readable", f"check the path ({reason})") from error
         except UnicodeDecodeError as error:
-            raise InputError(
-                what, path, "text in UTF-8", f"save it as UTF-8 ({error.reason})"
-            ) from error
+            raise InputError(what, path, "text in UTF-8", f"save it so ({error.reason})") from error
+        if number := _NO_FLOAT.search(text):
+            line = text.count("\n", 0, number.start()) + 1
+            raise InputError(f"{path}, line {line}", "a number of 309 digits or more",
+                             "less than 1e308", "correct it")  # fmt: skip
+        try:
+            tables = tomllib.loads(text)
+            repr(tables)  # what is too deep for that is too deep for all that reads it
         except RecursionError as error:
             raise InputError(what, path, "fewer levels deep", "take brackets away") from error
-        except ValueError as error:  # tomllib's own, and an integer of thousands of digits
+        except ValueError as error:
             raise InputError(what, path, "valid TOML", f"correct it: {error}") from error
-        file = cls(path, text.replace("\r\n", "\n"), tables)
-        for keys, bits in wide:
-            raise InputError(
-                file.place(keys), f"an integer of {bits} bits", "less than 1e308", "correct it"
-            )
-        return file
+        return cls(path, text, tables)
 
     def place(self, keys: Sequence[str]) -> str:
         """Where a key is, as ``"grid.toml, line 7: axes.mujoco.segments"``."""
-        line = next(
-            (
-                line
-                for depth in range(len(keys), 0, -1)
-                for line, tables in self._statements
-                if _holds(tables, keys[:depth])
-            ),
-            None,
-        )
+        known = (self._line(keys[:depth]) for depth in range(len(keys), 0, -1))
+        line = next((f", line {one}" for one in known if one), "")
         name = ".".join(key if len(key) <= _SHOWN else f"{key[:_SHOWN]}..." for key in keys)
-        return f"{self.path}{'' if line is None else f', line {line}'}: {name}"
+        return f"{self.path}{line}: {name}"
 
-    @cached_property
-    def _statements(self) -> list[tuple[int, dict[str, Any]]]:
-        """The line of each statement, and what the statement says by itself.
-
-        The file is valid, so every statement is too, and the parser reads it. Those of a table are
-        nested into it.
-        """
-        found = []
-        header: list[str] = []
-        for line, text in _split(self.text):
-            said = tomllib.loads(text)
-            if text.lstrip().startswith("["):
-                header = list(_only_path(said))
-            else:
-                for key in reversed(header):
-                    said = {key: said}
-            found.append((line, said))
-        return found
-
-
-def _split(text: str) -> Iterator[tuple[int, str]]:
-    """The statements of a valid TOML text, each with its line; blank ones and comments are none."""
-    depth, start, line, begun = 0, 0, 1, 1
-    for token in _TOKEN.finditer(text):
-        found = token[0]
-        if found in "[{":
-            depth += 1
-        elif found in "]}":
-            depth -= 1
-        line += found.count("\n")
-        if found == "\n" and depth == 0:
-            if text[start : token.start()].strip()[:1] not in ("", "#"):
-                yield begun, text[start : token.start()]
-            start, begun = token.end(), line
-    if text[start:].strip()[:1] not in ("", "#"):
-        yield begun, text[start:]
-
-
-def _only_path(tables: Any) -> Iterator[str]:  # noqa: ANN401  # whatever a header holds
-    """The keys of a table's header, the outermost first."""
-    while tables:
-        if isinstance(tables, list):
-            tables = tables[0]
-            continue
-        (key,) = tables
-        yield key
-        tables = tables[key]
+    def _line(self, keys: Sequence[str]) -> int | None:
+        """The line that states a key: the last one with its name before which there is none."""
+        lines = self.text.split("\n")
+        named = re.compile(rf"\b{re.escape(keys[-1])}\b[\"']?\s*[.=\]]")
+        found = [number for number, line in enumerate(lines) if named.search(line)]
+        for number in reversed(found[:_LOOKED_AT] if _holds(self.tables, keys) else []):
+            with suppress(ValueError):  # amid a value of several lines
+                if not _holds(tomllib.loads("\n".join(lines[:number])), keys):
+                    return number + 1
+        return None
 
 
 def _holds(tables: object, keys: Sequence[str]) -> bool:
@@ -133,15 +77,3 @@ def _holds(tables: object, keys: Sequence[str]) -> bool:
             return False
         tables = tables[key]
     return True
-
-
-def _wide_integers(value: object, keys: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], int]]:
-    """The keys of integers that are no floats, and how many bits they have."""
-    if isinstance(value, int) and value.bit_length() > _WIDEST:
-        yield keys, value.bit_length()
-    elif isinstance(value, dict):
-        for key, inner in value.items():
-            yield from _wide_integers(inner, (*keys, key))
-    elif isinstance(value, list):
-        for inner in value:
-            yield from _wide_integers(inner, keys)

@@ -6,20 +6,19 @@ from typing import TypeAlias, overload
 from analytic import Case, Readings
 from analytic.space import SpatialCase, SpatialReadings, solve_space
 from compare.explain.budget import Budget
-from compare.explain.changes import controlled_changes
-from compare.explain.motion import MotionBudget, slower_and_finer, slower_and_finer_of_model
+from compare.explain.motion import MotionBudget
 from compare.explain.split_space import Parts, split_space
 from compare.sense.given import checked
 from compare.simulate.controlled import budget_at_rest
-from compare.simulate.dispatch import simulate, softened
+from compare.simulate.dispatch import softened
 from compare.simulate.moving import budget_in_motion, budget_of_model
+from mujoco_models import simulate_space
 from mujoco_models.motion import Motion
 from mujoco_models.settings import Settings
 from mujoco_models.space.settings import SpatialSettings
 from mujoco_models.user_model.names import OwnModel
 
 AnyBudget: TypeAlias = Budget | MotionBudget | Parts
-_SPLIT = 3  # sweeps in space: the one in question, another number of segments, another stiffness
 
 
 @overload
@@ -49,17 +48,6 @@ def measure_budget(
 ) -> tuple[Parts, Mapping[str, SpatialReadings]]: ...
 
 
-@overload
-def measure_budget(
-    case: Case | SpatialCase,
-    settings: Settings | SpatialSettings | None = None,
-    advance: Callable[[], None] = lambda: None,
-    *,
-    motion: Motion | None = None,
-    model: OwnModel | None = None,
-) -> tuple[AnyBudget, Mapping[str, Readings] | Mapping[str, SpatialReadings]]: ...
-
-
 def measure_budget(
     case: Case | SpatialCase,
     settings: Settings | SpatialSettings | None = None,
@@ -77,7 +65,7 @@ def measure_budget(
     settings : Settings or SpatialSettings, optional
         Of the sweep whose disagreement it is.
     advance : callable, optional
-        Called after every sweep, `sweeps_of_budget` times in all.
+        Called after every sweep.
     motion : Motion, optional
         How the foot moves: then parts are of speed, damping, time step and contacts.
     model : OwnModel, optional
@@ -112,28 +100,13 @@ def measure_budget(
 _REMEDY = "take Settings in the plane, SpatialSettings in space"
 
 
-def sweeps_of_budget(
-    settings: Settings | SpatialSettings,
-    motion: Motion | None = None,
-    model: OwnModel | None = None,
-) -> int:
-    """How many sweeps a budget takes."""
-    if isinstance(settings, SpatialSettings):
-        return _SPLIT
-    if motion is None:
-        return len(set(controlled_changes(settings).values()))
-    if model is not None:
-        return len(slower_and_finer_of_model(model, motion)) + 1
-    return len(slower_and_finer(motion)) + 1
-
-
 def _in_space(
     case: SpatialCase, settings: SpatialSettings, advance: Callable[[], None]
 ) -> tuple[Parts, Mapping[str, SpatialReadings]]:
     runs: dict[str, SpatialReadings] = {}
 
     def sweep(chosen: SpatialSettings) -> SpatialReadings:
-        found = simulate(case, chosen)
+        found = simulate_space(case, chosen)
         name = "base" if not runs else f"N={chosen.segments}, k={chosen.contact_stiffness:g}"
         runs[name] = found
         advance()

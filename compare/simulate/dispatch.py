@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import overload
 
 from analytic import Case, InputError, Readings
 from analytic.space import SpatialCase, SpatialReadings
@@ -21,42 +20,6 @@ def _nothing(*_: object) -> None:
     pass
 
 
-@overload
-def simulate(
-    case: Case,
-    settings: Settings,
-    motion: Motion | None = None,
-    model: OwnModel | None = None,
-    engine: str = MUJOCO,
-    advance: Callable[[], None] = _nothing,
-    keep: Callable[[Readings], None] = _nothing,
-) -> Readings: ...
-
-
-@overload
-def simulate(
-    case: SpatialCase,
-    settings: SpatialSettings,
-    motion: None = None,
-    model: None = None,
-    engine: str = MUJOCO,
-    advance: Callable[[], None] = _nothing,
-    keep: Callable[[SpatialReadings], None] = _nothing,
-) -> SpatialReadings: ...
-
-
-@overload
-def simulate(
-    case: Case | SpatialCase,
-    settings: Settings | SpatialSettings,
-    motion: Motion | None = None,
-    model: OwnModel | None = None,
-    engine: str = MUJOCO,
-    advance: Callable[[], None] = _nothing,
-    keep: Callable[..., None] = _nothing,
-) -> Readings | SpatialReadings: ...
-
-
 def simulate(
     case: Case | SpatialCase,
     settings: Settings | SpatialSettings,
@@ -71,18 +34,29 @@ def simulate(
     `advance` is called after every station. `keep` is given the stations so far when MuJoCo's sweep
     ends early; other engines keep none.
     """
-    what = "in space" if isinstance(case, SpatialCase) else "in motion" if motion else "of a model"
-    planar_at_rest = isinstance(case, Case) and motion is None and model is None
-    if engine != MUJOCO and not planar_at_rest:
-        raise InputError("engine", repr(engine), f"{MUJOCO} {what}", "the others sweep at rest, in "
-                         "the plane")  # fmt: skip
-    if isinstance(case, SpatialCase):
-        spatial = checked("settings", settings, SpatialSettings, "as SpatialSettings(segments=40)")
-        return simulate_space(case, spatial, advance, keep)
-    settings = checked("settings", settings, Settings, "as Settings(segments=40)")
+    if isinstance(case, Case):
+        planar = checked("settings", settings, Settings, "as Settings(segments=40)")
+        return simulate_in_the_plane(case, planar, motion, model, engine, advance, keep)
+    _require_mujoco(engine, "in space")
+    spatial = checked("settings", settings, SpatialSettings, "as SpatialSettings(segments=40)")
+    return simulate_space(case, spatial, advance, keep)
+
+
+def simulate_in_the_plane(
+    case: Case,
+    settings: Settings,
+    motion: Motion | None = None,
+    model: OwnModel | None = None,
+    engine: str = MUJOCO,
+    advance: Callable[[], None] = _nothing,
+    keep: Callable[[Readings], None] = _nothing,
+) -> Readings:
+    """The same of a case in the plane."""
     if model is not None:
+        _require_mujoco(engine, "of a model")
         return simulate_model(case, model, motion, settings, advance, keep)
     if motion is not None:
+        _require_mujoco(engine, "in motion")
         return simulate_motion(case, motion, settings, advance, keep)
     if engine == MUJOCO:
         return simulate_sweep(case, settings, advance, keep)
@@ -90,6 +64,12 @@ def simulate(
     from engines.apart import checked as checked_readings
 
     return checked_readings(find_engine(engine).sweep(case, settings, advance), case)
+
+
+def _require_mujoco(engine: str, what: str) -> None:
+    if engine != MUJOCO:
+        raise InputError("engine", repr(engine), f"{MUJOCO} {what}", "the others sweep at rest, in "
+                         "the plane")  # fmt: skip
 
 
 def at_rest(settings: Settings, motion: Motion | None) -> Settings:

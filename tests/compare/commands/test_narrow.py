@@ -6,9 +6,12 @@ import pytest
 
 from analytic import named_case, solve_sweep
 from compare.commands import terminal
+from compare.commands.methods import print_methods
+from compare.commands.sweep_lines import print_passes
 from compare.measure.methods import method_errors
 from compare.read.passes import read_passes
 from compare.read.rig_file import read_rig
+from compare.show.budgets import budget_summary
 from tests.compare.planted import planted
 
 RIG = Path(__file__).parents[3] / "docs" / "examples" / "rig"
@@ -17,15 +20,15 @@ RIG = Path(__file__).parents[3] / "docs" / "examples" / "rig"
 def methods():
     sweep = solve_sweep(named_case("parabola"))
     found = method_errors(sweep, ("quist-hartmann-half-cell", "elastica"), (0.0, 1e-3, 1e-2))
-    terminal.print_methods(found, "parabola (exact)")
+    print_methods(found, "parabola (exact)")
 
 
 def passes():
-    terminal.print_passes(read_passes([RIG / "data"], read_rig(RIG / "rig.toml")), {})
+    print_passes(read_passes([RIG / "data"], read_rig(RIG / "rig.toml")), {})
 
 
 def budget():
-    terminal.print_budget(planted(), "catenary")
+    terminal.show(*budget_summary(planted()))
 
 
 @pytest.mark.parametrize("prints", [methods, passes, budget])

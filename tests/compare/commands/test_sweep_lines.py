@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS
-from compare.commands.terminal.sweeps import note_rows, print_sweep
+from compare.commands.sweep_lines import note_rows, print_sweep
 from compare.sense.record import without_dropouts
 from tests.conftest import exact_sweep
 

@@ -36,9 +36,9 @@ def refused(tmp_path, content) -> str:
         ("[mujoco]\nplanar = 1\n", "line 6: mujoco.planar = 1"),
         ("[sweep]\nstations = 99999999999999999999\n", "sweep.stations"),
         ("[beam]\nlength = 1e308\n", "beam.length = 1e+308"),
-        ("[beam]\nlength = 0x" + "f" * 5000, "line 6: beam.length = an integer of 20000 bits"),
+        ("[beam]\nlength = 0x" + "f" * 5000, "line 6 = a number of 309 digits or more"),
         ('[beam]\nlength = "9**9**9 m"\n', "line 6: beam.length = '9**9**9 m'"),
-        ("x = " + "9" * 5000, "valid TOML"),
+        ("x = " + "9" * 5000, "309 digits"),
         ("x = " + "[" * 5000 + "]" * 5000, "levels deep"),
         (".".join("a" * 5000) + " = 1", "levels deep"),
         ("".join(f"k{i} = 1\n" for i in range(20_000)), "keys"),
@@ -115,7 +115,7 @@ def test_integers_beyond_floats_are_one_line(tmp_path, capfd, key, number):
     """Some libraries print a traceback of their own when they cannot print the number."""
     text = f'[profile]\nkind = "catenary"\n{key} = {number}\n'
     text = text.replace('kind = "catenary"\nkind', "a = 1\nkind")
-    assert f"line 3: profile.{key} = an integer of" in refused(tmp_path, text)
+    assert "line 3 = a number of 309 digits" in refused(tmp_path, text)
     assert capfd.readouterr() == ("", "")
 
 
@@ -138,11 +138,11 @@ lowest = [0, "20 mm"]
         ((UNITED[UNITED.index('"circle"') :], '"two-circles"\n'), "profile.right_radius = missing"),
         (('"50 mm"', '"50 mmm"'), "a known unit of length, as '50 mm'"),
         (('"2e-6 N m^2"', '"2 N"'), "as '2 N mm^2'"),
-        (('lowest = [0, "20 mm"]', 'lowest = "20 mm"'), "two lengths, [x, y]"),
-        (('lowest = [0, "20 mm"]', 'lowest = ["20 mm"]'), "two lengths, [x, y]"),
+        (('lowest = [0, "20 mm"]', 'lowest = "20 mm"'), "profile.lowest = '20 mm': must be a list"),
+        (('lowest = [0, "20 mm"]', 'lowest = ["20 mm"]'), "line 7: profile.lowest.1 = missing"),
         (
             ('"circle"\nradius = "40 mm"', '"ellipse"\nsemi_axes = "30 mm"'),
-            "two lengths, [along x, along y]",
+            "profile.semi_axes = '30 mm': must be a list",
         ),
     ],
 )

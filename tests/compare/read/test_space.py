@@ -90,7 +90,7 @@ def test_a_mesh_stands_beside_its_case_file(tmp_path):
         ('kind = "sphere"', 'kind = "torus"', "torus"),
         ('radius = "50 mm"', 'radius = "-50 mm"', "positive"),
         ('radius = "50 mm"', "radius = 0.05", "without a unit"),
-        ('["0 mm", "70 mm", "0 mm"]', '["0 mm", "70 mm"]', "x, y, z"),
+        ('["0 mm", "70 mm", "0 mm"]', '["0 mm", "70 mm"]', "body.centre.2 = missing"),
         ("tangent = [0.1, 1, 0]", "tangent = [0, 0, 0]", "direction"),
         ("stations = 20", "stations = 1", "stations"),
         ('"70 mm", "0 mm"]', '"170 mm", "0 mm"]', "within reach"),

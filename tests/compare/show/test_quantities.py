@@ -7,7 +7,7 @@ import pytest
 
 from analytic import SENSED, Beam, Case, Readings, circle, named_case, solve_sweep
 from compare import compare
-from compare.commands.terminal import print_comparison
+from compare.commands.pipeline import print_comparison
 from compare.show.figures.over_foot import foot_label, reading_label
 from compare.show.numbers import quantity
 from tests.compare.show.pages import written_page
@@ -55,7 +55,7 @@ def test_a_case_with_units_names_them(exact, capsys, tmp_path):
         "force_y [N]",
         "moment_z [N m]",
     ]
-    print_comparison(found)
+    print_comparison(found, None)
     assert "2 mm" in capsys.readouterr().out
     exact.write(tmp_path / "a.parquet")
     assert Readings.read(tmp_path / "a.parquet").beam.si

@@ -64,7 +64,7 @@ def test_the_contacts_at_rest_are_as_stiff_as_in_motion():
 def test_each_kind_of_case_has_its_budget(monkeypatch):
     parts, runs = measure_budget(SPACE, SpatialSettings(segments=6), advance := Counter())
     assert parts.stations == 2
-    assert advance.times == len(runs) == budgets.sweeps_of_budget(SpatialSettings())
+    assert advance.times == len(runs) == 3
     asked = []
     monkeypatch.setattr(budgets, "budget_at_rest", lambda *given: asked.append(given))
     monkeypatch.setattr(budgets, "budget_in_motion", lambda *given: asked.append(given))

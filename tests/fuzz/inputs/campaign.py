@@ -32,6 +32,8 @@ def campaign(numbers: Iterable[int], seed: int, show: bool = False) -> tuple[Cou
         counts[made.kind, str(outcome.code)[:20]] += 1
         if outcome.faults:
             bad.append(f"{number} {made.kind}: {'; '.join(outcome.faults)}: {made}"[:400])
+        for name, content in made.files.items() if show else ():
+            print(f"--- {name}\n{content[:2000]!r}")
         if outcome.faults or show:
             print(number, made.kind, outcome.code, f"{outcome.seconds:.1f} s", made)
             print(f"    {outcome.error[-300:]!a}", *outcome.faults, sep="; ", flush=True)

@@ -8,13 +8,12 @@ import pandas as pd
 from rich.console import Console
 
 from analytic import CLAMP_READINGS, PHASES, Readings
-from compare.commands.terminal.blocks import show
-from compare.commands.terminal.console import print_line
+from analytic.space import SpatialReadings
+from compare.commands.terminal import print_line, show
 from compare.read.assumed import ASSUMED
 from compare.read.units import OWN_UNITS
 from compare.show.document import Table
-from compare.show.numbers import quantity, short
-from compare.show.style import PHASE_LETTERS
+from compare.show.numbers import quantity
 
 if TYPE_CHECKING:
     from compare.measure.repeats import Repeat
@@ -29,38 +28,48 @@ _MEANINGS = {
 }
 
 
-def print_sweep(readings: Readings) -> None:
-    """Print what a sweep found, in a line: stations, phases, snap-off, the worst residuals."""
-    table, length = readings.table, readings.beam.length
+def print_sweep(readings: Readings | SpatialReadings) -> None:
+    """Print what a sweep found, in a line: stations, phases, events, the worst residuals."""
+    table = readings.table
     parts = [f"{int(readings.trusted.sum())} of {len(table)} stations ok"]
     parts += _untrusted(readings)
     if "phase" in table:
         counts = table["phase"].value_counts()
-        found = [f"{counts[phase]} {phase}" for phase in PHASES if phase in counts]
-        parts.append(", ".join(found))
-    unsettled = readings.provenance.get("unsettled", {})
-    parts.extend(f"{count} unsettled: {reason}" for reason, count in unsettled.items())
-    snap_off = readings.snap_off
-    parts.append(
-        "no snap-off" if snap_off is None else f"snap-off at foot_x = {snap_off / length:.4f} L"
-    )
-    for name, unit in (
-        ("residual", " EI/L"),
-        ("residual_boundary", ""),
-        ("residual_moment", " EI/L"),
-    ):
+        parts.append(", ".join(f"{counts[phase]} {phase}" for phase in PHASES if phase in counts))
+    parts += _of_the_plane(readings) if isinstance(readings, Readings) else _of_space(readings)
+    for name in ("residual", "residual_boundary", "residual_moment"):
         if name in table:
             worst = np.nanmax(table[name].to_numpy(dtype=float), initial=0.0)
-            parts.append(f"{name.replace('_', ' ')} at most {worst:.1e}{unit}")
-    if "kinetic_share" in readings.table:
-        touching = table.loc[table["phase"] != "free", "kinetic_share"].to_numpy(dtype=float)
-        parts.append(f"kinetic share in contact at most {np.nanmax(touching, initial=0.0):.1e}")
-        parts.append(f"{table['time'].max():.4g} T1")
-    parts += [f"{name} {value:g}" for name, value in readings.beyond_the_paper.items()]
+            parts.append(f"{name.replace('_', ' ')} at most {worst:.1e}")
     print_line(f"{readings.source}: {'; '.join(parts)}")
 
 
-def _untrusted(readings: Readings) -> list[str]:
+def _of_the_plane(readings: Readings) -> list[str]:
+    """Its snap-off, its motion, and what is beyond the paper."""
+    table, snap_off = readings.table, readings.snap_off
+    unsettled = readings.provenance.get("unsettled", {})
+    parts = [f"{count} unsettled: {reason}" for reason, count in unsettled.items()]
+    place = 0.0 if snap_off is None else snap_off / readings.beam.length
+    parts.append("no snap-off" if snap_off is None else f"snap-off at foot_x = {place:.4f} L")
+    if "kinetic_share" in table:
+        touching = table.loc[table["phase"] != "free", "kinetic_share"].to_numpy(dtype=float)
+        parts.append(f"kinetic share in contact at most {np.nanmax(touching, initial=0.0):.1e}")
+        parts.append(f"{table['time'].max():.4g} T1")
+    return parts + [f"{name} {value:g}" for name, value in readings.beyond_the_paper.items()]
+
+
+def _of_space(readings: SpatialReadings) -> list[str]:
+    """Where the vibrissa touches and leaves the body."""
+    parts, events = [], readings.provenance["events"]
+    for event in events:
+        x, _, z = (value / readings.beam.length for value in event["foot"])
+        if event["kind"] in ("touch", "release", "slip-off"):
+            parts.append(f"{event['kind']} at foot ({x:.4f}, {z:.4f}) L")
+    hops = sum(event["kind"] == "hop" for event in events)
+    return parts + [f"{hops} hops over edges"] * bool(hops)
+
+
+def _untrusted(readings: Readings | SpatialReadings) -> list[str]:
     """How many stations have a status that nothing else is said of, where, and what it means."""
     if "status" not in readings.table:
         return []
@@ -154,23 +163,3 @@ def print_passes(passes: "Sequence[Pass]", repeats: "Mapping[tuple[str, str], Re
             f"(+- {found.shift_uncertainty / length:.0e}), without that {left:.1e} rms"
         )
         print_line(f"{second} after {first}: {apart:.1e} rms apart; {shift}")
-
-
-def print_methods(found: pd.DataFrame, title: str) -> None:
-    """Print each method's median error by noise, and how many contacts it has an answer for."""
-    levels = sorted(found["noise"].unique())
-    heads = (f"noise {level:g}" if level else "no noise" for level in levels)
-    rows = []
-    for method, of_method in found.groupby("method", sort=False):
-        name = str(method)
-        for phase, by_noise in of_method.groupby("phase", sort=False):
-            by = by_noise.set_index("noise")
-            if not by["contacts"][levels[0]]:
-                continue
-            rate = f"{1 / by['seconds'].median():.0f}" if name and by["seconds"].min() > 0 else ""
-            share = f"{by['answered'][levels[0]]:.0%}"
-            medians = (short(by["median"][level]) for level in levels)
-            rows.append((name, PHASE_LETTERS[str(phase)], share, *medians, rate))
-            name = ""
-    head = ("method", "phase", "answers", *heads, "contacts per s")
-    show(Table(f"Median error of the contact, over L: {title}", head, rows, words=(0, 1)))

@@ -1,17 +1,75 @@
-"""The parts of a document as a terminal shows them; pictures it does not."""
+"""What the command line prints and writes: lines and tables, progress beside them, files.
 
-from collections.abc import Sequence
+Lengths are printed in units of the vibrissa's length L, whatever the units of the case.
+"""
 
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from matplotlib.figure import Figure
 from rich import box
-from rich.console import JustifyMethod
+from rich.console import Console, JustifyMethod
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeRemainingColumn,
+)
 from rich.table import Column
 from rich.table import Table as RichTable
 from rich.text import Text as RichText
 
-from compare.commands.terminal.console import console, print_line
+from analytic.problem.files import write_whole
 from compare.show.document import Block, Items, Table, Text, Verdict
+from compare.show.page import document, save_figure
 
 _LONGEST = 24  # characters that are never folded
+
+
+def print_line(text: str) -> None:
+    """Print a line as it is: no markup, no folding."""
+    console().print(text, soft_wrap=True, markup=False)
+
+
+def print_written(path: Path) -> None:
+    """Print which file there is now."""
+    print_line(f"wrote {path}")
+
+
+@contextmanager
+def progress(what: str, total: int | None = None) -> Iterator[Callable[[], None]]:
+    """Show a bar on a terminal, with the remaining time if it is known; nothing elsewhere."""
+    console = Console(stderr=True, highlight=False)
+    columns = (
+        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+    )  # fmt: skip
+    with Progress(
+        *columns, console=console, disable=not console.is_terminal, transient=True
+    ) as bar:
+        task = bar.add_task(RichText(what).markup, total=total)
+        yield lambda: bar.advance(task)
+
+
+def console() -> Console:
+    """Standard output, as it is now: tests and notebooks replace it."""
+    return Console(highlight=False)
+
+
+def keep(path: Path, content: str | bytes | Mapping[str, Any] | pd.DataFrame | Figure) -> None:
+    """Write a text, a JSON file of numbers by name, a table as CSV, or a picture."""
+    match content:
+        case Figure():
+            print_written(save_figure(content, path))
+        case pd.DataFrame():
+            print_written(write_whole(path, content.to_csv(index=False)))
+        case str() | bytes():
+            print_written(write_whole(path, content))
+        case _:
+            print_written(write_whole(path, document(content)))
 
 
 def show(*blocks: Block) -> None:

@@ -1,0 +1,149 @@
+"""What ``compare`` does with its files: one candidate is judged, several are set side by side."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+from analytic import Beam, Direction, InputError, Readings
+from analytic.problem.readings_file import is_ours
+from analytic.space import Body, SpatialReadings, reconstruct_space, wrench_complaint
+from compare.align.frames import Frame
+from compare.commands import terminal
+from compare.commands.options import AGREES, DISAGREES
+from compare.commands.output import distinct_names, output_folder
+from compare.commands.pipeline import AnyComparison, AnyReadings, reported
+from compare.commands.sweep_lines import note_rows
+from compare.comparison import Comparison, compare
+from compare.explain.budget import Budget
+from compare.judge.spatial import SpatialTolerances
+from compare.judge.tolerances import Tolerances
+from compare.read.assumed import vibrissa_of
+from compare.read.case import load_job
+from compare.read.job import AnyJob, Job
+from compare.read.limits import read_tolerances
+from compare.read.rig import read_measured
+from compare.read.run_folder import read_stored
+from compare.read.space_readings import read_space
+from compare.show.side_by_side import (
+    SideBySide,
+    against_table,
+    between_table,
+    picture,
+    side_by_side,
+)
+
+Number: TypeAlias = float | Literal["auto"]
+
+
+@dataclass(frozen=True)
+class RigFiles:
+    """How files that no engine wrote are to be read."""
+
+    columns: Sequence[str]
+    beam: Path | None
+    direction: Direction | None
+    frame: Frame
+
+    def read(self, file: Path, otherwise: Beam | None = None) -> Readings:
+        """A sweep in the plane, of that vibrissa if nothing else says."""
+        return read_measured(file, self.beam, self.columns, otherwise, self.direction)
+
+
+def expected(job: AnyJob | None, file: Path, in_space: bool, rig: RigFiles) -> AnyReadings:
+    """The reference: the closed form of a case, or what a file holds."""
+    if job is not None:
+        return job.solve()
+    if in_space:
+        return SpatialReadings.read(file)
+    return rig.read(file)
+
+
+def measured(file: Path, reference: AnyReadings, rig: RigFiles) -> AnyReadings:
+    """The candidate; what it does not say of its vibrissa is as in the reference."""
+    if isinstance(reference, SpatialReadings):
+        return read_space(file, reference.beam, reference.tangent, rig.columns, rig.frame)
+    return rig.read(file, vibrissa_of(reference))
+
+
+def compared(
+    reference: AnyReadings,
+    candidate: AnyReadings,
+    job: AnyJob | None,
+    limits: Path | None,
+    numbers: tuple[Number, Number],
+    frame: Frame,
+) -> AnyComparison:
+    """The comparison, by the limits of a file, else by the case's."""
+    tolerances: Tolerances | SpatialTolerances | None = None if job is None else job.tolerances
+    if limits is not None and isinstance(reference, SpatialReadings):
+        tolerances = read_tolerances(limits, SpatialTolerances)
+    elif limits is not None:
+        tolerances = read_tolerances(limits, Tolerances)
+    offset, noise = numbers
+    return compare(reference, candidate, tolerances, offset=offset, noise=noise, frame=frame)
+
+
+def validated(
+    found: AnyComparison, job: AnyJob | None, uncertainty: Path | None, budget: Path | None
+) -> AnyComparison:
+    """The comparison, held against what is uncertain of the case or of that of another file."""
+    uncertain = job
+    if uncertainty is not None:
+        uncertain = load_job(uncertainty)
+        if uncertain.uncertainties is None:
+            raise InputError(
+                "--uncertainty", uncertainty, "a case file with [uncertainty]", "add the table"
+            )
+    if isinstance(uncertain, Job) and isinstance(found, Comparison) and uncertain.uncertainties:
+        numerics = None if budget is None else read_stored(budget, Budget)
+        return found.validated(uncertain.case, uncertain.uncertainties, budget=numerics)
+    if budget is not None:
+        raise InputError("--budget", budget, "beside uncertainties", "add --uncertainty CASE.toml")
+    return found
+
+
+def keep_comparison(found: AnyComparison, out: Path, body: Body | None) -> int:
+    """Write the report and print it; the exit code."""
+    with output_folder(out) as folder:
+        written = reported(found, folder, body=body)
+    for readings in (found.reference, found.candidate):
+        if isinstance(readings, Readings):
+            note_rows(readings)
+    if isinstance(found.candidate, SpatialReadings):
+        complaint = wrench_complaint(reconstruct_space(found.candidate))
+        if complaint is not None:
+            terminal.print_line(f"{found.candidate.source}: {complaint}")
+    terminal.print_written(written)
+    return AGREES if found.agrees else DISAGREES
+
+
+def side_by_side_of(
+    job: AnyJob | None, reference: Path, files: list[Path], rig: RigFiles
+) -> SideBySide:
+    """Many files of readings, against one reference and each other."""
+    if len({path.absolute() for path in files}) < len(files):
+        raise InputError(
+            "CANDIDATE", ", ".join(map(str, files)), "each file once", "leave the second one out"
+        )
+    plain = replace(rig, columns=(), beam=None)  # of ours nothing is to be said
+
+    def read(path: Path, otherwise: Beam | None = None) -> Readings:
+        return (plain if is_ours(path) else rig).read(path, otherwise)
+
+    exact = job.solve() if isinstance(job, Job) else read(reference)
+    known = vibrissa_of(exact)
+    named = distinct_names(files)
+    return side_by_side(exact, {name: read(path, known) for name, path in named.items()})
+
+
+def keep_side_by_side(found: SideBySide, out: Path) -> int:
+    """Write and print how far all are apart; the exit code."""
+    with output_folder(out) as folder:
+        comparisons = [*found.against.values()]
+        for readings in (comparisons[0].reference, *(one.candidate for one in comparisons)):
+            note_rows(readings)
+        terminal.show(against_table(found), *between_table(found))
+        terminal.keep(folder / "side-by-side.json", found.to_dict())
+        terminal.keep(folder / "side-by-side.png", picture(found))
+    return AGREES if all(one.agrees for one in comparisons) else DISAGREES

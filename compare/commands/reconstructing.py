@@ -1,0 +1,94 @@
+"""What ``reconstruct`` does with readings: the contour in the plane, the body in space."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from analytic import (
+    CLAMP_READINGS,
+    Readings,
+    estimate_friction,
+    reconstruct,
+    relative_noise,
+    require_beam,
+)
+from analytic.from_clamp.reconstruct import doubt
+from analytic.problem.support import check_support
+from compare.align.offset import checked_offset, without_offset
+from compare.commands import terminal
+from compare.commands.comparing import RigFiles as RigFiles
+from compare.commands.methods import compare_methods as compare_methods
+from compare.commands.options import number_or_auto
+from compare.commands.output import output_folder
+from compare.commands.space import find_body
+from compare.commands.sweep_lines import note_rows, print_reconstruction
+from compare.commands.waiting import waiting
+from compare.read.job import SpaceJob
+from compare.read.space_readings import read_space
+from compare.sense.record import without_dropouts
+from compare.show.figures.geometry import reconstruction
+
+
+def in_space(file: Path, known: SpaceJob | None, rig: RigFiles, place: Path, noise: float) -> bool:
+    """Find the body from a file's readings; whether a vibrissa can have them."""
+    if known is None:
+        found, body = read_space(file, None, None, rig.columns, rig.frame), None
+    else:
+        case, body = known.case, known.body
+        found = read_space(file, case.beam, case.path.tangent, rig.columns, rig.frame)
+    with output_folder(place) as folder:
+        return find_body(found, body, folder, noise, True)
+
+
+def without_faults(readings: Readings, offset: float) -> Readings:
+    """A sweep without dropouts and offset, NaN where a station is not to be trusted."""
+    readings = without_dropouts(readings)
+    if offset:
+        readings = without_offset(readings, checked_offset(offset))
+    known = {
+        name: np.where(readings.trusted, readings.values(name), np.nan) for name in CLAMP_READINGS
+    }
+    return replace(readings, table=readings.table.assign(**known))
+
+
+def in_the_plane(
+    readings: Readings,
+    place: Path,
+    noise: float | None,
+    friction: str | None,
+    methods: list[str],
+) -> None:
+    """Find the contour by each method, and write and print it."""
+    level = None if noise is None else relative_noise(readings, noise)
+    if friction is not None:
+        readings = _rubbing(readings, friction, level)
+    contacts = {name: reconstruct(readings, level, method=name) for name in methods}
+    if "elastica" in contacts:
+        require_beam(contacts["elastica"], readings)
+    with output_folder(place) as folder:
+        note_rows(readings)
+        for name, found in contacts.items():
+            end = "" if name == "elastica" else f"-{name}"
+            print_reconstruction(readings, found, name)
+            if name == "elastica" and (why := doubt(found, readings)) is not None:
+                terminal.print_line(why)
+            points = found.assign(foot_x=readings.values("foot_x"))
+            terminal.keep(folder / f"points{end}.csv", points)
+            with waiting("drawing"):
+                picture = reconstruction(readings, found)
+            terminal.keep(folder / f"reconstruction{end}.png", picture)
+
+
+def _rubbing(readings: Readings, said: str, noise: Mapping[str, float] | None) -> Readings:
+    friction = number_or_auto("--friction", said)
+    if friction == "auto":
+        found = estimate_friction(readings, noise)
+        terminal.print_line(
+            f"friction coefficient {found.coefficient:.4f} +- {found.uncertainty:.1g}, "
+            f"from {found.stations} stations of Phase B"
+        )
+        friction = found.coefficient
+    check_support(readings.support[0], friction, readings.beam, signed=True)
+    return readings.with_friction(friction)
