@@ -26,8 +26,8 @@ def certify(readings: Readings) -> pd.DataFrame:
     pandas.DataFrame
         A row a station, dimensionless. ``residual_boundary`` is the largest of the misses of the
         contact's position, of its moment (friction's couple on the surface), of the slope there
-        (the contour's in Phase B, and a cone's lean; the tip's in Phase A) and of the force's
-        direction, normal to the contour, or off it by friction's angle; of what the arc
+        (the contour's in Phase B, on either side, and a cone's lean; the tip's in Phase A) and of
+        the force's direction, normal to the contour, or off it by friction's angle; of what the arc
         length exceeds L by; and of the tip's slope, if it comes from inside the object. For the
         paper's vibrissa it is that of what the slope falls below the contour's by on the way, too:
         above it the vibrissa stays below the tangent at the contact, and so outside a convex body.
@@ -50,7 +50,10 @@ def certify(readings: Readings) -> pd.DataFrame:
     arc_length = readings.values("contact_arc_length") / length
     phase = readings.table["phase"].to_numpy()
     along = alpha + beam.unloaded.lean
-    slope = np.where(phase == "tangent", along, readings.values("tip_angle"))
+    tip_angle = readings.values("tip_angle")
+    turned = tip_angle - alpha - beam.unloaded.turn_between(arc_length, 1.0)
+    on_side = np.where(turned > np.pi / 2, alpha + np.pi - beam.unloaded.lean, along)
+    slope = np.where(phase == "tangent", on_side, tip_angle)
     compliance = beam.moment_unit / clamp_stiffness
     # Friction acts on the surface, and turns the force by the friction angle.
     arm = friction / math.sqrt(1 + friction**2) * radius / length

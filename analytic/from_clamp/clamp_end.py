@@ -63,10 +63,13 @@ class ClampEnd(NamedTuple):
         theta = np.pi / 2 - vibrissa.compliance * moment - direction
         return cls(np.hypot(force_x, force_y), direction, moment, theta, vibrissa)
 
-    @property
-    def parallel(self) -> float:
-        """Slope angle of a vibrissa that is parallel to the contour, from the force's [rad]."""
-        return float(self.vibrissa.lean - np.arctan(self.vibrissa.friction))
+    def parallel(self, theta: Floats) -> Floats:
+        """Slope angle of a vibrissa that is parallel to the contour, from the force's [rad].
+
+        It is that of the side, front or back, on which one of slope angle theta more nearly lies.
+        """
+        lean, rub = self.vibrissa.lean, np.arctan(self.vibrissa.friction)
+        return np.where(theta + rub > np.pi / 2, np.pi - lean, lean) - rub
 
     def couple(self, s: Floats) -> Floats:
         """Moment that is left if the contact is there."""
@@ -138,7 +141,7 @@ def _contacts(end: ClampEnd) -> Floats:
     best, least = np.full(end.force.size, np.nan), np.full(end.force.size, np.inf)
     rod = end.vibrissa.rod
     for which, length, slope in _in_closed_form(end) if rod is None else _marched(end, rod):
-        aside = np.where(length < 1, np.abs(slope - end.parallel), np.inf)
+        aside = np.where(length < 1, np.abs(slope - end.parallel(slope)), np.inf)
         missed = np.fmin(np.abs(length - 1), aside)
         nearer = missed < least[which]
         best[which[nearer]], least[which[nearer]] = length[nearer], missed[nearer]

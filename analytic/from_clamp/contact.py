@@ -90,7 +90,8 @@ class SweptVibrissa(NamedTuple):
             return self.contact(sensed).arc_length, np.asarray(criterion)
         end = self.clamp_end(sensed)
         length = end.contact_arc_length()
-        return length, np.asarray(end.sine_at_contact(length) - np.sin(end.parallel))
+        parallel = end.parallel(end.march(length).theta)
+        return length, np.asarray(end.sine_at_contact(length) - np.sin(parallel))
 
 
 def located(readings: Readings) -> LocatedContact:

@@ -57,6 +57,8 @@ class Branch:
             "first_contact": 0,
             "phase_b_start": start,
             "phase_b_end": end,
+            "back_start": None,  # a straight vibrissa does not lie down on its other side
+            "back_end": None,
             "out_of_plane": int(np.argmin(before)) if self.lowest > self.t[-1] else None,
             "snap_off": len(self.t) - 1,
         }

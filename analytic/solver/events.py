@@ -59,7 +59,8 @@ class Events:
     second place, the ``status`` is ``"touches again"`` and there are no readings: the event does
     not happen as that of a vibrissa with one contact. ``out_of_plane`` is where a vibrissa that
     nothing guides leaves the plane of the sweep (`analytic.from_clamp.sideways`); what is after it
-    happens to one that is guided.
+    happens to one that is guided. From ``back_start`` to ``back_end`` a vibrissa that is curved
+    towards the object lies on it with its other side: that is Phase B too.
     """
 
     first_contact: Event
@@ -68,6 +69,8 @@ class Events:
     contact_length_minimum: Event
     out_of_plane: Event | None
     snap_off: Event
+    back_start: Event | None = None
+    back_end: Event | None = None
 
 
 def find_events(
@@ -214,6 +217,8 @@ def _general_events(
         found.get("contact_length_minimum", _nowhere()),
         None,
         found["snap_off"],
+        found.get("back_start"),
+        found.get("back_end"),
     )
 
 

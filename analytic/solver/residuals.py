@@ -62,6 +62,7 @@ def residuals(columns: ReadingColumns, vibrissa: Vibrissa, units: Units) -> dict
     span = _span(vibrissa, moment, slope - direction, couple, force, direction, length)
     sin, cos = np.sin(direction), np.cos(direction)
     along = alpha + vibrissa.lean
+    on_side = np.where(slope - alpha > np.pi / 2, alpha + np.pi - vibrissa.lean, along)
     missed = [
         span.along * cos - span.across * sin - x,
         span.along * sin + span.across * cos - y,
@@ -70,7 +71,7 @@ def residuals(columns: ReadingColumns, vibrissa: Vibrissa, units: Units) -> dict
         direction - lean - alpha,
         np.maximum(0.0, length - 1),
         np.maximum(0.0, along - slope),
-        np.where(columns["phase"] == PHASE_NUMBER["tangent"], slope - along, 0.0),
+        np.where(columns["phase"] == PHASE_NUMBER["tangent"], slope - on_side, 0.0),
     ]
     extent = np.maximum(1.0, np.abs(xi))
     balance = np.abs(moment - (force_y * x - force_x * y) - couple)

@@ -36,15 +36,16 @@ def is_clear(contour: Contour, contact: States) -> Booleans:
 
 
 def _starts_outside(contact: States) -> Booleans:
-    """Whether a vibrissa leaves its contact to the outside of the object.
-
-    A tip comes from below the tangent there; a vibrissa that goes along is not curved more than the
-    object.
-    """
-    point, natural = contact.offset_point, contact.vibrissa.unloaded.curvature(contact.arc_length)
-    below = contact.excess <= np.pi + _INSIDE
+    """Whether a vibrissa that goes along the object is not curved more towards it than it is."""
+    point, natural = contact.offset_point, _towards(contact)
     flatter = natural * point.stretch <= point.turning * (1 + _INSIDE)
-    return np.asarray(below & (flatter | ~contact.tangent))
+    return np.asarray(flatter | ~contact.tangent)
+
+
+def _towards(contact: States) -> Floats:
+    """Natural curvature at the contact, towards the object there."""
+    natural = contact.vibrissa.unloaded.curvature(contact.arc_length)
+    return np.where(contact.side > 0, -natural, natural)
 
 
 def _passes_corners(contour: Contour, contact: States) -> Booleans:
@@ -55,7 +56,7 @@ def _passes_corners(contour: Contour, contact: States) -> Booleans:
     """
     clear = np.ones(len(contact.force), dtype=bool)
     s = contact.arc_length
-    natural = contact.vibrissa.unloaded.curvature(s)
+    natural = _towards(contact)
     breaks = contour.breaks()
     some = np.flatnonzero((natural > _STRAIGHT) & np.isfinite(contact.excess))
     if not (breaks.size and some.size):
@@ -67,13 +68,14 @@ def _passes_corners(contour: Contour, contact: States) -> Booleans:
         sin, cos = np.sin(offset_point.alpha)[:, None], np.cos(offset_point.alpha)[:, None]
         x = corners.xi + taper * np.sin(corners.alpha) - offset_point.xi[:, None]
         y = corners.eta - taper * np.cos(corners.alpha) - offset_point.eta[:, None]
-        along, into = x * cos + y * sin, y * cos - x * sin
+        onward = np.where(one.side > 0, -1.0, 1.0)[:, None]
+        along, into = onward * (x * cos + y * sin), y * cos - x * sin
         near = (along > -_BESIDE) & (along < np.minimum(_BESIDE, 1 - s[few])[:, None])
         back = np.maximum(-along, 0.0)
         rod, force = one.vibrissa.rod, one.force
         push = force if rod is None else force * rod.flexibility(s[few])
         bent = curved * along**2 / 2 - push[:, None] * back**3 / 6
-        bent -= np.maximum(one.excess, 0.0)[:, None] * back
+        bent -= np.where(one.tangent, 0.0, one.excess)[:, None] * back
         clear[few] = ~(near & (bent > into + _INSIDE)).any(axis=1)
     return clear
 
@@ -88,7 +90,7 @@ def _bends_one_way(contact: States) -> Booleans:
         return np.asarray(held & across & (vibrissa.rod.most_curved <= _STRAIGHT))
     at_contact = natural - vibrissa.friction * vibrissa.radius * contact.force
     bent = (at_contact <= 0) & (natural <= contact.moment) & (contact.amplitude < np.pi)
-    return np.asarray(bent & (natural <= 0))
+    return np.asarray(bent & (natural <= 0) & (contact.side <= 0))
 
 
 def _is_outside(contour: Contour, contact: States) -> Booleans:

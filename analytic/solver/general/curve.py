@@ -101,7 +101,8 @@ class EquilibriumCurve(NamedTuple):
         if found is None or self._size(found.z - guess, here.z) > self._size(way, here.z):
             return ()
         first = _along(found, way / self._scale(here.z) ** 2)
-        if first.sense != here.sense:
+        side, same_side = (self.vibrissa.side(np.array(z[_W])) for z in (here.z, first.z))
+        if first.sense != here.sense or side != same_side:
             return ()
         if math.isnan(after):
             return (first,)
@@ -152,9 +153,12 @@ class EquilibriumCurve(NamedTuple):
     def _places(self, old: Floats, new: Floats) -> list[tuple[float, int, float, float]]:
         """Kinks between: share of the way, coordinate, and its value before and after."""
         places = []
-        if (old[_W] < 0) != (new[_W] < 0):
-            sides = (INSIDE, 0.0) if old[_W] < 0 else (0.0, INSIDE)
-            places.append((float(old[_W] / (old[_W] - new[_W])), _W, *sides))
+        lowest, highest = self.vibrissa.limits
+        for before, after in zip(highest[:-1], lowest[1:], strict=True):
+            if (old[_W] < after) != (new[_W] < after):
+                sides = (before, after) if old[_W] < after else (after, before)
+                share = float((after - old[_W]) / (new[_W] - old[_W]))
+                places.append((share, _W, *sides))
         low, high = sorted((old[_T], new[_T]))
         back, on = (low, high) if new[_T] > old[_T] else (high, low)
         for at in self.breaks[(self.breaks > low) & (self.breaks < high)]:

@@ -16,7 +16,7 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.problem.rest import FirstTouch
 from analytic.solver.general.curve import EquilibriumCurve, Point
-from analytic.solver.general.states import INSIDE, Vibrissa, with_rates
+from analytic.solver.general.states import Vibrissa, with_rates
 
 # By how much the curve may turn between neighbours [rad], and its first step; finer if it is lost.
 _STEPS = ((0.3, 0.02), (0.05, 0.004))
@@ -39,7 +39,7 @@ class Path(NamedTuple):
 
     ``z`` has shape (n, 3): contour parameter, normal force, excess; ``direction`` is its derivative
     by the curve's length, ``foot_x`` the foot position [L] and ``rate`` its derivative, shape (n,).
-    ``complete`` is false if the curve was lost before its end. ``least_force`` is the vibrissa's.
+    ``complete`` is false if the curve was lost before its end.
     """
 
     z: Floats
@@ -47,12 +47,12 @@ class Path(NamedTuple):
     foot_x: Floats
     rate: Floats
     complete: bool
-    least_force: float
+    vibrissa: Vibrissa
 
     @property
-    def tangent(self) -> Booleans:
-        """Whether each cell is in Phase B, shape (n - 1,)."""
-        return self.z[:-1, 2] < 0
+    def side(self) -> Integers:
+        """What touches in each cell: -1 the front, 0 the tip, 1 the back; shape (n - 1,)."""
+        return self.vibrissa.side(self.z[:-1, 2])
 
     @property
     def snap_off(self) -> int:
@@ -62,13 +62,18 @@ class Path(NamedTuple):
     def events(self) -> dict[str, int | None]:
         """What happens on the way to the snap-off, and at which point; None where it does not."""
         excess = self.z[: self.snap_off + 1, 2]
-        inside = excess < 0
-        start, end = phase_limits(inside)
+        side = self.vibrissa.side(excess)
+        start, end = phase_limits(side != 0)
+        back_start, back_end = phase_limits(side > 0)
         return {
             "first_contact": 0,
             "phase_b_start": start,
             "phase_b_end": end,
-            "contact_length_minimum": int(np.argmin(excess)) if inside.any() else None,
+            "back_start": back_start,
+            "back_end": back_end,
+            "contact_length_minimum": (
+                int(np.argmin(self.vibrissa.arc_length(excess))) if side.any() else None
+            ),
             "snap_off": self.snap_off if self.complete else None,
         }
 
@@ -104,14 +109,13 @@ class Path(NamedTuple):
             length * self.direction[cells + 1],
         )
         z[:, 1] = np.maximum(z[:, 1], 0.0)
-        inside = self.tangent[cells]
-        z[:, 2] = np.where(inside, np.minimum(z[:, 2], INSIDE), np.maximum(z[:, 2], 0.0))
+        z[:, 2] = self.vibrissa.within(self.side[cells], z[:, 2])
         return z
 
     def length(self, cells: Integers) -> Floats:
         """The length of cells, as chords."""
         way = self.z[cells + 1] - self.z[cells]
-        way[:, 1] /= np.maximum(self.least_force, self.z[cells, 1])
+        way[:, 1] /= np.maximum(self.vibrissa.least_force, self.z[cells, 1])
         return np.asarray(np.sqrt(np.einsum("nk,nk->n", way, way)))
 
 
@@ -154,7 +158,7 @@ def follow(
     points = _with_turns(curve, _exact(curve, points))
     columns = zip(*(point[:4] for point in points), strict=True)
     z, direction, foot_x, rate = (np.array(column) for column in columns)
-    return Path(z, direction, foot_x, rate, complete, vibrissa.least_force)
+    return Path(z, direction, foot_x, rate, complete, vibrissa)
 
 
 def _exact(curve: EquilibriumCurve, points: list[Point]) -> list[Point]:
@@ -164,7 +168,7 @@ def _exact(curve: EquilibriumCurve, points: list[Point]) -> list[Point]:
     conditions by 1e-8 may seem to lie beyond the fold.
     """
     z = np.array([point.z for point in points])
-    inside = z[:, 2] < 0
+    side = curve.vibrissa.side(z[:, 2])
     size = np.ones_like(z)
     size[:, 1] = np.maximum(curve.vibrissa.least_force, z[:, 1])
     normal = np.array([point.direction for point in points]) / size**2
@@ -177,7 +181,7 @@ def _exact(curve: EquilibriumCurve, points: list[Point]) -> list[Point]:
             break
         slopes = np.stack([rates.slope_residual, rates.height_residual, normal], axis=1)[poor]
         z[poor] -= np.linalg.solve(slopes, misses[poor, :, None])[..., 0]
-        z[:, 2] = np.where(inside, np.minimum(z[:, 2], INSIDE), np.maximum(z[:, 2], 0.0))
+        z[:, 2] = curve.vibrissa.within(side, z[:, 2])
     way = np.cross(rates.slope_residual, rates.height_residual)
     way *= np.sign(np.einsum("nk,nk->n", way, normal))[:, None]
     direction = way / np.linalg.norm(way / size, axis=1)[:, None]
@@ -222,30 +226,31 @@ def _hides(curve: EquilibriumCurve, begin: Point, end: Point) -> bool:
     """
     way = end.z - begin.z
     way[1] /= max(curve.vibrissa.least_force, begin.z[1])
-    length = float(np.linalg.norm(way))
+    length, most = float(np.linalg.norm(way)), curve.vibrissa.most_turned
     mean = (end.foot_x - begin.foot_x) / length
     low, high = sorted((begin.rate, end.rate))
     slack = _TRUST * max(-low, high) + _FLAT
-    return not low - slack <= mean <= high + slack or _skips_phase(begin, end, length)
+    return not low - slack <= mean <= high + slack or _skips_phase(begin, end, length, most)
 
 
-def _skips_phase(begin: Point, end: Point, length: float) -> bool:
-    """Whether the excess, as Hermite's cubic, has another sign between two points of one phase."""
-    sign = -1.0 if begin.z[2] < 0 else 1.0
-    excess, rate, after, rate_after = sign * np.array(
-        [begin.z[2], length * begin.direction[2], end.z[2], length * end.direction[2]]
-    )
-    if not (rate < 0 < rate_after and after >= 0):
-        return False
-    return bool((hermite(_WITHIN, excess, rate, after, rate_after) < 0).any())
+def _skips_phase(begin: Point, end: Point, length: float, most: float) -> bool:
+    """Whether the excess, as Hermite's cubic, leaves the phase between two points of one."""
+    excess, rate = begin.z[2], length * begin.direction[2]
+    after, rate_after = end.z[2], length * end.direction[2]
+    within = hermite(_WITHIN, excess, rate, after, rate_after)
+    for limit in (0.0, most):
+        sign = -1.0 if excess < limit else 1.0
+        dips = sign * rate < 0 < sign * rate_after and sign * (after - limit) >= 0
+        if dips and (sign * (within - limit) < 0).any():
+            return True
+    return False
 
 
 def _ended(points: list[Point], reach: tuple[float, float], slack: float = 0.0) -> bool:
     """Whether the vibrissa has let go, is out of reach, or cannot be after it lost its hold.
 
-    It buckles from half a period on, and comes to its tip from inside the body where it is turned
-    by more than pi against the contour: that of a flexible tip would go on in windings. It has lost
-    its hold where the foot comes back, by more than `slack`.
+    It buckles from half a period on, and a flexible one that lies on its other side would go on in
+    windings. It has lost its hold where the foot comes back, by more than `slack`.
     """
     if len(points) == 1:
         return False

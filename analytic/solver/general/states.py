@@ -2,9 +2,11 @@
 
 Dimensionless throughout, on the contour that the centreline feels. Both phases are one family: the
 excess w is s1 - 1 in Phase B, where it is negative, and phi1 - alpha in Phase A, where it is
-positive, so that the phases take turns where it vanishes. A cone that touches a contour leans by
-the angle from its surface to its axis: w is phi1 - alpha less that, and in Phase B phi(s1) is alpha
-and that. With the normal force f, Coulomb friction
+positive, so that the phases take turns where it vanishes. A vibrissa that is curved towards the
+object may turn on until it lies down on its other side, phi(s1) = alpha + pi: from w = pi on, s1 is
+1 - (w - pi). A cone that touches a contour leans by
+the angle from its surface to its axis: w is phi1 - alpha less that, in Phase B phi(s1) is alpha
+and that, and the other side begins twice that earlier. With the normal force f, Coulomb friction
 mu and slope angle alpha of the contour the force on the vibrissa is F = f sqrt(1 + mu^2) at the
 slope angle phi_F = alpha + arctan(mu): a dead force again. It acts on the surface, so that the
 couple -mu r f remains at the contact.
@@ -15,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic.problem.along import Along
-from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.contours.contour import Contour, ContourPoint
@@ -96,6 +98,37 @@ class Vibrissa(NamedTuple):
         """Angle from the surface of a cone to its axis [rad]."""
         return 0.0 if self.rod is None else self.rod.unloaded.lean
 
+    @property
+    def most_turned(self) -> float:
+        """Excess of a tip that lies on its other side; beyond it that side touches [rad]."""
+        return np.pi - 2 * self.lean
+
+    def side(self, excess: Floats) -> Integers:
+        """What touches: -1 the front, 0 the tip, 1 the back."""
+        return np.where(excess < 0, -1, np.where(excess > self.most_turned, 1, 0))
+
+    def within(self, side: Integers, excess: Floats) -> Floats:
+        """The excess, or the nearest one of a contact on that side."""
+        low, high = self.limits
+        return np.asarray(np.clip(excess, low[side + 1], high[side + 1]))
+
+    @property
+    def limits(self) -> tuple[Floats, Floats]:
+        """The least and the largest excess of a contact at the front, the tip and the back."""
+        most = self.most_turned
+        return (
+            np.array([-np.inf, 0.0, np.nextafter(most, np.inf)]),
+            np.array([INSIDE, most, np.inf]),
+        )
+
+    def arc_length(self, excess: Floats) -> Floats:
+        """Arc length s1 of the contact."""
+        return 1 + np.minimum(excess, 0.0) - np.maximum(excess - self.most_turned, 0.0)
+
+    def turned(self, excess: Floats) -> Floats:
+        """Slope angle of its surface at the contact, from the contour's [rad]."""
+        return np.asarray(np.clip(excess, 0.0, self.most_turned))
+
     def back_to_clamp(self, slope: Floats, couple: Floats, force: Floats, length: Floats) -> Start:
         """March from the contact back to the clamp."""
         if self.rod is None:
@@ -130,17 +163,22 @@ class States(NamedTuple):
     @property
     def tangent(self) -> Booleans:
         """Phase B."""
-        return self.excess < 0
+        return np.asarray(self.side != 0)
+
+    @property
+    def side(self) -> Integers:
+        """What touches: -1 the front, 0 the tip, 1 the back."""
+        return self.vibrissa.side(self.excess)
 
     @property
     def arc_length(self) -> Floats:
         """Arc length s1 of the contact."""
-        return 1 + np.minimum(self.excess, 0.0)
+        return self.vibrissa.arc_length(self.excess)
 
     @property
     def tip_angle(self) -> Floats:
         """Slope angle of the vibrissa at the contact [rad]."""
-        leant, lean = self.point.alpha + np.maximum(self.excess, 0.0), self.vibrissa.lean
+        leant, lean = self.point.alpha + self.vibrissa.turned(self.excess), self.vibrissa.lean
         return leant + lean if lean else leant
 
     @property
@@ -179,9 +217,9 @@ def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibriss
     push = np.sqrt(1 + mu**2) * force
     lean = np.arctan(mu)
     direction = point.alpha + lean
-    length = 1 + np.minimum(excess, 0.0)
+    length = vibrissa.arc_length(excess)
     couple = mu * vibrissa.radius_at(length) * force
-    slope = np.maximum(excess, 0.0) + (vibrissa.lean - lean)
+    slope = vibrissa.turned(excess) + (vibrissa.lean - lean)
     start = vibrissa.back_to_clamp(slope, couple, push, length)
     moment = couple + push * start.along
     sin, cos = np.sin(direction), np.cos(direction)
@@ -227,7 +265,9 @@ def with_rates(
     and one-sided at a contour's breaks; the other two are differences that do not change the phase.
     """
     step_f = _DIFFERENCE * np.maximum(vibrissa.least_force, force)
-    step_w = np.where(excess < 0, -_DIFFERENCE, _DIFFERENCE)
+    most = vibrissa.most_turned
+    falls = (excess < 0) | ((excess > most / 2) & (excess <= most))
+    step_w = np.where(falls, -_DIFFERENCE, _DIFFERENCE)
     found = states(
         point,
         force + step_f * _BY_FORCE[:, None],

@@ -66,6 +66,7 @@ def solve_places(
     z, balanced = solve_near(contour, vibrissa, foot_x, guess)
     along = np.einsum("nk,nk->n", (z - begin) / scale, way / scale) / length
     strayed = np.linalg.norm((z - guess) / scale, axis=1)
-    found = balanced & ((z[:, 2] < 0) == path.tangent[cells]) & (strayed <= _NEAR * length + _ASIDE)
+    found = balanced & (vibrissa.side(z[:, 2]) == path.side[cells])
+    found &= strayed <= _NEAR * length + _ASIDE
     found &= (along >= -_ASIDE) & (along <= length + _ASIDE)  # not beyond a fold
     return z, found

@@ -14,7 +14,7 @@ from analytic.numerics.newton import Jacobian, Misses, solve
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.contour import Contour
 from analytic.solver.general.panel import POINTS, WEIGHTS
-from analytic.solver.general.states import INSIDE, States, Vibrissa, states_at
+from analytic.solver.general.states import States, Vibrissa, states_at
 
 _FIRST, _LARGEST, _SMALLEST = 1e-3, 0.02, 1e-9  # L; steps of the foot
 _NEAR = 0.1  # by how much a state may differ from what the step before lets expect
@@ -133,8 +133,7 @@ def _states(contour: Contour, vibrissa: Vibrissa, z: Floats) -> States:
 def _in_phase(z: Floats) -> Floats:
     """Parameter, force and excess: no force is negative, no excess is nothing in Phase B."""
     t, force, excess = z[:, :3].T
-    inside = np.minimum(excess, INSIDE)
-    return np.column_stack([t, np.maximum(force, 0.0), np.where(excess < 0, inside, excess)])
+    return np.column_stack([t, np.maximum(force, 0.0), excess])
 
 
 def _slid(contour: Contour, vibrissa: Vibrissa, start: Floats, z: Floats) -> Floats:
@@ -147,8 +146,11 @@ def _slid(contour: Contour, vibrissa: Vibrissa, start: Floats, z: Floats) -> Flo
     radius, rest = vibrissa.radius, vibrissa.unloaded
 
     def on_vibrissa(excess: Floats) -> Floats:
-        side = rest.side(1 + np.minimum(excess, 0.0))
-        return np.asarray(radius * np.maximum(excess, 0.0) - side)
+        s = vibrissa.arc_length(excess)
+        front = rest.side(s)
+        back = 2 * np.cos(rest.lean) * (1 - s) - front
+        beyond = np.where(vibrissa.side(excess) > 0, back, -front)
+        return np.asarray(radius * vibrissa.turned(excess) + beyond)
 
     turned = contour.at(z[:, 0]).alpha - contour.at(start[:1]).alpha
     way = np.array([_way(contour, float(start[0]), float(t)) for t in z[:, 0]])

@@ -62,7 +62,7 @@ def solve(case: Case, stations: Floats | None = None) -> Solved:
         columns["status"][held] = np.where(found, solved["status"], STATUS_NUMBER["diverged"])
     points = {**path.events(), "out_of_plane": None}  # where it leaves the plane is not known
     del points["contact_length_minimum"]
-    for name in ("phase_b_start", "phase_b_end"):
+    for name in ("phase_b_start", "phase_b_end", "back_start", "back_end"):
         i = points[name]
         if i is not None and not _is_clear_at(contour, vibrissa, path.z[i : i + 1]):
             points[name] = None

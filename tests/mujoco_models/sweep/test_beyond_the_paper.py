@@ -113,6 +113,15 @@ def test_a_vibrissa_curved_towards_the_object_touches_it_twice():
     assert (table.loc[again, "force_y"] > 1).all()
 
 
+def test_a_vibrissa_that_lies_down_on_its_other_side():
+    """The closed form's contact there is MuJoCo's: every station of both, to second order."""
+    case = Case(Beam(natural_curvature=1.0), named_case("catenary").profile, Sweep(40))
+    exact, simulated = solve_sweep(case), simulate_sweep(case, Settings(segments=40))
+    assert (exact.table["status"] == "ok").all() and (simulated.table["status"] == "ok").all()
+    assert list(exact.table["phase"]) == list(simulated.table["phase"])
+    assert largest_rms(exact, simulated) < 1e-3
+
+
 def test_to_the_right_is_the_mirror_image():
     case = case_of("parabola", -0.4, 8.0, stations=20)
     settings = Settings(segments=10, contour_points=400)

@@ -270,11 +270,11 @@ def test_curve_stays_on_its_branch_next_to_buckling():
 
 @pytest.mark.parametrize("profile", [named_case("two-circles").profile, circle(1, lowest=(0, 0.4))])
 def test_certificate_and_status_agree_on_a_vibrissa_that_is_curved_a_lot(profile):
-    """Its tip would come from inside the object, or another part of it would be there."""
+    """It lies down on its other side; or another part of it would be in the object."""
     case = case_of(profile, 1.226642782643863, stations=60)
     closed, certified = solve_sweep(case), solve_sweep(case, certified=True)
     assert list(certified.table["status"]) == list(closed.table["status"])
-    assert set(certified.table["status"]) == {"ok", "touches again"}
+    assert set(certified.table["status"]) <= {"ok", "touches again"}
     excess = closed.values("tip_angle") - closed.values("contact_angle")
     assert np.nanmax(excess[(closed.table["phase"] == "tip")]) <= np.pi
 

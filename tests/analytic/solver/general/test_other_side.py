@@ -1,0 +1,94 @@
+"""A vibrissa that is curved towards the object and lies down on its other side."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic import Beam, Case, Sweep, catenary, certify, find_events, reconstruct, solve_sweep
+from analytic.solver.general.states import Vibrissa, states_at
+from analytic.solver.general.stations import solve_near
+
+ROWS = pd.read_csv(Path(__file__).parents[3] / "data" / "beyond_other_side.csv")
+PROFILE = catenary(0.5, -0.8)
+SWEPT = [(0.95, 0.0, 0.0), (1.0, 0.0, 0.0), (1.1, 0.1, 0.01)]  # curvature, friction, radius
+READ = {"F_Ax": "force_x", "F_Ay": "force_y", "M_Az": "moment_z"}
+PLACES = {"alpha": "contact_angle", "s1": "contact_arc_length", "contact_x": "contact_x"}
+EXACT = {"rtol": 1e-11, "atol": 1e-11}
+
+
+def rows_of(natural, friction, radius):
+    same = ROWS["natural_curvature"].eq(natural) & ROWS["friction"].eq(friction)
+    return ROWS[same & ROWS["radius"].eq(radius)]
+
+
+def beam_of(natural, radius):
+    return Beam(radius=radius, natural_curvature=natural)
+
+
+@pytest.mark.parametrize(("natural", "friction", "radius"), SWEPT)
+def test_references_of_sweeps(natural, friction, radius):
+    rows = rows_of(natural, friction, radius)
+    beam = beam_of(natural, radius)
+    events = find_events(PROFILE, beam, friction=friction)
+    named = rows.dropna(subset="event").set_index("event")["foot_x"]
+    found = {
+        "first contact": events.first_contact,
+        "tip lies down on its other side": events.back_start,
+        "back to the tip": events.back_end,
+        "release (force falls to zero)": events.snap_off,
+    }
+    for event, place in named.items():
+        assert found[event].foot_x == pytest.approx(place, rel=1e-11)
+    assert (found["back to the tip"] is None) == ("back to the tip" not in named)
+    for _, row in rows[rows["event"].isna()].iterrows():
+        sweep = Sweep(2, stop=row["foot_x"])
+        readings = solve_sweep(Case(beam, PROFILE, sweep, friction=friction))
+        last = readings.table.iloc[-1]
+        assert last["status"] == "ok"
+        assert last["phase"] == row["state"].split()[0]
+        for reference, column in (READ | PLACES).items():
+            np.testing.assert_allclose(last[column], row[reference], **EXACT)
+        turned = last["tip_angle"] - natural * (1 - last["contact_arc_length"])
+        np.testing.assert_allclose(turned, row["phi_contact"], **EXACT)
+
+
+def test_references_of_equilibria_with_friction():
+    rows = rows_of(1.0, 0.2, 0.0)
+    vibrissa = Vibrissa.of(beam_of(1.0, 0.0), math.inf, 0.2)
+    start = rows[["alpha", "f", "s1"]].to_numpy(float)
+    start[:, 2] = np.pi + 1 - start[:, 2]
+    z, balanced = solve_near(PROFILE, vibrissa, rows["foot_x"].to_numpy(), start + 1e-3)
+    assert balanced.all()
+    found = states_at(PROFILE, z, vibrissa)
+    assert (found.side == 1).all()
+    np.testing.assert_allclose(found.moment, rows["M_Az"], **EXACT)
+    np.testing.assert_allclose(found.arc_length, rows["s1"], **EXACT)
+    np.testing.assert_allclose(found.force, rows["f"], **EXACT)
+
+
+@pytest.mark.parametrize(("natural", "friction", "radius"), SWEPT)
+def test_whole_sweeps_balance_and_tell_the_contact(natural, friction, radius):
+    case = Case(beam_of(natural, radius), PROFILE, Sweep(60), friction=friction)
+    readings = solve_sweep(case)
+    assert (readings.table["status"] == "ok").all()
+    assert certify(readings).max(axis=None) < 1e-12
+    mirrored = solve_sweep(case.mirrored())
+    np.testing.assert_allclose(
+        mirrored.values("moment_z"), -readings.values("moment_z"), atol=1e-13
+    )
+    seen = reconstruct(readings)
+    assert list(seen["phase"]) == list(readings.table["phase"])
+    for name in ("contact_x", "contact_y", "contact_arc_length"):
+        np.testing.assert_allclose(seen[name], readings.table[name], atol=1e-12)
+
+
+def test_a_cone_lies_down_too():
+    """Its axis leans the other way there."""
+    beam = Beam(radius=0.02, tip_radius=0.01, natural_curvature=1.1)
+    readings = solve_sweep(Case(beam, PROFILE, Sweep(60)))
+    assert readings.provenance["events"]["back_start"] is not None
+    assert (readings.table["status"] == "ok").all()
+    assert certify(readings).max(axis=None) < 1e-10
