@@ -70,7 +70,7 @@ def test_references_of_equilibria_with_friction():
 
 
 @pytest.mark.parametrize(("natural", "friction", "radius"), SWEPT)
-def test_whole_sweeps_balance_and_tell_the_contact(natural, friction, radius):
+def test_whole_sweeps_balance_and_show_the_contact(natural, friction, radius):
     case = Case(beam_of(natural, radius), PROFILE, Sweep(60), friction=friction)
     readings = solve_sweep(case)
     assert (readings.table["status"] == "ok").all()
