@@ -1,3 +1,6 @@
+from .agreement import Agreement as Agreement
+from .agreement import State as State
+from .agreement import hinges as hinges
 from .apart import Outcome as Outcome
 from .apart import sweep_apart as sweep_apart
 from .engine import Engine as Engine
@@ -7,3 +10,5 @@ from .found import list_engines as list_engines
 from .stations import Rest as Rest
 from .stations import Row as Row
 from .stations import sweep_stations as sweep_stations
+from .stepping import Stepper as Stepper
+from .stepping import sweep_stepping as sweep_stepping

@@ -6,6 +6,7 @@ form of the readings are the same for all of them, and here.
 """
 
 import time
+from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Protocol
@@ -17,7 +18,9 @@ from analytic.problem.mirror import facing, leftward
 from analytic.problem.readings import Readings
 from analytic.problem.recorder import Recorder
 
-_SMALLEST = 1e-6  # L; a step of the foot that small which leaves the branch is at its end
+# L; where nothing else is asked for, a step of the foot that small which leaves the branch is at
+# its end
+_SMALLEST = 1e-6
 _TURN = 0.35  # rad; a tip that turns farther in a step has left the branch
 _SHIFT = 1.0  # rad; so has a contact whose slope angle jumps by more
 _HELD = 1e-2  # EI/L^2; a load that vanishes at once was let go, one below this just faded
@@ -42,8 +45,8 @@ class Row:
         Slope angle of the contour, arc length and place of the contact; NaN where nothing touches.
     residual : float
         Largest force or moment out of balance, by the engine's own account.
-    status : str
-        ``"ok"``, or why the station cannot be trusted.
+    doubt : str
+        Why the station cannot be trusted; empty if it can.
     """
 
     force_x: float = 0.0
@@ -56,12 +59,18 @@ class Row:
     contact_x: float = np.nan
     contact_y: float = np.nan
     residual: float = 0.0
-    status: str = "ok"
+    doubt: str = ""
 
     @property
     def load(self) -> float:
         """Of the contact, which the clamp holds."""
         return float(np.hypot(self.force_x, self.force_y))
+
+    def recorded(self) -> dict[str, Any]:
+        """As the readings have it."""
+        row = asdict(self)
+        status = "unsettled" if row.pop("doubt") else "ok"
+        return {**row, "status": status}
 
 
 def free_row(case: Case) -> Row:
@@ -96,6 +105,7 @@ def sweep_stations(
     source: str,
     about: Mapping[str, Any],
     advance: Callable[[], None] = lambda: None,
+    smallest: float = _SMALLEST,
 ) -> Readings:
     """Sweep a case with an engine that solves stations.
 
@@ -111,6 +121,8 @@ def sweep_stations(
         ``engine``, with its version, and ``settings``, for the provenance.
     advance : callable
         Called after every station.
+    smallest : float
+        The step of the foot in which a snap-off is located [L].
 
     Returns
     -------
@@ -127,8 +139,8 @@ def sweep_stations(
     """
     begun, swept = time.process_time(), leftward(case)
     stations = (swept.foot_x / swept.beam.length).tolist()
-    walk = _Walk(rest(swept), free_row(swept), stations[0])
-    unsettled: dict[str, int] = {}
+    walk = _Walk(rest(swept), free_row(swept), stations[0], smallest)
+    unsettled: Counter[str] = Counter()
     recorder = Recorder(
         swept,
         source,
@@ -138,10 +150,9 @@ def sweep_stations(
         begun=begun,
     )
     for target in stations:
-        row, doubt = walk.go_to(target)
-        if doubt:
-            unsettled[doubt] = unsettled.get(doubt, 0) + 1
-        recorder.rows.append(asdict(row))
+        row = walk.go_to(target)
+        unsettled.update([row.doubt] if row.doubt else [])
+        recorder.rows.append(row.recorded())
         advance()
     return facing(case, recorder.readings())
 
@@ -149,23 +160,23 @@ def sweep_stations(
 class _Walk:
     """The vibrissa on its way: the last state on the branch."""
 
-    def __init__(self, rest: Rest, free: Row, foot_x: float) -> None:
-        self._rest = rest
+    def __init__(self, rest: Rest, free: Row, foot_x: float, smallest: float) -> None:
+        self._rest, self._smallest = rest, smallest
         self._last = self._free = free
         self._trail: list[tuple[float, ...]] = []  # foot position, clamp's readings, tip angle
         self._lost: str | None = None
         self.foot_x = foot_x
         self.snap_off: float | None = None
 
-    def go_to(self, target: float) -> tuple[Row, str | None]:
-        """The state at a station, and why it cannot be trusted."""
+    def go_to(self, target: float) -> Row:
+        """The state at a station."""
         if self.snap_off is not None:
-            return self._free, None
+            return self._free
         if self._lost is None:
             self._advance(target)
         if self._lost is not None:
-            return replace(self._last, status="unsettled"), self._lost
-        return (self._free if self.snap_off is not None else self._last), None
+            return replace(self._last, doubt=self._lost)
+        return self._free if self.snap_off is not None else self._last
 
     def _advance(self, target: float) -> None:
         step, begin = target - self.foot_x, self.foot_x == target
@@ -179,7 +190,7 @@ class _Walk:
                 sensed = row.force_x, row.force_y, row.moment_z
                 self._trail.append((trial, *sensed, row.tip_angle))
                 step *= 2
-            elif abs(trial - self.foot_x) > _SMALLEST:
+            elif abs(trial - self.foot_x) > self._smallest:
                 step = (trial - self.foot_x) / 2
             else:
                 self._end(trial, row)
@@ -199,7 +210,7 @@ class _Walk:
 
     def _end(self, trial: float, row: Row | None) -> None:
         """The branch ends here: it let go, in a fold, or the solver failed."""
-        let_go = row is not None and row.phase == "free"
+        let_go = row is not None and row.phase == "free" and not row.doubt
         if self._last.load >= _HELD and (let_go or self._folds(trial)):
             self.snap_off = (self.foot_x + trial) / 2
         else:
@@ -210,7 +221,7 @@ class _Walk:
         trail = np.array(self._trail[::-1])
         x, state = trail[:, 0], trail[:, 1:]
         way = np.abs(x - end)
-        near, far = np.searchsorted(way, [10 * _SMALLEST, 10 * _SMALLEST * _FAR])
+        near, far = np.searchsorted(way, [10 * self._smallest, 10 * self._smallest * _FAR])
         if far + 1 >= len(x) or near == 0:
             return False
         fast = np.linalg.norm(state[0] - state[near]) / abs(x[0] - x[near])

@@ -21,6 +21,7 @@ from analytic.problem.case import Case
 from analytic.problem.rest import first_touch
 from engines.exudyn.cable import Cable, LostError
 from engines.stations import Row, free_row
+from engines.surface import Surface
 from mujoco_models.beams.vibrissa import Vibrissa
 
 _STILL = 1e-7  # EI/L^2; the force along the contour that is none
@@ -29,8 +30,8 @@ _PROBE, _LONGEST = 1e-5, 0.02  # L, or rad; the steps in which a root is looked 
 _SHORT = 1e-3  # L; a step of the foot in which a vibrissa can be seen to let go
 _TURNS = 4  # changes between tip and side at a station
 _ALONG = 1e-9  # cosine; a tip that lies alongside
-_POINTS = 400  # of the contour, whose tangents show whether the cable has gone into the object
-_INSIDE = 1e-4  # L; ten times a turn of the contour between these
+_POINTS = 400  # of contour and vibrissa, to find where the one is clear of the other
+_INSIDE = 1e-4  # L; a cable deeper than that has gone into the object
 
 
 class CableOnContour:
@@ -42,7 +43,7 @@ class CableOnContour:
         self._cable = Cable(elements, Vibrissa.of(case.beam, case.clamp_stiffness))
         self._last, self._first = case.reach
         self._breaks = self._line.breaks()
-        self._normals, self._heights = self._tangents()
+        self._surface = Surface(case)
         # Between the two feet the vibrissa at rest is in the object.
         touch = first_touch(self._line, case.reach, rest)
         self._near, self._far = touch.foot_x, self._last_touch()
@@ -52,16 +53,6 @@ class CableOnContour:
         self._t, self._state, self._has_let_go = touch.t, self._cable.state(), False
         self._found = self._t, self._state, self._has_let_go
         self._foot_x = self._accepted_at = np.inf
-
-    def _tangents(self) -> tuple[Floats, Floats]:
-        """Lines that have the object on one side, one on every edge: normals, and how far out."""
-        last, first = self._last, self._first
-        marks = np.concatenate([[last], self._breaks, [first]])
-        middles = (marks[1:] + marks[:-1]) / 2
-        middles = middles[(middles > last) & (middles < first)]
-        on = self._line.at(np.concatenate([np.linspace(last, first, _POINTS), middles]))
-        normals = np.column_stack([np.sin(on.alpha), -np.cos(on.alpha)])
-        return normals, on.xi * normals[:, 0] + on.eta * normals[:, 1]
 
     def _last_touch(self) -> float:
         """The foot position left of which the vibrissa at rest is clear of the object [L]."""
@@ -188,8 +179,7 @@ class CableOnContour:
         step = (tangents[:-1] - tangents[1:]) / (8 * (len(positions) - 1))
         middles = (positions[:-1] + positions[1:]) / 2 + step
         points = np.vstack([positions, middles]) + np.array([self._foot_x, 0.0])
-        outside = points @ self._normals.T - self._heights
-        return bool((outside.max(axis=1) < -_INSIDE).any())
+        return bool((self._surface.outward(points)[0] < -_INSIDE).any())
 
     def _row(self, t: float) -> Row:
         self._found = t, self._cable.state(), False
