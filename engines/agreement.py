@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
 from engines.surface import Surface
 from mujoco_models.beams.layout import Layout
@@ -150,7 +150,7 @@ class Agreement:
         if not felt.any():
             return
         push = state.forces[felt] / size[felt, None]
-        link, place, beside = self.on_axis(state, state.points[felt])
+        link, place, beside = on_axis(state, state.points[felt])
         thickness = np.interp(link + place, np.arange(len(self._thickness)), self._thickness)
         yield "contacts and vibrissa", float(np.abs(beside - thickness).max()), _PLACES
         axis = state.points[felt] + thickness[:, None] * push
@@ -160,16 +160,6 @@ class Agreement:
         turned = np.hypot(*(push - normal).T)
         yield "forces and normals", float(turned.max()), _NORMALS
 
-    def on_axis(self, state: State, points: Floats) -> tuple[Floats, Floats, Floats]:
-        """Which link is nearest to points, where along it (0 to 1), and how far from it."""
-        begins, ways = state.joints[:-1], np.diff(state.joints, axis=0)
-        arms = points[:, None] - begins
-        place = np.clip((arms * ways).sum(axis=2) / (ways**2).sum(axis=1), 0, 1)
-        beside = np.linalg.norm(arms - place[:, :, None] * ways, axis=2)
-        link = beside.argmin(axis=1)
-        each = np.arange(len(points))
-        return link, place[each, link], beside[each, link]
-
     def _springs(self, state: State) -> Floats:
         """The moments that the case's own springs have in this shape."""
         x, y = np.diff(state.joints, axis=0).T
@@ -178,7 +168,7 @@ class Agreement:
 
     def _pushes(self, state: State) -> Floats:
         """The moments at the joints of all contacts beyond."""
-        link, _, _ = self.on_axis(state, state.points)
+        link, _, _ = on_axis(state, state.points)
         arms = state.points[:, None] - state.joints[:-1]
         fx, fy = state.forces[:, 0, None], state.forces[:, 1, None]
         carried = np.arange(arms.shape[1]) <= link[:, None]
@@ -193,3 +183,14 @@ class Agreement:
         """The largest force or moment that anything reports."""
         reported = self._springs(state), state.clamp, self._sum(state)
         return max(_LEAST, *(float(np.abs(x).max()) for x in reported))
+
+
+def on_axis(state: State, points: Floats) -> tuple[Integers, Floats, Floats]:
+    """Which link is nearest to points, where along it (0 to 1), and how far from it they are."""
+    begins, ways = state.joints[:-1], np.diff(state.joints, axis=0)
+    arms = points[:, None] - begins
+    place = np.clip((arms * ways).sum(axis=2) / (ways**2).sum(axis=1), 0, 1)
+    beside = np.linalg.norm(arms - place[:, :, None] * ways, axis=2)
+    link = beside.argmin(axis=1)
+    each = np.arange(len(points))
+    return link, place[each, link], beside[each, link]

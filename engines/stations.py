@@ -66,12 +66,6 @@ class Row:
         """Of the contact, which the clamp holds."""
         return float(np.hypot(self.force_x, self.force_y))
 
-    def recorded(self) -> dict[str, Any]:
-        """As the readings have it."""
-        row = asdict(self)
-        status = "unsettled" if row.pop("doubt") else "ok"
-        return {**row, "status": status}
-
 
 def free_row(case: Case) -> Row:
     """What a vibrissa reads that touches nothing."""
@@ -152,9 +146,16 @@ def sweep_stations(
     for target in stations:
         row = walk.go_to(target)
         unsettled.update([row.doubt] if row.doubt else [])
-        recorder.rows.append(row.recorded())
+        recorder.rows.append(_recorded(row))
         advance()
     return facing(case, recorder.readings())
+
+
+def _recorded(row: Row) -> dict[str, Any]:
+    """As the readings have it."""
+    columns = asdict(row)
+    status = "unsettled" if columns.pop("doubt") else "ok"
+    return {**columns, "status": status}
 
 
 class _Walk:
@@ -210,8 +211,8 @@ class _Walk:
 
     def _end(self, trial: float, row: Row | None) -> None:
         """The branch ends here: it let go, in a fold, or the solver failed."""
-        let_go = row is not None and row.phase == "free" and not row.doubt
-        if self._last.load >= _HELD and (let_go or self._folds(trial)):
+        let_go, doubted = row is not None and row.phase == "free", row is not None and row.doubt
+        if not doubted and self._last.load >= _HELD and (let_go or self._folds(trial)):
             self.snap_off = (self.foot_x + trial) / 2
         else:
             self._lost = "the solver found no neighbour of the last state at rest, and no fold"

@@ -12,7 +12,7 @@ import numpy as np
 
 from analytic.problem.case import Case
 from analytic.problem.readings import Readings
-from engines.agreement import Agreement, State
+from engines.agreement import Agreement, State, on_axis
 from engines.stations import Row, free_row, sweep_stations
 from mujoco_models.beams.layout import Layout
 
@@ -37,16 +37,40 @@ class Stepper(Protocol):
     """How many steps the slowest swing of the vibrissa takes, roughly."""
 
     def step(self, foot_x: float) -> None:
-        """One step of time, at the end of which the foot is there [L]."""
+        """Step once in time.
+
+        Parameters
+        ----------
+        foot_x : float
+            Where the foot is at the end of the step [L].
+        """
 
     def look(self) -> State:
-        """What it reports of the state that it is in."""
+        """Report the state that it is in.
+
+        Returns
+        -------
+        State
+            Places, and what the clamp and the contacts do.
+        """
 
     def keep(self) -> Any:  # noqa: ANN401  # the engine's own
-        """All that a step changes, to go back to."""
+        """Copy all that a step changes.
+
+        Returns
+        -------
+        object
+            Whatever `go_back` takes.
+        """
 
     def go_back(self, kept: Any) -> None:  # noqa: ANN401
-        """Go on from a state that was kept."""
+        """Go on from a state that was kept.
+
+        Parameters
+        ----------
+        kept : object
+            What `keep` returned.
+        """
 
 
 def sweep_stepping(
@@ -136,7 +160,7 @@ class SteppedRest:
             fx, fy, moment = state.clamp.tolist()
             return replace(self._free, force_x=fx, force_y=fy, moment_z=moment, doubt=doubt)
         layout = self._stepper.layout
-        link, place, _ = self._agreement.on_axis(state, state.points)
+        link, place, _ = on_axis(state, state.points)
         weight = size / size.sum()
         arc_length = float(weight @ (layout.joints[link] + place * layout.lengths[link]))
         (x, y), (push_x, push_y) = weight @ state.points, state.forces.sum(axis=0)

@@ -1,6 +1,6 @@
 """An engine that only steps, in fifty lines: links on hinges past a circle, by a soft contact.
 
-Time is of no account at rest, so that neither are masses: every joint has the same inertia, and the
+Nothing of time shows at rest, nor do masses: every joint has the same inertia, and the
 step is implicit in the springs and in the contact.
 """
 

@@ -1,0 +1,63 @@
+"""DART's chain rests, in hard contact, where MuJoCo's does: they differ by the contact's depth."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import CLAMP_READINGS, Beam, Case, InputError, Sweep, circle, named_case, polygon
+from mujoco_models import Settings, simulate_sweep
+
+pytest.importorskip("dartpy", reason="DART is an extra: pip install '.[dart]'")
+
+from engines import find_engine
+
+SMOOTH = Settings(obstacle="primitive", segments=20)
+
+
+def check(case: Case, settings: Settings, apart: float) -> None:
+    """Rest is known to 1e-5 of the largest moment, the contact's place to 1e-5 L."""
+    dart, mujoco = find_engine("dart").sweep(case, settings), simulate_sweep(case, settings)
+    assert dart.trusted.all()
+    assert (dart.table["phase"] == mujoco.table["phase"]).mean() > 0.9
+    for name in CLAMP_READINGS:
+        off = dart.values(name) - mujoco.values(name)
+        assert np.sqrt((off**2).mean()) < apart * np.abs(mujoco.values(name)).max(), name
+    assert abs(dart.snap_off - mujoco.snap_off) < 2e-4 * case.beam.length
+
+
+def short(name: str, stations: int) -> Case:
+    case = named_case(name)
+    return replace(case, sweep=replace(case.sweep, stations=stations))
+
+
+@pytest.mark.parametrize("name", ["parabola", "tip-only"])
+def test_it_rests_where_mujocos_does(name):
+    check(short(name, 8), replace(SMOOTH, segments=10), 1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("segments", [10, 40])
+@pytest.mark.parametrize("name", ["catenary", "parabola", "tip-only"])
+def test_so_it_does_with_links_of_any_size(name, segments):
+    check(short(name, 20), replace(SMOOTH, segments=segments), 1e-3)
+
+
+@pytest.mark.slow
+def test_so_it_does_past_a_hexagon():
+    turn = 0.1 + 2 * np.pi * np.arange(6) / 6
+    corners = np.column_stack([0.5 * np.cos(turn), 0.9 + 0.5 * np.sin(turn)])
+    check(Case(profile=polygon(corners), sweep=Sweep(stations=15)), Settings(segments=20), 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("case", "says"),
+    [
+        (named_case("rubbing"), "friction"),
+        (named_case("pre-curved"), "natural_curvature"),
+        (Case(Beam(radius=0.0), circle(1.0, (0.0, 0.4))), "cannot collide a line"),
+    ],
+)
+def test_what_it_has_not_is_a_line(case, says):
+    with pytest.raises(InputError, match=says):
+        find_engine("dart").sweep(case, SMOOTH)
