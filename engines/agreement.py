@@ -23,7 +23,7 @@ from mujoco_models.beams.vibrissa import Vibrissa
 _FORCES = 1e-3
 _LEAST = 1e-2  # EI/L^2, EI/L; forces and moments below that are counted as if they were so large
 _PLACES = 1e-3  # L; a soft contact is F/k deep: 5e-4 L under the largest load at 1e4 EI/L^3
-_NORMALS = 0.02  # rad; of a fine polygon; a friction of 0.02 does so much
+_NORMALS = 5e-3  # rad; ten times what a fine polygon turns; of a friction as large, too
 _FEELS = 1e-2  # of the largest force; smaller ones may be anywhere
 
 

@@ -204,7 +204,7 @@ FAULTS = {
     "a spring is 2 % soft": scale(3, by=0.98),
     "the first spring is 2 % stiff": scale(0, by=1.02),
     "all springs are 2 % off": scale(by=1.02),
-    "a spring is missing": scale(5, by=1e-9),
+    "a spring is half as stiff": scale(5, by=0.5),
     "a body sleeps": asleep(4),
     "the first body sleeps": asleep(0),
     "an inertia is missing": pulled,
@@ -220,7 +220,7 @@ FAULTS = {
 def test_a_fault_is_seen(example, plant):
     links = example.Links(CASE)
     plant(links)
-    assert any(doubts(links, CASE))
+    assert any(doubt.endswith(("disagree", "missing")) for doubt in doubts(links, CASE))
 
 
 @pytest.mark.slow
