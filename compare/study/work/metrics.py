@@ -13,7 +13,7 @@ from compare.read.tables import Physics
 from compare.sense.transitions import TRANSITIONS
 from compare.study.grid.study import Record
 
-_EVENTS = ("first_contact", "phase_b_start", "phase_b_end", "snap_off")
+_EVENTS = ("first_contact", "phase_b_start", "phase_b_end", "back_start", "back_end", "snap_off")
 _EVENTS_IN_SPACE = {"touch": "touch", "slip_off": "slip-off", "release": "release"}
 _RECONSTRUCTION = dict.fromkeys(
     ("reconstruction_rms", "reconstruction_max", "reconstruction_share"), "double"
