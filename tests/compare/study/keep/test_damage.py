@@ -92,7 +92,8 @@ def check_recovery(folder, plan, stored):
     for run, result in stored.items():
         for name, value in result.row.items():
             if name != "run":
-                assert rows.loc[run, name] == value
+                kept = rows.loc[run, name]
+                assert pd.isna(kept) if value is None else kept == value
     again = []
     read_rows(folder, again.append)
     assert not again
