@@ -86,7 +86,7 @@ def _backwards_from(reference: Readings, candidate: Readings) -> float | None:
     """Origin that foot positions count backwards from; None if reversed rows explain as much."""
     x_ref, true = _shape(reference)
     x, seen = _shape(candidate)
-    if len(x_ref) < 2 or not len(x):
+    if len(x_ref) < 2 or not seen.any():
         return None
     order = np.argsort(x_ref, kind="stable")
     x_ref, true = x_ref[order], true[:, order]
