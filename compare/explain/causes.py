@@ -23,8 +23,8 @@ _FEWEST = 4  # stations of a stretch whose slope is worth something
 _SOLVED: dict[Fault, tuple[str, float, float]] = {
     "length": ("length of the vibrissa {size:+.2%} off", 0.8, 1.2),
     "radius": (
-        "radius of the vibrissa {off:+.2e} off (it is {stated:.2e}), or the object's surface as "
-        "much too low",
+        "radius of the vibrissa {size:+.2e} L off (it is {stated:.2e} L), or the object's surface "
+        "as much too low",
         -math.inf,
         math.inf,
     ),
@@ -35,7 +35,7 @@ _SOLVED: dict[Fault, tuple[str, float, float]] = {
         0.2,
     ),
     "clamp_compliance": (
-        "clamp stiffness about {inverse:.3g}, not {stated_inverse:.3g}: the clamp gives way "
+        "clamp stiffness about {inverse:.3g} EI/L, not {stated_inverse:.3g}: the clamp gives way "
         "otherwise than stated",
         0.0,
         math.inf,
@@ -46,13 +46,13 @@ _SOLVED: dict[Fault, tuple[str, float, float]] = {
         1.0,
     ),
     "natural_curvature": (
-        "natural curvature about {value:+.3g}, not {stated:.3g}: the vibrissa at rest is bent "
+        "natural curvature about {value:+.3g} /L, not {stated:.3g}: the vibrissa at rest is bent "
         "otherwise than stated",
         -1.5,
         1.5,
     ),
     "tip_radius": (
-        "tip radius about {value:.2e}, not {stated:.2e}: the vibrissa is a cone, or another one",
+        "tip radius about {value:.2e} L, not {stated:.2e}: the vibrissa is a cone, or another one",
         -1.0,
         -0.05,
     ),
@@ -79,10 +79,12 @@ def causes(found: Measurement, table: pd.DataFrame, true: Floats, scale: Floats)
     """The known faults, those that need the contour last."""
     # A radius that is a third off makes the rigidity 0.2 to 3.2 times what it should be.
     yield Cause("flexural rigidity {:+.2%} off: all readings scale alike".format, true, -0.8, 2.2)
-    text = "foot_x {:+.2e} off, the same at all stations: an offset (or a lag), see `--offset auto`"
+    text = (
+        "foot_x {:+.2e} L off, the same at all stations: an offset (or a lag), see `--offset auto`"
+    )
     # Farther off the readings are no longer linear in it; `offset` is there for that.
-    most = 0.1 * found.reference.beam.length
-    yield Cause(text.format, -slopes(table, true), -most, most)
+    length = found.reference.beam.length
+    yield Cause(text.format, -length * slopes(table, true), -0.1, 0.1)
     of_largest = "of its largest magnitude"
     for one, name, row in zip(np.eye(3), CLAMP_READINGS, true, strict=True):
         only = one[:, None]
@@ -127,12 +129,13 @@ def _stated(exact: Resolved, fault: Fault) -> tuple[float, float]:
 
 
 def _text(exact: Resolved, fault: Fault, size: float) -> str:
+    """In units of L and EI, as all that is said of a sweep."""
     stated, unit = _stated(exact, fault)
-    value = stated + size * unit
+    ours = exact.case.beam.length if fault == "tip_radius" else abs(unit)
+    value, stated = (stated + size * unit) / ours, stated / ours
     inverse, stated_inverse = (1 / x if x > 0 else math.inf for x in (value, stated))
     return _SOLVED[fault][0].format(
         size=size,
-        off=size * unit,
         value=value,
         stated=stated,
         inverse=inverse,

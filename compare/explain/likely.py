@@ -59,7 +59,8 @@ def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) 
     short = _short(found)
     if (notes or short) and _agrees(error, limits, noise):
         return "; ".join([*notes, *short])
-    cause = _lone(error, table["foot_x"].to_numpy(), limits, noise)
+    at = table["foot_x"].to_numpy() / found.reference.beam.length
+    cause = _lone(error, at, limits, noise)
     if cause is None and np.sqrt(np.mean(error**2)) >= _ROUND_OFF:
         jumps = np.array([scatter(row) for row in error])
         cause = (
@@ -73,9 +74,19 @@ def likely_cause(found: Measurement, limits: Tolerances, noise: NoiseAllowance) 
 
 
 def _untouched(found: Measurement) -> str | None:
-    phase = found.judged["candidate"].phase
-    if (phase == "free").sum() < (phase != "").sum():
+    """Why no station of the candidate is in contact, if that is so by its clamp."""
+    table, seen = found.candidate.table, found.judged["candidate"].phase
+    idle, unknown = seen == "free", seen == ""
+    if not (idle | unknown).all():
         return None
+    touching = (table["phase"] != "free").to_numpy() if "phase" in table else np.zeros_like(idle)
+    if (idle & touching).any():
+        return (
+            f"the clamp reads no load, though the candidate records a contact at "
+            f"{(idle & touching).sum()} stations: the sensor measures something else, or nothing"
+        )
+    if unknown.any():
+        return f"no station with a load is to be trusted: {unknown.sum()} of {len(idle)} are not"
     return "the candidate never touches: its clamp reads no load at any station"
 
 
@@ -83,9 +94,9 @@ def _short(found: Measurement) -> list[str]:
     """That the sweep does not cover all events of the reference."""
     if not (beyond := found.beyond()):
         return []
-    foot_x = found.candidate.values("foot_x")
+    foot_x = found.candidate.values("foot_x") / found.reference.beam.length
     return [
-        f"too short a sweep: it covers foot_x = {foot_x.min():.4g} to {foot_x.max():.4g}, and "
+        f"too short a sweep: it covers foot_x = {foot_x.min():.4g} to {foot_x.max():.4g} L, and "
         f"{' and '.join(beyond)} of the reference lie{'s' * (len(beyond) == 1)} beyond"
     ]
 
@@ -105,7 +116,7 @@ def _lone(error: Floats, foot_x: Floats, limits: Tolerances, noise: NoiseAllowan
     return (
         f"single stations: {off.sum()} of {len(off)} compared {'is' if off.sum() == 1 else 'are'} "
         f"off by up to {size[worst]:.1e} of the largest {reading} (at foot_x = "
-        f"{foot_x[worst]:.4g}); "
+        f"{foot_x[worst]:.4g} L); "
         + ("all others agree" if agree else "nearly all of the disagreement is theirs")
     )
 

@@ -5,14 +5,16 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from analytic import Readings
+from analytic.space import SpatialReadings
 from compare.judge.allowance import Allowance, NoiseAllowance, SpatialAllowance
 from compare.judge.spatial import SpatialTolerances
 from compare.judge.tolerances import Limit, Limits, Tolerances
-from compare.measure.disagreement import Disagreement
 from compare.measure.in_space import SpatialMeasurement
 from compare.measure.measurement import Measurement
 from compare.sense.occurrence import Occurrence
 from compare.sense.record import direction
+
+_READINGS, _FIRST = 1, 2  # weights of a failure, beside 0
 
 
 @dataclass(frozen=True)
@@ -24,6 +26,7 @@ class Failure:
     allowed: str  # how much is allowed, or what to do
     reason: str = ""  # why so much
     excess: float = math.inf  # how many times what is allowed; infinite for what must not be at all
+    weight: int = 0  # the heavier leads: that nothing can be compared, readings, whatever follows
 
     @property
     def clause(self) -> str:
@@ -40,7 +43,7 @@ def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> I
     """Every limit that is exceeded in the plane."""
     yield from _order(found)
     yield from _contact(found)
-    yield from _components(found.disagreement, limits, noise, "foot_x = {:.6g}", 1.0)
+    yield from _components(found, limits, noise, "foot_x = {:.5g} L")
     asked = limits.limits()
     for which, right in found.phase_agreement().items():
         judged = f"{right:.1%} judged rightly from the clamp"
@@ -48,7 +51,7 @@ def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> I
         yield from _phases(f"phases of the {which}", judged, right, phases, noise.phase_agreement)
     events = {name: (event, asked["transition"]) for name, event in found.transitions.items()}
     events["snap_off"] = found.snap_off, _of_snap_off(found, asked)
-    yield from _events(found, events, found.beyond())
+    yield from _events(found, events, found.beyond(), found.made_by_noise())
     counts, stations = found.alignment.counts, len(found.candidate.table)
     untrusted = counts["untrusted"] + counts["dropped"]
     yield from _stations(untrusted, stations, asked["untrusted"], "; ".join(_reasons(found)))
@@ -58,11 +61,12 @@ def failures_in_space(
     found: SpatialMeasurement, limits: SpatialTolerances, noise: SpatialAllowance
 ) -> Iterator[Failure]:
     """Every limit that is exceeded in space."""
-    asked, length = limits.limits(), found.reference.beam.length
+    asked = limits.limits()
     if not found.compared.any():
         counts = f"reference {found.statuses['reference']}, candidate {found.statuses['candidate']}"
-        yield Failure("contact", f"at no station do both touch ({counts})", "none can be compared")
-    yield from _components(found.disagreement, limits, noise, "{:.4g} L of the way", length)
+        said = f"at no station do both touch ({counts})"
+        yield Failure("contact", said, "none can be compared", weight=_FIRST)
+    yield from _components(found, limits, noise, "{:.4g} L of the way")
     one, limit = found.contact, asked["contact"]
     widened = math.hypot(limit, noise.contact)
     said = f"{one.rms:.2e} L rms, {one.max:.1e} L at most"
@@ -87,12 +91,14 @@ def _beyond(
     widened: float,
     noise: float = 0.0,
     unit: str = "",
+    weight: int = 0,
 ) -> Iterator[Failure]:
     """A size beyond its limit, which noise or an uncertainty widens."""
     if size > widened:
         beside = f" beside noise of {noise:.1e}{unit}" if noise else ""
         most = f"allowed {limit:.2e}{unit}{beside}"
-        yield Failure(name, found, most, limit.reason, size / widened if widened else math.inf)
+        excess = size / widened if widened else math.inf
+        yield Failure(name, found, most, limit.reason, excess, weight)
 
 
 def _more(name: str, found: str, count: int, limit: Limit, most: float) -> Iterator[Failure]:
@@ -103,10 +109,11 @@ def _more(name: str, found: str, count: int, limit: Limit, most: float) -> Itera
 
 
 def _components(
-    found: Mapping[str, Disagreement], limits: Limits, noise: Allowance, place: str, unit: float
+    found: Measurement | SpatialMeasurement, limits: Limits, noise: Allowance, place: str
 ) -> Iterator[Failure]:
-    """Root mean squares and the largest differences, at a place in a unit of the travel."""
-    for name, one in found.items():
+    """Root mean squares and the largest differences, at a place along the travel [L]."""
+    length = found.reference.beam.length
+    for name, one in found.disagreement.items():
         level = noise.level[name]
         most = max(one.rms_by_phase, key=one.rms_by_phase.__getitem__, default="")
         which = f", most in phase {most}" if most else ""
@@ -117,22 +124,23 @@ def _components(
         for where, rms, limit, stations in asked:
             widened = noise.rms(limit, name, stations)
             said = f"rms {rms:.2e} of its largest magnitude{where}"
-            yield from _beyond(name, said, rms, limit, widened, level)
+            yield from _beyond(name, said, rms, limit, widened, level, weight=_READINGS)
         for phase, peak in one.peaks.items():
             limit = limits.of(name, "max", phase)
             widened = noise.max(limit, name, one.stations)
-            said = (
-                f"off by {peak.size:.2e} of its largest magnitude at {place.format(peak.at / unit)}"
-                + (f" in phase {phase}" if phase else "")
-                + ("" if math.isnan(peak.arc_length) else f", arc length {peak.arc_length:.4g}")
-            )
-            yield from _beyond(name, said, peak.size, limit, widened, level)
+            at = place.format(peak.at / length)
+            said = f"off by {peak.size:.2e} of its largest magnitude at {at}"
+            if phase:
+                said += f" in phase {phase}"
+            if not math.isnan(peak.arc_length):
+                said += f", arc length {peak.arc_length / length:.4g} L"
+            yield from _beyond(name, said, peak.size, limit, widened, level, weight=_READINGS)
 
 
 def _phases(
     name: str, found: str, right: float, limit: Limit, clear: float = 1.0
 ) -> Iterator[Failure]:
-    """It follows from the readings: the headline only if nothing else fails."""
+    """Of no excess: the headline only if nothing else fails."""
     if right < limit * clear:
         yield Failure(name, found, f"asked {limit:.1%}", limit.reason, 1.0)
 
@@ -141,10 +149,11 @@ def _events(
     found: Measurement | SpatialMeasurement,
     events: Mapping[str, tuple[Occurrence, Limit]],
     beyond: Iterable[str] = (),
+    by_noise: Iterable[str] = (),
 ) -> Iterator[Failure]:
     length = found.reference.beam.length
     for name, (event, limit) in events.items():
-        if event.agrees(limit * length):
+        if event.agrees(limit * length) or name in by_noise:
             continue
         if event.difference is not None:
             wide = event.uncertainty / length
@@ -167,13 +176,15 @@ def _stations(untrusted: int, stations: int, limit: Limit, why: str) -> Iterator
 
 def _order(found: Measurement) -> Iterator[Failure]:
     if found.order.note is not None:
-        yield Failure("order", found.order.note, "write the rows and foot_x as the motion goes")
+        todo = "write the rows and foot_x as the motion goes"
+        yield Failure("order", found.order.note, todo, weight=_FIRST)
     if found.order.opposite:
         yield Failure(
             "direction",
             "foot_x and moment_z of the candidate run opposite to the reference's",
             "compare with a reference swept the same way (`[sweep] direction`), or with the mirror "
             "image (`Readings.mirrored`) if the object is symmetric",
+            weight=_FIRST,
         )
 
 
@@ -187,10 +198,10 @@ def _contact(found: Measurement) -> Iterator[Failure]:
     if counts["compared"]:
         said = f"all {counts['compared']} stations in contact in both are next to the snap-off"
     elif counts["one_free"] and not (found.judged["candidate"].phase == "").all():
-        said = f"the candidate touches at none of the {touching} stations where the reference does"
-    yield Failure(
-        "contact", said, "sweep a stretch where both touch, or see why stations are not trusted"
-    )
+        of_all = f"{touching} stations where the reference's does"
+        said = f"the candidate's clamp reads a load at none of the {of_all}"
+    todo = "sweep a stretch where both touch, or see why stations are not trusted"
+    yield Failure("contact", said, todo, weight=_FIRST)
 
 
 def _of_snap_off(found: Measurement, limits: Mapping[str, Limit]) -> Limit:
@@ -207,10 +218,14 @@ def _reasons(found: Measurement) -> Iterator[str]:
         yield f"{missing} of them lack a number"
     if dropped := found.alignment.counts["dropped"]:
         yield f"{dropped} of them are filled with zeros amid contact"
-    candidate: Readings = found.candidate
-    if "status" not in candidate.table:
+    yield from untrusted_stretches(found.candidate)
+
+
+def untrusted_stretches(readings: Readings | SpatialReadings) -> Iterator[str]:
+    """Which stations a sweep itself does not trust, and where."""
+    if "status" not in readings.table:
         return
-    for status, foot_x in candidate.table.groupby("status", sort=False)["foot_x"]:
+    for status, foot_x in readings.table.groupby("status", sort=False)["foot_x"]:
         if status != "ok":
-            first, last = foot_x.iloc[[0, -1]] / candidate.beam.length
+            first, last = foot_x.iloc[[0, -1]] / readings.beam.length
             yield f"{len(foot_x)} {status}, foot_x {first:.4g} to {last:.4g} L"

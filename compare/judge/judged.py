@@ -8,7 +8,7 @@ from html import escape
 from typing import Any, TypeAlias
 
 from compare.judge.allowance import Allowance
-from compare.judge.failures import Failure
+from compare.judge.failures import Failure, untrusted_stretches
 from compare.judge.tolerances import CONVENTION, Limits
 from compare.measure.disagreement import Sweep, SweepPair
 from compare.sense.occurrence import Occurrence
@@ -59,26 +59,27 @@ class Judged(SweepPair[Sweep]):
         str
             A line.
         """
+        length = self.reference.beam.length
         yield (
             f"{self.candidate.source} {'agrees' if self.agrees else 'disagrees'} with "
-            f"{self.reference.source} ({self._own_metrics()['stations_compared']} of "
-            f"{len(self.candidate.table)} stations compared)"
+            f"{self.reference.source}, by {self.stations} of {len(self.candidate.table)} stations"
         )
         if self.likely is not None:
             yield f"  likely: {self.likely}"
         for name, one in self.disagreement.items():
             limit = self.tolerances.of_sweep(name)
-            yield f"  {name:9} rms {one.rms:.1e}  max {one.max:.1e}  allowed {limit:.1e} rms"
+            if one.stations:
+                yield f"  {name:9} rms {one.rms:.1e}  max {one.max:.1e}  allowed {limit:.1e} rms"
         yield from self._beside()
         for name, event in self.events.items():
-            if event.difference is not None:
-                yield f"  {name:13} {event.reference:.5g} {event.difference:+.1e}"
+            if event.candidate is not None and event.difference is not None:
+                at, apart = event.candidate / length, event.difference / length
+                yield f"  {name:13} at {at:.5g} L, {apart:+.1e} L apart"
         for failure in self.exceeded[:_SHOWN]:
             yield f"  failed: {failure.clause}"
         if len(self.exceeded) > _SHOWN:
             yield f"  and {len(self.exceeded) - _SHOWN} more, see .failures"
-        if self.remark is not None:
-            yield f"  {self.remark}"
+        yield from (f"  {remark}" for remark in self.remarks)
 
     @cached_property
     def exceeded(self) -> tuple[Failure, ...]:
@@ -92,8 +93,8 @@ class Judged(SweepPair[Sweep]):
 
     @property
     def worst(self) -> Failure | None:
-        """The limit that is exceeded most; None if the sweeps agree."""
-        return max(self.exceeded, key=lambda failure: failure.excess, default=None)
+        """What leads the verdict: of the failures of most weight that of the largest excess."""
+        return max(self.exceeded, key=lambda one: (one.weight, one.excess), default=None)
 
     @property
     def agrees(self) -> bool:
@@ -106,9 +107,23 @@ class Judged(SweepPair[Sweep]):
         return None
 
     @property
-    def remark(self) -> str | None:
-        """What is to be known of the limits that are exceeded; None if there is nothing."""
-        return CONVENTION if self.exceeded and self.tolerances.conventional else None
+    def remarks(self) -> tuple[str, ...]:
+        """What is to be known of both sweeps, and of the limits that are exceeded."""
+        failed = " ".join(self.failures)
+        notes: list[str] = [
+            f"note: the {which} is not to be trusted everywhere: {stretch}"
+            for which, sweep in (("reference", self.reference), ("candidate", self.candidate))
+            for stretch in untrusted_stretches(sweep)
+            if which == "reference" or stretch not in failed
+        ]
+        if self.exceeded and self.tolerances.conventional:
+            notes.append(CONVENTION)
+        return tuple(notes)
+
+    @property
+    def stations(self) -> int:
+        """How many stations the figures rest on."""
+        return next(iter(self.disagreement.values())).stations
 
     def to_dict(self) -> dict[str, Any]:
         """What ``comparison.json`` holds.

@@ -25,6 +25,8 @@ from compare.sense.record import Record, inspect_record
 from compare.sense.size import check_size
 from compare.sense.transitions import TRANSITIONS, locate_transitions, snap_off
 
+_SIGMAS = 5.0  # standard deviations; a contact that is short of the tip by more is no noise
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Measurement(SweepPair[Readings]):
@@ -90,13 +92,13 @@ class Measurement(SweepPair[Readings]):
         Returns
         -------
         float or None
-            Of the stations where both are known; None if there are none.
+            Of the stations where both are known; None if neither is in contact at any of them.
         """
         counts, table = self.alignment.counts, self.alignment.table
         judged = self.judged["candidate"].phase[table["station"].to_numpy()]
         alike = counts["free"] + int((judged == table["phase"].to_numpy()).sum())
-        known = counts["free"] + counts["one_free"] + counts["compared"]
-        return alike / known if known else None
+        touching = counts["one_free"] + counts["compared"]
+        return alike / (counts["free"] + touching) if touching else None
 
     def beyond(self) -> list[str]:
         """Events that the candidate lacks because its sweep does not cover them.
@@ -114,6 +116,25 @@ class Measurement(SweepPair[Readings]):
             and event.candidate is None
             and not np.min(foot_x) <= event.reference <= np.max(foot_x)
         ]
+
+    def made_by_noise(self) -> list[str]:
+        """Limits of a Phase B that one sweep alone has, as far as its noise lets it be seen.
+
+        Returns
+        -------
+        list of str
+            Names of transitions.
+        """
+        found = []
+        for name in ("phase_b_start", "phase_b_end"):
+            event = self.events[name]
+            if event.difference is None:
+                which = "candidate" if event.reference is None else "reference"
+                judged = self.judged[which]
+                here = judged.phase == "tangent"
+                sure = judged.shortfall[here] > _SIGMAS * judged.shortfall_tolerance[here]
+                found += [] if sure.any() else [name]
+        return found
 
     def __repr__(self) -> str:
         """The sweeps, and how far they are apart."""

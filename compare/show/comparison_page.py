@@ -68,21 +68,24 @@ def agreement(found: Comparison | SpatialComparison, said: str, why: str = "") -
         said,
         "" if found.agrees else sentence(why),
         found.failures,
-        [sentence(found.remark)] if found.remark else [],
+        [sentence(remark) for remark in found.remarks],
     )
 
 
 def sizes(found: Comparison | SpatialComparison, worst: str, where: str) -> Iterator[Tile]:
     """How large the worst disagreement is."""
     one = found.disagreement[worst]
+    if not one.stations:
+        return
     at = where.format(place(one.at / found.reference.beam.length))
     yield Tile("worst disagreement, rms", short(one.rms), f"{worst}, of the largest magnitude")
-    known = at if one.at == one.at else "at no station"
-    yield Tile("largest single difference", short(one.max), f"{worst}, {known}")
+    yield Tile("largest single difference", short(one.max), f"{worst}, {at}")
 
 
-def apart_table(found: Comparison | SpatialComparison) -> Table:
-    """How far apart the two are, reading by reading, and by the phases that there are."""
+def apart_table(found: Comparison | SpatialComparison) -> Iterator[Table]:
+    """How far apart the two are, reading by reading and by phase, if any station shows it."""
+    if not found.stations:
+        return
     beam = found.reference.beam
     there = {phase for one in found.disagreement.values() for phase in one.rms_by_phase}
     phases = [phase for phase in PHASES if phase in there]
@@ -99,7 +102,7 @@ def apart_table(found: Comparison | SpatialComparison) -> Table:
         if isinstance(found, Comparison):
             row["max at snap-off"] = short(one.max_before_snap_off)
         rows.append(row | {"largest magnitude": f"{one.scale / unit:.4g} {symbol}"})
-    return Table(
+    yield Table(
         "Candidate less reference, relative to the largest magnitude in the reference; A: tip "
         "contact, B: tangential contact",
         [*rows[0]],
@@ -131,7 +134,7 @@ def _limits(found: Comparison | SpatialComparison) -> Iterator[Block]:
     ]
     head = ("tolerance", "limit", "unit", "reason")
     yield Table("Limits of the verdict", head, rows, words=(0, 2, 3))
-    if isinstance(found, Comparison) and found.tolerances.conventional and not found.remark:
+    if isinstance(found, Comparison) and found.agrees and found.tolerances.conventional:
         yield Text(sentence(CONVENTION), aside=True)
 
 

@@ -45,11 +45,10 @@ def plane_document(
 ) -> Document:
     """All that there is to say of a comparison in the plane."""
     contour = comparison.reference.provenance.get("profile") or "Contour not recorded"
-    compared = comparison.alignment.counts["compared"]
     found = plane_verdict(comparison, budget)
     return comparison_document(
         comparison,
-        f"{contour}; {compared} stations compared.",
+        f"{contour}; the figures rest on {comparison.stations} stations.",
         replace(found, remarks=[*found.remarks, *validation_lines(comparison)[:1]]),
         plane_tiles(comparison, budget),
         ("budget", "What the disagreement is made of", _parts(comparison, budget)),
@@ -70,14 +69,18 @@ def plane_summary(comparison: Comparison) -> Iterator[Block]:
     """The verdict and what it rests on, in short."""
     yield plane_verdict(comparison)
     yield tiles_table(plane_tiles(comparison))
-    yield apart_table(comparison)
+    yield from apart_table(comparison)
     yield from map(Text, validation_lines(comparison))
 
 
 def plane_verdict(comparison: Comparison, budget: Budget | None = None) -> Verdict:
-    """Whether the two agree, and why not."""
-    likely = why(comparison) if comparison.likely or budget is None else ""
-    return agreement(comparison, verdict(comparison, budget), likely)
+    """Whether the two agree, and why not: the cause first, if it is known."""
+    said, likely = verdict(comparison, budget), ""
+    if comparison.likely:
+        said, likely = sentence(why(comparison)), said
+    elif budget is None:
+        likely = why(comparison)
+    return agreement(comparison, said, likely)
 
 
 def plane_tiles(comparison: Comparison, budget: Budget | None = None) -> Iterator[Tile]:
@@ -140,7 +143,7 @@ def _validation(comparison: Comparison) -> Iterator[Block]:
 
 
 def _apart(comparison: Comparison) -> Iterator[Block]:
-    yield apart_table(comparison)
+    yield from apart_table(comparison)
     shows = "{} of both models over the foot position, and their difference"
     yield Picture(
         "reading",

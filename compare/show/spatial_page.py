@@ -59,7 +59,7 @@ def spatial_summary(comparison: SpatialComparison, parts: Parts | None) -> Itera
     """The verdict and what it rests on, in short."""
     yield spatial_verdict(comparison)
     yield tiles_table(spatial_tiles(comparison))
-    yield apart_table(comparison)
+    yield from apart_table(comparison)
     yield events_table(comparison)
     if parts is not None:
         yield parts_table(parts)
@@ -115,7 +115,7 @@ def _made_of(parts: Parts | None) -> Iterator[Block]:
 
 
 def _apart(comparison: SpatialComparison) -> Iterator[Block]:
-    yield apart_table(comparison)
+    yield from apart_table(comparison)
     lines, dots = comparison.reference.source, comparison.candidate.source
     shows = "Six components of both sweeps over the way of the foot, and their differences"
     caption = f"Lines: {lines}. Dots: {dots}. Below each: candidate less reference."

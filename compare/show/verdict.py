@@ -24,17 +24,20 @@ def verdict(comparison: Comparison, budget: Budget | None = None) -> str:
         found, allowed = comparison.disagreement[name], comparison.tolerances.of_sweep(name)
         noise = comparison.noise.level[name]
         beside = "" if found.rms <= allowed else f" beside noise of {short(noise)}"
-        much = f"{short(found.rms)} rms ({name}, the worst; {short(allowed)} is allowed{beside})"
+        much = (
+            f"{short(found.rms)} rms ({name}, the worst, over {comparison.stations} stations; "
+            f"{short(allowed)} is allowed{beside})"
+        )
         said = f"Readings of {candidate} and of {reference} agree to within {much}"
         if _is_mujoco(comparison):
             said = f"Readings of {candidate} can be used in place of {reference} to within {much}"
     else:
         others = len(comparison.exceeded) - 1
-        more = f" ({others} more limit{'s' * (others > 1)} exceeded)" if others else ""
+        more = f"{others} more limit{'s' * (others > 1)} exceeded, " if others else ""
         said = f"Readings of {candidate} disagree with those of {reference}"
         if _is_mujoco(comparison):
             said = f"Do not use readings of {candidate} in place of {reference} yet"
-        said = f"{said}: {comparison.worst.clause}{more}"
+        said = f"{said}: {comparison.worst.clause} ({more}over {comparison.stations} stations)"
     if budget is not None:
         return f"{said}; {_advice(comparison, budget)}{_doubt(comparison, budget)}."
     return f"{said}."
@@ -86,7 +89,7 @@ def _doubt(comparison: Comparison, budget: Budget) -> str:
         said = f", but {rest} stays unexplained"
         if budget.undecided:
             said = f", but the budget is undecided: {rest} +- {unsure} stays unexplained"
-    compared = next(iter(comparison.disagreement.values())).stations
+    compared = comparison.stations
     if budget.stations < _NEARLY_ALL * compared:
         said += f" (over the {budget.stations} of {compared} stations that all its sweeps share)"
     return said

@@ -90,6 +90,5 @@ def demand(comparison: Comparison | SpatialComparison, budget: Budget | None = N
         return
     title = f"{comparison.candidate.source} disagrees with {comparison.reference.source}:"
     causes = [why(comparison, budget)] if isinstance(comparison, Comparison) else []
-    remark = [] if comparison.remark is None else [comparison.remark]
-    lines = [title, *causes, *comparison.failures, *remark]
+    lines = [title, *causes, *comparison.failures, *comparison.remarks]
     raise AssertionError("\n  ".join(lines))

@@ -1,0 +1,159 @@
+"""The verdict leads with what matters, and says nothing of what is not known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import CLAMP_READINGS, Beam, Case, Readings, circle, solve_sweep
+from compare import Tolerances, compare
+from compare.sense.noise import with_noise
+from compare.show.plane_page import plane_summary, plane_verdict
+from compare.show.verdict import verdict
+from tests.compare.synthetic import changed, solved
+from tests.conftest import exact_sweep
+
+
+def words(found) -> str:
+    """All that is said: in the terminal's short form, and in the verdict."""
+    return " ".join([*found.lines(), *found.failures, found.likely or "", verdict(found)])
+
+
+def unread(sweep: Readings) -> Readings:
+    """The sensor reads nothing, while the simulator recorded its contacts."""
+    return changed(sweep, **dict.fromkeys(CLAMP_READINGS, 0.0))
+
+
+def untrusted(sweep: Readings) -> Readings:
+    """None of the stations in contact is to be trusted; the others are free."""
+    return changed(sweep, status=np.where(sweep.table["phase"] == "free", "ok", "unsettled"))
+
+
+def mute(sweep: Readings) -> Readings:
+    """A file that has nothing but the readings, all of them zero."""
+    return replace(unread(sweep), table=unread(sweep).table[["foot_x", *CLAMP_READINGS]])
+
+
+@pytest.mark.parametrize(("made", "never"), [(unread, False), (untrusted, False), (mute, True)])
+def test_who_touches_is_not_said_never_to_touch(made, never):
+    found = compare(exact_sweep("catenary"), made(exact_sweep("catenary")))
+    assert not found.agrees
+    assert ("never touches" in words(found)) == never
+    assert found.to_dict()["disagreement"]["force_x"]["rms"] is None
+
+
+def test_a_sensor_that_reads_nothing_of_a_contact_is_named():
+    exact = exact_sweep("catenary")
+    touching = int((exact.table["phase"] != "free").sum())
+    said = compare(exact, unread(exact)).likely
+    assert said.startswith("the clamp reads no load")
+    assert str(touching) in said
+
+
+@pytest.mark.parametrize("made", [unread, untrusted, mute])
+def test_nothing_is_said_of_nothing(made):
+    """No table of NaN, and nothing that is 100 % alike: at most the few stations before."""
+    found = compare(exact_sweep("catenary"), made(exact_sweep("catenary")))
+    assert "nan" not in words(found).lower()
+    assert (found.phases_alike() or 0.0) < 0.05
+    blocks = [*plane_summary(found)]
+    assert not any("nan" in str(block).lower() for block in blocks)
+    assert not any("relative to the largest" in getattr(block, "caption", "") for block in blocks)
+
+
+def moved(**shift) -> Readings:
+    return changed(solved(), **{name: solved().values(name) * by for name, by in shift.items()})
+
+
+def test_readings_come_before_phases_and_events():
+    """Less wrong than a snap-off that is missing: it follows from the readings."""
+    ends = replace(moved(force_y=1.03), provenance={})
+    short = replace(ends, table=ends.table.iloc[:100].reset_index(drop=True))
+    found = compare(solved(), short)
+    assert {"force_y", "snap_off"} <= {one.name for one in found.exceeded}
+    assert found.worst.name == "force_y"
+
+
+def test_a_contact_that_cannot_be_compared_comes_before_all():
+    assert compare(solved(), unread(solved())).worst.name == "contact"
+
+
+def test_the_cause_comes_first():
+    found = compare(solved(), moved(**dict.fromkeys(CLAMP_READINGS, 1.05)))
+    assert [*found.lines()][1].startswith("  likely: flexural rigidity")
+
+
+def of_length(size: float, spoil) -> str:
+    """What is said of a spoilt sweep of a vibrissa of some length."""
+    case = Case(Beam(size, 2e-6, 0.005 * size), circle(0.8 * size, (0.0, 0.4 * size)))
+    exact = solve_sweep(case)
+    return words(compare(exact, spoil(exact, size)))
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda exact, size: changed(exact, foot_x=exact.table["foot_x"] + 0.02 * size),
+        lambda exact, size: changed(exact, rows=slice(0, 120)),
+        lambda exact, size: changed(
+            exact,
+            force_y=exact.table["force_y"] * np.where(np.arange(200) % 50 == 20, 1.5, 1.0),
+            status=np.repeat(["ok", "lost"], 100),
+        ),
+    ],
+)
+def test_lengths_are_in_units_of_the_vibrissa(spoil):
+    """In one unit all through, whatever the case's: the same is said of a vibrissa of 50 mm."""
+    assert of_length(0.05, spoil) == of_length(1.0, spoil)
+
+
+def test_events_are_in_units_of_the_vibrissa():
+    at = next(line for line in compare(solved(), solved()).lines() if "snap_off" in line)
+    assert float(at.split()[2]) == pytest.approx(solved().snap_off / solved().beam.length, 1e-4)
+
+
+def test_the_stations_that_figures_rest_on_are_said():
+    wide = Tolerances(rms=1e-3, snap_off_window=0.05)
+    found = compare(solved(), moved(force_y=1.03), wide)
+    rest_on = found.disagreement["force_y"].stations
+    assert rest_on < found.alignment.counts["compared"]
+    assert f"{rest_on} of {len(solved().table)} stations" in next(found.lines())
+    assert f"{rest_on} stations" in verdict(found)
+
+
+@pytest.mark.parametrize("side", ["reference", "candidate"])
+def test_a_stretch_of_either_side_that_is_not_trusted_is_said(side):
+    status = np.where((np.arange(128) >= 40) & (np.arange(128) < 60), "touches again", "ok")
+    sweeps = {"reference": solved(), "candidate": solved()}
+    sweeps[side] = changed(solved(), status=status)
+    at = solved().values("foot_x") / solved().beam.length
+    said = words(compare(**sweeps))
+    assert f"20 touches again, foot_x {at[40]:.4g} to {at[59]:.4g} L" in said
+
+
+def test_a_phase_that_noise_alone_makes_is_no_failure():
+    """Past a circle on which the contact stays at the tip: one station of another phase."""
+    exact = solve_sweep(Case(profile=circle(1.0, (0, 0.65))))
+    made = 0
+    for seed in range(6, 10):
+        noisy = with_noise(exact, dict.fromkeys(CLAMP_READINGS, 3e-3), seed)
+        found = compare(exact, Readings(noisy.table[["foot_x", *CLAMP_READINGS]]), noise=3e-3)
+        made += found.transitions["phase_b_end"].candidate is not None
+        assert not any(one.name.startswith("phase_b") for one in found.exceeded)
+    assert made
+
+
+def test_a_known_cause_leads_the_verdict_and_the_worst_reading_follows():
+    found = plane_verdict(compare(solved(), moved(**dict.fromkeys(CLAMP_READINGS, 1.05))))
+    assert found.said.startswith("Likely: flexural rigidity")
+    assert "force_" in found.why or "moment_z" in found.why
+
+
+@pytest.mark.parametrize("side", ["reference", "candidate"])
+def test_one_station_that_is_not_trusted_is_said_though_the_sweeps_agree(side):
+    exact = exact_sweep("catenary")
+    sweeps = {"reference": exact, "candidate": exact}
+    sweeps[side] = changed(exact, status=np.where(np.arange(200) == 90, "touches again", "ok"))
+    found = compare(**sweeps)
+    assert found.agrees
+    assert f"the {side} is not to be trusted everywhere: 1 touches again" in words(found)
