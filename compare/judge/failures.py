@@ -14,7 +14,7 @@ from compare.measure.measurement import Measurement
 from compare.sense.occurrence import Occurrence
 from compare.sense.record import direction
 
-_READINGS, _FIRST = 1, 2  # weights of a failure, beside 0
+_FOLLOWS, _READINGS, _FIRST = -1, 1, 2  # weights of a failure, beside 0
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,9 @@ def failures(found: Measurement, limits: Tolerances, noise: NoiseAllowance) -> I
         yield from _phases(f"phases of the {which}", judged, right, phases, noise.phase_agreement)
     events = {name: (event, asked["transition"]) for name, event in found.transitions.items()}
     events["snap_off"] = found.snap_off, _of_snap_off(found, asked)
-    yield from _events(found, events, found.beyond(), found.made_by_noise())
+    by_noise, unknown = found.made_by_noise(), found.not_trusted()
+    seen = {name: pair for name, pair in events.items() if name not in by_noise}
+    yield from _events(found, seen, found.beyond(), unknown)
     counts, stations = found.alignment.counts, len(found.candidate.table)
     untrusted = counts["untrusted"] + counts["dropped"]
     yield from _stations(untrusted, stations, asked["untrusted"], "; ".join(_reasons(found)))
@@ -149,11 +151,11 @@ def _events(
     found: Measurement | SpatialMeasurement,
     events: Mapping[str, tuple[Occurrence, Limit]],
     beyond: Iterable[str] = (),
-    by_noise: Iterable[str] = (),
+    unknown: Iterable[str] = (),
 ) -> Iterator[Failure]:
     length = found.reference.beam.length
     for name, (event, limit) in events.items():
-        if event.agrees(limit * length) or name in by_noise:
+        if event.agrees(limit * length):
             continue
         if event.difference is not None:
             wide = event.uncertainty / length
@@ -161,12 +163,16 @@ def _events(
             said = f"{apart:+.2e} L apart" + (f" +- {wide:.1e} L" if wide else "")
             yield from _beyond(name, said, abs(apart), limit, limit + wide, unit=" L")
             continue
-        which, at = "reference", event.reference
+        which, other, at = "reference", "candidate", event.reference
         if at is None:
-            which, at = "candidate", event.candidate
-        covers = ", beyond the stretch that the candidate covers" if name in beyond else ""
-        said = f"only in the {which}, at {(at or 0.0) / length:.5g} L{covers}"
-        yield Failure(name, said, f"allowed {limit:.2e} L", limit.reason)
+            which, other, at = "candidate", "reference", event.candidate
+        said = f"only in the {which}, at {(at or 0.0) / length:.5g} L"
+        if name in beyond:
+            said += ", beyond the stretch that the candidate covers"
+        if name in unknown:
+            said += f", where stations of the {other} are not to be trusted"
+        weight = _FOLLOWS if name in unknown else 0
+        yield Failure(name, said, f"allowed {limit:.2e} L", limit.reason, weight=weight)
 
 
 def _stations(untrusted: int, stations: int, limit: Limit, why: str) -> Iterator[Failure]:

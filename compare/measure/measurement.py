@@ -136,6 +136,23 @@ class Measurement(SweepPair[Readings]):
                 found += [] if sure.any() else [name]
         return found
 
+    def not_trusted(self) -> list[str]:
+        """Events that one sweep lacks where its stations are not to be trusted.
+
+        Returns
+        -------
+        list of str
+            Names of transitions, and ``"snap_off"``.
+        """
+        found = []
+        for name, event in self.events.items():
+            at = event.candidate if event.reference is None else event.reference
+            if at is not None and event.difference is None:
+                lacking = self.reference if event.reference is None else self.candidate
+                nearest = np.argmin(np.abs(lacking.values("foot_x") - at))
+                found += [] if lacking.trusted[nearest] else [name]
+        return found
+
     def __repr__(self) -> str:
         """The sweeps, and how far they are apart."""
         far = ", ".join(f"{name} {d.rms:.1e}" for name, d in self.disagreement.items())

@@ -157,3 +157,15 @@ def test_one_station_that_is_not_trusted_is_said_though_the_sweeps_agree(side):
     found = compare(**sweeps)
     assert found.agrees
     assert f"the {side} is not to be trusted everywhere: 1 touches again" in words(found)
+
+
+@pytest.mark.parametrize("side", ["reference", "candidate"])
+def test_an_event_in_a_stretch_without_trust_does_not_lead(side):
+    """What is not known there is no event that is missing: the stretch itself is what matters."""
+    exact = exact_sweep("catenary")
+    sweeps = {"reference": exact, "candidate": exact}
+    sweeps[side] = changed(exact, status=np.where(np.arange(200) < 60, "ok", "touches again"))
+    found = compare(**sweeps)
+    missing = next(one for one in found.exceeded if one.name == "phase_b_end")
+    assert f"where stations of the {side} are not to be trusted" in missing.found
+    assert found.worst.name == ("stations" if side == "candidate" else "phase_b_end")
