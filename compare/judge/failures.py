@@ -65,8 +65,11 @@ def failures_in_space(
     """Every limit that is exceeded in space."""
     asked = limits.limits()
     if not found.compared.any():
-        counts = f"reference {found.statuses['reference']}, candidate {found.statuses['candidate']}"
-        said = f"at no station do both touch ({counts})"
+        counts = [
+            f"{which} " + ", ".join(f"{n} {status}" for status, n in of.items())
+            for which, of in found.statuses.items()
+        ]
+        said = f"at no station do both touch ({'; '.join(counts)})"
         yield Failure("contact", said, "none can be compared", weight=_FIRST)
     yield from _components(found, limits, noise, "{:.4g} L of the way")
     one, limit = found.contact, asked["contact"]

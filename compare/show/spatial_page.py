@@ -70,17 +70,19 @@ def spatial_verdict(comparison: SpatialComparison) -> Verdict:
     name, worst = comparison.largest, comparison.worst
     rms = short(comparison.disagreement[name].rms)
     allowed = short(comparison.tolerances.of(name, "rms"))
-    said = f"{name} is off most: {rms} rms, {allowed} is allowed."
-    return agreement(comparison, said if worst is None else f"Most of all {worst.clause}.")
+    over = f"over {comparison.stations} stations"
+    said = f"{name} is off most: {rms} rms {over}, {allowed} is allowed."
+    return agreement(comparison, said if worst is None else f"Most of all {worst.clause}, {over}.")
 
 
 def spatial_tiles(comparison: SpatialComparison, parts: Parts | None = None) -> Iterator[Tile]:
     """The numbers that matter."""
     yield from sizes(comparison, comparison.largest, "foot {} L on its way")
     contact = comparison.contact
-    where = f"{short(comparison.tolerances.contact)} allowed, at {contact.stations} stations"
-    yield Tile("contacts apart, rms", short(contact.rms, " L"), where)
-    yield Tile("contacts apart, most", short(contact.max, " L"), "at any one station")
+    if contact.stations:
+        where = f"{short(comparison.tolerances.contact)} allowed, at {contact.stations} stations"
+        yield Tile("contacts apart, rms", short(contact.rms, " L"), where)
+        yield Tile("contacts apart, most", short(contact.max, " L"), "at any one station")
     if comparison.phase_agreement is not None:
         asked = percent(comparison.tolerances.phase_agreement)
         note = f"of the compared stations; {asked} must be"

@@ -19,6 +19,7 @@ from analytic.space import (
 from analytic.space.problem.readings import FORCE, MOMENT, SENSED_IN_SPACE
 from compare import SpatialTolerances, assert_agreement, compare, compare_space, split_space
 from compare.align.frames import clamp_axes, components, from_frame
+from compare.show.spatial_page import spatial_summary, spatial_verdict
 from mujoco_models import SpatialSettings, simulate_space
 from tests.compare.command import vibrissa
 from tests.conftest import exact_sweep
@@ -53,6 +54,16 @@ def test_a_sweep_agrees_with_itself_and_json_holds_it(exact):
     assert kept["verdict"] == "agrees"
     assert kept["stations"]["status"]["candidate"] == {"ok": 20}
     assert kept["tolerance_reasons"].keys() == kept["tolerances"].keys()
+
+
+def test_nothing_is_said_of_contacts_that_are_not_there(exact):
+    """Neither tiles nor a table of nothing; the stations that each sweep trusts are counted."""
+    found = compare(exact, changed(exact, status="lost"))
+    said = str([vars(block) for block in spatial_summary(found, None)])
+    assert "contacts apart" not in said
+    assert "nan" not in said
+    assert "candidate 20 lost" in found.worst.found
+    assert "over 0 stations" in spatial_verdict(found).said
 
 
 def test_planted_differences_are_found_by_name(exact):
