@@ -23,16 +23,15 @@ from analytic import (
 from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import measured_under_load
 from analytic.from_clamp.calibration.unknowns import UNKNOWNS
+from tests.analytic.noisy import noisy
 
 CIRCLE = circle(1.0, lowest=(0, 0.4))
 SOFT = Case(Beam(), catenary(0.5, -0.8), Sweep(60), clamp_stiffness=8.0)
 
 
-def noisy(readings, level, rng) -> tuple[Readings, dict[str, float]]:
+def with_noise(readings, level, rng) -> tuple[Readings, dict[str, float]]:
     noise = relative_noise(readings, level)
-    columns = {n: readings.values(n) + s * rng.standard_normal(len(readings.table))
-               for n, s in noise.items()}  # fmt: skip
-    return replace(readings, table=readings.table.assign(**columns)), noise
+    return noisy(readings, noise, rng), noise
 
 
 @pytest.mark.slow
@@ -96,7 +95,7 @@ def test_a_cone_is_found():
 
 @pytest.mark.slow
 def test_a_rigid_clamp_is_found_and_its_interval_has_no_end():
-    readings, noise = noisy(solve_sweep(replace(SOFT, clamp_stiffness=math.inf)), 0.01,
+    readings, noise = with_noise(solve_sweep(replace(SOFT, clamp_stiffness=math.inf)), 0.01,
                             np.random.default_rng(3))  # fmt: skip
     found = calibrate(readings, SOFT, ["clamp_stiffness"], noise).found["clamp_stiffness"]
     assert found.lowest > 100
@@ -124,7 +123,7 @@ def intervals(repeats, level, true, unknowns):
 
 
 def fitted(exact, level, rng, true, unknowns):
-    readings, noise = noisy(exact, level, rng)
+    readings, noise = with_noise(exact, level, rng)
     return readings, true, list(unknowns), noise
 
 
@@ -154,7 +153,7 @@ def test_intervals_are_as_wide_as_estimates_scatter(level, true, unknowns):
 @pytest.mark.slow
 def test_noise_is_stated_as_an_interval():
     """Noise that the readings show makes the interval that the same noise makes if it is stated."""
-    readings, noise = noisy(solve_sweep(SOFT), 0.01, np.random.default_rng(2))
+    readings, noise = with_noise(solve_sweep(SOFT), 0.01, np.random.default_rng(2))
     stated, seen = (calibrate(readings, SOFT, ["clamp_stiffness"], n).found["clamp_stiffness"]
                     for n in (noise, None))  # fmt: skip
     assert stated.lowest < 8.0 < stated.highest
@@ -175,7 +174,7 @@ def test_an_object_that_is_one_per_cent_off_is_noticed(times):
         true, stated = (
             Case(profile=circle(1.0, (0.0, low)), sweep=Sweep(60)) for low in (0.4, 0.41)
         )
-        readings, noise = noisy(solve_sweep(true), 0.01, np.random.default_rng(seed))
+        readings, noise = with_noise(solve_sweep(true), 0.01, np.random.default_rng(seed))
         noticed += not calibrate(readings, stated, ["flexural_rigidity"], noise).explains
         wrongly += not calibrate(readings, true, ["flexural_rigidity"], noise).explains
     assert (noticed, wrongly) == (times, 0)
@@ -183,7 +182,7 @@ def test_an_object_that_is_one_per_cent_off_is_noticed(times):
 
 @pytest.mark.slow
 def test_what_else_is_off_shows_as_a_misfit():
-    readings, noise = noisy(solve_sweep(replace(SOFT, friction=0.3)), 0.01,
+    readings, noise = with_noise(solve_sweep(replace(SOFT, friction=0.3)), 0.01,
                             np.random.default_rng(2))  # fmt: skip
     found = calibrate(readings, SOFT, ["flexural_rigidity", "clamp_stiffness"], noise)
     assert found.misfit > 3
@@ -198,7 +197,7 @@ def test_unknowns_that_trade_off_are_named():
     """A tip that is hardly bent gives way by the sum of both, L^3/(3 EI) + L^2/c."""
     first = find_events(SOFT.profile, SOFT.beam, clamp_stiffness=8.0).first_contact.foot_x
     short = solve_sweep(replace(SOFT, sweep=Sweep(60, stop=first - 0.05)))
-    readings, noise = noisy(short, 0.01, np.random.default_rng(1))
+    readings, noise = with_noise(short, 0.01, np.random.default_rng(1))
     with pytest.raises(
         InputError, match=r"unknowns = .* and .* distinguish.*correlation (1\.00|0\.99)"
     ):
@@ -247,7 +246,7 @@ def test_what_cannot_be_fitted_is_refused(readings, case, unknowns, message):
 def test_rows_of_zeros_amid_contact_are_left_out():
     """Ten dropouts filled with zeros; they made the rigidity 13 % too low."""
     case = Case(Beam(), CIRCLE, Sweep(150))
-    readings, noise = noisy(solve_sweep(case), 0.003, np.random.default_rng(7))
+    readings, noise = with_noise(solve_sweep(case), 0.003, np.random.default_rng(7))
     table = readings.table.copy()
     table.loc[range(60, 110, 5), ["force_x", "force_y", "moment_z"]] = 0.0
     found = calibrate(replace(readings, table=table), case, noise=noise)

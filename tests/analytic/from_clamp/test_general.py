@@ -24,6 +24,7 @@ from analytic import (
     relative_noise,
     solve_sweep,
 )
+from tests.analytic.noisy import noisy
 
 OBJECTS = {
     "circle": lambda size, height: circle(size, lowest=(0.1, height)),
@@ -142,8 +143,7 @@ def test_uncertainty_covers_the_error():
     rng = np.random.default_rng(0)
     covered = counted = 0
     for _ in range(20):
-        columns = {n: exact.values(n) + s * rng.standard_normal(80) for n, s in noise.items()}
-        found = reconstruct(replace(exact, table=exact.table.assign(**columns)), noise)
+        found = reconstruct(noisy(exact, noise, rng), noise)
         sure = np.isfinite(found["uncertainty"]).to_numpy() & with_readings(exact)
         error = np.hypot(
             found["contact_x"] - exact.values("contact_x"),

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from analytic import (
@@ -19,16 +18,11 @@ from analytic import (
 )
 from analytic.from_clamp.reconstruct import doubt
 from analytic.problem.named import NAMED_TABLES
+from tests.analytic.noisy import noisy
 from tests.conftest import exact_sweep
 
 RIG = Case(Beam(0.06, 5e-6, 0.2e-3), circle(0.03, lowest=(0.004, 0.025)), Sweep(150))
 FORCES = ("force_x", "force_y")
-
-
-def measured(exact, level, seed=7):
-    noise, draw = relative_noise(exact, level), np.random.default_rng(seed)
-    columns = {n: exact.values(n) + size * draw.standard_normal(150) for n, size in noise.items()}
-    return replace(exact, table=exact.table[["foot_x"]].assign(**columns))
 
 
 def mistaken(readings, **factors):
@@ -38,7 +32,9 @@ def mistaken(readings, **factors):
 
 @pytest.fixture(scope="module")
 def rig():
-    return measured(solve_sweep(RIG), 0.003)
+    exact = solve_sweep(RIG)
+    sensed = replace(exact, table=exact.table[["foot_x", *FORCES, "moment_z"]])
+    return noisy(sensed, relative_noise(exact, 0.003), 7)
 
 
 @pytest.mark.parametrize(
@@ -86,10 +82,7 @@ def test_a_contact_at_the_tip_is_at_the_tip(rig):
 @pytest.mark.parametrize("name", [name for name in NAMED_TABLES if name != "whisker"])
 def test_good_readings_are_not_doubted(name, level):
     exact = exact_sweep(name)
-    noise, draw = relative_noise(exact, level), np.random.default_rng(5)
-    stations = len(exact.table)
-    columns = {n: exact.values(n) + s * draw.standard_normal(stations) for n, s in noise.items()}
-    readings = replace(exact, table=exact.table.assign(**columns))
+    readings = noisy(exact, relative_noise(exact, level), 5)
     found = reconstruct(readings)
     assert not (found["status"] == "neither phase").any()
     assert doubt(found, readings) is None

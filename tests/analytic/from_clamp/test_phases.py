@@ -9,7 +9,6 @@ from analytic import (
     CASE_NAMES,
     CLAMP_READINGS,
     InputError,
-    Readings,
     Sweep,
     named_case,
     reconstruct,
@@ -17,25 +16,17 @@ from analytic import (
     solve_sweep,
 )
 from analytic.from_clamp.phases import judge_phases
+from tests.analytic.noisy import noisy
 from tests.conftest import exact_sweep
 
 # Shares of right stations as published for the default sweeps, less what one seed may miss.
 RIGHT = {0.0: 1.0, 1e-4: 0.995, 1e-3: 0.98, 1e-2: 0.9}
 
 
-def noisy(sweep: Readings, level: float, seed: int = 1) -> Readings:
-    rng = np.random.default_rng(seed)
-    columns = {
-        name: sweep.values(name) + size * rng.standard_normal(len(sweep.table))
-        for name, size in relative_noise(sweep, level).items()
-    }
-    return replace(sweep, table=sweep.table.assign(**columns))
-
-
 @pytest.mark.parametrize("level", RIGHT)
 def test_each_phase_is_found_in_spite_of_noise(exact, level):
     """Whether the noise is stated or not; what drowns in it is free, at first contact most."""
-    sweep = noisy(exact, level)
+    sweep = noisy(exact, relative_noise(exact, level), 1)
     true = exact.table["phase"].to_numpy(str)
     for noise in (None, relative_noise(exact, level)):
         found = reconstruct(sweep, noise)["phase"].to_numpy(str)
@@ -51,7 +42,7 @@ def test_few_stations_are_no_noise(name, stations):
     """Neighbours that differ much are no reason to lose a contact or mistake its phase."""
     exact = solve_sweep(replace(named_case(name), sweep=Sweep(stations=stations)))
     for level in (0.0, 1e-3):
-        found = reconstruct(noisy(exact, level))
+        found = reconstruct(noisy(exact, relative_noise(exact, level), 1))
         touching = (exact.table["phase"] != "free").to_numpy()
         assert found["contact_x"].notna()[touching].all()
         wrong = (found["phase"] != exact.table["phase"])[touching].sum()
@@ -104,10 +95,7 @@ def test_zeros_amid_noise_are_no_silence():
     exact = exact_sweep("catenary")
     free = (exact.table["phase"] == "free").to_numpy()
     assert free.sum() > 5
-    size, draw = relative_noise(exact, 0.01), np.random.default_rng(3)
-    columns = {n: exact.values(n) + s * draw.standard_normal(len(free)) for n, s in size.items()}
-    dropped = np.flatnonzero(free)[1:4]
-    for values in columns.values():
-        values[dropped] = 0.0
-    readings = replace(exact, table=exact.table.assign(**columns))
+    size = relative_noise(exact, 0.01)
+    readings = noisy(exact, size, 3)
+    readings.table.loc[np.flatnonzero(free)[1:4], list(size)] = 0.0
     assert (judge_phases(readings).phase[free] == "free").all()

@@ -20,6 +20,7 @@ from analytic import (
     require_beam,
     solve_sweep,
 )
+from tests.analytic.noisy import noisy
 from tests.conftest import exact_sweep
 
 
@@ -27,15 +28,6 @@ def missed(found, table):
     return np.hypot(
         found["contact_x"] - table["contact_x"], found["contact_y"] - table["contact_y"]
     )
-
-
-def noisy(sweep: Readings, noise: dict[str, float], seed: int) -> Readings:
-    rng = np.random.default_rng(seed)
-    columns = {
-        name: sweep.values(name) + deviation * rng.standard_normal(len(sweep.table))
-        for name, deviation in noise.items()
-    }
-    return Readings(sweep.table.assign(**columns), sweep.beam)
 
 
 @pytest.mark.parametrize("method", [reconstruct, reconstruct_by_decision])
@@ -53,8 +45,6 @@ def test_only_the_clamp_is_looked_at(exact):
 
 
 def test_in_other_units():
-    from dataclasses import replace
-
     case = named_case("catenary")
     beam = Beam(50.0, 7.0, 0.25)
     large = solve_sweep(replace(case, beam=beam, profile=case.profile.scaled(50.0)))

@@ -20,6 +20,7 @@ from analytic import (
     relative_noise,
     solve_sweep,
 )
+from tests.analytic.noisy import noisy
 
 
 def swept(
@@ -74,8 +75,7 @@ def errors(level, tip, times):
     exact = swept(0.3, stations=100, tip=tip).with_friction(0.0)
     noise, rng = relative_noise(exact, level), np.random.default_rng(1)
     for _ in range(times):
-        columns = {n: exact.values(n) + s * rng.standard_normal(100) for n, s in noise.items()}
-        found = estimate_friction(replace(exact, table=exact.table.assign(**columns)), noise)
+        found = estimate_friction(noisy(exact, noise, rng), noise)
         yield (found.coefficient - 0.3) / found.uncertainty
 
 
@@ -105,9 +105,8 @@ def test_the_uncertainty_of_a_cone_is_as_large_as_estimates_scatter():
 
 def test_noise_is_stated_as_uncertainty():
     exact = swept(0.3, stations=100).with_friction(0.0)
-    noise, rng = relative_noise(exact, 1e-2), np.random.default_rng(1)
-    columns = {n: exact.values(n) + s * rng.standard_normal(100) for n, s in noise.items()}
-    found = estimate_friction(replace(exact, table=exact.table.assign(**columns)), noise)
+    noise = relative_noise(exact, 1e-2)
+    found = estimate_friction(noisy(exact, noise, 1), noise)
     assert 0.003 < found.uncertainty < 0.02
     assert abs(found.coefficient - 0.3) < 2 * found.uncertainty
 

@@ -18,6 +18,7 @@ from analytic import (
     relative_noise,
     solve_sweep,
 )
+from tests.analytic.noisy import noisy
 
 CATENARY = named_case("catenary").profile
 
@@ -104,10 +105,7 @@ def test_noise_covers_the_contact(times, least):
     noise, draw = relative_noise(exact, 0.003), np.random.default_rng(4)
     covered = []
     for _ in range(times):
-        noisy = exact.table.copy()
-        for name, size in noise.items():
-            noisy[name] += size * draw.standard_normal(len(noisy))
-        found = reconstruct(replace(exact, table=noisy), noise)
+        found = reconstruct(noisy(exact, noise, draw), noise)
         there = ((exact.table["phase"] != "free") & (found["status"] == "ok")).to_numpy()
         miss = np.hypot(*(found[n] - exact.table[n] for n in ("contact_x", "contact_y")))
         covered += list((miss <= found["uncertainty"])[there])

@@ -20,6 +20,7 @@ from analytic.space import (
 )
 from analytic.space.from_clamp.noise import component_noise
 from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE, MOMENT, NORMAL
+from tests.analytic.noisy import noisy
 
 BODY = ellipsoid((2.0, 1.4, 3.2), (0.0, 2.2, 0.0))
 
@@ -37,13 +38,10 @@ def changed(readings, **columns):
 
 def with_noise(readings, share, seed):
     """As a sensor's, alike in x, y and z; and its standard deviations."""
-    random = np.random.default_rng(seed)
     noise = {}
     for names in (FORCE, MOMENT):
         noise |= dict.fromkeys(names, share * np.nanmax(np.abs(readings.values(*names))))
-    noisy = {n: readings.values(n) + random.normal(0, s, len(readings.table))
-             for n, s in noise.items()}  # fmt: skip
-    return changed(readings, **noisy), noise
+    return noisy(readings, noise, seed), noise
 
 
 def test_exact_readings_give_the_exact_body(readings):
@@ -64,8 +62,7 @@ def test_the_uncertainty_covers_the_true_contact(readings):
     random = np.random.default_rng(3)
     inside = total = 0
     for _ in range(6):
-        disturbed = {n: readings.values(n) + random.normal(0, s, len(on)) for n, s in noise.items()}
-        found = reconstruct_space(changed(readings, **disturbed), noise)
+        found = reconstruct_space(noisy(readings, noise, random), noise)
         far = np.linalg.norm(
             found[list(CONTACT_POINT)].to_numpy() - readings.values(*CONTACT_POINT), axis=1
         )
@@ -83,9 +80,9 @@ def test_free_air_is_free_whatever_the_noise(readings, share):
     assert free.sum() > 10
     assert clear.sum() > 30
     for seed in range(20):
-        noisy, noise = with_noise(readings, share, seed)
+        disturbed, noise = with_noise(readings, share, seed)
         for stated in (None, noise) if seed < 2 else (None,):  # its samples take long
-            found = reconstruct_space(noisy, stated)
+            found = reconstruct_space(disturbed, stated)
             assert (found["phase"] == "free")[free].all()
             assert found["torsion"].notna()[clear].all()
             assert found["contact_x"].notna()[clear].mean() > 0.95
@@ -97,8 +94,8 @@ def test_the_noise_that_is_seen_is_that_which_is_there(readings):
     for share in (3e-4, 1e-3, 1e-2):
         ratios = []
         for seed in range(20):
-            noisy, noise = with_noise(readings, share, seed)
-            seen = component_noise(noisy)
+            disturbed, noise = with_noise(readings, share, seed)
+            seen = component_noise(disturbed)
             ratios.append([seen[n] / noise[n] for n in noise])
         assert 0.7 < np.median(ratios) < 2
     # Stations that lie apart are no noise: every sixth one still shows none.
@@ -120,10 +117,10 @@ def test_forces_that_act_nowhere_are_no_good_readings(readings):
 
 def test_a_frame_is_wrong_beyond_noise(readings):
     """A turn of the moments about x is found beside noise of one per cent."""
-    noisy, noise = with_noise(readings, 0.01, 0)
-    x, y, z = noisy.values(*MOMENT).T
+    disturbed, noise = with_noise(readings, 0.01, 0)
+    x, y, z = disturbed.values(*MOMENT).T
     turned = dict(zip(MOMENT, (x, -z, y), strict=True))
-    found = reconstruct_space(changed(noisy, **turned), noise)
+    found = reconstruct_space(changed(disturbed, **turned), noise)
     assert "frame" in wrench_complaint(found)
 
 
