@@ -113,7 +113,7 @@ def test_support_that_is_stated_wrong_is_named():
     case = replace(named_case("catenary"), clamp_stiffness=8.0, friction=0.3)
     exact = solve_sweep(case)
     assert str(compare(exact, taken(clamp_stiffness=6.64)(case)).likely).startswith(
-        "clamp stiffness about 6.64, not 8:"
+        "clamp stiffness about 6.64 EI/L, not 8:"
     )
     assert str(compare(exact, taken(friction=0.1)(case)).likely).startswith(
         "friction about 0.1, not 0.3:"
