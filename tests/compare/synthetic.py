@@ -142,12 +142,31 @@ def classified(readings: Readings) -> Classification:
     return Classification(phase, nothing, nothing, short, nothing, readings)
 
 
+def unread(sweep: Readings) -> Readings:
+    """The sensor reads nothing, while the simulator recorded its contacts."""
+    return changed(sweep, **dict.fromkeys(CLAMP_READINGS, 0.0))
+
+
+def untrusted(sweep: Readings) -> Readings:
+    """None of the stations in contact is to be trusted; the others are free."""
+    return changed(sweep, status=np.where(sweep.table["phase"] == "free", "ok", "unsettled"))
+
+
+def mute(sweep: Readings) -> Readings:
+    """A file that has nothing but the readings, all of them zero."""
+    return replace(sweep, table=unread(sweep).table[["foot_x", *CLAMP_READINGS]])
+
+
+NOTHING = (unread, untrusted, mute)  # to compare with
+
+
+STATIONS = Sweep(128, 2.125, 2.125 - 127 * 5 / 128)  # of the next
+
+
 @cache
 def solved() -> Readings:
     """A sweep in closed form, whose phases can be judged; steps of 5/128 have no round-off."""
-    profile = named_case("parabola").profile.scaled(BEAM.length)
-    start = 2.125
-    return solve_sweep(Case(BEAM, profile, Sweep(128, start, start - 127 * 5 / 128)))
+    return solve_sweep(Case(BEAM, named_case("parabola").profile.scaled(BEAM.length), STATIONS))
 
 
 def scaled(readings: Readings, **gains: float) -> Readings:

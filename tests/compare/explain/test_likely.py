@@ -1,5 +1,6 @@
 """Where a cause begins to be named: slopes by phase, spikes, and two causes that fit alike."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -7,12 +8,14 @@ import pandas as pd
 import pytest
 from scipy.interpolate import CubicSpline
 
-from compare import Tolerances
+from analytic import Case, Readings, named_case, solve_sweep
+from compare import Tolerances, compare
+from compare.align.offset import without_offset
 from compare.explain.causes import slopes
 from compare.explain.likely import likely_cause
 from compare.judge.allowance import NoiseAllowance
 from compare.measure.measurement import measure
-from tests.compare.synthetic import changed, solved
+from tests.compare.synthetic import BEAM, STATIONS, changed, mute, solved, unread, untrusted
 
 
 def named(force_y: np.ndarray, contour: bool = False) -> str | None:
@@ -74,3 +77,44 @@ def test_half_of_the_square_has_to_jump_to_be_noise(jumps, noise):
     wave = np.sqrt(2) * np.sin(np.arange(len(force)) / 6)
     error = np.sqrt(jumps) * white + np.sqrt(1 - jumps) * wave
     assert str(named(force + 0.02 * force.max() * error * touching)).startswith("noise") == noise
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [(unread, "reads no load, though"), (untrusted, "is to be trusted"), (mute, "never touches")],
+)
+def test_who_touches_is_not_said_never_to_touch(made, said):
+    found = compare(solved(), made(solved()))
+    assert not found.agrees
+    assert said in found.likely
+    assert ("never touches" in found.likely) == (made is mute)
+
+
+def thinner(sweep: Readings) -> Readings:
+    """A vibrissa of no thickness, which claims to be the other."""
+    case = Case(BEAM, named_case("parabola").profile.scaled(BEAM.length), STATIONS)
+    return replace(solve_sweep(replace(case, beam=replace(BEAM, radius=0.0))), beam=BEAM)
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        (lambda sweep: without_offset(sweep, -0.01), r"foot_x \+5.*e-03 L off"),
+        (thinner, r"radius of the vibrissa -.*e-03 L off \(it is 5.00e-03 L\)"),
+        (
+            lambda sweep: changed(
+                sweep, moment_z=sweep.table["moment_z"] + 0.1 * sweep.table["force_x"]
+            ),
+            r"sensor \+0.05 L along the vibrissa",
+        ),
+        (
+            lambda sweep: changed(
+                sweep, moment_z=sweep.table["moment_z"] - 0.1 * sweep.table["force_y"]
+            ),
+            r"sensor \+0.05 L across the vibrissa",
+        ),
+    ],
+)
+def test_a_cause_has_its_sign_and_its_size_in_lengths_of_the_vibrissa(made, said):
+    """It is of length 2 here."""
+    assert re.search(said, str(compare(solved(), made(solved())).likely))

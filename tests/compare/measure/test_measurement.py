@@ -6,12 +6,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analytic import CLAMP_READINGS, Case, named_case
+from analytic import CLAMP_READINGS, Case, Readings, circle, named_case, solve_sweep
 from compare.align.offset import without_offset
 from compare.measure.cantilever import tip_of
 from compare.measure.conditions import as_believed
 from compare.measure.measurement import measure
 from compare.measure.repeats import repeat
+from compare.sense.noise import with_noise
 from tests.compare.synthetic import BEAM, changed, scaled, solved
 
 WINDOW = 0.02
@@ -90,6 +91,37 @@ def test_what_a_short_sweep_does_not_reach():
     on = measure(solved(), replace(changed(solved(), **longer), provenance={}), WINDOW)
     assert on.snap_off.candidate is None
     assert on.beyond() == []
+
+
+def past_a_circle(height: float) -> Readings:
+    return solve_sweep(Case(profile=circle(1.0, (0, height))))
+
+
+def test_a_phase_that_noise_alone_makes():
+    """Past a high circle the contact stays at the tip; a lower one has a Phase B of its own."""
+    exact = past_a_circle(0.65)
+    noisy = with_noise(exact, dict.fromkeys(CLAMP_READINGS, 3e-3), seed=7)
+    rig = Readings(noisy.table[["foot_x", *CLAMP_READINGS]])
+    found = measure(exact, rig, WINDOW)
+    one_sided = [name for name, one in found.transitions.items() if one.difference is None]
+    assert found.made_by_noise() == one_sided != []
+    real = measure(exact, past_a_circle(0.5), WINDOW)
+    assert real.transitions["phase_b_end"].reference is None
+    assert real.transitions["phase_b_end"].candidate is not None
+    assert real.made_by_noise() == []
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_what_is_missing_where_a_sweep_is_not_trusted(side):
+    """From before the end of Phase B on, or up to there."""
+    after = np.arange(128) > np.flatnonzero(solved().table["phase"] == "tangent")[-10]
+    for where, names in ((after, ["phase_b_end"]), (~after, ["phase_b_start"])):
+        sweeps = [solved(), solved()]
+        sweeps[side] = changed(solved(), status=np.where(where, "touches again", "ok"))
+        missing = set(measure(*sweeps, WINDOW).not_trusted())
+        assert set(names) <= missing
+        assert not {"phase_b_start", "phase_b_end"} - set(names) & missing
+    assert measure(solved(), changed(solved(), slice(0, 40)), WINDOW).not_trusted() == []
 
 
 def test_a_repeat_differs_by_its_gain_and_its_shift():

@@ -10,9 +10,11 @@ from compare import compare
 from compare.show.figures.geometry import geometry
 from compare.show.figures.phases import phase_criterion
 from compare.show.figures.readings import around_snap_off, reading_panel
+from compare.show.plane_page import plane_summary, plane_tiles
 from compare.show.report import write_report
 from tests.compare.show import sweeps
 from tests.compare.show.pages import Page, written_page
+from tests.compare.synthetic import NOTHING
 
 
 def picked(stations: slice) -> tuple[Readings, Readings]:
@@ -116,3 +118,14 @@ def test_units_are_those_of_the_beam():
     small = written_page(compare(*picked(slice(None))))
     apart = [row.split("</tr>")[0] for row in (text, small) for row in [row.split('id="apart"')[1]]]
     assert apart[0] == apart[1]
+
+
+@pytest.mark.parametrize("made", NOTHING)
+def test_nothing_is_said_of_nothing(made):
+    """No table of NaN, and nothing that is alike but the three stations without contact."""
+    found = compare(sweeps.exact("catenary"), made(sweeps.exact("catenary")))
+    assert found.phases_alike() in (None, 3 / 60)
+    blocks = [*plane_summary(found), *plane_tiles(found)]
+    assert not any("nan" in str(block).lower() for block in blocks)
+    assert not any("relative to the largest" in getattr(block, "caption", "") for block in blocks)
+    assert not any("disagreement" in getattr(block, "label", "") for block in blocks)
