@@ -1,6 +1,6 @@
 """Two sweeps set side by side: how far apart, where, and in which phase."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -126,14 +126,11 @@ class Measurement(SweepPair[Readings]):
             Names of transitions.
         """
         found = []
-        for name in ("phase_b_start", "phase_b_end"):
-            event = self.events[name]
-            if event.difference is None:
-                which = "candidate" if event.reference is None else "reference"
-                judged = self.judged[which]
-                here = judged.phase == "tangent"
-                sure = judged.shortfall[here] > _SIGMAS * judged.shortfall_tolerance[here]
-                found += [] if sure.any() else [name]
+        for name, has, _, _ in self._one_sided():
+            here = self.judged[has].phase == "tangent"
+            tolerance = self.judged[has].shortfall_tolerance[here]
+            sure = (self.judged[has].shortfall[here] > _SIGMAS * tolerance).any()
+            found += [name] if name.startswith("phase_b") and not sure else []
         return found
 
     def not_trusted(self) -> list[str]:
@@ -145,13 +142,19 @@ class Measurement(SweepPair[Readings]):
             Names of transitions, and ``"snap_off"``.
         """
         found = []
-        for name, event in self.events.items():
-            at = event.candidate if event.reference is None else event.reference
-            if at is not None and event.difference is None:
-                lacking = self.reference if event.reference is None else self.candidate
-                nearest = np.argmin(np.abs(lacking.values("foot_x") - at))
-                found += [] if lacking.trusted[nearest] else [name]
+        for name, _, lacks, at in self._one_sided():
+            sweep = self.reference if lacks == "reference" else self.candidate
+            nearest = np.argmin(np.abs(sweep.values("foot_x") - at))
+            found += [] if sweep.trusted[nearest] else [name]
         return found
+
+    def _one_sided(self) -> Iterator[tuple[str, str, str, float]]:
+        """The events that one sweep alone has: which has it, which lacks it, and where it is."""
+        for name, event in self.events.items():
+            if event.candidate is None and event.reference is not None:
+                yield name, "reference", "candidate", event.reference
+            if event.reference is None and event.candidate is not None:
+                yield name, "candidate", "reference", event.candidate
 
     def __repr__(self) -> str:
         """The sweeps, and how far they are apart."""
