@@ -269,7 +269,7 @@ def outcome(given: list[str], files: Path, folder: Path) -> tuple[int, str, dict
     done = vibrissa(*absolute(files, given), *out, cwd=folder)
     said = re.sub(r"[\d.]+ (ms|s)\b|\d+ *│", "", done.stdout) + done.stderr
     if "contacts per s" in said:  # the last column
-        said = re.sub(r"\d+ *$", "", said, flags=re.M)
+        said = re.sub(r"[ \d]*$|─", "", said, flags=re.M)
     written: dict[str, Any] = {}
     for path in sorted((folder / "out").rglob("*")):
         if path.suffix == ".parquet":
