@@ -24,6 +24,7 @@ from analytic.space.problem.readings import (
     NORMAL,
     SpatialReadings,
 )
+from mujoco_models.beams.layout import MOST_BENT
 from mujoco_models.errors import DivergedError
 from mujoco_models.space.beams import build
 from mujoco_models.space.bodies import add_body
@@ -133,9 +134,17 @@ def _row(rest: Rest, station: Station, foot: Floats, tolerance: float) -> dict[s
     unavoidable = 2 * model.shape.blur * force
     if found is not None:
         unavoidable += model.shape.off * model.contact_stiffness
-    if row["residual"] > tolerance * (1 + force) + unavoidable:
+    if row["residual"] > tolerance * (1 + force) + unavoidable or _too_coarse(model, row):
         row["status"] = "unsettled"
     return row
+
+
+def _too_coarse(model: SpaceModel, row: dict[str, Any]) -> bool:
+    """Whether a joint bends much, or the contact is in the first cell from the clamp."""
+    layout = model.layout
+    softness = float(layout.compliances[int(layout.clamp_turns)])
+    bend = softness * float(np.linalg.norm([row[name] for name in MOMENT]))
+    return bend > MOST_BENT or row["contact_arc_length"] < layout.first_cell
 
 
 def _rest(model: SpaceModel, found: Settled) -> float:

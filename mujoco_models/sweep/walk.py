@@ -1,11 +1,12 @@
 """From station to station at rest, and the snap-off found by smaller and smaller steps."""
 
+import math
 from collections import deque
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from mujoco_models.beams.layout import OF_CURVATURE
+from mujoco_models.beams.layout import MOST_BENT, OF_CURVATURE
 from mujoco_models.errors import ClampError
 from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import NOWHERE
@@ -82,19 +83,23 @@ class Walk(Generic[Model]):
         self.doubt = self._advance(target, self.model.evaluations + self._budget)
         if self.doubt is None:
             self._budget = min(2 * self._budget, numerics.budget)
-            self._shown, self.doubt = self._state, self._lost or self._near_clamp()
+            self._shown, self.doubt = self._state, self._lost or self._too_coarse()
         else:
             self._budget = max(self._budget // 2, numerics.least_budget)
             # The readings are those of the nearest that there is to a state at rest.
             self._shown = self._relax(target, self._guess(target))
 
-    def _near_clamp(self) -> str | None:
-        """Whether the contact is too near to the clamp for the segments."""
+    def _too_coarse(self) -> str | None:
+        """Whether it takes more segments: they bend much, or the contact is next to the clamp."""
         model, layout, contacts = self.model, self.model.layout, self.model.contacts()
         first = int(layout.clamp_turns)
+        bend = np.abs(self._state.angles[first:]).max()
+        if bend > MOST_BENT:
+            times = 2 ** math.ceil(math.log2(2 * bend / MOST_BENT))
+            return f"a joint bends by over {MOST_BENT:g} rad: {times} times the segments would do"
         begin = float(layout.joints[first])
         nearest = contacts.arc_length[contacts.loaded].min(initial=1.0)
-        if nearest < begin + float(layout.lengths[first]) / 2:
+        if nearest < layout.first_cell:
             return "the contact is in the first cell from the clamp, which is too coarse"
         rigid = np.column_stack([np.full(_PLACES, self._foot_x), np.linspace(0, begin, _PLACES)])
         deep = float(model.lookout.radii[0]) - _OVERLOOKED

@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 from compare.study.keep.database import NAME
-from compare.study.keep.store import TABLE_FILE
+from compare.study.keep.store import PLAN_FILE, TABLE_FILE
 from tests.compare.study.studies import COMMAND, EVENTS_ONLY, results, vibrissa
 
 pytestmark = pytest.mark.slow
@@ -129,7 +129,8 @@ def test_a_cluster_gives_the_same_table(folder, cluster, undisturbed):
 
 
 def rows_there(folder: Path) -> int:
-    return len(results(folder)) if (folder / NAME).is_file() else 0
+    begun = all((folder / name).is_file() for name in (NAME, PLAN_FILE))
+    return len(results(folder)) if begun else 0
 
 
 def test_a_scheduler_that_goes_loses_nothing(folder, cluster, command):
