@@ -1,21 +1,27 @@
 """Faults of the vibrissa, the stage and the sensor that leave a signature in the readings."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 import pandas as pd
 
-from analytic import CLAMP_READINGS
-from analytic.problem.arrays import Floats
+from analytic import CLAMP_READINGS, Readings
+from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.quantities import QUANTITIES
+from analytic.problem.table import says
 from compare.align.stations import interpolant
 from compare.explain.signatures import Fault, Resolved, unit_of
 from compare.measure.measurement import Measurement
+from compare.sense.record import direction
 
 _STEP = 1e-3  # of a length, and so on: the size that a signature is taken from
+LEVERS = {("moment_z", "force_x"): "along", ("moment_z", "force_y"): "across"}
+"""What a sensor off the clamp takes for a moment: by reading and force, which way it is off."""
 _FEWEST = 4  # stations of a stretch whose slope is worth something
 
 # What a fault is called, and the least and the largest value that it leaves, in its unit: what is
@@ -36,7 +42,7 @@ _SOLVED: dict[Fault, tuple[str, float, float]] = {
     ),
     "clamp_compliance": (
         "clamp stiffness about {inverse:.3g} EI/L, not {stated_inverse:.3g}: the clamp gives way "
-        "otherwise than stated",
+        "otherwise than stated, as with half a cell too much of {cells:.3g} at the clamp",
         0.0,
         math.inf,
     ),
@@ -50,6 +56,11 @@ _SOLVED: dict[Fault, tuple[str, float, float]] = {
         "otherwise than stated",
         -1.5,
         1.5,
+    ),
+    "height": (
+        "height of the object (or the foot's, the other way) {size:+.2e} L off",
+        -0.1,
+        0.1,
     ),
     "tip_radius": (
         "tip radius about {value:.2e} L, not {stated:.2e}: the vibrissa is a cone, or another one",
@@ -73,30 +84,123 @@ class Cause:
     # What a fault of a size adds, of the signature's shape, where that is more than linear and can
     # be solved; None if that size cannot.
     change: Callable[[float], Floats | None] | None = None
+    # What it makes, at a size, of what another fault adds at foot positions; linear in that.
+    acts: Callable[[float, Floats, Floats], Floats] | None = None
+
+    def added(self, size: float) -> Floats | None:
+        """What it adds at a size: its signature where it cannot be solved, as next to an edge."""
+        linear = size * self.signature
+        if self.change is None:
+            return linear
+        solved = self.change(size)
+        return None if solved is None else np.where(np.isfinite(solved), solved, linear)
+
+    def over(self, stations: Booleans) -> Cause:
+        """The same at some of the stations."""
+        return self._seen(lambda added: added[:, stations])
+
+    def through(self, mixes: Floats) -> Cause:
+        """The same as a sensor sees it that mixes the readings, shape (3, 3)."""
+        return self._seen(lambda added: mixes @ added)
+
+    def _seen(self, by: Callable[[Floats], Floats]) -> Cause:
+        def change(size: float) -> Floats | None:
+            solved = None if self.change is None else self.change(size)
+            return None if solved is None else by(solved)
+
+        return replace(
+            self, signature=by(self.signature), change=None if self.change is None else change
+        )
 
 
-def causes(found: Measurement, table: pd.DataFrame, true: Floats, scale: Floats) -> Iterator[Cause]:
-    """The known faults, those that need the contour last."""
-    # A radius that is a third off makes the rigidity 0.2 to 3.2 times what it should be.
-    yield Cause("flexural rigidity {:+.2%} off: all readings scale alike".format, true, -0.8, 2.2)
-    text = (
-        "foot_x {:+.2e} L off, the same at all stations: an offset (or a lag), see `--offset auto`"
-    )
-    # Farther off the readings are no longer linear in it; `offset` is there for that.
-    length = found.reference.beam.length
-    yield Cause(text.format, -length * slopes(table, true), -0.1, 0.1)
+def sensor_faults(true: Floats) -> Iterator[Cause]:
+    """What a sensor makes of true readings, shape (3, stations), over their largest magnitudes."""
     of_largest = "of its largest magnitude"
     for one, name, row in zip(np.eye(3), CLAMP_READINGS, true, strict=True):
         only = one[:, None]
         text = f"gain of {name} {{:+.2%}} off, the other readings are right"
-        yield Cause(text.format, only * row, -0.8, 2.0)
+        yield Cause(text.format, only * row, -0.8, 2.0, acts=partial(_scaled, only))
         text = f"zero of {name} off by {{:+.2e}} {of_largest} at all stations"
         yield Cause(text.format, only * np.ones_like(row), -2.0, 2.0)
         text = f"drift of {name} by {{:+.2e}} {of_largest} over the sweep"
         yield Cause(text.format, only * np.linspace(0, 1, len(row)), -2.0, 2.0)
-    exact = Resolved.of(found.reference, table["foot_x"].to_numpy())
+        text = f"{name} is not linear: a cubic part of {{:+.1%}} at its largest magnitude"
+        yield Cause(text.format, only * row**3, -1.0, 1.0)
+        for other, values in zip(CLAMP_READINGS, true, strict=True):
+            if name != other and (name, other) not in LEVERS:
+                text = f"crosstalk: {name} takes on {{:+.1%}} of {other}, each over its largest"
+                yield Cause(text.format, only * values, -0.5, 0.5)
+
+
+def physical_faults(
+    found: Measurement, table: pd.DataFrame, true: Floats, scale: Floats
+) -> Iterator[Cause]:
+    """Faults of the vibrissa and the stage, those that need the contour last."""
+    # A radius that is a third off makes the rigidity 0.2 to 3.2 times what it should be.
+    text = "flexural rigidity {:+.2%} off: all readings scale alike"
+    yield Cause(text.format, true, -0.8, 2.2, acts=partial(_scaled, np.ones((3, 1))))
+    length = found.reference.beam.length
+    x, slope = table["foot_x"].to_numpy(), length * slopes(table, true)
+    moved = partial(_moved, found.reference, x, true, scale)
+    # Farther off the readings are no longer linear in it; `offset` is there for that.
+    yield Cause(
+        "foot_x {:+.2e} L off, the same at all stations: an offset (or a lag), see `--offset "
+        "auto`".format,
+        -slope,
+        -0.1,
+        0.1,
+        lambda size: moved(-size * length),
+        lambda size, rows, x: _between(x - size * length, x, rows),
+    )
+    yield Cause(
+        "scale of the stage {:+.2%} off: foot_x is too large by that, counted from 0".format,
+        -slope * x / length,
+        -0.2,
+        0.2,
+        lambda size: moved(x / (1 + size) - x),
+        lambda size, rows, x: _between(x / (1 + size), x, rows),
+    )
+    way = direction(found.reference) * length
+    for one, name in zip(np.eye(3), CLAMP_READINGS, strict=True):
+        yield Cause(
+            f"{name} lags by {{:+.2e}} L of the foot's way: its channel is late".format,
+            -one[:, None] * slope * direction(found.reference),
+            -0.1,
+            0.1,
+            partial(_late, moved, one[:, None], way),
+            partial(_later, one[:, None], way),
+        )
+    exact = Resolved.of(found.reference, x)
     if exact is not None:
         yield from _solved(exact, table, scale)
+
+
+def _moved(
+    reference: Readings, x: Floats, true: Floats, scale: Floats, by: float | Floats
+) -> Floats:
+    """What the readings change by if the foot is farther along x; NaN next to where it is free."""
+    rows = np.stack([reference.values(name) for name in CLAMP_READINGS])
+    if "phase" in reference.table:
+        rows[:, says(reference.table["phase"], "free")] = np.nan
+    return _between(x + by, reference.values("foot_x"), rows) / scale[:, None] - true
+
+
+def _late(moved: Callable[[float], Floats], only: Floats, way: float, size: float) -> Floats:
+    return np.where(only > 0, moved(-size * way), 0.0)
+
+
+def _later(only: Floats, way: float, size: float, rows: Floats, x: Floats) -> Floats:
+    return np.where(only > 0, _between(x - size * way, x, rows), rows)
+
+
+def _scaled(by: Floats, size: float, rows: Floats, _: Floats) -> Floats:
+    return np.asarray(rows * (1 + size * by))
+
+
+def _between(there: Floats, x: Floats, rows: Floats) -> Floats:
+    """Rows between the stations that they are of."""
+    order = np.argsort(x)
+    return np.stack([np.interp(there, x[order], row[order]) for row in rows])
 
 
 def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cause]:
@@ -139,6 +243,7 @@ def _text(exact: Resolved, fault: Fault, size: float) -> str:
         value=value,
         stated=stated,
         inverse=inverse,
+        cells=abs(0.5 / (1 / inverse - 1 / stated_inverse)) if inverse != stated_inverse else 0,
         stated_inverse=stated_inverse,
     )
 

@@ -26,6 +26,8 @@ class Explanation(NamedTuple):
     """Sum of squares that it leaves."""
     sizes: int = 1
     """How many numbers were fitted."""
+    size: float = 0.0
+    """The one that was, if it is one."""
 
 
 def fitted(error: Floats, signature: Floats) -> Fitted:

@@ -30,7 +30,14 @@ _SAME = 1e-3  # of the largest magnitude; the contour must reproduce the referen
 _KEPT = 64  # sweeps, 32 kB each: a reference is often compared with many candidates
 
 Fault: TypeAlias = Literal[
-    "length", "radius", "clamp", "clamp_compliance", "friction", "natural_curvature", "tip_radius"
+    "length",
+    "radius",
+    "clamp",
+    "clamp_compliance",
+    "friction",
+    "natural_curvature",
+    "height",
+    "tip_radius",
 ]
 
 

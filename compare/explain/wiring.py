@@ -1,43 +1,75 @@
 """Mistakes of a sensor's wiring, mounting and units: what they make of true readings."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
 from analytic import CLAMP_READINGS
 from analytic.problem.arrays import Floats
-from compare.explain.fit import Explanation, fitted
+from compare.explain.fit import fitted
 
 # Units in those that they are taken for, or that are taken for them.
 _FORCES = {"mN": 1e-3, "kgf": 9.80665, "gf": 9.80665e-3, "lbf": 4.448222}
 _MOMENTS = {**_FORCES, "mN mm": 1e-6, "N mm or mN m": 1e-3, "N cm": 1e-2}
 _LENGTHS = {("N mm", "N cm"): 10.0, ("mm", "inches"): 25.4}
 _SAME_UNIT = 0.02  # of the factor; as far as a model's own error may move it
+_FURTHEST = 0.5  # L; farther off a sensor does not sit
 _DEAD = 0.01  # of the reading's variance: what of it a dead channel still shows
 _FOLLOWS = 0.5  # fraction of a small reading's variance that follows the load, if it is alive
 _ROTATION = np.radians(60)  # beyond, it is a swap of axes
 
 
-def misread(true: Floats, seen: Floats, scale: Floats, length: float) -> Iterator[Explanation]:
-    """Every mistake that needs no contour, with what it leaves unexplained."""
+@dataclass(frozen=True)
+class Misreading:
+    """What a mistake makes of true readings, over their largest magnitudes."""
+
+    text: str
+    mixes: Floats  # shape (3, 3); the readings seen, of the true ones
+    still: Floats  # shape (3, 1); what is added at all stations
+    sizes: int = 0  # how many numbers were fitted
+
+    def of(self, true: Floats) -> Floats:
+        """What is read, shape (3, stations)."""
+        return self.mixes @ true + self.still
+
+
+def misread(true: Floats, seen: Floats, scale: Floats, length: float) -> Iterator[Misreading]:
+    """Every mistake that needs no contour, as it fits best."""
     yield from _axes(true, seen, scale)
+    yield from _exchanged(true, seen)
     yield from _rotated(true, seen, scale)
     yield from _displaced(true, seen, scale, length)
     yield from _units(true, seen)
     yield from _dead(true, seen)
 
 
-def _axes(true: Floats, seen: Floats, scale: Floats) -> Iterator[Explanation]:
+def _mixed(text: str, mixes: Floats, sizes: int = 0) -> Misreading:
+    return Misreading(text, mixes, np.zeros((3, 1)), sizes)
+
+
+def _axes(true: Floats, seen: Floats, scale: Floats) -> Iterator[Misreading]:
     """Signs and the order of the two forces."""
     ratio = scale[1] / scale[0]
-    swapped = np.stack([true[1] * ratio, true[0] / ratio, true[2]])
-    for axes, swap in ((true, False), (swapped, True)):
+    swapped = np.array([[0, ratio, 0], [1 / ratio, 0, 0], [0, 0, 1]])
+    for axes, swap in ((np.eye(3), False), (swapped, True)):
         for signs in product((1, -1), repeat=3):
-            if not swap and signs == (1, 1, 1):
-                continue
-            left = float(np.sum((seen - np.array(signs)[:, None] * axes) ** 2))
-            yield Explanation(_axes_text(signs, swap), left, 0)
+            if swap or signs != (1, 1, 1):
+                yield _mixed(_axes_text(signs, swap), np.array(signs)[:, None] * axes)
+
+
+def _exchanged(true: Floats, seen: Floats) -> Iterator[Misreading]:
+    """A force taken for the moment and the moment for it, in whatever units."""
+    for force in (0, 1):
+        weight = float(true[2] @ true[2])
+        factor = float(seen[force] @ true[2]) / weight
+        if factor == 0:
+            continue
+        mixes = np.eye(3)
+        mixes[[force, 2]] = 0
+        mixes[force, 2], mixes[2, force] = factor, 1 / factor
+        yield _mixed(f"{CLAMP_READINGS[force]} and moment_z swapped", mixes, 1)
 
 
 def _axes_text(signs: tuple[int, ...], swap: bool) -> str:
@@ -54,36 +86,37 @@ def _axes_text(signs: tuple[int, ...], swap: bool) -> str:
     return f"opposite sign of {' and '.join(negated)}"
 
 
-def _rotated(true: Floats, seen: Floats, scale: Floats) -> Iterator[Explanation]:
+def _rotated(true: Floats, seen: Floats, scale: Floats) -> Iterator[Misreading]:
     """A sensor that is turned about z: forces in its axes instead of the world's."""
     x, y = true[:2] * scale[:2, None]
     a, b = seen[:2] * scale[:2, None]
     angle = float(np.arctan2(np.sum(a * y - b * x), np.sum(a * x + b * y)))
     if abs(angle) > _ROTATION:
         return
-    c, s = np.cos(angle), np.sin(angle)
-    rotated = np.stack([(c * x + s * y) / scale[0], (c * y - s * x) / scale[1], true[2]])
+    c, s, ratio = np.cos(angle), np.sin(angle), scale[1] / scale[0]
     text = f"sensor turned by {np.degrees(angle):+.3g} degrees about z: force_x and force_y mix"
-    yield Explanation(text, float(np.sum((seen - rotated) ** 2)))
+    yield _mixed(text, np.array([[c, s * ratio, 0], [-s / ratio, c, 0], [0, 0, 1]]), 1)
 
 
-def _displaced(true: Floats, seen: Floats, scale: Floats, length: float) -> Iterator[Explanation]:
+def _displaced(true: Floats, seen: Floats, scale: Floats, length: float) -> Iterator[Misreading]:
     """A moment about a point off the clamp: along the vibrissa, or across it."""
-    for force, sign, where in ((0, 1.0, "along the vibrissa"), (1, -1.0, "across the vibrissa")):
-        signature = np.zeros_like(true)
-        signature[2] = sign * true[force] * scale[force] * length / scale[2]
-        size, left, _ = fitted(seen - true, signature)
-        if abs(size) <= 0.5:
+    for force, sign, where in ((0, 1.0, "along"), (1, -1.0, "across")):
+        lever = sign * scale[force] * length / scale[2]
+        size = fitted(seen[2] - true[2], lever * true[force]).size
+        if abs(size) <= _FURTHEST:
+            mixes = np.eye(3)
+            mixes[2, force] = size * lever
             text = (
-                f"sensor {size:+.3g} L {where} off the clamp: moment_z is taken about another point"
+                f"sensor {size:+.3g} L {where} the vibrissa off the clamp: moment_z is taken about "
+                f"another point (or crosstalk of {CLAMP_READINGS[force]})"
             )
-            yield Explanation(text, left)
+            yield _mixed(text, mixes, 1)
 
 
-def _units(true: Floats, seen: Floats) -> Iterator[Explanation]:
+def _units(true: Floats, seen: Floats) -> Iterator[Misreading]:
     """One reading, both forces, or all of them, larger by factors that units differ by."""
     for groups in ([[0]], [[1]], [[2]], [[0, 1]], [[0, 1, 2]], [[0, 1], [2]]):
-        scaled, said = true.copy(), {}
+        gains, said = np.ones(3), {}
         for rows in groups:
             weight = np.sum(true[rows] ** 2)
             factor = float(np.sum(true[rows] * seen[rows]) / weight) if weight > 0 else 0.0
@@ -91,12 +124,12 @@ def _units(true: Floats, seen: Floats) -> Iterator[Explanation]:
             unit = min(known, key=lambda one: abs(np.log(max(factor, 1e-99) / one)))
             if abs(factor / unit - 1) > _SAME_UNIT:
                 continue
-            scaled[rows] *= factor
+            gains[rows] = factor
             names = " and ".join(CLAMP_READINGS[i] for i in rows)
             names = names if len(rows) < len(CLAMP_READINGS) else "all readings"
             said[unit] = f"{names} in another unit: {factor:.4g} times what is due ({known[unit]}?)"
         if len(said) == len(groups):  # of one factor it is one mistake
-            yield Explanation(", ".join(said.values()), float(np.sum((seen - scaled) ** 2)))
+            yield _mixed(", ".join(said.values()), np.diag(gains), 1)
 
 
 def _factors(of_moment: bool) -> dict[float, str]:
@@ -108,7 +141,7 @@ def _factors(of_moment: bool) -> dict[float, str]:
     return {factor: f"{name} taken for {taken_for}" for (name, taken_for), factor in pairs.items()}
 
 
-def _dead(true: Floats, seen: Floats) -> Iterator[Explanation]:
+def _dead(true: Floats, seen: Floats) -> Iterator[Misreading]:
     """A reading that does not follow the load."""
     for i, name in enumerate(CLAMP_READINGS):
         still = float(np.mean(seen[i]))
@@ -117,11 +150,11 @@ def _dead(true: Floats, seen: Floats) -> Iterator[Explanation]:
         follows = float(np.mean((seen[i] - still) * (true[i] - true[i].mean()))) ** 2
         if follows > _FOLLOWS * np.var(seen[i]) * np.var(true[i]):
             continue  # small, as in another unit, but alive
-        constant = true.copy()
-        constant[i] = still
         at = (
             f"stays at {still:.2g} of its largest magnitude"
             if abs(still) > 0.05
             else "stays at zero"
         )
-        yield Explanation(f"dead channel: {name} {at}", float(np.sum((seen - constant) ** 2)))
+        one = np.eye(3)[i]
+        mixes = np.diag(1 - one)
+        yield Misreading(f"dead channel: {name} {at}", mixes, still * one[:, None], 1)

@@ -235,6 +235,118 @@ def _two(sweep: Readings, rng: np.random.Generator) -> Readings:
     return _columns(sweep, force_x=1.08 * x, moment_z=m + 0.06 * _largest(m))
 
 
+def _exchanged(sweep: Readings, rng: np.random.Generator) -> Readings:
+    force = str(rng.choice(["force_x", "force_y"]))
+    return _columns(sweep, **{force: sweep.values("moment_z"), "moment_z": sweep.values(force)})
+
+
+def _later(values: np.ndarray, by: float) -> np.ndarray:
+    rows = np.arange(len(values))
+    return np.interp(rows - by, rows, values)
+
+
+def _late(sweep: Readings, rng: np.random.Generator) -> Readings:
+    """A delay of all channels alike."""
+    by = float(rng.uniform(2, 6))
+    return _columns(sweep, **{name: _later(sweep.values(name), by) for name in CLAMP_READINGS})
+
+
+def _gain_and_zero(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    return _zero(values * (1 + _between(rng, 0.05, 0.3)), rng)
+
+
+def _cubic(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    return values * (1 + _between(rng, 0.05, 0.3) * (values / _largest(values)) ** 2)
+
+
+def _crosstalk(sweep: Readings, rng: np.random.Generator) -> Readings:
+    onto, of = rng.permutation(CLAMP_READINGS)[:2]
+    values, other = sweep.values(onto), sweep.values(of)
+    by = _between(rng, 0.05, 0.2) * _largest(values) / _largest(other)
+    return _columns(sweep, **{onto: values + by * other})
+
+
+def _humming(sweep: Readings, rng: np.random.Generator) -> Readings:
+    turns = 2 * np.pi * np.arange(len(sweep.table)) / rng.uniform(2.5, 12)
+    return _columns(
+        sweep,
+        **{
+            name: sweep.values(name)
+            + rng.uniform(0.02, 0.05)
+            * _largest(sweep.values(name))
+            * np.sin(turns + rng.uniform(0, 6))
+            for name in CLAMP_READINGS
+        },
+    )
+
+
+def _stepped(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    step = rng.uniform(0.03, 0.08) * _largest(values)
+    return step * np.round(values / step)
+
+
+def _jittering(sweep: Readings, rng: np.random.Generator) -> Readings:
+    """The foot is not where the stage says."""
+    x = sweep.values("foot_x")
+    order = np.argsort(x)
+    there = x + rng.uniform(0.003, 0.01) * rng.standard_normal(len(x))
+    return _columns(
+        sweep,
+        **{n: np.interp(there, x[order], sweep.values(n)[order]) for n in CLAMP_READINGS},
+    )
+
+
+def _stage(sweep: Readings, rng: np.random.Generator) -> Readings:
+    return _columns(sweep, foot_x=sweep.values("foot_x") * (1 + _between(rng, 0.01, 0.04)))
+
+
+def _raised(case: Case, rng: np.random.Generator) -> Readings:
+    start, stop = (float(x) for x in case.foot_x[[0, -1]])
+    there = case.profile.raised(_between(rng, 0.005, 0.02))
+    return solve_sweep(
+        replace(case, profile=there, sweep=replace(case.sweep, start=start + 0.05, stop=stop))
+    )
+
+
+def _ended(sweep: Readings, rng: np.random.Generator) -> Readings:
+    """The vibrissa lets go well before it should."""
+    table = sweep.table.copy()
+    touching = np.flatnonzero(np.abs(sweep.values("force_y")) > 0.02)
+    last = touching[int(rng.uniform(0.6, 0.9) * len(touching))]
+    table.loc[table.index[last:], list(CLAMP_READINGS)] = 0.0
+    return replace(sweep, table=table)
+
+
+def _whole_first_cell(case: Case, rng: np.random.Generator) -> Readings:
+    """A hinge at the clamp that gives way like all others: half a cell too much."""
+    return solve_sweep(replace(case, clamp_stiffness=2.0 * float(rng.integers(10, 41))))
+
+
+def _rigid_first_half(case: Case, rng: np.random.Generator) -> Readings:
+    """No hinge in the first half cell."""
+    by = 0.5 / float(rng.integers(10, 41))
+    start, stop = (float(x) for x in case.foot_x[[0, -1]])
+    rest = replace(case, beam=replace(case.beam, length=1 - by), profile=case.profile.raised(-by))
+    sweep = solve_sweep(replace(rest, sweep=replace(case.sweep, start=start + 0.05, stop=stop)))
+    moment = sweep.values("moment_z") - by * sweep.values("force_x")
+    return replace(_columns(sweep, moment_z=moment), beam=case.beam)
+
+
+def _softer_and_rubbing(case: Case, rng: np.random.Generator) -> Readings:
+    softer = case.beam.flexural_rigidity * (1 + _between(rng, 0.1, 0.3))
+    beam = replace(case.beam, flexural_rigidity=softer)
+    swept = solve_sweep(replace(case, beam=beam, friction=float(rng.uniform(0.05, 0.2))))
+    return replace(swept, beam=case.beam)
+
+
+def _both(first: Sensor, second: Sensor) -> Sensor:
+    return lambda sweep, rng: second(first(sweep, rng), rng)
+
+
+def _on(name: str, act: Callable[[np.ndarray, np.random.Generator], np.ndarray]) -> Sensor:
+    return lambda sweep, rng: _columns(sweep, **{name: act(sweep.values(name), rng)})
+
+
 def _coarse(sweep: Readings, rng: np.random.Generator) -> Readings:
     return with_own_error(sweep, rng, rng.uniform(0.01, 0.03))
 
@@ -246,9 +358,9 @@ def _loud(sweep: Readings, rng: np.random.Generator) -> Readings:
 
 @dataclass(frozen=True)
 class Mistake:
-    """What is planted, and the words that name it; none where nothing should be named.
+    """What is planted, and the words that name it, apart by "&"; none where nothing should be.
 
-    Of two at once the larger may be named, and need not be: then `must` is False.
+    What need not be named has `must` False.
     `swept` is a sweep that is wrong itself, `sensed` what the sensor makes of it before its noise,
     and `recorded` what the file makes of that. `stated` is what the case says of the support.
     """
@@ -300,7 +412,40 @@ MISTAKES: dict[str, Mistake] = {
     "saturation": Mistake("cut off at the extreme", recorded=_one(_clipped)),
     "no contact": Mistake("never touches", recorded=_each(lambda v, rng: 0 * v)),
     "noise": Mistake("noise: differences jump", sensed=_loud),
-    "two at once": Mistake("zero of moment_z", sensed=_two, must=False),
+    "two at once": Mistake("gain of force_x & zero of moment_z", sensed=_two),
+    "exchanged with the moment": Mistake("and moment_z swapped", sensed=_exchanged),
+    "delay of one": Mistake("lags", sensed=_one(lambda v, rng: _later(v, rng.uniform(2, 6)))),
+    "delay of all": Mistake("or a lag", sensed=_late),
+    "drift of all": Mistake("drift of all", sensed=_each(_drifting)),
+    "gain and zero": Mistake("gain of & zero of", sensed=_one(_gain_and_zero)),
+    "cubic": Mistake("cubic", sensed=_one(_cubic)),
+    "crosstalk": Mistake("crosstalk", sensed=_crosstalk),
+    "hum": Mistake("hum", sensed=_humming),
+    "steps": Mistake("quantised", recorded=_one(_stepped)),
+    "jitter of the foot": Mistake("jitter", sensed=_jittering),
+    "scale of the stage": Mistake("scale of the stage", sensed=_stage),
+    "object raised": Mistake("height of the object", _raised),
+    "contact ends early": Mistake("ends early", recorded=_ended),
+    "whole first cell": Mistake("half a cell", _whole_first_cell),
+    "rigid first half cell": Mistake("rigid over its first", _rigid_first_half),
+    "rigidity and friction": Mistake("flexural rigidity & friction", _softer_and_rubbing),
+    "soft clamp and offset": Mistake(
+        "clamp stiffness & foot_x", _held(clamp_stiffness=(5.0, 20.0)), sensed=_offset
+    ),
+    "gain and drift": Mistake(
+        "gain of force_y & drift of moment_z",
+        sensed=_both(
+            _on("force_y", lambda v, rng: v * (1 + _between(rng, 0.05, 0.3))),
+            _on("moment_z", _drifting),
+        ),
+    ),
+    "sign and zero": Mistake(
+        "opposite sign of force_x & zero of force_y",
+        sensed=_both(_on("force_x", lambda v, rng: -v), _on("force_y", _zero)),
+    ),
+    "swap and rigidity": Mistake(
+        "swapped & flexural rigidity", _beam("flexural_rigidity", 0.05, 0.3), _swapped
+    ),
     "a coarse model": Mistake(None, sensed=_coarse, must=False),
 }
 
@@ -337,7 +482,7 @@ def confusion(seeds: Iterable[int]) -> pd.DataFrame:
             said = named(mistake, seed)
             if said is None:
                 silent += 1
-            elif mistake.named is not None and mistake.named in said:
+            elif mistake.named and all(word in said for word in mistake.named.split(" & ")):
                 right += 1
             else:
                 wrong[f"{seed}: {said[:60]}"] += 1

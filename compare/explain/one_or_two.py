@@ -1,0 +1,258 @@
+"""The one mistake or fault that fits a disagreement clearly best, or the two that do together."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+
+from analytic import CLAMP_READINGS
+from analytic.problem.arrays import Floats
+from compare.explain.causes import Cause, physical_faults, sensor_faults
+from compare.explain.fit import Explanation, fitted
+from compare.explain.wiring import Misreading, misread
+from compare.measure.measurement import Measurement
+
+CONVINCING = 0.9
+"""Fraction of the disagreement, its scatter apart, that one cause must explain."""
+_DISTINCT = 2.0  # the next cause must leave so many times the square that the best one leaves
+_REST = 0.1  # fraction of the disagreement, rms, that a named cause may leave without saying so
+_LITTLE = 0.02  # the same, that is not looked into for a second cause
+_ALIKE = 0.3  # fraction that a signature must explain for the fault to be solved at its size
+_SECANTS, _SETTLED = 5, 1e-3  # sweeps at most for that, and the last change of its size
+_BETTER = 6.0  # the same as _DISTINCT, for three constants to be preferred to one cause
+_TWO_BETTER = 10.0  # and for two causes
+_SHORTLIST = 4  # pairs that are solved at their sizes
+_UNSURE = 1.3  # times the scatter's square, to be on the safe side of its estimate
+_FEWEST = 10  # stations
+
+
+@dataclass(frozen=True)
+class _Weigh:
+    """How well a disagreement is explained, by sums of squares."""
+
+    all: float
+    noise: float  # what jumps in it
+
+    def beyond(self, one: Explanation) -> float:
+        return max(one.left - _UNSURE * self.noise, 0.0)
+
+    def rest(self, one: Explanation) -> float:
+        """Fraction of the disagreement that it leaves, rms."""
+        return float(np.sqrt(self.beyond(one) / self.all))
+
+    def convinces(self, one: Explanation) -> bool:
+        return self.all - one.left >= CONVINCING * (self.all - self.noise)
+
+    def alike(self, best: Explanation, other: Explanation) -> bool:
+        return other.left - _UNSURE * self.noise <= _DISTINCT * self.beyond(best)
+
+
+def one_or_two(
+    found: Measurement,
+    table: pd.DataFrame,
+    true: Floats,
+    seen: Floats,
+    scale: Floats,
+    jumps: Floats,
+) -> str | None:
+    """What fits clearly best, over the stations where all faults are known.
+
+    Readings have shape (3, stations) and are over their largest magnitudes, `scale`.
+    """
+    physical = list(physical_faults(found, table, true, scale))
+    known = np.asarray(np.isfinite([fault.signature for fault in physical]).all(axis=(0, 1)))
+    if known.sum() < _FEWEST:
+        return None
+    true, seen = true[:, known], seen[:, known]
+    foot_x = table["foot_x"].to_numpy()[known]
+    physical = [fault.over(known) for fault in physical]
+    faults = [*sensor_faults(true), *physical]
+    wirings = list(misread(true, seen, scale, found.reference.beam.length))
+    weigh = _Weigh(float(np.sum((seen - true) ** 2)), float(np.sum(jumps**2) * known.sum()))
+    tried = _alone(faults, wirings, true, seen, weigh)
+    best, rival = _best(tried, weigh)
+    if best is None or weigh.rest(best) > _LITTLE:
+        pairs = list(_both(faults, tried[: len(faults)], seen - true, foot_x))
+        wired = [pair for one in wirings for pair in _wired(one, physical, true, seen)]
+        two = _clearly(pairs + wired, weigh)
+        less = 1.0 if best and best.sizes > 1 else _TWO_BETTER
+        if two and (best is None or weigh.beyond(two) * less < weigh.beyond(best)):
+            return two.text
+    if best is None:
+        return None
+    rest = weigh.rest(best)
+    if rival is not None:
+        return f"either {best.text}; or {rival.text}" if rest <= _REST else None
+    if rest <= _REST:
+        return best.text
+    solved = any(fault.change is not None for fault in physical)
+    return f"{best.text}; {rest:.0%} of the disagreement is left" if solved else None
+
+
+def _alone(
+    faults: list[Cause], wirings: list[Misreading], true: Floats, seen: Floats, weigh: _Weigh
+) -> list[Explanation]:
+    """Every fault, then everything else that may be wrong alone."""
+    error = seen - true
+    others = [
+        *(
+            Explanation(one.text, float(np.sum((seen - one.of(true)) ** 2)), one.sizes)
+            for one in wirings
+        ),
+        *_of_all(error),
+    ]
+    fits = [_linear(fault, error) for fault in faults]
+    best, _ = _best([*fits, *others], weigh)
+    unclear = best is None or weigh.rest(best) > _REST
+    solved = [
+        _exact(fault, fit, error) if unclear or fit is best else fit
+        for fault, fit in zip(faults, fits, strict=True)
+    ]
+    return [*solved, *others]
+
+
+def _best(tried: list[Explanation], weigh: _Weigh) -> tuple[Explanation | None, Explanation | None]:
+    """The best one and its rival; None if it does not convince, or has more than one rival.
+
+    One of several sizes has to leave less by far than those of one, and then is compared with its
+    like alone.
+    """
+    tried = sorted(tried, key=lambda one: one.left)
+    best, *others = (one for one in tried if one.sizes <= 1)
+    for one in tried:
+        if one.sizes > 1 and weigh.beyond(one) * _BETTER < weigh.beyond(best):
+            best, others = one, [best]
+    rivals = [one for one in others if weigh.alike(best, one)]
+    if not weigh.convinces(best) or len(rivals) > 1:
+        return None, None
+    return best, rivals[0] if rivals else None
+
+
+def _of_all(error: Floats) -> Iterator[Explanation]:
+    """A load or a drift that is another one in each reading."""
+    stations = error.shape[1]
+    for shape, text in (
+        (np.ones(stations), "constant load at all stations ({}): gravity or zero of the sensor, "
+         "not taken off"),
+        (np.linspace(0, 1, stations), "drift of all readings over the sweep ({})"),
+    ):  # fmt: skip
+        sizes = error @ shape / (shape @ shape)
+        named = ", ".join(f"{n} {x:+.1e}" for n, x in zip(CLAMP_READINGS, sizes, strict=True))
+        left = float(np.sum((error - sizes[:, None] * shape) ** 2))
+        yield Explanation(text.format(f"{named} of their largest magnitudes"), left, len(sizes))
+
+
+def _linear(fault: Cause, error: Floats) -> Explanation:
+    """A fault by its signature; it explains nothing at a size that it cannot have."""
+    size, left, _ = fitted(error, fault.signature)
+    possible = fault.lowest <= size <= fault.highest
+    return Explanation(fault.text(size), left if possible else np.inf, size=size)
+
+
+def _exact(fault: Cause, best: Explanation, error: Floats) -> Explanation:
+    """A fault solved at its size, which secants find, if that explains more than its signature."""
+    size, _, fraction = fitted(error, fault.signature)
+    if fault.change is None or fraction < _ALIKE:
+        return best
+    last, before = 0.0, np.zeros_like(error)
+    for _ in range(_SECANTS):
+        size = float(np.clip(size, fault.lowest, fault.highest))
+        added = fault.added(size) if size != last else None
+        if added is None:
+            break
+        left = float(np.sum((error - added) ** 2))
+        if left < best.left:
+            best = Explanation(fault.text(size), left, size=size)
+        step = fitted(error - added, (added - before) / (size - last)).size
+        last, before = size, added
+        size += step
+        if abs(step) < _SETTLED * abs(size):
+            break
+    return best
+
+
+def _both(
+    faults: list[Cause], alone: list[Explanation], error: Floats, foot_x: Floats
+) -> Iterator[Explanation]:
+    """Two faults that leave least, by their signatures or beside the best one at its size."""
+    first = min(range(len(faults)), key=lambda i: alone[i].left)
+    size = alone[first].size
+    solved = faults[first].added(size) if size else None
+    beside = list(faults)
+    if solved is not None:
+        beside[first] = replace(faults[first], signature=solved / size)
+    left = _left_by_two(beside, error)
+    best, with_first = np.argsort(left, axis=None), np.argsort(left[first] + left[:, first])
+    tried = {tuple(sorted((first, int(i)))) for i in with_first[:_SHORTLIST] if i != first}
+    tried |= {divmod(int(at), len(faults)) for at in best[:_SHORTLIST]}
+    for i, j in tried:
+        yield _together(beside[i], beside[j], error, foot_x)
+    # All others, which are not solved at their sizes, do no better than the best of them.
+    rest = [at for at in best[: 2 * _SHORTLIST + 1] if divmod(int(at), len(faults)) not in tried]
+    yield Explanation("", float(left.flat[rest[0]]), 2)
+
+
+def _wired(
+    one: Misreading, physical: list[Cause], true: Floats, seen: Floats
+) -> Iterator[Explanation]:
+    """A mistake of the wiring and any fault beside it."""
+    truth = one.of(true)
+    here = [*sensor_faults(truth), *(fault.through(one.mixes) for fault in physical)]
+    fits = [_linear(fault, seen - truth) for fault in here]
+    best, fault = min(zip(fits, here, strict=True), key=lambda each: each[0].left)
+    exact = _exact(fault, best, seen - truth)
+    yield Explanation(_said(one.text, exact.text), exact.left, 2)
+    yield from (Explanation("", fit.left, 2) for fit in fits if fit is not best)
+
+
+def _clearly(tried: list[Explanation], weigh: _Weigh) -> Explanation | None:
+    """The two at once that leave least, if that is little and no others leave hardly more."""
+    best, *others = sorted(tried, key=lambda each: each.left)
+    clear = weigh.rest(best) <= _REST and not any(weigh.alike(best, one) for one in others)
+    return best if best.text and clear else None
+
+
+def _left_by_two(faults: list[Cause], error: Floats) -> Floats:
+    """What every two signatures leave, shape (faults, faults); infinite if alike."""
+    signatures = np.stack([fault.signature.ravel() for fault in faults])
+    lowest, highest = (np.array([getattr(f, n) for f in faults]) for n in ("lowest", "highest"))
+    gram, due = signatures @ signatures.T, signatures @ error.ravel()
+    i, j = np.triu_indices(len(faults), 1)
+    inner = gram[i, i] * gram[j, j] - gram[i, j] ** 2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        first = (gram[j, j] * due[i] - gram[i, j] * due[j]) / inner
+        second = (gram[i, i] * due[j] - gram[i, j] * due[i]) / inner
+    possible = inner > _SETTLED * gram[i, i] * gram[j, j]
+    for sizes, at in ((first, i), (second, j)):
+        possible &= (sizes >= lowest[at]) & (sizes <= highest[at])
+    left = np.full(gram.shape, np.inf)
+    whole = float(np.sum(error**2))
+    left[i, j] = np.where(possible, whole - first * due[i] - second * due[j], np.inf)
+    return left
+
+
+def _together(one: Cause, other: Cause, error: Floats, foot_x: Floats) -> Explanation:
+    """Two faults solved at their sizes; one may act on what the other adds."""
+    columns, best = [one.signature, other.signature], Explanation("", np.inf, 2)
+    for _ in range(_SECANTS):
+        stacked = np.stack([column.ravel() for column in columns], axis=1)
+        sizes = np.linalg.lstsq(stacked, error.ravel(), rcond=None)[0]
+        sizes = np.clip(sizes, [one.lowest, other.lowest], [one.highest, other.highest])
+        first, second = (f.added(float(x)) for f, x in zip((one, other), sizes, strict=True))
+        if first is None or second is None or not sizes.all():
+            break
+        if one.acts is not None:
+            first = first + one.acts(float(sizes[0]), second, foot_x) - second
+        elif other.acts is not None:
+            second = second + other.acts(float(sizes[1]), first, foot_x) - first
+        left = float(np.sum((error - first - second) ** 2))
+        if left < best.left:
+            texts = [fault.text(float(x)) for fault, x in zip((one, other), sizes, strict=True)]
+            best = Explanation(_said(*texts), left, 2)
+        columns = [first / sizes[0], second / sizes[1]]
+    return best
+
+
+def _said(one: str, other: str) -> str:
+    return f"two things at once: {one}; and {other}"
