@@ -19,7 +19,7 @@ RUNS := $(foreach case,$(CASES),$(foreach beam,$(BEAMS),results/runs/$(case)-$(b
 FOUND = --budget --beam $(BEAM) --out $(@D) $(ARGS) || test $$? -eq 1; test -f $@
 
 .NOTPARALLEL:
-.PHONY: help install develop run test test-slow test-all trials coverage lint docs wheel fuzz bench results again studies \
+.PHONY: help install develop run test test-slow test-all trials coverage lint docs wheel fuzz sweeps bench results again studies \
   net size reference install-mujoco3 test-mujoco3 install-engines test-engines versions clean
 
 help:            ## list the targets
@@ -67,6 +67,9 @@ wheel: develop   ## dist/*.whl
 
 fuzz: develop    ## bad input to all commands; ARGS="N SEED"
 	$(BIN)/python -m tests.fuzz.inputs $(or $(ARGS),10000 1)
+
+sweeps: develop  ## random sweeps in MuJoCo against the closed form; ARGS="N [SEED]"
+	$(BIN)/python -m tests.fuzz.sweeps $(or $(ARGS),200)
 
 bench: develop   ## speed, side by side on one core; ARGS="ratios limits analytic mujoco space stepping engines study", or million
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench $(ARGS)

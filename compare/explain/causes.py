@@ -86,6 +86,7 @@ class Cause:
     change: Callable[[float], Floats | None] | None = None
     # What it makes, at a size, of what another fault adds at foot positions; linear in that.
     acts: Callable[[float, Floats, Floats], Floats] | None = None
+    needs_contour: bool = False
 
     def added(self, size: float) -> Floats | None:
         """What it adds at a size: its signature where it cannot be solved, as next to an edge."""
@@ -218,7 +219,8 @@ def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cau
         slope = next((added / step for step, added in steps if added is not None), None)
         if slope is None:
             continue
-        yield Cause(partial(_text, exact, fault), slope, lowest, highest, change)
+        text = partial(_text, exact, fault)
+        yield Cause(text, slope, lowest, highest, change, needs_contour=True)
         if fault == "radius":
             force = np.hypot(*table[["force_x_reference", "force_y_reference"]].to_numpy().T)
             text = "softness: the contact gives way by up to {:.1e} L"

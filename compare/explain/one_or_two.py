@@ -28,7 +28,7 @@ _FEWEST = 10  # stations
 
 
 @dataclass(frozen=True)
-class _Weigh:
+class Weigh:
     """How well a disagreement is explained, by sums of squares."""
 
     all: float
@@ -69,9 +69,9 @@ def one_or_two(
     physical = [fault.over(known) for fault in physical]
     faults = [*sensor_faults(true), *physical]
     wirings = list(misread(true, seen, scale, found.reference.beam.length))
-    weigh = _Weigh(float(np.sum((seen - true) ** 2)), float(np.sum(jumps**2) * known.sum()))
+    weigh = Weigh(float(np.sum((seen - true) ** 2)), float(np.sum(jumps**2) * known.sum()))
     tried = _alone(faults, wirings, true, seen, weigh)
-    best, rival = _best(tried, weigh)
+    best, rival = best_alone(tried, weigh)
     if best is None or weigh.rest(best) > _LITTLE:
         pairs = list(_both(faults, tried[: len(faults)], seen - true, foot_x))
         wired = [pair for one in wirings for pair in _wired(one, physical, true, seen)]
@@ -86,12 +86,12 @@ def one_or_two(
         return f"either {best.text}; or {rival.text}" if rest <= _REST else None
     if rest <= _REST:
         return best.text
-    solved = any(fault.change is not None for fault in physical)
+    solved = any(fault.needs_contour for fault in physical)
     return f"{best.text}; {rest:.0%} of the disagreement is left" if solved else None
 
 
 def _alone(
-    faults: list[Cause], wirings: list[Misreading], true: Floats, seen: Floats, weigh: _Weigh
+    faults: list[Cause], wirings: list[Misreading], true: Floats, seen: Floats, weigh: Weigh
 ) -> list[Explanation]:
     """Every fault, then everything else that may be wrong alone."""
     error = seen - true
@@ -103,7 +103,7 @@ def _alone(
         *_of_all(error),
     ]
     fits = [_linear(fault, error) for fault in faults]
-    best, _ = _best([*fits, *others], weigh)
+    best, _ = best_alone([*fits, *others], weigh)
     unclear = best is None or weigh.rest(best) > _REST
     solved = [
         _exact(fault, fit, error) if unclear or fit is best else fit
@@ -112,7 +112,9 @@ def _alone(
     return [*solved, *others]
 
 
-def _best(tried: list[Explanation], weigh: _Weigh) -> tuple[Explanation | None, Explanation | None]:
+def best_alone(
+    tried: list[Explanation], weigh: Weigh
+) -> tuple[Explanation | None, Explanation | None]:
     """The best one and its rival; None if it does not convince, or has more than one rival.
 
     One of several sizes has to leave less by far than those of one, and then is compared with its
@@ -206,7 +208,7 @@ def _wired(
     yield from (Explanation("", fit.left, 2) for fit in fits if fit is not best)
 
 
-def _clearly(tried: list[Explanation], weigh: _Weigh) -> Explanation | None:
+def _clearly(tried: list[Explanation], weigh: Weigh) -> Explanation | None:
     """The two at once that leave least, if that is little and no others leave hardly more."""
     best, *others = sorted(tried, key=lambda each: each.left)
     clear = weigh.rest(best) <= _REST and not any(weigh.alike(best, one) for one in others)
