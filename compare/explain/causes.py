@@ -219,8 +219,8 @@ def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cau
         slope = next((added / step for step, added in steps if added is not None), None)
         if slope is None:
             continue
-        text = partial(_text, exact, fault)
-        yield Cause(text, slope, lowest, highest, change, needs_contour=True)
+        named = partial(_text, exact, fault)
+        yield Cause(named, slope, lowest, highest, change, needs_contour=True)
         if fault == "radius":
             force = np.hypot(*table[["force_x_reference", "force_y_reference"]].to_numpy().T)
             text = "softness: the contact gives way by up to {:.1e} L"

@@ -35,6 +35,7 @@ class Weigh:
     noise: float  # what jumps in it
 
     def beyond(self, one: Explanation) -> float:
+        """What it leaves, its scatter apart."""
         return max(one.left - _UNSURE * self.noise, 0.0)
 
     def rest(self, one: Explanation) -> float:
@@ -42,9 +43,11 @@ class Weigh:
         return float(np.sqrt(self.beyond(one) / self.all))
 
     def convinces(self, one: Explanation) -> bool:
+        """Whether it explains nearly all."""
         return self.all - one.left >= CONVINCING * (self.all - self.noise)
 
     def alike(self, best: Explanation, other: Explanation) -> bool:
+        """Whether another one leaves hardly more than the best."""
         return other.left - _UNSURE * self.noise <= _DISTINCT * self.beyond(best)
 
 
