@@ -7,7 +7,7 @@ import numpy as np
 
 from analytic import CLAMP_READINGS, Readings
 from analytic.problem.arrays import Floats
-from compare.explain.changes import SHARPER, STIFFER
+from compare.explain.changes import SHARPER
 from compare.explain.convergence import convergence
 from compare.explain.oscillation import without_oscillation
 from compare.explain.parts import (
@@ -41,9 +41,15 @@ PARTS = (
 )
 REFINED = ("stiff", "two", "four")
 """The sweeps that differ in their segments alone, each with twice those of the one before."""
-UNRESOLVED = 5e-5
-"""What may stay unexplained in any case, of a reading's largest magnitude."""
+UNRESOLVED = 1e-5
+"""What no budget resolves, of a reading's largest magnitude."""
+SMALL = 5e-5
+"""What counts as small in any case."""
 _LEAST_ORDER = 1.0  # of a naive clamp; two of one at mid-cell
+_SEEN = 0.1  # from a whole number, as an order that is seen
+# Two combinations of the three sweeps hold errors of one size, each over ten swings and more: for
+# 95 % of such pairs their rms differ by less (F(10, 10) = 3.0).
+_COVERS = 1.7
 _LEFT, _UNSURE = 0.1, 1 / 3
 """What may stay unexplained of a disagreement that counts as explained, and how uncertain it is."""
 
@@ -52,8 +58,8 @@ _LEFT, _UNSURE = 0.1, 1 / 3
 class Budget(Parted):
     """What the disagreement of two sweeps is made of; ``corner`` only if there are sharp ones.
 
-    It closes if both what is unexplained and its uncertainty are small against the disagreement or
-    against `UNRESOLVED`.
+    It closes if what is unexplained lies within its uncertainty and `UNRESOLVED`, and both it and
+    its uncertainty are small against the disagreement, or less than `SMALL`.
     """
 
     by_phase: dict[str, dict[str, dict[str, float]]]  # root mean square by part, reading and phase
@@ -98,15 +104,20 @@ def budget(
     limit, doubt = _limit(refined, power)
     _, middle, finest = refined
     from_two = finest + (finest - middle) / (2**order - 1)
+    # Only an order that is seen makes the limit better than the finest of the three.
+    seen = abs(order - round(order)) < _SEEN
+    beyond = SAFETY * (rms(limit - from_two) + (0 if seen else rms(finest - limit)))
     hard = "sharp" if "sharp" in run else "smooth"  # but for its contacts, which are harder next
     unrest = run["base"] - run["calm"]
+    # As segments are refined, nothing is left of the load's hand-over from bead to bead.
+    still = shifted_inward(signatures, _sunk(runs["stiff"], shared), beam.radius / beam.length)
     steps: dict[str, Step] = {
         "discretisation": (
             run["stiff"] - limit,
-            np.hypot(SAFETY * (rms(finest - limit) + rms(limit - from_two)), doubt),
+            np.hypot(beyond, doubt),
         ),
         "facets": (run["calm"] - run["smooth"], rms(unrest)),
-        "softness": extrapolated(run[hard], run["stiff"], STIFFER),
+        "softness": (run[hard] - run["stiff"] + still, rms(still)),
         "unrest": as_uncertain(unrest),
         # What is out of balance shows in the sensors, too: that is unrest, and counted there.
         "sensor": as_uncertain(_sensor(runs["calm"], shared)),
@@ -119,13 +130,11 @@ def budget(
     unresolved, whole = np.hypot(unsure, UNRESOLVED), rms(total)
     within = bool((rms(rest) <= unresolved).all())
     resolved = bool(
-        (rms(rest) <= np.hypot(UNRESOLVED, _LEFT * whole)).all()
-        and (unsure <= np.hypot(UNRESOLVED, _UNSURE * whole)).all()
+        (rms(rest) <= np.hypot(SMALL, _LEFT * whole)).all()
+        and (unsure <= np.hypot(SMALL, _UNSURE * whole)).all()
     )
     phase = exact.table["phase"].to_numpy()[kept]
-    shifted = shifted_inward(
-        signatures, base.values("penetration")[kept] / beam.length, beam.radius / beam.length
-    )
+    shifted = shifted_inward(signatures, _sunk(base, shared), beam.radius / beam.length)
     checks = {"softness": shifted}
     if faceted is not None:
         # A vibrissa curved towards the object touches a straight facet twice, with no readings.
@@ -163,6 +172,11 @@ def largest_rms(
     return float(rms(Shared(exact, kept).off(candidate)).max())
 
 
+def _sunk(run: Readings, shared: Shared) -> Floats:
+    """How deep the contact gives way [L]."""
+    return np.asarray(run.values("penetration")[shared.kept] / run.beam.length)
+
+
 def _joints(runs: Mapping[str, Readings]) -> list[Floats] | None:
     """Where each refined sweep's joints are, if all of them say so [L]."""
     recorded = [runs[name].provenance.get("joints") for name in REFINED]
@@ -184,7 +198,7 @@ def _limit(refined: list[Floats], power: Floats) -> tuple[Floats, Floats]:
     stacked = np.stack(refined)
     errors = rms(np.tensordot(apart, stacked, axes=1)) / np.linalg.norm(apart * power)
     limit = np.tensordot(weights, stacked, axes=1)
-    return np.asarray(limit), np.asarray(errors * np.linalg.norm(weights * power))
+    return np.asarray(limit), np.asarray(_COVERS * errors * np.linalg.norm(weights * power))
 
 
 def _sensor(run: Readings, shared: Shared) -> Floats:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic import Readings
-from compare.explain.budget import UNRESOLVED
+from compare.explain.budget import SMALL
 from compare.explain.parts import (
     SAFETY,
     Parted,
@@ -143,7 +143,7 @@ def motion_budget(
         doubt = rms(run["base"] - run["undamped"])
         steps["damping"] = steps["damping"][0], doubt
         steps["rate"] = steps["rate"][0], np.hypot(steps["rate"][1], doubt)
-    allowed = np.hypot(UNRESOLVED, np.maximum(unsure, _LEFT * rms(total)))
+    allowed = np.hypot(SMALL, np.maximum(unsure, _LEFT * rms(total)))
     sure = {
         name: float(np.linalg.norm(np.maximum(rms(signal) - uncertainty, 0.0)))
         for name, (signal, uncertainty) in steps.items()

@@ -43,6 +43,11 @@ class Parted:
     blame: str  # the part that dominates
     stations: int  # compared stations
 
+    @property
+    def left(self) -> Part:
+        """What stays unexplained, of the reading where it is most."""
+        return max(self.parts["unexplained"].values(), key=lambda part: part.rms)
+
     def to_dict(self) -> dict[str, Any]:
         """What the budget's JSON file holds."""
         return asdict(self)

@@ -16,12 +16,11 @@ _RMS = "relative to each reading's largest magnitude"
 
 def headline(found: Budget) -> str:
     """What a budget comes to, in one sentence."""
-    rest = short(max(part.rms for part in found.parts["unexplained"].values()))
+    rest = f"{short(found.left.rms)} +- {short(found.left.uncertainty)}"
     if found.closes:
         remains = f"at most {rest} stays unexplained, and the budget closes"
     elif found.undecided:
-        unsure = short(max(part.uncertainty for part in found.parts["unexplained"].values()))
-        remains = f"the budget is undecided: {rest} +- {unsure} stays unexplained"
+        remains = f"the budget is undecided: {rest} stays unexplained"
     else:
         remains = f"{rest} stays unexplained, too much for the budget to close"
     return f"The largest part is {found.blame}; {remains}"

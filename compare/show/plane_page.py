@@ -102,10 +102,10 @@ def plane_tiles(comparison: Comparison, budget: Budget | None = None) -> Iterato
     if noise:
         yield Tile("noise", short(noise), "of the noisiest reading, allowed for in the limits")
     if budget is not None:
-        rest = max(part.rms for part in budget.parts["unexplained"].values())
+        rest = f"{short(budget.left.rms)} +- {short(budget.left.uncertainty)}"
         still_open = "is undecided" if budget.undecided else "does not close"
         said = "closes" if budget.closes else still_open
-        yield Tile("stays unexplained", short(rest), f"the budget {said}")
+        yield Tile("stays unexplained", rest, f"the budget {said}")
 
 
 def _parts(comparison: Comparison, budget: Budget | None) -> Iterator[Block]:
@@ -120,7 +120,7 @@ def _parts(comparison: Comparison, budget: Budget | None) -> Iterator[Block]:
         "Each part is measured by a controlled change of its own and combines with the others as a "
         "signal over the sweep, so sizes do not add up; the axis is logarithmic. Orange: the "
         "largest part. Last: what no part explains. Whiskers: uncertainty. Dashed: the whole "
-        f"disagreement. Grey: up to {short(UNRESOLVED)} may stay unexplained.",
+        f"disagreement. Grey: less than {short(UNRESOLVED)} is not resolved.",
         "three",
     )
     yield table

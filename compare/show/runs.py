@@ -53,9 +53,12 @@ def _overview(runs: Sequence[RunRecord]) -> Iterator[str]:
         )
     budgets = [run.budget for run in runs if run.budget is not None]
     if budgets:
-        rest = short(max(run.part("unexplained") or 0.0 for run in runs))
+        rest = max((one.left for one in budgets), key=lambda part: part.rms)
         closed = sum(one.closes for one in budgets)
-        yield f"{closed} of {len(budgets)} budgets close; at most {rest} is unexplained."
+        yield (
+            f"{closed} of {len(budgets)} budgets close; at most {short(rest.rms)} +- "
+            f"{short(rest.uncertainty)} is unexplained."
+        )
 
 
 def _runs(runs: Sequence[RunRecord]) -> Iterator[Block]:
@@ -92,7 +95,7 @@ def _runs_table(runs: Sequence[RunRecord]) -> Table:
             short(run.snap_off),
             "none" if run.phases_right is None else percent(run.phases_right),
             "not measured" if run.budget is None else _largest_part(run.budget),
-            "not measured" if run.budget is None else short(run.part("unexplained")),
+            "not measured" if run.budget is None else _left(run.budget),
             "" if run.seconds_a_station is None else f"{1e3 * run.seconds_a_station:.2g}",
         )
         for run in runs
@@ -102,6 +105,10 @@ def _runs_table(runs: Sequence[RunRecord]) -> Table:
         "largest part", "unexplained", "ms a station",
     )  # fmt: skip
     return Table("Each run against its closed form", head, rows, words=(0, 1, 8))
+
+
+def _left(budget: Budget) -> str:
+    return f"{short(budget.left.rms)} +- {short(budget.left.uncertainty)}"
 
 
 def _largest_part(budget: Budget) -> str:

@@ -84,11 +84,9 @@ def _doubt(comparison: Comparison, budget: Budget) -> str:
     """What the budget leaves open, and where it is about fewer stations than the comparison."""
     said = ""
     if budget.undecided or not (budget.closes or budget.blame == "unexplained"):
-        parts = budget.parts["unexplained"].values()
-        rest, unsure = (short(max(getattr(p, n) for p in parts)) for n in ("rms", "uncertainty"))
-        said = f", but {rest} stays unexplained"
-        if budget.undecided:
-            said = f", but the budget is undecided: {rest} +- {unsure} stays unexplained"
+        rest = f"{short(budget.left.rms)} +- {short(budget.left.uncertainty)}"
+        undecided = "the budget is undecided: " if budget.undecided else ""
+        said = f", but {undecided}{rest} stays unexplained"
     compared = comparison.stations
     if budget.stations < _NEARLY_ALL * compared:
         said += f" (over the {budget.stations} of {compared} stations that all its sweeps share)"

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from analytic import CASE_NAMES, named_case
-from compare.explain.budget import UNRESOLVED
+from compare.explain.budget import SMALL
 from compare.simulate.budgets import measure_budget
 from mujoco_models import Settings
 
@@ -61,4 +61,4 @@ def assert_closed(name, vibrissa, segments, stations, least, points=1600):
     assert found.blame in ("discretisation", "facets")
     assert found.order > 1.8
     for part in found.parts["unexplained"].values():
-        assert part.rms < UNRESOLVED
+        assert part.rms < SMALL
