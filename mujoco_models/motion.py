@@ -100,7 +100,7 @@ class Motion:
             check_word(f"motion.{name}", getattr(self, name), allowed)
         for name, low, high, remedy in (
             ("speed", 1e-6, 10, "in L/T1; 0.004 is a slow whisk"),
-            ("timestep", 1e-7, 1, "in T1; 0.02 is usual"),
+            ("timestep", 1e-7, 0.1, "in T1, the slowest period; 0.02 is usual"),
             ("damping_ratio", 0, 100, "0.05 is usual"),
             ("armature", 0, 1e6, "explicit integrators need about 1"),
             ("solimp", 0.001, 0.9999, "0.9 is usual"),

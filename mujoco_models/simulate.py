@@ -278,7 +278,7 @@ def inspect_model(
     Parameters
     ----------
     path : str or Path
-        MJCF or URDF.
+        An MJCF or URDF file, or the name of a shipped model.
     foot : str, optional
         The body that holds the vibrissa. What is not named is looked for.
     force, torque : str, optional
@@ -299,8 +299,9 @@ def inspect_model(
         If the model, a name of it or the vibrissa cannot be used.
     """
     from mujoco_models.inspect import measure, parts
+    from mujoco_models.user_model.shipped import find_model
 
-    return measure.inspect_model(Path(path), parts.Names(foot, force, torque, geoms, site))
+    return measure.inspect_model(find_model(path), parts.Names(foot, force, torque, geoms, site))
 
 
 def simulate_model(

@@ -8,6 +8,7 @@ import numpy as np
 
 from analytic import (
     CLAMP_READINGS,
+    InputError,
     Readings,
     estimate_friction,
     reconstruct,
@@ -61,6 +62,13 @@ def in_the_plane(
     methods: list[str],
 ) -> None:
     """Find the contour by each method, and write and print it."""
+    if not readings.trusted.any():
+        raise InputError(
+            readings.source,
+            f"{len(readings.table)} stations",
+            "with a finite force_x, force_y and moment_z, and status ok, at some",
+            "see which column lacks its numbers",
+        )
     level = None if noise is None else relative_noise(readings, noise)
     if friction is not None:
         readings = _rubbing(readings, friction, level)

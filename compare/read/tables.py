@@ -37,7 +37,7 @@ from compare.read.uncertainty import UncertaintyTable, uncertainties_of
 from mujoco_models.motion import Motion
 from mujoco_models.settings import Settings
 from mujoco_models.user_model.names import ContactKind, OwnModel
-from mujoco_models.user_model.shipped import shipped_models
+from mujoco_models.user_model.shipped import find_model
 
 
 class BeamTable(Table):
@@ -114,7 +114,7 @@ class ModelTable(Table):
         """The model."""
         names = self.model_dump(exclude={"file"})
         path = folder / self.file
-        return OwnModel(path if path.exists() else shipped_models().get(self.file, path), **names)
+        return OwnModel(path if path.exists() else find_model(self.file), **names)
 
 
 def _of_known_engines(names: str) -> str:

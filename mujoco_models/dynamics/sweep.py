@@ -25,6 +25,8 @@ from mujoco_models.obstacles.kinds import place
 from mujoco_models.quiet import unlogged
 from mujoco_models.settings import Settings
 
+_MOST_STEPS = 2e7  # some ten minutes
+
 
 def run_motion(
     case: Case,
@@ -58,6 +60,14 @@ def _prepared(case: Case, motion: Motion, settings: Settings) -> tuple["Passes",
     if motion.friction is None:
         motion = replace(motion, friction=case.friction)
     record = StationMeans(case.foot_x / case.beam.length, motion.average)
+    steps = float(np.ptp(case.foot_x)) / case.beam.length / motion.speed / motion.timestep
+    if steps > _MOST_STEPS:
+        raise InputError(
+            "motion.speed",
+            motion.speed,
+            f"fast enough for a sweep of {_MOST_STEPS:.0e} steps, not {steps:.1e}",
+            "0.004 L/T1 is a slow whisk; a sweep at rest has no speed",
+        )
     model = _set_out(case, motion, settings, start_of(record, motion))
     source, about = f"mujoco {settings.beam} in motion", {"settings": asdict(settings)}
     return Passes(model, case, motion, source, about), record

@@ -4,6 +4,11 @@ from importlib.resources import files
 from pathlib import Path
 
 
+def find_model(name: str | Path) -> Path:
+    """The file of that name, or the shipped model."""
+    return Path(name) if Path(name).exists() else shipped_models().get(str(name), Path(name))
+
+
 def shipped_models() -> dict[str, Path]:
     """Models as people write them, which come with this package.
 

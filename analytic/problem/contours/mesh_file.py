@@ -109,7 +109,7 @@ def _load(file: Path) -> _Read:
     import trimesh
 
     kind = file.suffix.lower().removeprefix(".")
-    options = {"skip_materials": True} if kind == "obj" else {}
+    options = {"skip_materials": True} if kind in ("obj", "ply") else {}
     try:
         # A glTF may name files beside it.
         source = file if kind in ("glb", "gltf") else _in_ascii(file.read_bytes(), kind)

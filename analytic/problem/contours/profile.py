@@ -48,8 +48,8 @@ class Profile(Contour):
         there.
     """
 
-    xi: Coordinate
-    eta: Coordinate
+    xi: Coordinate = field(repr=False)
+    eta: Coordinate = field(repr=False)
     alpha_range: tuple[float, float]
     radius_of_curvature: Coordinate | None = field(default=None, repr=False)
     label: str = "custom profile"

@@ -113,7 +113,10 @@ def test_measured_readings_without_budget_or_provenance():
             planted("unexplained", suspects=(Suspect("length", 0.004, 0.99),)),
             "length does if it is +0.40% off in mujoco chain: check it.",
         ),
-        (planted(unexplained=3e-4, closes=False), "2.5e-4, but 3.0e-4 stays unexplained."),
+        (
+            planted(unexplained=3e-4, closes=False),
+            "2.5e-4, but 3.0e-4 +- 3.0e-5 stays unexplained.",
+        ),
     ],
 )
 def test_the_verdict_can_be_acted_on(comparison, budget, said):
