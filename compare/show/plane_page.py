@@ -37,7 +37,7 @@ from compare.show.figures.validation import validation_picture
 from compare.show.numbers import percent, place, quantity, sentence, short, words
 from compare.show.style import PHASE_LETTERS, SYMBOLS
 from compare.show.validity import validation_lines, validation_tables
-from compare.show.verdict import absent_transitions, verdict, why, worst_reading
+from compare.show.verdict import absent_transitions, scope, verdict, why, worst_reading
 
 
 def plane_document(
@@ -49,7 +49,9 @@ def plane_document(
     return comparison_document(
         comparison,
         f"{contour}; the figures rest on {comparison.stations} stations.",
-        replace(found, remarks=[*found.remarks, *validation_lines(comparison)[:1]]),
+        replace(
+            found, remarks=[*found.remarks, *scope(comparison), *validation_lines(comparison)[:1]]
+        ),
         plane_tiles(comparison, budget),
         ("budget", "What the disagreement is made of", _parts(comparison, budget)),
         (

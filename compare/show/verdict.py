@@ -76,6 +76,16 @@ def absent_transitions(comparison: Comparison) -> Iterator[str]:
             yield f"{source} has no end of Phase B: the last contact is tangential still"
 
 
+def scope(comparison: Comparison) -> Iterator[str]:
+    """What an agreement of MuJoCo at rest verifies, and what it does not."""
+    if _is_mujoco(comparison) and not comparison.candidate.source.endswith("in motion"):
+        yield (
+            "This verifies MuJoCo's balance of such a beam, with contacts and rest as this testbed "
+            "makes them. A model with MuJoCo's own contacts may be off by half: `vibrissa inspect` "
+            "measures yours."
+        )
+
+
 def _is_mujoco(comparison: Comparison) -> bool:
     return comparison.candidate.source.startswith("mujoco ")
 
