@@ -34,11 +34,9 @@ if TYPE_CHECKING:
     from analytic import Case, Readings
     from analytic.space import SpatialCase, SpatialReadings
     from compare.align.frames import Frame
-    from compare.comparison import Comparison
-    from compare.comparison_in_space import SpatialComparison
+    from compare.comparison import Comparison, SpatialComparison
     from compare.explain.budget import Budget
-    from compare.judge.spatial import SpatialTolerances
-    from compare.judge.tolerances import Tolerances
+    from compare.judge.tolerances import SpatialTolerances, Tolerances
     from compare.read.job import Job, SpaceJob
     from mujoco_models.allowed import BeamKind
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from analytic.problem.files import write_whole
-from compare.comparison import Comparison, compare
-from compare.comparison_in_space import SpatialComparison, compare_space
+from compare.comparison import Comparison, SpatialComparison, compare, compare_space
 from compare.explain.split_space import Parts
 from compare.read.run_folder import StoredSpatialRun, read_run
 from compare.show import report

@@ -4,8 +4,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 from analytic import Case
-from compare.judge.spatial import SpatialTolerances
-from compare.judge.tolerances import Tolerances
+from compare.judge.tolerances import SpatialTolerances, Tolerances
 from compare.read.kinds import MODEL, MOTION, PLANE, SPACE
 from engines.known import named_engines
 from mujoco_models.settings import Settings

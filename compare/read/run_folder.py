@@ -16,8 +16,7 @@ from analytic.space import SpatialReadings
 from compare.align.frames import Frame
 from compare.explain.budget import Budget
 from compare.explain.split_space import Parts
-from compare.judge.spatial import SpatialTolerances
-from compare.judge.tolerances import Limit, Tolerances
+from compare.judge.tolerances import Limit, SpatialTolerances, Tolerances
 from compare.read.space_readings import is_spatial
 from compare.validate.validation import Validation
 

@@ -19,7 +19,7 @@ from analytic.space import (
     prism,
     sphere,
 )
-from compare.judge.spatial import SpatialTolerances
+from compare.judge.tolerances import SpatialTolerances
 from compare.read.complaints import name_of
 from compare.read.job import SpaceJob
 from compare.read.limits import tolerances_of

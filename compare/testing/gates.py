@@ -6,10 +6,8 @@ from typing import TYPE_CHECKING, Literal, overload
 
 from analytic import InputError, Readings
 from analytic.space import SpatialReadings
-from compare.comparison import Comparison, compare
-from compare.comparison_in_space import SpatialComparison
-from compare.judge.spatial import SpatialTolerances
-from compare.judge.tolerances import Tolerances
+from compare.comparison import Comparison, SpatialComparison, compare
+from compare.judge.tolerances import SpatialTolerances, Tolerances
 from compare.show.verdict import why
 
 if TYPE_CHECKING:
