@@ -22,8 +22,7 @@ from analytic import (
 from compare.explain.budget import Budget, budget
 from compare.explain.changes import controlled_changes
 from compare.explain.variations import on_polygon, variations
-from compare.simulate.budgets import measure_budget
-from compare.simulate.controlled import has_corners, has_primitive
+from compare.simulate.budgets import has_corners, has_primitive, measure_budget
 from mujoco_models import Settings, simulate_sweep
 
 pytestmark = pytest.mark.usefixtures("in_turn")
