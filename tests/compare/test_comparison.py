@@ -20,10 +20,7 @@ from compare import Tolerances, classify, compare
 from compare.sense.noise import with_noise
 from compare.sense.phases import confusion
 from compare.sense.transitions import locate_transitions
-
-
-def changed(sweep: Readings, **columns) -> Readings:
-    return Readings(sweep.table.assign(**columns), sweep.beam, "changed", sweep.provenance)
+from tests.compare.synthetic import changed
 
 
 def noisy(sweep: Readings, level: float) -> Readings:
