@@ -78,11 +78,6 @@ def test_an_early_release_is_found(exact):
     assert found.alignment.counts["one_free"] > 0
 
 
-def test_phases_of_exact_readings(exact):
-    judged = classify(exact)
-    assert (judged.phase == exact.table["phase"]).all()
-
-
 @pytest.mark.parametrize(("level", "share"), [(1e-4, 0.99), (1e-3, 0.98), (1e-2, 0.91)])
 def test_phases_of_noisy_readings(exact, level, share):
     """Observed: 1, 0.99, 0.925. At 1 % the first stations' force drowns, and transitions blur."""
