@@ -34,20 +34,17 @@ if TYPE_CHECKING:
     from analytic import Case, Readings
     from analytic.space import SpatialCase, SpatialReadings
     from compare.align.frames import Frame
-    from compare.comparison import Comparison
-    from compare.comparison_in_space import SpatialComparison
+    from compare.comparison import Comparison, SpatialComparison
     from compare.explain.budget import Budget
-    from compare.judge.spatial import SpatialTolerances
-    from compare.judge.tolerances import Tolerances
-    from compare.read.job import Job, SpaceJob
+    from compare.judge.tolerances import SpatialTolerances, Tolerances
+    from compare.read.job import Job
     from mujoco_models.allowed import BeamKind
 
     Sweeps = dict[tuple[object, ...], Any]
 
 _PACKAGES = ("analytic", "mujoco_models", "engines", "compare")
 _RECORD = "vibrissa"
-_JOB = pytest.StashKey["Job"]()
-_SPACE_JOB = pytest.StashKey["SpaceJob"]()
+_JOBS = pytest.StashKey[dict[str, Any]]()  # what is chosen, by fixture
 
 
 class _Choice(NamedTuple):
@@ -157,17 +154,14 @@ def _every(one: _Choice) -> list[str]:
 @pytest.fixture
 def vibrissa_case(request: pytest.FixtureRequest) -> Case:
     """The problem: an `analytic.Case`, one test for each that marker or option names."""
-    if not hasattr(request, "param"):
-        pytest.fail("vibrissa_case: no case is chosen; let the test itself use it", pytrace=False)
-    job: Job = _stated(_CASE, request.param)
-    request.node.stash[_JOB] = job
-    return job.case
+    case: Case = _chosen(request, _CASE)
+    return case
 
 
 @pytest.fixture
 def vibrissa_job(request: pytest.FixtureRequest, vibrissa_case: Case) -> Job:
     """The case with MuJoCo's settings and the tolerances that its file states."""
-    job: Job = request.node.stash[_JOB]
+    job: Job = request.node.stash[_JOBS][_CASE.fixture]
     return job
 
 
@@ -184,7 +178,9 @@ def vibrissa_sweep(vibrissa_case: Case, vibrissa_sweeps: Sweeps) -> Callable[...
     ``vibrissa_sweep("chain", segments=80)`` is MuJoCo's; further words are those of
     `mujoco_models.Settings`. Each sweep is made once a session.
     """
-    return _sweep_of(vibrissa_case, vibrissa_sweeps)
+    solve, ours = _ours("analytic").solve_sweep, _ours("mujoco_models")
+    numerics, key = ours.Settings(), vibrissa_case.digest
+    return _swept(vibrissa_sweeps, key, vibrissa_case, numerics, solve, ours.simulate_sweep)
 
 
 @pytest.fixture
@@ -229,15 +225,8 @@ def vibrissa_engine_sweep(
 @pytest.fixture
 def vibrissa_space_case(request: pytest.FixtureRequest) -> SpatialCase:
     """A problem in space: an `analytic.space.SpatialCase`, one test for each that is chosen."""
-    if not hasattr(request, "param"):
-        pytest.fail(
-            "vibrissa_space_case: no case is chosen; name files with --vibrissa-space FILE or "
-            "@pytest.mark.vibrissa_space(FILE), and let the test itself use it",
-            pytrace=False,
-        )
-    job: SpaceJob = _stated(_SPACE_CASE, request.param)
-    request.node.stash[_SPACE_JOB] = job
-    return job.case
+    case: SpatialCase = _chosen(request, _SPACE_CASE)
+    return case
 
 
 @pytest.fixture
@@ -250,7 +239,11 @@ def vibrissa_space_sweep(
     `mujoco_models.SpatialSettings`, and change the settings of the case. Each sweep is made once a
     session.
     """
-    return _space_sweep_of(request, vibrissa_sweeps)
+    job = request.node.stash[_JOBS][_SPACE_CASE.fixture]
+    name = request.node.callspec.params[_SPACE_CASE.fixture]
+    solve = _ours("analytic.space").solve_space
+    simulate = _ours("mujoco_models").simulate_space
+    return _swept(vibrissa_sweeps, name, vibrissa_space_case, job.settings, solve, simulate)
 
 
 @pytest.fixture
@@ -267,15 +260,13 @@ def vibrissa_agreement(
     """
     reported = 0
 
-    def closed_form(in_space: bool) -> Readings | SpatialReadings:
-        asked = "vibrissa_space_case" if in_space else "vibrissa_case"
-        if asked not in request.fixturenames:
+    def closed_form(asked: _Choice) -> Readings | SpatialReadings:
+        if asked.fixture not in request.fixturenames:
             pytest.fail(
-                f"vibrissa_agreement: give a reference, or let the test use `{asked}`",
+                f"vibrissa_agreement: give a reference, or let the test use `{asked.fixture}`",
                 pytrace=False,
             )
-        case, sweeps = map(request.getfixturevalue, (asked, "vibrissa_sweeps"))
-        sweep = _space_sweep_of(request, sweeps) if in_space else _sweep_of(case, sweeps)
+        sweep = request.getfixturevalue(asked.fixture.replace("case", "sweep"))
         found: Readings | SpatialReadings = sweep()
         return found
 
@@ -292,9 +283,10 @@ def vibrissa_agreement(
         __tracebackhide__ = True
         nonlocal reported
         in_space = isinstance(candidate, _ours("analytic.space").SpatialReadings)
+        asked = _SPACE_CASE if in_space else _CASE
         if reference is None:
-            reference = closed_form(in_space)
-        job = request.node.stash.get(_SPACE_JOB if in_space else _JOB, None)
+            reference = closed_form(asked)
+        job = request.node.stash.get(_JOBS, {}).get(asked.fixture)
         if tolerances is None and job is not None:
             tolerances = job.tolerances
         found: Comparison | SpatialComparison = _ours("compare.comparison").compare(
@@ -313,28 +305,34 @@ def vibrissa_agreement(
     return agree
 
 
-def _sweep_of(case: Case, sweeps: Sweeps) -> Callable[..., Any]:
-    def made(beam: BeamKind | None = None, **settings: Any) -> Any:  # noqa: ANN401
+def _chosen(request: pytest.FixtureRequest, one: _Choice) -> Any:  # noqa: ANN401
+    """The case that a fixture is run for; its job is kept beside it."""
+    if not hasattr(request, "param"):
+        pytest.fail(
+            f"{one.fixture}: no case is chosen; name some with {one.option} {one.metavar} or "
+            f"@pytest.mark.{one.marker}({one.metavar}), and let the test itself use it",
+            pytrace=False,
+        )
+    job = _stated(one, request.param)
+    request.node.stash.setdefault(_JOBS, {})[one.fixture] = job
+    return job.case
+
+
+def _swept(
+    sweeps: Sweeps,
+    key: object,
+    case: Any,  # noqa: ANN401
+    settings: Any,  # noqa: ANN401
+    solve: Callable[[Any], Any],
+    simulate: Callable[[Any, Any], Any],
+) -> Callable[..., Any]:
+    """Sweeps of a case: the closed form's, or with a beam MuJoCo's, whose settings words change."""
+
+    def made(beam: BeamKind | None = None, **words: Any) -> Any:  # noqa: ANN401
         if beam is None:
-            return _once(sweeps, (case.digest, None), lambda: _ours("analytic").solve_sweep(case))
-        ours = _ours("mujoco_models")
-        numerics = ours.Settings(beam=beam, **settings)
-        return _once(sweeps, (case.digest, numerics), lambda: ours.simulate_sweep(case, numerics))
-
-    return made
-
-
-def _space_sweep_of(request: pytest.FixtureRequest, sweeps: Sweeps) -> Callable[..., Any]:
-    job = request.node.stash[_SPACE_JOB]
-    name = str(request.node.callspec.params["vibrissa_space_case"])
-
-    def made(beam: str | None = None, **settings: Any) -> Any:  # noqa: ANN401
-        if beam is None:
-            solve = _ours("analytic.space").solve_space
-            return _once(sweeps, (name, None), lambda: solve(job.case))
-        simulate = _ours("mujoco_models").simulate_space
-        numerics = replace(job.settings, beam=beam, **settings)
-        return _once(sweeps, (name, repr(numerics)), lambda: simulate(job.case, numerics))
+            return _once(sweeps, (key, None), lambda: solve(case))
+        numerics = replace(settings, beam=beam, **words)
+        return _once(sweeps, (key, repr(numerics)), lambda: simulate(case, numerics))
 
     return made
 

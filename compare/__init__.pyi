@@ -1,12 +1,12 @@
 from .align.offset import Offset as Offset
 from .align.offset import separate_lag as separate_lag
 from .comparison import Comparison as Comparison
+from .comparison import SpatialComparison as SpatialComparison
 from .comparison import compare as compare
-from .comparison_in_space import SpatialComparison as SpatialComparison
-from .comparison_in_space import compare_space as compare_space
+from .comparison import compare_space as compare_space
 from .explain.split_space import split_space as split_space
-from .judge.spatial import SpatialTolerances as SpatialTolerances
 from .judge.tolerances import Limit as Limit
+from .judge.tolerances import SpatialTolerances as SpatialTolerances
 from .judge.tolerances import Tolerances as Tolerances
 from .read.case import load_case as load_case
 from .read.case import load_space as load_space

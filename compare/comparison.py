@@ -7,20 +7,33 @@ from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, overload
 
+import numpy as np
+
 from analytic import PHASES, Case, InputError, Readings
 from analytic.space import SpatialReadings
-from compare.comparison_in_space import SpatialComparison, compare_space
+from compare.align.travel import check_same_stations
 from compare.explain.budget import Budget
 from compare.explain.likely import likely_cause
-from compare.judge.allowance import NoiseAllowance, noise_allowance
-from compare.judge.failures import Failure, failures
+from compare.judge.allowance import (
+    NoiseAllowance,
+    SpatialAllowance,
+    noise_allowance,
+    spatial_allowance,
+)
+from compare.judge.failures import Failure, failures, failures_in_space
 from compare.judge.judged import Judged, Number
-from compare.judge.spatial import SpatialTolerances
-from compare.judge.tolerances import Tolerances, checked_limits
+from compare.judge.tolerances import (
+    SpatialTolerances,
+    Tolerances,
+    checked_limits,
+    in_segments,
+)
+from compare.measure.in_space import SpatialMeasurement, measure_in_space
 from compare.measure.measurement import Measurement, measure
 from compare.sense.given import checked_sweep
 from compare.sense.noise import checked_level, noise_level
 from compare.sense.occurrence import Occurrence
+from compare.sense.touching import component_levels, component_scales
 from compare.validate.stated import Input, Uncertainties
 from compare.validate.validation import Side, Validation, validate
 
@@ -29,6 +42,8 @@ if TYPE_CHECKING:
 
     from compare.align.frames import Frame
 
+_EVENTS = {"touch": "touch", "slip_off": "slip-off", "release": "release"}  # in space
+_KEPT = ("rms", "max", "at", "phase", "rms_by_phase", "scale")  # of a disagreement in space
 _OF_95 = 1.96  # standard deviations: half the width of an interval that holds 95 % of a normal
 
 
@@ -141,6 +156,61 @@ class Comparison(Judged[Readings], Measurement):
         return {**places, "snap_off": self.snap_off}
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class SpatialComparison(Judged[SpatialReadings], SpatialMeasurement):
+    """A measurement in space with its limits: what exceeds them.
+
+    Attributes
+    ----------
+    tolerances : SpatialTolerances
+        Limits for the verdict.
+    noise : SpatialAllowance
+        What noise adds to the limits.
+    """
+
+    tolerances: SpatialTolerances
+    noise: SpatialAllowance
+
+    @property
+    def largest(self) -> str:
+        """The component that is off most, by its rms."""
+        sizes = {name: one.rms for name, one in self.disagreement.items()}
+        return max(sizes, key=lambda name: np.nan_to_num(sizes[name]))
+
+    def _beside(self) -> Iterator[str]:
+        known = f"{self.contact.rms:.1e} L rms" if self.contact.stations else "at no station known"
+        yield f"  contact   {known}"
+
+    def _failures(self) -> Iterator[Failure]:
+        return failures_in_space(self, self.tolerances, self.noise)
+
+    def _own(self) -> dict[str, Any]:
+        off = {name: asdict(one) for name, one in self.disagreement.items()}
+        return {
+            "frame": self.frame,
+            "disagreement": {name: {key: one[key] for key in _KEPT} for name, one in off.items()},
+            "contact": self.contact.to_dict(),
+            "phases": {"agreement": self.phase_agreement},
+            "events": {name: one.to_dict() for name, one in self.events.items()},
+            "stations": {
+                "all": len(self.compared),
+                "compared": int(self.compared.sum()),
+                "untrusted": self.untrusted,
+                "status": self.statuses,
+            },
+        }
+
+    def _own_metrics(self) -> dict[str, Number]:
+        return {
+            "phase_agreement": self.phase_agreement,
+            "stations_compared": int(self.compared.sum()),
+            "contact_rms": self.contact.rms,
+        }
+
+    def _places(self) -> Mapping[str, Occurrence | None]:
+        return {name: self.events.get(event) for name, event in _EVENTS.items()}
+
+
 @overload
 def compare(
     reference: Readings,
@@ -213,15 +283,15 @@ def compare(
     InputError
         If the sweeps are of different beams or have no common stretch, the reference never touches
         or its rows are out of order, the offset is ambiguous, or the noise is no fraction of the
-        largest magnitude; in space as `compare_space` does. If one is in the plane and the other in
-        space, or what is given is for the other kind.
+        largest magnitude; in space, if they are of two clamps or not at the same stations. If one
+        is in the plane and the other in space, or what is given is for the other kind.
     """
     if isinstance(reference, SpatialReadings):
         if offset != 0:
             raise InputError("offset", offset, "0 in space", "leave it out, or widen the limits")
         candidate = checked_sweep("candidate", candidate, SpatialReadings)
         in_space = checked_limits(tolerances, SpatialTolerances)
-        return compare_space(reference, candidate, in_space, noise=noise, frame=frame)
+        return _in_space(reference, candidate, in_space, noise, frame)
     if frame != "world":
         raise InputError("frame", repr(frame), "'world' in the plane", "leave it out")
     reference = checked_sweep("reference", reference, Readings)
@@ -235,3 +305,24 @@ def compare(
         for name, event in found.events.items()
     }
     return Comparison(**(vars(found) | {"events": widened}), tolerances=tolerances, noise=allowance)
+
+
+compare_space = compare  # as it was called
+
+
+def _in_space(
+    reference: SpatialReadings,
+    candidate: SpatialReadings,
+    tolerances: SpatialTolerances,
+    noise: float | Literal["auto"],
+    frame: Frame,
+) -> SpatialComparison:
+    if not in_segments(candidate):
+        tolerances = tolerances.by_convention()
+    check_same_stations(reference, candidate)
+    scales = component_scales(reference)
+    level = component_levels(reference, candidate, noise, scales)
+    stated = {name: level[name] * scales[name] for name in level}
+    found = measure_in_space(reference, candidate, stated, frame)
+    allowance = spatial_allowance(reference, level, stated, found.touching.clear)
+    return SpatialComparison(**vars(found), tolerances=tolerances, noise=allowance)

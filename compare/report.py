@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from analytic.problem.files import write_whole
-from compare.comparison import Comparison, compare
-from compare.comparison_in_space import SpatialComparison, compare_space
+from compare.comparison import Comparison, SpatialComparison, compare
 from compare.explain.split_space import Parts
-from compare.read.run_folder import StoredSpatialRun, read_run
+from compare.read.run_folder import read_run
 from compare.show import report
 from compare.show.document import Film
 from compare.show.html import html
@@ -74,12 +73,9 @@ def write_report(
 
 def _of_a_run(folder: Path, place: Path) -> Report:
     stored, film = read_run(folder), Film.of(folder)
-    if isinstance(stored, StoredSpatialRun):
-        found = compare_space(
-            stored.reference, stored.candidate, stored.tolerances, frame=stored.frame
-        )
+    found = compare(stored.reference, stored.candidate, stored.tolerances, frame=stored.frame)
+    if isinstance(found, SpatialComparison):
         page = report.write_spatial_report(found, stored.body, place, stored.parts, film)
         return Report(page, found, stored.parts)
-    comparison = compare(stored.reference, stored.candidate, stored.tolerances)
-    comparison = replace(comparison, validation=stored.validation)
-    return Report(report.write_report(comparison, place, stored.budget, film), comparison)
+    found = replace(found, validation=stored.validation)
+    return Report(report.write_report(found, place, stored.budget, film), found)

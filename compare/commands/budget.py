@@ -15,9 +15,9 @@ from compare.show.budgets import budget_summary
 from compare.show.document import Text
 from compare.show.report import budget_files
 from compare.simulate.budgets import measure_budget
-from compare.simulate.dispatch import simulate_in_the_plane
 from compare.simulate.fastest import Fastest, find_fastest
 from compare.simulate.target import Followed, follow_advice
+from mujoco_models import simulate_model, simulate_motion
 from mujoco_models.motion import Motion
 
 _SWEEPS = "sweeps of the budget"
@@ -95,7 +95,9 @@ def _fastest(job: Job, motion: Motion, runs: Mapping[str, Readings], target: flo
     def move(speed: float) -> Readings:
         other = replace(motion, speed=speed)
         with terminal.progress(f"{speed:.3g} L/T1", job.stations) as advance:
-            return simulate_in_the_plane(job.case, job.settings, other, job.model, advance=advance)
+            if job.model is None:
+                return simulate_motion(job.case, other, job.settings, advance)
+            return simulate_model(job.case, job.model, other, job.settings, advance)
 
     return find_fastest(job.solve(), runs, move, target)
 

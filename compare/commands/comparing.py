@@ -16,8 +16,7 @@ from compare.commands.pipeline import AnyComparison, AnyReadings, reported
 from compare.commands.sweep_lines import note_rows
 from compare.comparison import Comparison, compare
 from compare.explain.budget import Budget
-from compare.judge.spatial import SpatialTolerances
-from compare.judge.tolerances import Tolerances
+from compare.judge.tolerances import SpatialTolerances, Tolerances
 from compare.read.assumed import vibrissa_of
 from compare.read.case import load_job
 from compare.read.job import AnyJob, Job

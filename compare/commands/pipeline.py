@@ -14,8 +14,7 @@ from compare.commands.output import warn
 from compare.commands.space import find_body
 from compare.commands.sweep_lines import print_sweep
 from compare.commands.waiting import waiting
-from compare.comparison import Comparison, compare
-from compare.comparison_in_space import SpatialComparison
+from compare.comparison import Comparison, SpatialComparison, compare
 from compare.explain.budget import Budget
 from compare.explain.split_space import Parts
 from compare.read.job import AnyJob, Job

@@ -7,6 +7,7 @@ import numpy as np
 
 from analytic import CLAMP_READINGS, Readings
 from analytic.problem.arrays import Floats
+from analytic.problem.columns import units
 from compare.explain.changes import SHARPER
 from compare.explain.convergence import convergence
 from compare.explain.oscillation import without_oscillation
@@ -203,7 +204,5 @@ def _limit(refined: list[Floats], power: Floats) -> tuple[Floats, Floats]:
 
 def _sensor(run: Readings, shared: Shared) -> Floats:
     """The sensors' discrepancy from the sum of the contacts, the worst of the three readings."""
-    beam = run.beam
-    units = np.array([beam.force_unit, beam.force_unit, beam.moment_unit])
-    sizes = np.array([*scales(shared.exact).values()])
-    return np.asarray((units / sizes)[:, None] * run.values("discrepancy")[shared.kept])
+    sizes = units(run.beam, CLAMP_READINGS) / [*scales(shared.exact).values()]
+    return np.asarray(sizes[:, None] * run.values("discrepancy")[shared.kept])

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from analytic import Readings
 from analytic.space import SpatialReadings
 from compare.judge.allowance import Allowance, NoiseAllowance, SpatialAllowance
-from compare.judge.spatial import SpatialTolerances
-from compare.judge.tolerances import Limit, Limits, Tolerances
+from compare.judge.tolerances import Limit, Limits, SpatialTolerances, Tolerances
 from compare.measure.in_space import SpatialMeasurement
 from compare.measure.measurement import Measurement
 from compare.sense.occurrence import Occurrence

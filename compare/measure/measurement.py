@@ -21,8 +21,7 @@ from compare.measure.disagreement import SweepPair, disagreements
 from compare.sense.noise import scales
 from compare.sense.occurrence import Occurrence
 from compare.sense.phases import Classification, classify, confusion
-from compare.sense.record import Record, inspect_record
-from compare.sense.size import check_size
+from compare.sense.record import Record, check_size, inspect_record
 from compare.sense.transitions import TRANSITIONS, locate_transitions, snap_off
 
 _SIGMAS = 5.0  # standard deviations; a contact that is short of the tip by more is no noise

@@ -1,11 +1,10 @@
 """A case, and what is to be done with it."""
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 from analytic import Case
-from compare.judge.spatial import SpatialTolerances
-from compare.judge.tolerances import Tolerances
+from compare.judge.tolerances import SpatialTolerances, Tolerances
 from compare.read.kinds import MODEL, MOTION, PLANE, SPACE
 from engines.known import named_engines
 from mujoco_models.settings import Settings
@@ -23,7 +22,40 @@ EXACT = "exact"
 
 
 @dataclass(frozen=True)
-class Job:
+class _Stated:
+    """A case and its numerics, of which the stations and the settings may be changed."""
+
+    case: Any
+    settings: Any
+    _path: ClassVar[str]  # the field of the case that has its stations
+
+    @property
+    def stations(self) -> int:
+        """How many the sweep has."""
+        return int(getattr(self.case, self._path).stations)
+
+    def changed(self, stations: int, numerics: dict[str, Any]) -> Self:
+        """The same with other stations and numerics.
+
+        Parameters
+        ----------
+        stations : int
+            How many the sweep has.
+        numerics : dict
+            Settings of MuJoCo by name; the others stay.
+
+        Returns
+        -------
+        Job or SpaceJob
+            Everything else as it is.
+        """
+        path = replace(getattr(self.case, self._path), stations=stations)
+        case = replace(self.case, **{self._path: path})
+        return replace(self, case=case, settings=replace(self.settings, **numerics))
+
+
+@dataclass(frozen=True)
+class Job(_Stated):
     """A case in the plane, how it is to be simulated, how far models may disagree.
 
     Attributes
@@ -55,6 +87,7 @@ class Job:
     engines: tuple[str, ...] = ("mujoco",)
     timeout: float = 600.0
     body: ClassVar[None] = None
+    _path = "sweep"
 
     @property
     def kind(self) -> str:
@@ -62,30 +95,6 @@ class Job:
         if self.model is not None:
             return MODEL
         return PLANE if self.motion is None else MOTION
-
-    @property
-    def stations(self) -> int:
-        """How many the sweep has."""
-        return self.case.sweep.stations
-
-    def changed(self, stations: int, numerics: dict[str, Any]) -> "Job":
-        """The same with other stations and numerics.
-
-        Parameters
-        ----------
-        stations : int
-            How many the sweep has.
-        numerics : dict
-            Settings of MuJoCo by name; the others stay.
-
-        Returns
-        -------
-        Job
-            Everything else as it is.
-        """
-        sweep = replace(self.case.sweep, stations=stations)
-        case = replace(self.case, sweep=sweep)
-        return replace(self, case=case, settings=replace(self.settings, **numerics))
 
     def solve(self, certified: bool = False) -> "Readings":
         """The closed form.
@@ -106,7 +115,7 @@ class Job:
 
 
 @dataclass(frozen=True)
-class SpaceJob:
+class SpaceJob(_Stated):
     """A case in space, how it is to be simulated, how far models may disagree.
 
     Attributes
@@ -128,6 +137,7 @@ class SpaceJob:
     motion: ClassVar[None] = None
     model: ClassVar[None] = None
     uncertainties: ClassVar[None] = None
+    _path = "path"
 
     @property
     def kind(self) -> str:
@@ -138,29 +148,6 @@ class SpaceJob:
     def body(self) -> "Body":
         """What is swept past."""
         return self.case.body
-
-    @property
-    def stations(self) -> int:
-        """How many the sweep has."""
-        return self.case.path.stations
-
-    def changed(self, stations: int, numerics: dict[str, Any]) -> "SpaceJob":
-        """The same with other stations and numerics.
-
-        Parameters
-        ----------
-        stations : int
-            How many the sweep has.
-        numerics : dict
-            Settings of MuJoCo by name; the others stay.
-
-        Returns
-        -------
-        SpaceJob
-            Everything else as it is.
-        """
-        case = replace(self.case, path=replace(self.case.path, stations=stations))
-        return replace(self, case=case, settings=replace(self.settings, **numerics))
 
     def solve(self, certified: bool = False) -> "SpatialReadings":
         """The closed form.

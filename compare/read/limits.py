@@ -7,8 +7,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import Field, StringConstraints, ValidationError
 
 from analytic import InputError
-from compare.judge.spatial import SpatialTolerances
-from compare.judge.tolerances import Limit, Tolerances
+from compare.judge.tolerances import Limit, SpatialTolerances, Tolerances
 from compare.read.complaints import complaint
 from compare.read.quantities import Table
 from compare.read.toml import Place, TomlFile

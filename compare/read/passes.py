@@ -14,8 +14,7 @@ from compare.read.dialect import RawTable, read_text_table
 from compare.read.kinds import TEXTS
 from compare.read.rig import cells, read_sweeps
 from compare.read.rig_file import Rig
-from compare.sense.record import Record, inspect_record
-from compare.sense.size import check_size
+from compare.sense.record import Record, check_size, inspect_record
 
 _FEWEST = 5  # rows of a stretch whose mean is a zero, and of a pass
 

@@ -1,40 +1,33 @@
 """The object of a case file: a table for each kind of contour."""
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import Literal
 
 from pydantic import Field
 
-from analytic import (
-    Contour,
-    catenary,
-    circle,
-    ellipse,
-    parabola,
-    polygon,
-    through_points,
-    two_circles,
-)
+import analytic
+from analytic import Contour
 from compare.read.quantities import Length, PerLength, Point, Points, Table
+
+_FACTORIES = {"two-circles": "two_circles", "points": "through_points"}  # by kind, if not its name
 
 
 class ProfileTable(Table):
-    """The object: a kind of contour, and the numbers that `factory` makes it from."""
+    """The object: a kind of contour, and the numbers that it is made from."""
 
-    factory: ClassVar[Callable[..., Contour]]
+    kind: str
     scale: Length = Field(default=1.0, gt=0)
 
     def build(self, folder: Path) -> Contour:  # files are in it, if there are any
         """The contour."""
-        numbers = self.model_dump(exclude={"kind", "scale"})
-        return type(self).factory(**numbers).scaled(self.scale)
+        factory = getattr(analytic, _FACTORIES.get(self.kind, self.kind))
+        contour: Contour = factory(**self.model_dump(exclude={"kind", "scale"}))
+        return contour.scaled(self.scale)
 
 
 class CatenaryTable(ProfileTable):
     """See `analytic.catenary`."""
 
-    factory = staticmethod(catenary)
     kind: Literal["catenary"]
     a: PerLength
     c: Length
@@ -43,7 +36,6 @@ class CatenaryTable(ProfileTable):
 class ParabolaTable(ProfileTable):
     """See `analytic.parabola`."""
 
-    factory = staticmethod(parabola)
     kind: Literal["parabola"]
     a: PerLength
     c: Length
@@ -52,7 +44,6 @@ class ParabolaTable(ProfileTable):
 class CircleTable(ProfileTable):
     """See `analytic.circle`."""
 
-    factory = staticmethod(circle)
     kind: Literal["circle"]
     radius: Length
     lowest: Point
@@ -61,7 +52,6 @@ class CircleTable(ProfileTable):
 class EllipseTable(ProfileTable):
     """See `analytic.ellipse`."""
 
-    factory = staticmethod(ellipse)
     kind: Literal["ellipse"]
     semi_axes: Point
     lowest: Point
@@ -70,7 +60,6 @@ class EllipseTable(ProfileTable):
 class TwoCirclesTable(ProfileTable):
     """See `analytic.two_circles`."""
 
-    factory = staticmethod(two_circles)
     kind: Literal["two-circles"]
     right_radius: Length = 2.0
     left_radius: Length = 0.5
@@ -80,7 +69,6 @@ class TwoCirclesTable(ProfileTable):
 class PolygonTable(ProfileTable):
     """See `analytic.polygon`."""
 
-    factory = staticmethod(polygon)
     kind: Literal["polygon"]
     points: Points
 
@@ -88,7 +76,6 @@ class PolygonTable(ProfileTable):
 class PointsTable(ProfileTable):
     """See `analytic.through_points`."""
 
-    factory = staticmethod(through_points)
     kind: Literal["points"]
     points: Points
 

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from analytic import Beam, Direction, InputError, Readings
+from analytic import SENSED, Beam, Direction, InputError, Readings
 from analytic.problem.arrays import Floats
 from analytic.problem.files import as_path
 from analytic.problem.readings_file import is_ours
@@ -176,11 +176,10 @@ def renamed(
     raw: RawTable,
     columns: Sequence[str],
     called: str,
-    dimensions: Mapping[str, str] = DIMENSIONS,
+    sensed: Sequence[str] = SENSED,
 ) -> tuple[pd.DataFrame, dict[str, str], dict[str, str]]:
     """The table with the sensed quantities under their own names and, with units, in SI."""
     table, place, units = raw
-    sensed = tuple(dimensions)
     named: dict[str, Floats] = {}
     used: dict[str, str] = {}
     own: dict[str, str] = {}
@@ -208,7 +207,7 @@ def renamed(
             named[name], own[name] = as_numbers(table[name], name, place), units[name]
     used |= own
     for name, unit in used.items():
-        named[name] = named[name] * unit_in_si(unit, dimensions[name])
+        named[name] = named[name] * unit_in_si(unit, DIMENSIONS[name])
     found = table.assign(**named)
     missing = [name for name in sensed if name not in found]
     if missing and not table.columns.empty:
@@ -216,7 +215,7 @@ def renamed(
             f"columns of {called}",
             ", ".join(map(str, table.columns[:20])),
             f"at least {', '.join(sensed)}",
-            f"name them with --column {missing[0]}=COLUMN:{dimensions[missing[0]]}",
+            f"name them with --column {missing[0]}=COLUMN:{DIMENSIONS[missing[0]]}",
         )
     return found, used, own
 

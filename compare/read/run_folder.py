@@ -16,8 +16,7 @@ from analytic.space import SpatialReadings
 from compare.align.frames import Frame
 from compare.explain.budget import Budget
 from compare.explain.split_space import Parts
-from compare.judge.spatial import SpatialTolerances
-from compare.judge.tolerances import Limit, Tolerances
+from compare.judge.tolerances import Limit, SpatialTolerances, Tolerances
 from compare.read.space_readings import is_spatial
 from compare.validate.validation import Validation
 
@@ -30,46 +29,34 @@ _REMEDY = "run it again, or remove its folder"
 
 @dataclass(frozen=True)
 class StoredRun:
-    """A run in the plane as its folder has it."""
+    """A run as its folder has it."""
 
-    reference: Readings  # the closed form's sweep and MuJoCo's
-    candidate: Readings  # the closed form's sweep and MuJoCo's
-    tolerances: Tolerances  # those that the run was judged by; the defaults if it was not
-    budget: Budget | None  # of the same sweeps, if it was measured
-    validation: Validation | None  # of the same sweeps, if uncertainties were stated
-
-
-@dataclass(frozen=True)
-class StoredSpatialRun:
-    """A run in space as its folder has it."""
-
-    reference: SpatialReadings  # the closed form's sweep and MuJoCo's
-    candidate: SpatialReadings  # the closed form's sweep and MuJoCo's
-    tolerances: SpatialTolerances  # those that the run was judged by; the defaults if it was not
+    reference: Readings | SpatialReadings  # the closed form's sweep and MuJoCo's
+    candidate: Readings | SpatialReadings  # the closed form's sweep and MuJoCo's
+    # Those that the run was judged by; the defaults if it was not.
+    tolerances: Tolerances | SpatialTolerances
     frame: Frame  # that the components were compared in
-    parts: Parts | None  # of the same sweeps, if they were measured
+    budget: Budget | None  # of the same sweeps in the plane, if it was measured
+    parts: Parts | None  # of the same sweeps in space, if they were measured
+    validation: Validation | None  # of the same sweeps, if uncertainties were stated
     body: Floats | None  # shape (triangles, 3, 3); what the run's pictures showed of the body
 
 
-def read_run(folder: Path) -> StoredRun | StoredSpatialRun:
+def read_run(folder: Path) -> StoredRun:
     """Read the folder of a run, or of the two sweeps of one case that nobody compared yet."""
     reference, candidate = _sweeps(folder)
-    judged = read_stored_if_there(folder / "comparison.json", _Judged)
-    if is_spatial(reference):
-        return StoredSpatialRun(
-            SpatialReadings.read(reference),
-            SpatialReadings.read(candidate),
-            judged.limits(SpatialTolerances) if judged else SpatialTolerances(),
-            judged.frame if judged else "world",
-            read_stored_if_there(folder / "budget.json", Parts),
-            _body(folder / "body.ply"),
-        )
+    judged = read_stored_if_there(folder / "comparison.json", _Judged) or _NOT_JUDGED
+    in_space = is_spatial(reference)
+    sweep, budget = (SpatialReadings if in_space else Readings), folder / "budget.json"
     return StoredRun(
-        Readings.read(reference),
-        Readings.read(candidate),
-        judged.limits(Tolerances) if judged else Tolerances(),
-        read_stored_if_there(folder / "budget.json", Budget),
+        sweep.read(reference),
+        sweep.read(candidate),
+        judged.limits(SpatialTolerances) if in_space else judged.limits(Tolerances),
+        judged.frame,
+        None if in_space else read_stored_if_there(budget, Budget),
+        read_stored_if_there(budget, Parts) if in_space else None,
         _validation(folder, judged),
+        _body(folder / "body.ply"),
     )
 
 
@@ -121,9 +108,12 @@ class _Judged(BaseModel):
         return kind(**general, special=limits)
 
 
-def _validation(folder: Path, judged: _Judged | None) -> Validation | None:
+_NOT_JUDGED = _Judged(tolerances={}, tolerance_reasons={})
+
+
+def _validation(folder: Path, judged: _Judged) -> Validation | None:
     table = folder / "validation.csv"
-    if judged is None or judged.validation is None or not table.exists():
+    if judged.validation is None or not table.exists():
         return None
     try:
         regular_file(table, "file", _LARGEST)

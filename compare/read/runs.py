@@ -23,62 +23,56 @@ class _Disagreement(BaseModel):
     rms: float | None
 
 
-class ComparisonFile(BaseModel):
-    """What is looked at of a ``comparison.json``."""
+class RunRecord(BaseModel):
+    """One run: what is looked at of its ``comparison.json``, and its budget."""
 
     verdict: str
     disagreement: dict[str, _Disagreement]
-    snap_off: Annotated[float | None, Field(validation_alias=AliasPath("snap_off", "difference"))]
-    phases: Annotated[float | None, Field(validation_alias=AliasPath("phases", "agreement"))]
+    apart: Annotated[float | None, Field(validation_alias=AliasPath("snap_off", "difference"))]
+    # Share of stations whose phase is rightly judged from the clamp, in the worse sweep.
+    phases_right: Annotated[float | None, Field(validation_alias=AliasPath("phases", "agreement"))]
     source: Annotated[str, Field(validation_alias=_of_candidate("source"))]
     length: Annotated[float, Field(gt=0, validation_alias=_of_candidate("beam", "length"))]
     stations: Annotated[int, Field(gt=0, validation_alias=_of_candidate("stations"))]
     provenance: Annotated[dict[str, Any], Field(validation_alias=_of_candidate("provenance"))]
-
-
-@dataclass(frozen=True)
-class RunRecord:
-    """One run: what its ``comparison.json`` and, if there is one, its ``budget.json`` hold."""
-
-    folder: Path
-    comparison: ComparisonFile
-    budget: Budget | None
+    folder: Path = Path()
+    budget: Budget | None = None  # if it was measured
 
     @property
     def case(self) -> str:
         """Name of the case."""
-        return str(self.comparison.provenance.get("case", self.folder.name))
+        return str(self.provenance.get("case", self.folder.name))
 
     @property
     def profile(self) -> str:
         """What the object is."""
-        return str(self.comparison.provenance.get("profile", "contour not recorded"))
+        return str(self.provenance.get("profile", "contour not recorded"))
 
     @property
     def beam(self) -> str:
         """MuJoCo's beam, or whoever else produced the readings."""
-        return str(self.settings.get("beam", self.comparison.source))
+        return str(self.settings.get("beam", self.source))
 
     @property
     def engine(self) -> str:
         """Which version of what, as far as it was recorded."""
-        return str(self.comparison.provenance.get("engine", "not recorded"))
+        return str(self.provenance.get("engine", "not recorded"))
 
     @property
     def settings(self) -> dict[str, Any]:
         """The numerics of the candidate."""
-        settings = self.comparison.provenance.get("settings")
+        settings = self.provenance.get("settings")
         return settings if isinstance(settings, dict) else {}
 
     @property
     def agrees(self) -> bool:
         """Whether no tolerance is exceeded."""
-        return self.comparison.verdict == "agrees"
+        return self.verdict == "agrees"
 
     @property
     def rms(self) -> dict[str, float | None]:
         """Disagreement by reading; None where nothing could be compared."""
-        return {name: self.comparison.disagreement[name].rms for name in CLAMP_READINGS}
+        return {name: self.disagreement[name].rms for name in CLAMP_READINGS}
 
     @property
     def worst(self) -> str:
@@ -93,19 +87,13 @@ class RunRecord:
     @property
     def snap_off(self) -> float | None:
         """By how much the snap-offs differ [L]; None unless both sweeps have one."""
-        apart = self.comparison.snap_off
-        return None if apart is None else apart / self.comparison.length
-
-    @property
-    def phases_right(self) -> float | None:
-        """Share of stations whose phase is rightly judged from the clamp, in the worse sweep."""
-        return self.comparison.phases
+        return None if self.apart is None else self.apart / self.length
 
     @property
     def seconds_a_station(self) -> float | None:
         """Time of the simulation; None where it was not taken."""
-        seconds = self.comparison.provenance.get("seconds")
-        return None if seconds is None else seconds / self.comparison.stations
+        seconds = self.provenance.get("seconds")
+        return None if seconds is None else seconds / self.stations
 
     def part(self, name: str) -> float | None:
         """The largest of the three readings' rms of a part of the budget."""
@@ -142,10 +130,11 @@ def read_runs(folder: Path) -> list[RunRecord]:
     """All runs in the folders of `folder`: the named cases first, in their order."""
     return _in_order(
         [
-            RunRecord(
-                file.parent,
-                read_stored(file, ComparisonFile),
-                read_stored_if_there(file.with_name("budget.json"), Budget),
+            read_stored(file, RunRecord).model_copy(
+                update={
+                    "folder": file.parent,
+                    "budget": read_stored_if_there(file.with_name("budget.json"), Budget),
+                }
             )
             for file in sorted(folder.glob("*/comparison.json"))
         ]

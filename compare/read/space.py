@@ -1,25 +1,14 @@
 """Case files of sweeps in space."""
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
 
-from analytic import InputError
-from analytic.space import (
-    Body,
-    FootPath,
-    SpatialCase,
-    convex_mesh,
-    cylinder,
-    ellipsoid,
-    polyhedron,
-    prism,
-    sphere,
-)
-from compare.judge.spatial import SpatialTolerances
+from analytic import InputError, space
+from analytic.space import Body, FootPath, SpatialCase, convex_mesh, prism
+from compare.judge.tolerances import SpatialTolerances
 from compare.read.complaints import name_of
 from compare.read.job import SpaceJob
 from compare.read.limits import tolerances_of
@@ -34,19 +23,19 @@ Way = Annotated[tuple[float, float, float], Field(strict=False)]
 
 
 class BodyTable(Table):
-    """The body: a kind, and the numbers that `factory` makes it from."""
+    """The body: a kind, which is the name of a function of `analytic.space`, and its numbers."""
 
-    factory: ClassVar[Callable[..., Body]]
+    kind: str
 
     def build(self, folder: Path) -> Body:  # files are in it, if there are any
         """The body."""
-        return type(self).factory(**self.model_dump(exclude={"kind"}))
+        body: Body = getattr(space, self.kind)(**self.model_dump(exclude={"kind"}))
+        return body
 
 
 class SphereTable(BodyTable):
     """See `analytic.space.sphere`."""
 
-    factory = staticmethod(sphere)
     kind: Literal["sphere"]
     radius: Length
     centre: Place
@@ -55,7 +44,6 @@ class SphereTable(BodyTable):
 class EllipsoidTable(BodyTable):
     """See `analytic.space.ellipsoid`."""
 
-    factory = staticmethod(ellipsoid)
     kind: Literal["ellipsoid"]
     semi_axes: Place
     centre: Place
@@ -65,7 +53,6 @@ class EllipsoidTable(BodyTable):
 class CylinderTable(BodyTable):
     """See `analytic.space.cylinder`."""
 
-    factory = staticmethod(cylinder)
     kind: Literal["cylinder"]
     radius: Length
     through: Place
@@ -75,7 +62,6 @@ class CylinderTable(BodyTable):
 class HullTable(BodyTable):
     """See `analytic.space.polyhedron`."""
 
-    factory = staticmethod(polyhedron)
     kind: Literal["polyhedron"]
     points: list[Place]
 

@@ -9,15 +9,11 @@ from numpy.typing import ArrayLike
 from analytic import Beam, InputError
 from analytic.problem.readings_file import is_ours, read_file
 from analytic.space import SpatialReadings
-from analytic.space.problem.readings import CONTACT_POINT, FOOT, FORCE, MOMENT, SENSED_IN_SPACE
+from analytic.space.problem.readings import CONTACT_POINT, SENSED_IN_SPACE
 from compare.align.frames import Frame, from_frame
 from compare.read.kinds import TABLES
 from compare.read.rig import raw_table, renamed
 
-DIMENSIONS_IN_SPACE = (
-    dict.fromkeys(FOOT, "m") | dict.fromkeys(FORCE, "N") | dict.fromkeys(MOMENT, "N m")
-)
-"""The sensed quantities, with an SI unit each."""
 _ALSO = (*CONTACT_POINT, "phase", "status")  # what a simulator may know beside them
 
 
@@ -49,7 +45,7 @@ def read_space(
     tangent : array_like, shape (3,), optional
         Of the clamp, if the file names none; upright if not given.
     columns : sequence of str
-        ``NAME=COLUMN`` or ``NAME=COLUMN:UNIT``, NAME of `DIMENSIONS_IN_SPACE`.
+        ``NAME=COLUMN`` or ``NAME=COLUMN:UNIT``, NAME of `SENSED_IN_SPACE`.
     frame : {"world", "clamp"}
         Of the components in the file; what this project wrote is in the world's.
 
@@ -66,7 +62,7 @@ def read_space(
     """
     if is_ours(path) and not columns:
         return SpatialReadings.read(path, beam, tangent)
-    table, used, _ = renamed(raw_table(path), columns, path.name, DIMENSIONS_IN_SPACE)
+    table, used, _ = renamed(raw_table(path), columns, path.name, SENSED_IN_SPACE)
     held = Beam() if beam is None else beam
     if used and not held.si:
         raise InputError(

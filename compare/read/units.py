@@ -8,6 +8,7 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING
 
+from analytic.problem.columns import SCHEMA
 from analytic.problem.errors import InputError
 
 if TYPE_CHECKING:
@@ -16,7 +17,9 @@ if TYPE_CHECKING:
 OWN_UNITS = "units_of_the_file"
 """In the provenance of a sweep: units that nobody named, but its file."""
 
-DIMENSIONS = {"foot_x": "m", "force_x": "N", "force_y": "N", "moment_z": "N m"}
+_SI = {"length": "m", "force": "N", "moment": "N m"}
+DIMENSIONS = {name: _SI[one.dimension] for name, one in SCHEMA.items() if one.dimension in _SI}
+"""An SI unit of each column that has one of these, in the plane and in space."""
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 _LONGEST = 60  # characters of a unit

@@ -5,11 +5,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic import CLAMP_READINGS, SENSED, Readings
+from analytic import CLAMP_READINGS, SENSED, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats
+from analytic.problem.columns import units
 from analytic.problem.table import says
 from compare.sense.noise import scales
 
+_LARGEST = 1e40  # of the beam's units; a sixth power still is a number
 _FEWEST = 3  # equal extremes that are no accident
 _PILED = 3  # times more stations at the extreme than at any other one value: not quantisation
 _LOADED = 0.02  # of the largest magnitude; a reading that should be larger is not zero by chance
@@ -109,6 +111,19 @@ def inspect_record(readings: Readings) -> Record:
         widest=float(steps.max()),
         retreats=_retreats(readings, median),
     )
+
+
+def check_size(which: str, sweep: Readings) -> None:
+    """Refuse numbers whose powers would overflow."""
+    for name, unit in zip(SENSED, units(sweep.beam, SENSED).tolist(), strict=True):
+        largest = np.abs(sweep.values(name)[sweep.trusted]).max(initial=0.0)
+        if not largest < _LARGEST * unit:
+            raise InputError(
+                f"{name} of the {which} ({sweep.source})",
+                f"{largest:.3g}",
+                f"less than {_LARGEST:g} of the beam's units ({unit:.3g})",
+                "check the units, and the beam",
+            )
 
 
 def without_dropouts(readings: Readings) -> Readings:

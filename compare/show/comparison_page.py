@@ -5,8 +5,7 @@ from typing import Any
 
 from analytic import PHASES, Readings
 from analytic.space import SpatialReadings
-from compare.comparison import Comparison
-from compare.comparison_in_space import SpatialComparison
+from compare.comparison import Comparison, SpatialComparison
 from compare.judge.tolerances import CONVENTION, Limit
 from compare.sense.occurrence import Occurrence
 from compare.show.document import Block, Document, Table, Text, Tile, Verdict, sections

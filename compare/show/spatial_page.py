@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from functools import partial
 
-from compare.comparison_in_space import SpatialComparison
+from compare.comparison import SpatialComparison
 from compare.explain.split_space import Parts
 from compare.show.comparison_page import (
     agreement,

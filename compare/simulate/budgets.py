@@ -3,16 +3,19 @@
 from collections.abc import Callable, Mapping
 from typing import TypeAlias, overload
 
-from analytic import Case, Readings
+from analytic import Case, InputError, Readings, solve_sweep
+from analytic.problem.mirror import facing
 from analytic.space import SpatialCase, SpatialReadings, solve_space
-from compare.explain.budget import Budget
+from compare.explain.budget import Budget, budget
+from compare.explain.changes import controlled_changes
 from compare.explain.motion import MotionBudget
 from compare.explain.split_space import Parts, split_space
+from compare.explain.variations import on_polygon, variations
 from compare.sense.given import checked
-from compare.simulate.controlled import budget_at_rest
 from compare.simulate.dispatch import softened
 from compare.simulate.moving import budget_in_motion, budget_of_model
-from mujoco_models import simulate_space
+from compare.simulate.workers import SWEEPERS, running
+from mujoco_models import simulate_space, simulate_sweep
 from mujoco_models.motion import Motion
 from mujoco_models.settings import Settings
 from mujoco_models.space.settings import SpatialSettings
@@ -114,3 +117,46 @@ def _in_space(
 
     base = sweep(settings)
     return split_space(solve_space(case), base, settings, sweep), runs
+
+
+def budget_at_rest(
+    case: Case, settings: Settings, advance: Callable[[], None] = lambda: None
+) -> tuple[Budget, dict[str, Readings]]:
+    """The budget of a sweep at rest in the plane, and its sweeps."""
+    smooth = has_primitive(case)
+    changes = controlled_changes(settings, smooth, has_corners(case, settings))
+    # Equal settings are swept once, and the longest first, so that no core waits for it at the end.
+    # As a sweep to the left: in a mirror it is turned here, where tables are loaded.
+    longest_first = sorted(set(changes.values()), key=lambda one: -one.segments)
+    sweeps = {one: (simulate_sweep, _leftward(case), one) for one in longest_first}
+    with running(sweeps, advance, SWEEPERS) as swept:
+        exact, varied, faceted = solve_sweep(case), variations(case), None
+        if smooth and settings.obstacle == "mesh":
+            past_facets = on_polygon(case, settings.contour_points)
+            # A check, which must not cost the budget the stations where it has no solution.
+            if (past_facets.table["status"] != "diverged").all():
+                faceted = past_facets
+        runs = {name: facing(case, swept[one].result()) for name, one in changes.items()}
+    return budget(exact, runs, varied, faceted), runs
+
+
+def has_primitive(case: Case) -> bool:
+    """Whether MuJoCo's smooth primitive can stand for the case's contour."""
+    from mujoco_models.obstacles.primitive import Primitive
+
+    try:
+        Primitive.of(_leftward(case))
+    except InputError:
+        return False
+    return True
+
+
+def has_corners(case: Case, settings: Settings) -> bool:
+    """Whether MuJoCo's object has edges at sharp corners."""
+    from mujoco_models.obstacles.kinds import place
+
+    return len(place(_leftward(case), settings).corners) > 0
+
+
+def _leftward(case: Case) -> Case:
+    return case.mirrored() if case.sweep.direction == "right" else case

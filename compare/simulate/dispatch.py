@@ -34,24 +34,11 @@ def simulate(
     `advance` is called after every station. `keep` is given the stations so far when MuJoCo's sweep
     ends early; other engines keep none.
     """
-    if isinstance(case, Case):
-        planar = checked("settings", settings, Settings, "as Settings(segments=40)")
-        return simulate_in_the_plane(case, planar, motion, model, engine, advance, keep)
-    _require_mujoco(engine, "in space")
-    spatial = checked("settings", settings, SpatialSettings, "as SpatialSettings(segments=40)")
-    return simulate_space(case, spatial, advance, keep)
-
-
-def simulate_in_the_plane(
-    case: Case,
-    settings: Settings,
-    motion: Motion | None = None,
-    model: OwnModel | None = None,
-    engine: str = MUJOCO,
-    advance: Callable[[], None] = _nothing,
-    keep: Callable[[Readings], None] = _nothing,
-) -> Readings:
-    """The same of a case in the plane."""
+    if isinstance(case, SpatialCase):
+        _require_mujoco(engine, "in space")
+        spatial = checked("settings", settings, SpatialSettings, "as SpatialSettings(segments=40)")
+        return simulate_space(case, spatial, advance, keep)
+    settings = checked("settings", settings, Settings, "as Settings(segments=40)")
     if model is not None:
         _require_mujoco(engine, "of a model")
         return simulate_model(case, model, motion, settings, advance, keep)

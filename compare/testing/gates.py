@@ -2,42 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, overload
+from typing import TYPE_CHECKING, Literal
 
 from analytic import InputError, Readings
 from analytic.space import SpatialReadings
-from compare.comparison import Comparison, compare
-from compare.comparison_in_space import SpatialComparison
-from compare.judge.spatial import SpatialTolerances
-from compare.judge.tolerances import Tolerances
+from compare.comparison import Comparison, SpatialComparison, compare
+from compare.judge.tolerances import SpatialTolerances, Tolerances
 from compare.show.verdict import why
 
 if TYPE_CHECKING:
     from compare.align.frames import Frame
     from compare.explain.budget import Budget
-
-
-@overload
-def assert_agreement(
-    reference: SpatialReadings,
-    candidate: SpatialReadings,
-    tolerances: SpatialTolerances | None = None,
-    *,
-    noise: float | Literal["auto"] = 0.0,
-    frame: Frame = "world",
-) -> SpatialComparison: ...
-
-
-@overload
-def assert_agreement(
-    reference: Readings,
-    candidate: Readings,
-    tolerances: Tolerances | None = None,
-    *,
-    offset: float | Literal["auto"] = 0.0,
-    noise: float | Literal["auto"] = 0.0,
-    budget: Budget | None = None,
-) -> Comparison: ...
 
 
 def assert_agreement(

@@ -7,8 +7,7 @@ from typing import Any
 
 from analytic.problem.files import write_whole
 from analytic.space import Body
-from compare.comparison import Comparison
-from compare.comparison_in_space import SpatialComparison
+from compare.comparison import Comparison, SpatialComparison
 from compare.show.report import write_report, write_spatial_report
 
 

@@ -20,10 +20,7 @@ from compare import Tolerances, classify, compare
 from compare.sense.noise import with_noise
 from compare.sense.phases import confusion
 from compare.sense.transitions import locate_transitions
-
-
-def changed(sweep: Readings, **columns) -> Readings:
-    return Readings(sweep.table.assign(**columns), sweep.beam, "changed", sweep.provenance)
+from tests.compare.synthetic import changed
 
 
 def noisy(sweep: Readings, level: float) -> Readings:
@@ -79,11 +76,6 @@ def test_an_early_release_is_found(exact):
     found = compare(exact, released)
     assert any(line.startswith("snap_off") for line in found.failures)
     assert found.alignment.counts["one_free"] > 0
-
-
-def test_phases_of_exact_readings(exact):
-    judged = classify(exact)
-    assert (judged.phase == exact.table["phase"]).all()
 
 
 @pytest.mark.parametrize(("level", "share"), [(1e-4, 0.99), (1e-3, 0.98), (1e-2, 0.91)])

@@ -17,7 +17,7 @@ from analytic.space import (
     sphere,
 )
 from analytic.space.problem.readings import FORCE, MOMENT, SENSED_IN_SPACE
-from compare import SpatialTolerances, assert_agreement, compare, compare_space, split_space
+from compare import SpatialTolerances, assert_agreement, compare, split_space
 from compare.align.frames import clamp_axes, components, from_frame
 from compare.show.spatial_page import spatial_summary, spatial_verdict
 from mujoco_models import SpatialSettings, simulate_space
@@ -46,7 +46,7 @@ def exact():
 
 
 def test_a_sweep_agrees_with_itself_and_json_holds_it(exact):
-    found = compare_space(exact, exact)
+    found = compare(exact, exact)
     assert found.agrees
     assert found.contact.max == 0
     assert found.phase_agreement == 1
@@ -69,17 +69,17 @@ def test_nothing_is_said_of_contacts_that_are_not_there(exact):
 def test_planted_differences_are_found_by_name(exact):
     softer = solve_space(replace(CASE, beam=Beam(flexural_rigidity=0.98)))
     softer = SpatialReadings(softer.table, exact.beam, exact.tangent, "softer", softer.provenance)
-    found = compare_space(exact, softer)
+    found = compare(exact, softer)
     assert not found.agrees
     largest = max(one.max for one in found.disagreement.values())
     assert largest == pytest.approx(0.02, rel=0.02)
-    turned = compare_space(exact, changed(exact, force_z=-exact.values("force_z")))
+    turned = compare(exact, changed(exact, force_z=-exact.values("force_z")))
     assert {one.name for one in turned.exceeded} == {"force_z"}
     assert turned.worst.excess > 10
     assert "at" in turned.failures[-1]
     assert "L of the way" in turned.failures[-1]
     lost = changed(exact, status=exact.table["status"].mask(exact.touching, "unsettled"))
-    found = compare_space(exact, lost)
+    found = compare(exact, lost)
     assert {"contact", "stations"} <= {one.name for one in found.exceeded}
     assert found.statuses["candidate"]["unsettled"] == exact.touching.sum()
 
@@ -97,17 +97,17 @@ def test_each_limit_is_the_one_that_fails(exact):
         ("force_x.rms", changed(exact, force_x=exact.values("force_x") * 1.001), None),
     ):
         kind = name.partition(".")[0]
-        size = found or compare_space(exact, candidate).disagreement[kind].rms
+        size = found or compare(exact, candidate).disagreement[kind].rms
         for factor, agrees in ((0.5, False), (2.0, True)):
             limits = {name: size * factor} if found else {"special": {name: size * factor}}
-            judged = compare_space(exact, candidate, SpatialTolerances(**limits))
+            judged = compare(exact, candidate, SpatialTolerances(**limits))
             assert judged.agrees == agrees, name
-    found = compare_space(exact, changed(exact, phase=part))
+    found = compare(exact, changed(exact, phase=part))
     assert [one.name for one in found.exceeded] == ["phases"]
 
 
 def test_a_foreign_file_is_compared_by_its_clamp_alone(exact):
-    found = compare_space(exact, as_if_foreign(exact))
+    found = compare(exact, as_if_foreign(exact))
     assert found.agrees
     assert found.contact.from_clamp == ("foreign",)
     assert found.contact.max < 1e-12
@@ -117,7 +117,7 @@ def test_a_foreign_file_is_compared_by_its_clamp_alone(exact):
     # What touches three stations late is found, though no event is recorded.
     late = exact.touching & (np.cumsum(exact.touching) > 3)
     columns = {n: np.where(late, exact.values(n), 0.0) for n in (*FORCE, *MOMENT)}
-    found = compare_space(exact, as_if_foreign(exact, **columns))
+    found = compare(exact, as_if_foreign(exact, **columns))
     assert [one.name for one in found.exceeded] == ["touch"]
 
 
@@ -141,14 +141,14 @@ def test_noise_neither_touches_nor_fails_what_agrees(passed, share):
     for seed in range(5):
         noisy = with_noise(passed, share, seed)
         for noise in (share, 0.0):
-            found = compare_space(passed, noisy, noise=noise)
+            found = compare(passed, noisy, noise=noise)
             names = {one.name for one in found.exceeded}
             assert not names & {"touch", "leaving", "touch 2", "leaving 2"}
         assert assert_agreement(passed, noisy, noise=share).compared.sum() >= 30
-        assert not compare_space(passed, with_noise(passed, share, seed, 1.05), noise=share).agrees
-    unwidened = compare_space(passed, with_noise(passed, 1e-2, 0))
+        assert not compare(passed, with_noise(passed, share, seed, 1.05), noise=share).agrees
+    unwidened = compare(passed, with_noise(passed, 1e-2, 0))
     assert not unwidened.agrees  # a limit is widened only by noise that is stated or asked for
-    auto = compare_space(passed, with_noise(passed, share, 0), noise="auto")
+    auto = compare(passed, with_noise(passed, share, 0), noise="auto")
     assert 0.5 * share < auto.noise.level["force_x"] < 3 * share
 
 
@@ -158,13 +158,13 @@ def test_a_touch_that_is_late_is_found_beside_noise(passed):
     columns = {n: np.where(late, noisy.values(n), noisy.values(n) - passed.values(n))
                for n in (*FORCE, *MOMENT)}  # fmt: skip
     columns = {n: np.where(passed.touching, v, noisy.values(n)) for n, v in columns.items()}
-    found = compare_space(passed, as_if_foreign(passed, **columns), noise=1e-3)
+    found = compare(passed, as_if_foreign(passed, **columns), noise=1e-3)
     assert "touch" in {one.name for one in found.exceeded}
 
 
 def test_no_contact_is_said_in_words(exact):
     opposite = {n: -exact.values(n) for n in (*FORCE, *MOMENT)}
-    found = compare_space(exact, as_if_foreign(exact, **opposite))
+    found = compare(exact, as_if_foreign(exact, **opposite))
     assert "nan" not in str(found)
     assert found.contact.stations < found.contact.asked
 
@@ -186,9 +186,9 @@ def test_frames_turn_the_components_and_nothing_else(exact):
         sizes = [sum(x[n] ** 2 for n in names) for x in (world, clamp)]
         assert np.allclose(*sizes, rtol=1e-13, atol=1e-30)
     foreign = as_if_foreign(leaning, **clamp)
-    assert not compare_space(leaning, foreign).agrees
+    assert not compare(leaning, foreign).agrees
     back = from_frame(foreign, "clamp")
-    assert compare_space(leaning, back, frame="clamp").disagreement["moment_y"].max < 1e-14
+    assert compare(leaning, back, frame="clamp").disagreement["moment_y"].max < 1e-14
     with pytest.raises(InputError, match="frame"):
         components(leaning, "tool")
 
@@ -196,18 +196,18 @@ def test_frames_turn_the_components_and_nothing_else(exact):
 def test_what_cannot_be_compared_is_refused_in_one_line(exact):
     moved = changed(exact, foot_x=exact.values("foot_x") + 0.1)
     with pytest.raises(InputError, match="the same foot positions"):
-        compare_space(exact, moved)
+        compare(exact, moved)
     with pytest.raises(InputError, match=r"tolerances\.rms"):
         SpatialTolerances(rms=-1.0)
     with pytest.raises(InputError, match="force_w"):
         SpatialTolerances(special={"force_w.rms": 1.0})
     stiff = SpatialReadings(exact.table, Beam(flexural_rigidity=2.0), exact.tangent)
     with pytest.raises(InputError, match=r"beam\.flexural_rigidity"):
-        compare_space(exact, stiff)
+        compare(exact, stiff)
     with pytest.raises(InputError, match="tangent"):
-        compare_space(exact, SpatialReadings(exact.table, exact.beam, (0.1, 1, 0)))
+        compare(exact, SpatialReadings(exact.table, exact.beam, (0.1, 1, 0)))
     with pytest.raises(InputError, match="candidate"):
-        compare_space(exact, exact.table)
+        compare(exact, exact.table)
 
 
 def test_the_gate_raises_with_every_limit(exact):
@@ -216,10 +216,6 @@ def test_the_gate_raises_with_every_limit(exact):
         assert_agreement(exact, changed(exact, moment_z=1.01 * exact.values("moment_z")))
     with pytest.raises(InputError, match="noise"):
         assert_agreement(exact, exact, noise=1.5)
-    with pytest.raises(InputError, match="offset"):
-        assert_agreement(exact, exact, offset=0.01)
-    with pytest.raises(InputError, match="candidate"):
-        assert_agreement(exact, object())
 
 
 @pytest.mark.parametrize(("segments", "stiffness"), [(40, 1e7), (300, 1e9)])
@@ -280,7 +276,7 @@ def test_the_command_compares_and_ends_with_the_right_code(tmp_path, request):
     # What was saved compares as it did, read back, and as another simulator's text file does.
     saved = SpatialReadings.read(tmp_path / "of-40" / "mujoco-chain.parquet")
     kept = json.loads((tmp_path / "of-40" / "comparison.json").read_text())
-    again = compare_space(SpatialReadings.read(tmp_path / "of-40" / "analytic.parquet"), saved)
+    again = compare(SpatialReadings.read(tmp_path / "of-40" / "analytic.parquet"), saved)
     assert json.loads(json.dumps(again.to_dict()))["disagreement"] == kept["disagreement"]
     foreign = saved.table[[*SENSED_IN_SPACE]].rename(columns={"force_x": "Fx", "foot_x": "X"})
     foreign.to_csv(tmp_path / "other.txt", sep=";", index=False)

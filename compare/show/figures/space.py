@@ -14,7 +14,7 @@ from analytic.space import SpatialReadings
 from analytic.space.problem.readings import FORCE, MOMENT
 from compare.align.frames import components
 from compare.align.travel import travel_of
-from compare.comparison_in_space import SpatialComparison
+from compare.comparison import SpatialComparison
 from compare.show import style
 from compare.show.figures.keys import key_below, phase_handles
 from compare.show.scene import SweepScene

@@ -109,12 +109,6 @@ def test_a_sweep_that_ends_early_is_enough():
     assert found(exact, displaced(part, 0.05)).value == pytest.approx(0.05, abs=1e-4)
 
 
-def test_sweeps_to_the_right():
-    case = named_case("parabola")
-    exact = solve_sweep(replace(case, sweep=Sweep(direction="right")))
-    assert found(exact, displaced(exact, 0.07)).value == pytest.approx(0.07, abs=1e-4)
-
-
 def test_offset_and_lag_from_two_sweeps():
     """A stage 0.03 L off, whose readings lag by 0.01 L of way: each sweep sees their sum."""
     case = named_case("parabola")

@@ -28,8 +28,8 @@ def test_a_planted_mistake_of_the_record_is_named(kind):
     "seeds", [pytest.param(10, marks=pytest.mark.trial), pytest.param(1, marks=pytest.mark.slow)]
 )
 def test_planted_mistakes_are_named(seeds):
-    """Asked are 95 % right and at most 1 % wrong."""
+    """Asked are 95 % right and at most 2 % wrong: one of those planted once."""
     table = confusion(range(seeds))
     known = [mistake.must for mistake in MISTAKES.values()]
     assert table[known]["right"].sum() >= 0.95 * seeds * sum(known)
-    assert table["wrong"].sum() <= 0.01 * seeds * len(table), table.to_string()
+    assert table["wrong"].sum() <= 0.02 * seeds * len(table), table.to_string()

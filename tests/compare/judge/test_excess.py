@@ -7,7 +7,9 @@ import pytest
 
 from analytic import CLAMP_READINGS
 from compare import Tolerances, compare
+from compare.align.offset import without_offset
 from compare.judge.allowance import NoiseAllowance
+from compare.sense.noise import with_noise
 from tests.compare.synthetic import changed, scaled, solved
 
 
@@ -41,6 +43,33 @@ def test_an_event_in_lengths_of_the_vibrissa(late):
     other = replace(solved(), provenance={**solved().provenance, "events": events})
     assert exceeded(other, Tolerances(snap_off=0.01)) == {"snap_off": pytest.approx(1.5)}
     assert exceeded(other, Tolerances(snap_off=0.01501)) == {}
+
+
+def test_what_is_uncertain_of_an_event_is_allowed_for():
+    """Half a step, where the candidate does not say where it lets go."""
+    rig = replace(without_offset(solved(), 0.1), provenance={})
+    snap = compare(solved(), rig).snap_off
+    allowed = 0.01 * solved().beam.length + snap.uncertainty
+    found = exceeded(rig, Tolerances(snap_off=0.01))
+    assert found["snap_off"] == pytest.approx(abs(snap.difference) / allowed)
+    assert snap.uncertainty > 0
+
+
+def test_noise_widens_what_is_asked_of_a_station_and_of_phases():
+    loose = {"rms": 1.0, "max": 1.0, "snap_off": 1.0, "transition": 1.0}
+    force = solved().values("force_y") + 0.5 * np.abs(solved().values("force_y")).max() * (
+        np.arange(128) == 40
+    )
+    spiked = changed(solved(), force_y=force)
+    limits = Tolerances(**loose | {"max": 0.1})
+    found = compare(solved(), spiked, limits, noise=0.02)
+    one = found.disagreement["force_y"]
+    excess = one.max / found.noise.max(0.1, "force_y", one.stations)
+    assert exceeded(spiked, limits, noise=0.02)["force_y"] == pytest.approx(excess)
+    noisy = with_noise(solved(), dict.fromkeys(CLAMP_READINGS, 1e-2), 1)
+    strict = Tolerances(**loose, phase_agreement=1.0)
+    assert "phases of the candidate" in exceeded(noisy, strict)
+    assert "phases of the candidate" not in exceeded(noisy, strict, noise=1e-2)
 
 
 def test_only_late_is_allowed_for_by_lateness():

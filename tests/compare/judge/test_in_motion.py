@@ -40,12 +40,6 @@ def test_the_limits_follow_from_the_speed():
     assert "inertia" in limits.rms.reason
 
 
-def test_no_speed_no_widening():
-    still = Tolerances().suited_to(moving(speed=1e-6))
-    assert still.rms == pytest.approx(Tolerances().rms, rel=1e-3)
-    assert still.lateness < 1e-4
-
-
 def test_a_fast_motion_is_allowed_no_more_than_shows_a_wrong_beam():
     limits = Tolerances().suited_to(moving(speed=5.0))
     assert limits.rms == 1e-2

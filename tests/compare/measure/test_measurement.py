@@ -1,6 +1,7 @@
 """Two sweeps side by side: gains, events, phases; a pass and its repeat; what is taken for true."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -16,6 +17,7 @@ from compare.sense.noise import with_noise
 from tests.compare.synthetic import BEAM, changed, scaled, solved
 
 WINDOW = 0.02
+DATA = Path(__file__).parents[2] / "data"
 
 
 def counted() -> np.ndarray:
@@ -149,13 +151,9 @@ def test_what_a_method_believes():
     assert believed.beam.radius == 0.02
 
 
-def test_the_tip_of_a_cantilever():
-    """Small loads by hand, P/3 and P^2/15; large ones as Mattiasson (1981) tabulates them."""
-    table = pd.DataFrame(
-        {"load": [1.0, 2.0, 5.0, 10.0],
-         "down": [0.30172, 0.49346, 0.71379, 0.81061],
-         "in": [0.05643, 0.16064, 0.38763, 0.55500]}
-    )  # fmt: skip
-    np.testing.assert_allclose(tip_of(table["load"]), table[["down", "in"]], rtol=0, atol=5.1e-6)
-    (small,) = tip_of(np.array([1e-2]))
-    assert small == pytest.approx([1e-2 / 3, 1e-4 / 15], rel=1e-4)
+def test_the_exact_cantilever():
+    """Against integration of the elastica; see tests/data/README.md."""
+    table = pd.read_csv(DATA / "cantilever_tip_load.csv")
+    found = tip_of(table["PL2_EI"].to_numpy())
+    expected = table[["w_over_L", "u_over_L"]].to_numpy()
+    np.testing.assert_allclose(found, expected, atol=1e-12)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import Case, InputError, Readings, Sweep, circle, named_case, solve_sweep
+from analytic import Beam, Case, InputError, Readings, Sweep, circle, named_case, solve_sweep
 from analytic.from_clamp.earlier.methods import NAMES, OWN
 from compare.measure.conditions import CONDITIONS, as_believed, chosen_conditions
 from compare.measure.methods import method_errors
@@ -101,3 +101,28 @@ def test_readings_without_contacts_cannot_judge():
     bare = Readings(sweep.table[["foot_x", "force_x", "force_y", "moment_z"]], sweep.beam)
     with pytest.raises(InputError, match="contacts of the readings"):
         method_errors(bare)
+
+
+WIRE = Case(Beam(0.05, 2e-6, 2.5e-4), named_case("parabola").profile.scaled(0.05))
+
+
+@pytest.mark.parametrize(
+    ("name", "changed"),
+    [
+        ("exact", WIRE),
+        ("curved", replace(WIRE, beam=replace(WIRE.beam, natural_curvature=-4.0))),
+        ("tapered", replace(WIRE, beam=replace(WIRE.beam, tip_radius=2e-4))),
+        ("soft-clamp", replace(WIRE, clamp_stiffness=4e-4)),
+        ("friction", replace(WIRE, friction=0.2)),
+    ],
+)
+def test_each_is_as_large_as_it_says_in_any_units(name, changed):
+    true = CONDITIONS[name].true(WIRE)
+    assert true.beam.natural_curvature == pytest.approx(changed.beam.natural_curvature, rel=1e-12)
+    assert true.beam.radius_at(0.05) == pytest.approx(changed.beam.radius_at(0.05), rel=1e-12)
+    assert true.clamp_stiffness == pytest.approx(changed.clamp_stiffness, rel=1e-12)
+    assert true.friction == changed.friction
+    # It is as large in a case that is of such a vibrissa already.
+    again = CONDITIONS[name].true(true)
+    assert again.beam.natural_curvature == pytest.approx(true.beam.natural_curvature, rel=1e-12)
+    assert again.friction == true.friction

@@ -1,4 +1,4 @@
-"""A rig's units, and the vibrissa that they are of: never assumed where they cannot be."""
+"""Units are never evaluated, nor is a vibrissa assumed where it cannot be."""
 
 import numpy as np
 import pandas as pd
@@ -7,7 +7,7 @@ import pytest
 from analytic import SENSED, Beam, Case, InputError, Readings, circle, named_case, solve_sweep
 from compare import read_measured
 from compare.read.assumed import ASSUMED
-from compare.read.units import OWN_UNITS, is_unit, unit_in_si
+from compare.read.units import OWN_UNITS, in_si, is_unit, unit_in_si
 
 BEAM = Beam(0.05, 2e-6, 0.25e-3)  # m, N m^2, m
 FILE_UNITS = (1e-3, 1e-3, 1e-3, 1e-6)  # mm, mN, mN, mN mm
@@ -117,16 +117,21 @@ def test_columns_that_nobody_named(tmp_path, rig):
         read_measured(path, columns=["foot_x=Weg [mm]"])
 
 
-@pytest.mark.parametrize(("unit", "size"), [("N·mm²", 1e-6), ("GPa mm^4", 1e-3), ("N mm^2", 1e-6)])
-def test_flexural_rigidity_in_engineers_units(unit, size):
-    assert unit_in_si(unit, "N m^2") == pytest.approx(size)
-
-
 @pytest.mark.parametrize(
-    ("unit", "size"), [("Nm", 1.0), ("Nmm", 1e-3), ("mNm", 1e-3), ("mNmm", 1e-6)]
+    ("unit", "dimension", "size"),
+    [
+        ("N·mm²", "N m^2", 1e-6),
+        ("GPa mm^4", "N m^2", 1e-3),
+        ("N mm^2", "N m^2", 1e-6),
+        ("mN mm", "N m", 1e-6),
+        ("Nm", "N m", 1.0),
+        ("Nmm", "N m", 1e-3),
+        ("mNm", "N m", 1e-3),
+        ("mNmm", "N m", 1e-6),
+    ],
 )
-def test_moments_as_instruments_write_them(unit, size):
-    assert unit_in_si(unit, "N m") == pytest.approx(size)
+def test_units_as_engineers_and_instruments_write_them(unit, dimension, size):
+    assert unit_in_si(unit, dimension) == pytest.approx(size)
     assert is_unit(unit)
     assert not is_unit("Weg")
 
@@ -137,3 +142,39 @@ def test_a_spike_is_no_wrong_vibrissa():
     table.loc[100, ["force_x", "force_y"]] = 1e6
     table.loc[50:55, "moment_z"] = np.nan
     assert read_measured(table).provenance[ASSUMED] == "L = EI = 1"
+
+
+@pytest.mark.parametrize(
+    ("text", "dimension", "value"),
+    [
+        ("50 mm", "m", 0.05),
+        ("5e1mm", "m", 0.05),
+        ("-.5 m", "m", -0.5),
+        ("2 N m^2", "N m^2", 2.0),
+        ("2 N*m**2", "N m^2", 2.0),
+        ("3 kg m^3/s^2", "N m^2", 3.0),
+        ("3 kg m/(s^2 m)", "N/m", 3.0),
+        ("4 1/m", "1/m", 4.0),
+        ("4 m^-1", "1/m", 4.0),
+    ],
+)
+def test_quantities(text, dimension, value):
+    assert in_si(text, dimension) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["9**9**9 m", "m**9**9", "1 m**9**9", "((((1 m", "1 m)", '"""', "m", "5", "", "1 kg",
+     "1 parsnip", "1e999 m", "nan m", "1 m" + "*m" * 1000, "1 " + "(" * 50,
+     "1 m;2", "1 m\n2", "2 2 m"],
+)  # fmt: skip
+def test_what_is_no_quantity_is_refused_at_once(text):
+    with pytest.raises(InputError) as refused:
+        in_si(text, "m")
+    assert len(str(refused.value)) < 300
+
+
+def test_a_unit_has_no_number():
+    for unit in ("0 m", "2 m", "", "m m"):
+        with pytest.raises(InputError):
+            unit_in_si(unit, "m")

@@ -7,7 +7,7 @@ import trimesh
 
 from analytic import InputError
 from analytic.space import solve_space
-from compare import compare_space, read_space
+from compare import compare, read_space
 from compare.align.frames import components
 from compare.read.case import load_job, load_space, load_space_job
 
@@ -147,12 +147,12 @@ def test_a_foreign_file_has_columns_units_and_a_frame_of_its_own(tmp_path):
     table.to_csv(tmp_path / "other.csv", index=False, sep=";")
     columns = ["foot_x=X:mm", "moment_z=Mz:mN m"]
     read = read_space(tmp_path / "other.csv", case.beam, case.path.tangent, columns, "clamp")
-    found = compare_space(exact, read)
+    found = compare(exact, read)
     assert found.agrees
     assert max(one.max for one in found.disagreement.values()) < 1e-12
     exact.write(tmp_path / "ours.parquet")  # knows that it is in the world's frame
     ours = read_space(tmp_path / "ours.parquet", frame="clamp")
-    assert compare_space(exact, ours).disagreement["moment_y"].max == 0
+    assert compare(exact, ours).disagreement["moment_y"].max == 0
     with pytest.raises(InputError, match="beside a vibrissa with units"):
         read_space(tmp_path / "other.csv", None, None, columns)
     with pytest.raises(InputError, match="force_w"):

@@ -9,6 +9,7 @@ from analytic import CLAMP_READINGS, Readings
 from compare import compare
 from compare.sense.noise import with_noise
 from compare.sense.record import inspect_record, without_dropouts
+from tests.compare.synthetic import changed
 from tests.conftest import exact_sweep
 
 
@@ -17,14 +18,10 @@ def noisy() -> Readings:
     return with_noise(exact_sweep("parabola"), dict.fromkeys(CLAMP_READINGS, 2e-3), 3)
 
 
-def with_columns(sweep: Readings, **columns) -> Readings:
-    return replace(sweep, table=sweep.table.assign(**columns))
-
-
 def column(sweep: Readings, name: str, rows, value: float) -> Readings:
     values = sweep.values(name).copy()
     values[rows] = value
-    return with_columns(sweep, **{name: values})
+    return changed(sweep, **{name: values})
 
 
 def test_a_sound_record(exact, simulated):
@@ -41,7 +38,7 @@ def test_defects_are_counted(noisy):
     assert inspect_record(replace(noisy, table=doubled)).repeated.sum() == 3
     limit = 0.8 * noisy.values("moment_z").max()
     over = noisy.values("moment_z") >= limit
-    found = inspect_record(with_columns(noisy, moment_z=noisy.values("moment_z").clip(max=limit)))
+    found = inspect_record(changed(noisy, moment_z=noisy.values("moment_z").clip(max=limit)))
     np.testing.assert_array_equal(found.clipped, over)
     assert found.where_clipped == ("moment_z",)
     assert inspect_record(replace(noisy, table=noisy.table.drop(range(80, 90)))).gaps == 1
@@ -49,19 +46,19 @@ def test_defects_are_counted(noisy):
 
 def test_a_station_that_says_that_it_failed_lacks_nothing(noisy):
     status = ["unsettled" if 60 <= i < 72 else "ok" for i in range(200)]
-    failed = with_columns(column(noisy, "force_x", slice(60, 72), np.nan), status=status)
+    failed = changed(column(noisy, "force_x", slice(60, 72), np.nan), status=status)
     assert inspect_record(failed).missing.sum() == 0
 
 
 def test_what_is_no_defect(noisy):
     """A coarse converter, a stage that jitters, a force that passes through zero, an idle clamp."""
     step = noisy.values("force_y").max() / 500
-    coarse = with_columns(noisy, force_y=np.round(noisy.values("force_y") / step) * step)
+    coarse = changed(noisy, force_y=np.round(noisy.values("force_y") / step) * step)
     jitter = np.random.default_rng(1).normal(0, 0.01, 200)
-    jittered = with_columns(noisy, foot_x=noisy.values("foot_x") + jitter)
+    jittered = changed(noisy, foot_x=noisy.values("foot_x") + jitter)
     crossing = np.argmin(np.abs(noisy.values("force_x")[20:150])) + 20
     through_zero = column(noisy, "force_x", [crossing], 0.0)
-    idle = with_columns(
+    idle = changed(
         exact_sweep("parabola"), moment_z=exact_sweep("parabola").values("moment_z") - 0.3
     )
     for sweep in (coarse, jittered, through_zero, idle):

@@ -22,7 +22,7 @@ from analytic.space import (
     sphere,
 )
 from analytic.space.problem.readings import FORCE, MOMENT
-from compare import compare_space
+from compare import compare
 from compare.show.report import write_spatial_report
 from compare.show.scene import SweepScene, faces_within
 from compare.show.turning import turning
@@ -73,7 +73,7 @@ PROBE = """<script>addEventListener("load", () => {
 def report(tmp_path_factory):
     exact = solve_space(CASE)
     folder = tmp_path_factory.mktemp("space")
-    return write_spatial_report(compare_space(exact, exact), CASE.body, folder)
+    return write_spatial_report(compare(exact, exact), CASE.body, folder)
 
 
 def test_free_air_is_drawn_straight_whatever_the_noise():

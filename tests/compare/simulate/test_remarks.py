@@ -1,14 +1,10 @@
 """Planted mistakes are named, and sound models are called sound."""
 
-from pathlib import Path
-
 import mujoco
 import numpy as np
-import pandas as pd
 import pytest
 
 from analytic import Beam
-from compare.measure.cantilever import tip_of
 from compare.simulate.inspection import Inspection
 from compare.simulate.rigidity import clamp_stiffness
 from mujoco_models import inspect_model, shipped_models
@@ -18,20 +14,11 @@ from tests.mujoco_models.inspect.chains import Chain
 STATED = Beam()
 NO_CONTACTS = '<option><flag contact="disable"/></option></mujoco>'
 FORCE = '<force name="F" site="clamp" {}/><torque name="T" site="clamp"/>'
-DATA = Path(__file__).parents[2] / "data"
 
 
 def faults(tmp_path, chain, stated=STATED):
     found = Inspection(inspect_model(chain.write(tmp_path)), stated)
     return [str(remark) for remark in found.remarks if remark.kind == "fault"]
-
-
-def test_the_exact_cantilever():
-    """Against integration of the elastica; see tests/data/README.md."""
-    table = pd.read_csv(DATA / "cantilever_tip_load.csv")
-    found = tip_of(table["PL2_EI"].to_numpy())
-    expected = table[["w_over_L", "u_over_L"]].to_numpy()
-    np.testing.assert_allclose(found, expected, atol=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import trimesh
 
 from analytic import Beam, InputError
 from analytic.space import FootPath, SpatialCase, reconstruct_space, solve_space, sphere
-from compare import compare_space
+from compare import compare
 from compare.study.grid.file import load_study
 from compare.study.grid.plan import Plan
 from compare.study.work.perform import perform, perform_together
@@ -85,7 +85,7 @@ def test_a_row_of_mujoco_is_what_the_library_finds(plan_of):
     case = case_of(run.parameters["path.tangent.x"], points=((1.1, 0.3), (-0.3, 0.3)), n=12)
     segments = run.parameters["mujoco.segments"]
     candidate = simulate_space(case, SpatialSettings(segments=segments))
-    found = compare_space(solve_space(case), candidate)
+    found = compare(solve_space(case), candidate)
     for name, one in found.disagreement.items():
         assert row[f"disagreement_{name}_rms"] == one.rms
     assert row["contact_rms"] == found.contact.rms
