@@ -1,7 +1,5 @@
 """The command ``vibrissa``: its commands, and what becomes of their errors."""
 
-import atexit
-import gc
 import os
 import sys
 from collections.abc import Callable
@@ -30,9 +28,6 @@ from compare.commands.verify import verify
 
 BAD_INPUT = 2
 _LONGEST = 800  # characters of an error
-# Made between two searches for garbage: what is loaded is none, and looking through all of it again
-# and again took a twentieth of a run.
-_OBJECTS = 400_000
 
 app = typer.Typer(
     cls=Group,
@@ -103,12 +98,9 @@ def main() -> None:
     """Run the command line; whatever goes wrong is reported in one line."""
     os.environ["MPLBACKEND"] = "agg"  # pictures are files; the user's backend may not even exist
     os.environ.setdefault("MUJOCO_GL", "off")  # none of them is MuJoCo's, which looks for OpenGL
-    gc.set_threshold(_OBJECTS)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):  # what its encoding lacks is written as an escape
             stream.reconfigure(errors="backslashreplace")
-    # To look for garbage in all that ends with the process took a tenth of a run.
-    atexit.register(gc.freeze)
     sys.exit(_run())
 
 

@@ -15,7 +15,7 @@ from compare.measure.conditions import CONDITIONS, SIMULATED, as_believed, chose
 from compare.measure.methods import INFORMED, KNOWN, method_errors
 from compare.read.job import Job
 from compare.show.document import Table
-from compare.show.figures.methods import picture, side_by_side
+from compare.show.figures.methods import picture
 from compare.show.numbers import short
 from compare.show.style import PHASE_LETTERS
 from mujoco_models import simulate_sweep
@@ -50,8 +50,7 @@ def compare_methods(
         every = pd.concat(tables, ignore_index=True)
         terminal.keep(folder / "methods.csv", every)
         title = f"{called} ({truth.source})" if len(tables) == 1 else called
-        drawn = picture(tables[0], title) if len(tables) == 1 else side_by_side(every, title)
-        terminal.keep(folder / "methods.png", drawn)
+        terminal.keep(folder / "methods.png", picture(every, title))
 
 
 def _truths(

@@ -11,7 +11,6 @@ from compare.comparison import Comparison, compare
 from compare.show.document import Table
 from compare.show.figures.keys import key_below
 from compare.show.figures.over_foot import foot_label, shade_reference
-from compare.show.figures.thinning import draw
 from compare.show.numbers import short
 from compare.show.style import LARGE, LINE_STYLES, SERIES, SYMBOLS, label
 
@@ -91,8 +90,7 @@ def picture(found: SideBySide) -> Figure:
         for i, (candidate, one) in enumerate(found.against.items()):
             table = one.alignment.table
             error = table[f"{name}_candidate"] - table[f"{name}_reference"]
-            draw(
-                ax,
+            ax.plot(
                 table["foot_x"].to_numpy() / first.reference.beam.length,
                 error.to_numpy() / one.disagreement[name].scale,
                 color=SERIES[i % len(SERIES)],

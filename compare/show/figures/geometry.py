@@ -17,8 +17,7 @@ from analytic.problem.arrays import Words
 from compare.comparison import Comparison
 from compare.show import style
 from compare.show.figures.keys import key_below, phase_handles
-from compare.show.figures.over_foot import foot, on_vibrissa
-from compare.show.figures.thinning import draw
+from compare.show.figures.over_foot import draw, foot, on_vibrissa
 from compare.show.numbers import quantity
 
 _SHAPES = 24  # drawn of each sweep

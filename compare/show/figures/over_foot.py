@@ -13,12 +13,12 @@ from compare.comparison import Comparison
 from compare.sense.phases import Classification
 from compare.show import style
 from compare.show.figures.keys import phase_handles
-from compare.show.figures.thinning import stretches
 from compare.show.numbers import Kind, quantity
 
 LINE: dict[str, Any] = {"color": style.REFERENCE, "linewidth": 3.0}
 """How the reference is drawn: so wide that dots upon it hide it nowhere."""
 _DOTS = {"color": style.CANDIDATE, "marker": "o", "markeredgewidth": 0, "linestyle": ""}
+_MANY = 2000  # dots are pixels, behind a line through them
 _BEYOND_TIP = 1.1  # L; as far as a noisy contact is drawn
 
 
@@ -78,17 +78,23 @@ def on_vibrissa(s: Floats) -> Floats:
     return np.where((s > 0) & (s < _BEYOND_TIP), s, np.nan)
 
 
+def draw(ax: Axes, x: Floats, y: Floats, **style: Any) -> None:  # noqa: ANN401
+    """Plot a line or dots, many dots as pixels: a page must not grow with the stations."""
+    if style.get("linestyle") == "" and len(y) > _MANY:
+        style |= {"rasterized": True, "zorder": 1.9}
+    ax.plot(x, y, **style)
+
+
 def shade_phases(ax: Axes, foot_x: Floats, phase: Words) -> None:
     """Draw the contact phases of a sweep as a background over its foot positions."""
-    for begin, end, name in zip(*stretches(phase), strict=True):
-        if name in ("tip", "tangent"):
-            ax.axvspan(
-                foot_x[max(begin - 1, 0)],
-                foot_x[end],
-                color=style.PHASE_COLOURS[str(name)],
-                alpha=0.10,
-                linewidth=0,
-            )
+    for name in ("tip", "tangent"):
+        here = phase == name
+        here[:-1] |= here[1:]  # from the station before on
+        ax.fill_between(
+            foot_x, 0, 1, where=here, transform=ax.get_xaxis_transform(),
+            color=style.PHASE_COLOURS[name], alpha=0.10, linewidth=0,
+            rasterized=len(phase) > _MANY,
+        )  # fmt: skip
 
 
 def shade_reference(ax: Axes, comparison: Comparison) -> None:

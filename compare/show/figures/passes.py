@@ -6,8 +6,7 @@ from matplotlib.figure import Figure
 
 from compare.read.passes import Pass
 from compare.show.figures.keys import key_below
-from compare.show.figures.over_foot import foot, reading_label, stacked, unit
-from compare.show.figures.thinning import draw
+from compare.show.figures.over_foot import draw, foot, reading_label, stacked, unit
 from compare.show.style import SERIES, SMALL, label
 
 _MOST = 12  # names in the legend

@@ -7,12 +7,12 @@ from compare.show.figures.keys import key_below
 from compare.show.figures.over_foot import (
     LINE,
     dots,
+    draw,
     foot,
     foot_label,
     on_vibrissa,
     shade_reference,
 )
-from compare.show.figures.thinning import draw
 from compare.show.style import CANDIDATE, GREY, PAGE_WIDTH, REFERENCE, label
 
 _AXES = {"left": 0.107, "right": 0.99, "top": 0.98, "bottom": 0.15, "hspace": 0.08}

@@ -16,6 +16,7 @@ from compare.show.figures.keys import key_below
 from compare.show.figures.over_foot import (
     LINE,
     dots,
+    draw,
     foot,
     foot_label,
     key,
@@ -25,7 +26,6 @@ from compare.show.figures.over_foot import (
     shade_reference,
     unit,
 )
-from compare.show.figures.thinning import draw
 
 _ALONE = 3.0  # points; of dots that lie on no line
 _NEAR = 0.03  # of the sweep's length: what is shown on either side of the snap-off

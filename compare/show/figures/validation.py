@@ -4,8 +4,7 @@ from matplotlib.figure import Figure
 
 from compare.comparison import Comparison
 from compare.show.figures.keys import key_below
-from compare.show.figures.over_foot import shade_reference, stacked
-from compare.show.figures.thinning import draw
+from compare.show.figures.over_foot import draw, shade_reference, stacked
 from compare.show.style import BLUE, GREY, INK, SKY, SMALL, SYMBOLS
 from compare.validate.validation import Validation
 
