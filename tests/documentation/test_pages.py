@@ -45,13 +45,14 @@ def folder(tmp_path, monkeypatch) -> Path:
 
 
 def run(some: Iterable[Block], folder: Path) -> None:
-    """Run blocks in one folder, in their order; check what they print."""
+    """Run blocks in one folder and one session of Python, in their order; check what they print."""
+    names: dict[str, Any] = {"__name__": "__main__"}
     for block in some:
         if block.file:
             (folder / block.file).write_text(block.text)
         if not block.runs:
             continue
-        done = _python(block, folder) if block.language == "python" else _commands(block, folder)
+        done = _commands(block, folder) if block.language == "sh" else _python(block, folder, names)
         assert done.returncode == 0, f"{block}\n{done.stdout}{done.stderr}"
         if block.prints is not None:
             matches = doctest.OutputChecker().check_output
@@ -59,13 +60,13 @@ def run(some: Iterable[Block], folder: Path) -> None:
             assert matches(block.prints, done.stdout, flags), f"{block} prints\n{done.stdout}"
 
 
-def _python(block: Block, folder: Path) -> Done:
+def _python(block: Block, folder: Path, names: dict[str, Any]) -> Done:
     """In this process: a fresh one would take longer to import than most blocks to run."""
     out = io.StringIO()
     with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(out):
         patch.chdir(folder)
         patch.syspath_prepend(folder)
-        exec(compile(block.text, str(block), "exec"), {"__name__": "__main__"})
+        exec(compile(block.text, str(block), "exec"), names)
     return Done(0, out.getvalue(), "")
 
 
@@ -150,7 +151,7 @@ def _anchors(page: Path) -> set[str]:
 
 
 def test_every_kind_of_contour_and_its_keys_are_described():
-    page = (ROOT / "analytic" / "README.md").read_text(encoding="utf-8")
+    page = (ROOT / "analytic" / "case-file.md").read_text(encoding="utf-8")
     (kinds, *_) = get_args(get_type_hints(CaseFile, include_extras=True)["profile"])
     for table in get_args(kinds):
         (kind,) = get_args(table.model_fields["kind"].annotation)
