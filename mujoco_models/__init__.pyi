@@ -6,6 +6,7 @@ from .model.solref import from_solref as from_solref
 from .model.solref import to_solref as to_solref
 from .motion import Motion as Motion
 from .settings import Settings as Settings
+from .settings import SpatialSettings as SpatialSettings
 from .simulate import inspect_model as inspect_model
 from .simulate import load_tip as load_tip
 from .simulate import simulate_model as simulate_model
@@ -14,6 +15,5 @@ from .simulate import simulate_space as simulate_space
 from .simulate import simulate_sweep as simulate_sweep
 from .simulate import simulate_there_and_back as simulate_there_and_back
 from .simulate import view_sweep as view_sweep
-from .space.settings import SpatialSettings as SpatialSettings
 from .user_model.names import OwnModel as OwnModel
 from .user_model.shipped import shipped_models as shipped_models

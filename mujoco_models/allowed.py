@@ -13,6 +13,8 @@ ClampKind: TypeAlias = Literal["second-order", "naive"]
 ObstacleKind: TypeAlias = Literal["mesh", "primitive"]
 BEAMS, CLAMPS, OBSTACLES = map(get_args, (BeamKind, ClampKind, ObstacleKind))
 CONTACT_STIFFNESSES = 1e3, 1e9  # EI/L^3; the least and the largest
+Limits: TypeAlias = dict[str, tuple[float, float, str]]
+"""The least and the largest number that a field may be (integers: a whole one), what is usual."""
 
 
 def check_word(name: str, value: object, allowed: tuple[str, ...]) -> None:
@@ -29,3 +31,11 @@ def check_number(
     if not (is_number and low <= value <= high):  # type: ignore[operator]
         number = "a whole number" if whole else "a number"
         raise InputError(name, value, f"{number} between {low:g} and {high:g}", remedy)
+
+
+def check_numbers(kind: str, values: object, limits: Limits) -> None:
+    """Refuse an object of which a field is out of its range; one that may be left out, if given."""
+    for name, (low, high, remedy) in limits.items():
+        value = getattr(values, name)
+        if value is not None or getattr(type(values), name) is not None:
+            check_number(f"{kind}.{name}", value, low, high, remedy, isinstance(low, int))

@@ -6,7 +6,7 @@ from typing import Literal, TypeAlias, get_args
 from pydantic import ConfigDict, StrictFloat
 
 from analytic.problem.errors import InputError
-from mujoco_models.allowed import check_number, check_word
+from mujoco_models.allowed import Limits, check_number, check_numbers, check_word
 
 IntegratorKind: TypeAlias = Literal["discrete", "implicitfast", "implicit", "euler", "rk4"]
 SolverKind: TypeAlias = Literal["newton", "cg", "pgs"]
@@ -18,6 +18,19 @@ INTEGRATORS, SOLVERS, CONES = map(get_args, (IntegratorKind, SolverKind, ConeKin
 # many and three times the error. N = 80 on a mesh takes 1: 3e-3 instead of 8e-3. Integrators that
 # are explicit in the contact diverge at 4, whatever the armature.
 _STIFFNESS, _STIFFNESS_EXPLICIT = 4.0, 1.0
+_LIMITS: Limits = {
+    "speed": (1e-6, 10, "in L/T1; 0.004 is a slow whisk"),
+    "timestep": (1e-7, 0.1, "in T1, the slowest period; 0.02 is usual"),
+    "damping_ratio": (0.0, 100, "0.05 is usual"),
+    "armature": (0.0, 1e6, "explicit integrators need about 1"),
+    "solimp": (0.001, 0.9999, "0.9 is usual"),
+    "impratio": (1e-3, 1e6, "1 is MuJoCo's, 100 holds better"),
+    "ramp": (0.0, 1e3, "in T1; 1 is usual"),
+    "average": (0.0, 1, "1 is all the way"),
+    "friction": (0.0, 10, "leave it out for the case's"),
+    "cutoff": (1e-3, 1e9, "in 1/T1; leave it out for no filter"),
+    "contact_stiffness": (1e3, 1e9, "1e4 is usual"),
+}
 
 
 @dataclass(frozen=True)
@@ -98,27 +111,7 @@ class Motion:
     def __post_init__(self) -> None:
         for name, allowed in (("integrator", INTEGRATORS), ("solver", SOLVERS), ("cone", CONES)):
             check_word(f"motion.{name}", getattr(self, name), allowed)
-        for name, low, high, remedy in (
-            ("speed", 1e-6, 10, "in L/T1; 0.004 is a slow whisk"),
-            ("timestep", 1e-7, 0.1, "in T1, the slowest period; 0.02 is usual"),
-            ("damping_ratio", 0, 100, "0.05 is usual"),
-            ("armature", 0, 1e6, "explicit integrators need about 1"),
-            ("solimp", 0.001, 0.9999, "0.9 is usual"),
-            ("impratio", 1e-3, 1e6, "1 is MuJoCo's, 100 holds better"),
-            ("ramp", 0, 1e3, "in T1; 1 is usual"),
-            ("average", 0, 1, "1 is all the way"),
-        ):
-            check_number(f"motion.{name}", getattr(self, name), low, high, remedy)
-        if self.friction is not None:
-            check_number("motion.friction", self.friction, 0, 10, "leave it out for the case's")
-        if self.cutoff is not None:
-            check_number(
-                "motion.cutoff", self.cutoff, 1e-3, 1e9, "in 1/T1; leave it out for no filter"
-            )
-        if self.contact_stiffness is not None:
-            check_number(
-                "motion.contact_stiffness", self.contact_stiffness, 1e3, 1e9, "1e4 is usual"
-            )
+        check_numbers("motion", self, _LIMITS)
         if self.solref is not None:
             if self.contact_stiffness is not None:
                 raise InputError(

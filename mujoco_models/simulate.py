@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from analytic.space.problem.case import SpatialCase
     from analytic.space.problem.readings import SpatialReadings
     from mujoco_models.inspect.measured import MeasuredBeam
-    from mujoco_models.space.settings import SpatialSettings
+    from mujoco_models.settings import SpatialSettings
     from mujoco_models.user_model.names import OwnModel
 
 
@@ -130,7 +130,7 @@ def simulate_space(
         If the simulation is not a number any more; it names the station.
     """
     from analytic.space.problem.case import SpatialCase
-    from mujoco_models.space.settings import SpatialSettings
+    from mujoco_models.settings import SpatialSettings
     from mujoco_models.space.sweep import run_space
 
     chosen = SpatialSettings() if settings is None else settings

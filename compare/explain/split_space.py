@@ -11,7 +11,7 @@ from analytic.space import SpatialReadings
 from compare.measure.disagreement import rms
 from compare.sense.touching import component_scales
 from mujoco_models.allowed import CONTACT_STIFFNESSES
-from mujoco_models.space.settings import SpatialSettings
+from mujoco_models.settings import SpatialSettings
 
 _ORDER = 2  # of the chain in 1/N
 _MOST = 400  # segments

@@ -7,8 +7,7 @@ from analytic import Case
 from compare.judge.tolerances import SpatialTolerances, Tolerances
 from compare.read.kinds import MODEL, MOTION, PLANE, SPACE
 from engines.known import named_engines
-from mujoco_models.settings import Settings
-from mujoco_models.space.settings import SpatialSettings
+from mujoco_models.settings import Settings, SpatialSettings
 
 if TYPE_CHECKING:
     from analytic import Readings

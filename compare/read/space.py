@@ -16,7 +16,7 @@ from compare.read.profiles import Drawn
 from compare.read.quantities import FileName, Length, Point, Table, known_keys, validated
 from compare.read.tables import BeamTable
 from compare.read.toml import TomlFile
-from mujoco_models.space.settings import SpatialSettings
+from mujoco_models.settings import SpatialSettings
 
 Place = Annotated[tuple[Length, Length, Length], Field(strict=False)]
 Way = Annotated[tuple[float, float, float], Field(strict=False)]

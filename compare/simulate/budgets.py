@@ -17,8 +17,7 @@ from compare.simulate.moving import budget_in_motion, budget_of_model
 from compare.simulate.workers import SWEEPERS, running
 from mujoco_models import simulate_space, simulate_sweep
 from mujoco_models.motion import Motion
-from mujoco_models.settings import Settings
-from mujoco_models.space.settings import SpatialSettings
+from mujoco_models.settings import Settings, SpatialSettings
 from mujoco_models.user_model.names import OwnModel
 
 AnyBudget: TypeAlias = Budget | MotionBudget | Parts

@@ -9,8 +9,7 @@ from compare.sense.given import checked
 from mujoco_models import simulate_model, simulate_motion, simulate_space, simulate_sweep
 from mujoco_models.allowed import CONTACT_STIFFNESSES
 from mujoco_models.motion import Motion
-from mujoco_models.settings import Settings
-from mujoco_models.space.settings import SpatialSettings
+from mujoco_models.settings import Settings, SpatialSettings
 from mujoco_models.user_model.names import OwnModel
 
 MUJOCO = "mujoco"

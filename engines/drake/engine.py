@@ -38,11 +38,12 @@ class _Drake:
 
 def _sweep(case: Case, settings: Settings, advance: Callable[[], None]) -> Readings:
     from engines.drake.chain import DrakeChain  # Drake is imported only where it is used
-    from mujoco_models.sweep.sweep import follow, parts
+    from mujoco_models.model.parts import parts_at_rest
+    from mujoco_models.sweep.sweep import follow
     from mujoco_models.sweep.walk import Walk
 
     begun = time.process_time()
-    beam, obstacle = parts(case, settings, "drake")
+    beam, obstacle = parts_at_rest(case, settings, "drake")
     chain = DrakeChain(beam, case.radius, obstacle, settings.contact_stiffness)
     walk = Walk(chain, float(case.foot_x[0]) / case.beam.length, settings.tolerance)
     about = {

@@ -3,15 +3,17 @@
 from collections.abc import Callable
 from typing import TypeAlias
 
+import numpy as np
+
 from analytic.problem.errors import InputError
 from mujoco_models.beams.available import require
 from mujoco_models.beams.cable import Cable
 from mujoco_models.beams.chain import Chain
-from mujoco_models.beams.protocol import Beam
+from mujoco_models.beams.protocol import Beam, SpatialBeam
 from mujoco_models.beams.rod import Rod
-from mujoco_models.beams.spatial import SpatialChain, SpatialRod
+from mujoco_models.beams.spatial import SpatialChain, SpatialRod, UniversalChain
 from mujoco_models.beams.vibrissa import Vibrissa
-from mujoco_models.settings import Settings
+from mujoco_models.settings import Settings, SpatialSettings
 
 _Kinds: TypeAlias = dict[str, Callable[[Settings, float, Vibrissa], Beam]]
 
@@ -32,3 +34,13 @@ def build(settings: Settings, spacing: float, vibrissa: Vibrissa | None = None) 
         )
     kinds = _PLANAR if settings.planar else _SPATIAL
     return kinds[settings.beam](settings, spacing, vibrissa)
+
+
+def build_spatial(settings: SpatialSettings) -> SpatialBeam:
+    """The beam that the settings of a sweep in space ask for, without beads of its own."""
+    require(settings.beam)
+    planar = Settings(beam=settings.beam, segments=settings.segments, clamp=settings.clamp)
+    if settings.beam == "rod":
+        return SpatialRod(planar, np.inf)
+    kind = SpatialChain if settings.joints == "ball" else UniversalChain
+    return kind(planar, np.inf)

@@ -1,7 +1,7 @@
 """What the beams have in common, and the few things in which they differ."""
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 import mujoco
 
@@ -13,6 +13,8 @@ from mujoco_models.beams.layout import Layout
 FOOT = "foot"
 Furnish = Callable[[mujoco.MjsBody, int], None]
 """Given each link's body and number, adds what the link carries."""
+Law: TypeAlias = Callable[[Floats], tuple[Floats, Floats | float]]
+"""Maps the joints' angles to the first two derivatives of their energies, over EI/h."""
 
 
 def bare(body: mujoco.MjsBody, link: int) -> None:
@@ -51,3 +53,21 @@ class Beam(Protocol):
 
     def stiffness(self, angles: Floats) -> Floats:
         """Derivative of each joint's elastic moment by its angle [EI/L]."""
+
+
+class SpatialBeam(Beam, Protocol):
+    """A straight one that bends in space, and the second derivative of its energy."""
+
+    @property
+    def law(self) -> Law | None:
+        """Of joints that bend alike in all directions; None of others."""
+
+    def blocks(self, configuration: Floats) -> Floats:
+        """Second derivative of each joint's energy by its d velocities, shape (n_joints, d, d)."""
+
+    def bent(self, frame: Floats, side: Floats, angles: Floats) -> Floats:
+        """MuJoCo's coordinates where the links lie in a plane with the clamp, without twist.
+
+        They turn by angles from the clamp's tangent, the second column of the foot's frame, to a
+        side across it.
+        """

@@ -13,15 +13,12 @@ from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
 from analytic.problem.recorder import DIVERGED, Recorder
-from mujoco_models.beams.kinds import build
-from mujoco_models.beams.layout import bead_spacing
-from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.dynamics.model import MovingModel
 from mujoco_models.dynamics.moving import SteppedModel
 from mujoco_models.dynamics.record import StationMeans, Step
 from mujoco_models.errors import DivergedError
+from mujoco_models.model.parts import parts
 from mujoco_models.motion import Motion
-from mujoco_models.obstacles.kinds import place
 from mujoco_models.quiet import unlogged
 from mujoco_models.settings import Settings
 
@@ -79,8 +76,6 @@ def start_of(record: StationMeans, motion: Motion) -> float:
 
 
 def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> MovingModel:
-    if case.radius == 0:
-        raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
     if settings.beam == "cable" or not settings.planar:
         raise InputError(
             "mujoco.beam" if settings.planar else "mujoco.planar",
@@ -88,12 +83,7 @@ def _set_out(case: Case, motion: Motion, settings: Settings, start: float) -> Mo
             "a chain or rod in the plane, for a sweep in motion",
             "choose one, or sweep at rest",
         )
-    obstacle = place(case, settings)
-    spacing = np.inf
-    if len(obstacle.corners) == 0:
-        thinnest = case.beam.unloaded.tip_radius
-        spacing = bead_spacing(settings.segments, thinnest, obstacle.largest_curvature)
-    beam = build(settings, spacing, Vibrissa.of(case.beam, case.clamp_stiffness))
+    beam, obstacle = parts(case, settings)
     return MovingModel(beam, case.radius, obstacle, motion, start)
 
 

@@ -25,7 +25,7 @@ from scipy.linalg.lapack import dgesv, dgtsv, dpttrf, dsyev
 from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.feature import Feature
 from mujoco_models.beams.layout import Layout
-from mujoco_models.space.beams import Law
+from mujoco_models.beams.protocol import Law
 
 _ITERATIONS = 14
 _NOT_HALVED = 5  # steps; from its start or later, Newton's method that leads anywhere halves them

@@ -10,11 +10,10 @@ from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.body import across, cross
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from mujoco_models.beams.links import link_name
-from mujoco_models.beams.protocol import FOOT
+from mujoco_models.beams.protocol import FOOT, SpatialBeam
 from mujoco_models.errors import DivergedError
 from mujoco_models.model.stiffness import impede, stiffen
 from mujoco_models.space.assembly import assembled
-from mujoco_models.space.beams import SpaceBeam
 from mujoco_models.space.bodies import GEOM, OUTLINE, Shape
 
 _FOLLOWED, _SAME_NORMAL = 20, 1e-13  # rounds in which a cylinder finds the circle of curvature
@@ -46,7 +45,7 @@ class SpaceModel:
 
     def __init__(
         self,
-        beam: SpaceBeam,
+        beam: SpatialBeam,
         spec: mujoco.MjSpec,
         shape: Shape,
         tangent: Floats,

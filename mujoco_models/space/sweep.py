@@ -14,7 +14,6 @@ from threadpoolctl import threadpool_limits
 
 from analytic.problem.arrays import Floats
 from analytic.problem.columns import units
-from analytic.problem.errors import InputError
 from analytic.space.problem.case import SpatialCase
 from analytic.space.problem.readings import (
     CONTACT_POINT,
@@ -24,13 +23,14 @@ from analytic.space.problem.readings import (
     NORMAL,
     SpatialReadings,
 )
+from mujoco_models.beams.kinds import build_spatial
 from mujoco_models.beams.layout import MOST_BENT
 from mujoco_models.errors import DivergedError
-from mujoco_models.space.beams import build
+from mujoco_models.model.parts import require_radius
+from mujoco_models.settings import SpatialSettings
 from mujoco_models.space.bodies import add_body
 from mujoco_models.space.model import SpaceModel
 from mujoco_models.space.rest import Rest, Settled
-from mujoco_models.space.settings import SpatialSettings
 from mujoco_models.space.walk import Station, Walk
 
 _NUMBERS = (
@@ -95,9 +95,8 @@ def run_space(
 
 def compiled(case: SpatialCase, settings: SpatialSettings) -> SpaceModel:
     """Beam and body of a case."""
-    if case.beam.radius == 0:
-        raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
-    beam, way = build(settings), case.way
+    require_radius(case.beam.radius)
+    beam, way = build_spatial(settings), case.way
     radius = case.beam.radius / case.beam.length
     spec = beam.spec(radius)
     corners = case.path.corners / case.beam.length

@@ -93,7 +93,7 @@ class SpatialWalk(Walk[BeamModel]):
 
     def _resume(self, start: tuple[float, State]) -> None:
         self._foot_x, self._state = start
-        self._trail.clear()
+        self._before = None
 
     def _locate(self, start: tuple[float, State], target: float) -> float:
         """Where, between a station that is held in the plane and one that is not, that changes."""
@@ -143,7 +143,7 @@ class SpatialWalk(Walk[BeamModel]):
         self._move(STEP, _LAST_STEPS)
         angles = model.beam.angles(model.data)
         self._foot_x, self._held = target, None
-        self._trail.clear()
+        self._before = None
         if model.out_of_plane() > _IN_PLANE:
             model.relieved()
             imbalance = float(np.abs(model.moments()).max())

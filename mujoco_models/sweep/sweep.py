@@ -7,20 +7,13 @@ from importlib.metadata import version
 from typing import Any
 
 import mujoco
-import numpy as np
 
 from analytic.problem.case import Case
-from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings
 from analytic.problem.recorder import DIVERGED, Recorder
-from mujoco_models.beams.kinds import build
-from mujoco_models.beams.layout import bead_spacing
-from mujoco_models.beams.protocol import Beam
-from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.errors import DivergedError
 from mujoco_models.model.model import BeamModel
-from mujoco_models.obstacles.kinds import place
-from mujoco_models.obstacles.protocol import Obstacle
+from mujoco_models.model.parts import parts_at_rest
 from mujoco_models.settings import Settings
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.spatial_walk import SpatialWalk
@@ -76,26 +69,7 @@ def follow(
 
 def set_out(case: Case, settings: Settings, numerics: Numerics | None = None) -> Walk[BeamModel]:
     """The beam, straight, with its foot at the first station of a sweep to the left."""
-    beam, obstacle = parts(case, settings)
+    beam, obstacle = parts_at_rest(case, settings)
     model = BeamModel(beam, case.radius, obstacle, settings.contact_stiffness)
     kind = Walk if settings.planar else SpatialWalk
     return kind(model, float(case.foot_x[0]) / case.beam.length, settings.tolerance, numerics)
-
-
-def parts(case: Case, settings: Settings, engine: str = "MuJoCo") -> tuple[Beam, Obstacle]:
-    """The beam and the obstacle, before an engine makes a model of them."""
-    if case.friction != 0:
-        raise InputError(
-            "friction",
-            case.friction,
-            f"0 for {engine} at rest",
-            "with friction many states are at rest, and the motion decides which: simulate_motion",
-        )
-    if case.radius == 0:
-        raise InputError("beam.radius", 0, f"positive for {engine}", "it cannot collide a line")
-    obstacle = place(case, settings)
-    spacing = np.inf
-    if len(obstacle.corners) == 0:
-        thinnest = case.beam.unloaded.tip_radius
-        spacing = bead_spacing(settings.segments, thinnest, obstacle.largest_curvature)
-    return build(settings, spacing, Vibrissa.of(case.beam, case.clamp_stiffness)), obstacle

@@ -1,7 +1,6 @@
 """From station to station at rest, and the snap-off found by smaller and smaller steps."""
 
 import math
-from collections import deque
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -11,13 +10,13 @@ from mujoco_models.errors import ClampError
 from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import NOWHERE
 from mujoco_models.model.stance import Stance
+from mujoco_models.sweep.bracket import Bracket
 from mujoco_models.sweep.descent import descend
 from mujoco_models.sweep.forecast import forecast
 from mujoco_models.sweep.minimum import minimum
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.rest import relax
 from mujoco_models.sweep.state import State, turned
-from mujoco_models.sweep.walls import Walls
 
 Model = TypeVar("Model", bound=Balance)
 _DISCREPANCY = 1e-6  # EI/L^2, EI/L; a hundred times the usual tolerance of rest
@@ -55,7 +54,7 @@ class Walk(Generic[Model]):
         self._numerics = numerics or Numerics()
         self._foot_x = foot_x
         self._state = State.straight(len(model.layout.joints))
-        self._trail: deque[tuple[float, State]] = deque(maxlen=2)  # before the last state
+        self._before: tuple[float, State] | None = None  # on the branch, before the last state
         self._shown = self._state
         self._budget = self._numerics.budget
         self._lost: str | None = None
@@ -110,16 +109,16 @@ class Walk(Generic[Model]):
 
     def _advance(self, target: float, limit: int) -> str | None:
         """Go to `target`; why not, if that is not possible."""
-        least, walls = self._numerics.smallest_step, Walls(self._numerics.smallest_step)
+        least, bracket = self._numerics.smallest_step, Bracket()
         step, in_vain = target - self._foot_x, False
         while True:
             trial = self._onward(self._in_pace(step), target)
-            if walls:
-                trial = walls.aim([*self._trail, (self._foot_x, self._state)], self._follows)
+            if bracket:
+                trial = bracket.aim(self._foot_x, self._follows)
             state, ended = self._near_rest(trial), False
             if self._follows(state):
                 self._accept(trial, state)
-                walls.leave_behind(trial, target)
+                bracket.leave_behind(trial, target)
                 step *= 2
             else:
                 self._smooth, in_vain = False, True
@@ -127,15 +126,15 @@ class Walk(Generic[Model]):
                 step = (trial - self._foot_x) / 2
                 if self._dead_end and self._dead_end[0] == self._foot_x:
                     return self._dead_end[1]  # there is no way on by smaller steps
-                if walls or state.stance is not self._state.stance or self._jumped(state):
-                    walls.add(trial, state, self._foot_x)
-            end = walls.nearest if walls else trial
-            if ended or (walls and abs(end - self._foot_x) <= self._least(walls.beyond)):
+                if bracket or state.stance is not self._state.stance or self._jumped(state):
+                    bracket.add(trial, state, self._foot_x)
+            end = bracket.nearest if bracket else trial
+            if ended or (bracket and abs(end - self._foot_x) <= self._least(bracket.beyond)):
                 trouble = self._decide((self._foot_x + end) / 2, target)
                 if trouble is not None:
                     self._dead_end = self._foot_x, trouble
                     return trouble
-                walls.leave_behind(self._foot_x, target)
+                bracket.leave_behind(self._foot_x, target)
                 step = target - self._foot_x
             if self._foot_x == target:
                 self._smooth = not in_vain
@@ -150,9 +149,9 @@ class Walk(Generic[Model]):
 
     def _in_pace(self, step: float) -> float:
         """A step that should not shift the contact too far, past corners."""
-        if not self._trail or len(self.model.obstacle.corners) == 0:
+        if self._before is None or len(self.model.obstacle.corners) == 0:
             return step
-        (x, before), last = self._trail[-1], self._state
+        (x, before), last = self._before, self._state
         if before.slope is None or last.slope is None or before.slope == last.slope:
             return step
         taken, turn = abs(self._foot_x - x), abs(last.slope - before.slope)
@@ -193,7 +192,7 @@ class Walk(Generic[Model]):
         if let_go and last.load > numerics.load_held:
             self.snap_off = where
         self._accept(foot_x, rest)
-        self._trail.clear()
+        self._before = None
         return None
 
     def _lost_from(self, last: State) -> str:
@@ -207,7 +206,7 @@ class Walk(Generic[Model]):
 
     def _accept(self, foot_x: float, state: State) -> None:
         if foot_x != self._foot_x:
-            self._trail.append((self._foot_x, self._state))
+            self._before = self._foot_x, self._state
         self._foot_x, self._state = foot_x, state
 
     def _near_rest(self, foot_x: float) -> State:
@@ -266,9 +265,9 @@ class Walk(Generic[Model]):
     def _guess(self, foot_x: float) -> State:
         """The last state, carried on along the branch; so is the place of its load."""
         state = self._state
-        if not self._trail:
+        if self._before is None:
             return State(state.angles, state.forces, slope=state.slope)
-        x, before = self._trail[-1]
+        x, before = self._before
         ahead = (foot_x - self._foot_x) / (self._foot_x - x)
         forces, slope = state.forces, state.slope
         last = len(self.model.layout.beads) - 1

@@ -22,8 +22,8 @@ from analytic.space import (
 from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT
 from mujoco_models import Settings, SpatialSettings, simulate_space
 from mujoco_models.beams.cable import Cable
+from mujoco_models.beams.spatial import SpatialChain
 from mujoco_models.space.balance import Balance, State
-from mujoco_models.space.beams import BallChain
 from mujoco_models.space.sweep import compiled
 
 BALL = sphere(1.0, (0.0, 1.4, 0.0))
@@ -203,7 +203,7 @@ def test_the_cable_is_the_chain_on_balls():
             Cable(Settings(beam="cable", segments=40), np.inf),
             np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1]]),
         ),
-        (BallChain(Settings(segments=40), np.inf), np.eye(3)),
+        (SpatialChain(Settings(segments=40), np.inf), np.eye(3)),
     ):
         model = beam.spec(0.005).compile()
         data, velocity = mujoco.MjData(model), np.zeros((model.nv // 3, 3))

@@ -1,0 +1,42 @@
+"""From a case and settings to what a model is made of: a beam and an obstacle."""
+
+import numpy as np
+
+from analytic.problem.case import Case
+from analytic.problem.errors import InputError
+from mujoco_models.beams.kinds import build
+from mujoco_models.beams.layout import bead_spacing
+from mujoco_models.beams.protocol import Beam
+from mujoco_models.beams.vibrissa import Vibrissa
+from mujoco_models.obstacles.kinds import place
+from mujoco_models.obstacles.protocol import Obstacle
+from mujoco_models.settings import Settings
+
+
+def parts(case: Case, settings: Settings, engine: str = "MuJoCo") -> tuple[Beam, Obstacle]:
+    """The beam and the obstacle, before an engine makes a model of them."""
+    require_radius(case.radius, engine)
+    obstacle = place(case, settings)
+    spacing = np.inf
+    if len(obstacle.corners) == 0:
+        thinnest = case.beam.unloaded.tip_radius
+        spacing = bead_spacing(settings.segments, thinnest, obstacle.largest_curvature)
+    return build(settings, spacing, Vibrissa.of(case.beam, case.clamp_stiffness)), obstacle
+
+
+def parts_at_rest(case: Case, settings: Settings, engine: str = "MuJoCo") -> tuple[Beam, Obstacle]:
+    """Those of a sweep at rest, which is without friction."""
+    if case.friction != 0:
+        raise InputError(
+            "friction",
+            case.friction,
+            f"0 for {engine} at rest",
+            "with friction many states are at rest, and the motion decides which: simulate_motion",
+        )
+    return parts(case, settings, engine)
+
+
+def require_radius(radius: float, engine: str = "MuJoCo") -> None:
+    """Refuse a vibrissa without a radius."""
+    if radius == 0:
+        raise InputError("beam.radius", 0, f"positive for {engine}", "it cannot collide a line")
