@@ -10,8 +10,7 @@ from engines.known import named_engines
 from mujoco_models.settings import Settings, SpatialSettings
 
 if TYPE_CHECKING:
-    from analytic import Readings
-    from analytic.space import Body, SpatialCase, SpatialReadings
+    from analytic.space import Body, SpatialCase
     from compare.validate.stated import Uncertainties
     from mujoco_models.motion import Motion
     from mujoco_models.user_model.names import OwnModel
@@ -34,23 +33,18 @@ class _Stated:
         return int(getattr(self.case, self._path).stations)
 
     def changed(self, stations: int, numerics: dict[str, Any]) -> Self:
-        """The same with other stations and numerics.
-
-        Parameters
-        ----------
-        stations : int
-            How many the sweep has.
-        numerics : dict
-            Settings of MuJoCo by name; the others stay.
-
-        Returns
-        -------
-        Job or SpaceJob
-            Everything else as it is.
-        """
+        """The same with so many stations, and with other settings of MuJoCo by name."""
         path = replace(getattr(self.case, self._path), stations=stations)
         case = replace(self.case, **{self._path: path})
         return replace(self, case=case, settings=replace(self.settings, **numerics))
+
+    def solve(self, certified: bool = False) -> Any:  # noqa: ANN401  # as the case, readings
+        """The closed form; certified, every station is proved to rest, and how exactly it does."""
+        from analytic import solve_sweep
+        from analytic.space import solve_space
+
+        solver: Any = solve_sweep if isinstance(self.case, Case) else solve_space
+        return solver(self.case, certified)
 
 
 @dataclass(frozen=True)
@@ -95,23 +89,6 @@ class Job(_Stated):
             return MODEL
         return PLANE if self.motion is None else MOTION
 
-    def solve(self, certified: bool = False) -> "Readings":
-        """The closed form.
-
-        Parameters
-        ----------
-        certified : bool
-            Whether every station is proved to rest, and how exact it is.
-
-        Returns
-        -------
-        Readings
-            One row per station.
-        """
-        from analytic import solve_sweep
-
-        return solve_sweep(self.case, certified)
-
 
 @dataclass(frozen=True)
 class SpaceJob(_Stated):
@@ -147,23 +124,6 @@ class SpaceJob(_Stated):
     def body(self) -> "Body":
         """What is swept past."""
         return self.case.body
-
-    def solve(self, certified: bool = False) -> "SpatialReadings":
-        """The closed form.
-
-        Parameters
-        ----------
-        certified : bool
-            Whether every station is proved to rest, and how exact it is.
-
-        Returns
-        -------
-        SpatialReadings
-            One row per station.
-        """
-        from analytic.space import solve_space
-
-        return solve_space(self.case, certified)
 
 
 AnyJob: TypeAlias = Job | SpaceJob

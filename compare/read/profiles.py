@@ -1,42 +1,31 @@
-"""The object of a case file: a table for each kind of contour."""
+"""The object of a case file: a table for all kinds of contour that the same numbers make."""
 
 from pathlib import Path
 from typing import Literal
 
 from pydantic import Field
 
-import analytic
 from analytic import Contour
+from analytic.problem.contours.kinds import CONTOURS
 from compare.read.quantities import Length, PerLength, Point, Points, Table
-
-_FACTORIES = {"two-circles": "two_circles", "points": "through_points"}  # by kind, if not its name
 
 
 class ProfileTable(Table):
-    """The object: a kind of contour, and the numbers that it is made from."""
+    """The object: a kind of contour, and what the function of that kind takes."""
 
     kind: str
     scale: Length = Field(default=1.0, gt=0)
 
     def build(self, folder: Path) -> Contour:  # files are in it, if there are any
         """The contour."""
-        factory = getattr(analytic, _FACTORIES.get(self.kind, self.kind))
-        contour: Contour = factory(**self.model_dump(exclude={"kind", "scale"}))
-        return contour.scaled(self.scale)
+        numbers = self.model_dump(exclude={"kind", "scale"})
+        return CONTOURS[self.kind](**numbers).scaled(self.scale)
 
 
-class CatenaryTable(ProfileTable):
-    """See `analytic.catenary`."""
+class GraphTable(ProfileTable):
+    """See `analytic.catenary` and `analytic.parabola`."""
 
-    kind: Literal["catenary"]
-    a: PerLength
-    c: Length
-
-
-class ParabolaTable(ProfileTable):
-    """See `analytic.parabola`."""
-
-    kind: Literal["parabola"]
+    kind: Literal["catenary", "parabola"]
     a: PerLength
     c: Length
 
@@ -66,29 +55,14 @@ class TwoCirclesTable(ProfileTable):
     lowest: Point = (0.0, 0.5)
 
 
-class PolygonTable(ProfileTable):
-    """See `analytic.polygon`."""
-
-    kind: Literal["polygon"]
-    points: Points
-
-
 class PointsTable(ProfileTable):
-    """See `analytic.through_points`."""
+    """See `analytic.polygon` and `analytic.through_points`."""
 
-    kind: Literal["points"]
+    kind: Literal["polygon", "points"]
     points: Points
 
 
-Drawn = (
-    CatenaryTable
-    | ParabolaTable
-    | CircleTable
-    | EllipseTable
-    | TwoCirclesTable
-    | PolygonTable
-    | PointsTable
-)
+Drawn = GraphTable | CircleTable | EllipseTable | TwoCirclesTable | PointsTable
 """Contours that the file itself has."""
 
 
@@ -105,7 +79,4 @@ class MeshTable(ProfileTable):
 
     def build(self, folder: Path) -> Contour:
         """The section of the mesh."""
-        from analytic import mesh_section  # slow to load, and few cases have a mesh
-
-        numbers = self.model_dump(exclude={"kind", "file"})
-        return mesh_section(folder / self.file, **numbers)
+        return CONTOURS[self.kind](folder / self.file, **self.model_dump(exclude={"kind", "file"}))
