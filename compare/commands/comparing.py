@@ -52,7 +52,8 @@ class RigFiles:
 def expected(job: AnyJob | None, file: Path, in_space: bool, rig: RigFiles) -> AnyReadings:
     """The reference: the closed form of a case, or what a file holds."""
     if job is not None:
-        return job.solve()
+        exact: AnyReadings = job.solve()
+        return exact
     if in_space:
         return SpatialReadings.read(file)
     return rig.read(file)

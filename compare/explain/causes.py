@@ -6,18 +6,22 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 import pandas as pd
 
-from analytic import CLAMP_READINGS, Readings
+from analytic import CLAMP_READINGS
 from analytic.problem.arrays import Booleans, Floats
 from analytic.problem.quantities import QUANTITIES
 from analytic.problem.table import says
 from compare.align.stations import interpolant
-from compare.explain.signatures import Fault, Resolved, unit_of
+from compare.explain.signatures import Resolved, unit_of
 from compare.measure.measurement import Measurement
 from compare.sense.record import direction
+
+Place: TypeAlias = Callable[[float, Floats], Floats]
+"""Where the foot is in truth, by the size of a fault and where it is said to be."""
 
 _STEP = 1e-3  # of a length, and so on: the size that a signature is taken from
 LEVERS = {("moment_z", "force_x"): "along", ("moment_z", "force_y"): "across"}
@@ -26,7 +30,7 @@ _FEWEST = 4  # stations of a stretch whose slope is worth something
 
 # What a fault is called, and the least and the largest value that it leaves, in its unit: what is
 # off by more would hardly be the same experiment.
-_SOLVED: dict[Fault, tuple[str, float, float]] = {
+_SOLVED: dict[str, tuple[str, float, float]] = {
     "length": ("length of the vibrissa {size:+.2%} off", 0.8, 1.2),
     "radius": (
         "radius of the vibrissa {size:+.2e} L off (it is {stated:.2e} L), or the object's surface "
@@ -140,58 +144,46 @@ def physical_faults(
     # A radius that is a third off makes the rigidity 0.2 to 3.2 times what it should be.
     text = "flexural rigidity {:+.2%} off: all readings scale alike"
     yield Cause(text.format, true, -0.8, 2.2, acts=partial(_scaled, np.ones((3, 1))))
-    length = found.reference.beam.length
-    x, slope = table["foot_x"].to_numpy(), length * slopes(table, true)
-    moved = partial(_moved, found.reference, x, true, scale)
-    # Farther off the readings are no longer linear in it; `offset` is there for that.
-    yield Cause(
-        "foot_x {:+.2e} L off, the same at all stations: an offset (or a lag), see `--offset "
-        "auto`".format,
-        -slope,
-        -0.1,
-        0.1,
-        lambda size: moved(-size * length),
-        lambda size, rows, x: _between(x - size * length, x, rows),
-    )
-    yield Cause(
-        "scale of the stage {:+.2%} off: foot_x is too large by that, counted from 0".format,
-        -slope * x / length,
-        -0.2,
-        0.2,
-        lambda size: moved(x / (1 + size) - x),
-        lambda size, rows, x: _between(x / (1 + size), x, rows),
-    )
-    way = direction(found.reference) * length
-    for one, name in zip(np.eye(3), CLAMP_READINGS, strict=True):
-        yield Cause(
-            f"{name} lags by {{:+.2e}} L of the foot's way: its channel is late".format,
-            -one[:, None] * slope * direction(found.reference),
-            -0.1,
-            0.1,
-            partial(_late, moved, one[:, None], way),
-            partial(_later, one[:, None], way),
-        )
-    exact = Resolved.of(found.reference, x)
-    if exact is not None:
-        yield from _solved(exact, table, scale)
-
-
-def _moved(
-    reference: Readings, x: Floats, true: Floats, scale: Floats, by: float | Floats
-) -> Floats:
-    """What the readings change by if the foot is farther along x; NaN next to where it is free."""
+    reference, length = found.reference, found.reference.beam.length
+    x, slope, every = table["foot_x"].to_numpy(), slopes(table, true), np.ones((3, 1))
     rows = np.stack([reference.values(name) for name in CLAMP_READINGS])
     if "phase" in reference.table:
         rows[:, says(reference.table["phase"], "free")] = np.nan
-    return _between(x + by, reference.values("foot_x"), rows) / scale[:, None] - true
 
+    def displaced(text: str, only: Floats, most: float, rate: float | Floats, at: Place) -> Cause:
+        """Some readings are of another place of the foot, which changes with the size by `rate`."""
 
-def _late(moved: Callable[[float], Floats], only: Floats, way: float, size: float) -> Floats:
-    return np.where(only > 0, moved(-size * way), 0.0)
+        def change(size: float) -> Floats:
+            seen = _between(at(size, x), reference.values("foot_x"), rows) / scale[:, None]
+            return np.where(only > 0, seen - true, 0.0)
 
+        def acts(size: float, added: Floats, foot_x: Floats) -> Floats:
+            return np.where(only > 0, _between(at(size, foot_x), foot_x, added), added)
 
-def _later(only: Floats, way: float, size: float, rows: Floats, x: Floats) -> Floats:
-    return np.where(only > 0, _between(x - size * way, x, rows), rows)
+        return Cause(text.format, only * slope * rate, -most, most, change, acts)
+
+    # Farther off the readings are no longer linear in it; `offset` is there for that.
+    yield displaced(
+        "foot_x {:+.2e} L off, the same at all stations: an offset (or a lag), see `--offset auto`",
+        every,
+        0.1,
+        -length,
+        lambda size, foot_x: foot_x - size * length,
+    )
+    yield displaced(
+        "scale of the stage {:+.2%} off: foot_x is too large by that, counted from 0",
+        every,
+        0.2,
+        -x,
+        lambda size, foot_x: foot_x / (1 + size),
+    )
+    way = direction(reference) * length
+    for one, name in zip(np.eye(3), CLAMP_READINGS, strict=True):
+        text = f"{name} lags by {{:+.2e}} L of the foot's way: its channel is late"
+        yield displaced(text, one[:, None], 0.1, -way, lambda size, foot_x: foot_x - size * way)
+    exact = Resolved.of(reference, x)
+    if exact is not None:
+        yield from _solved(exact, table, scale)
 
 
 def _scaled(by: Floats, size: float, rows: Floats, _: Floats) -> Floats:
@@ -227,14 +219,14 @@ def _solved(exact: Resolved, table: pd.DataFrame, scale: Floats) -> Iterator[Cau
             yield Cause(text.format, -slope * force / force.max(), 0.0, 0.1)
 
 
-def _stated(exact: Resolved, fault: Fault) -> tuple[float, float]:
+def _stated(exact: Resolved, fault: str) -> tuple[float, float]:
     """What the reference has of it, and its unit."""
     if fault == "clamp":
         return 0.0, 1.0
     return QUANTITIES[fault].value(exact.case), unit_of(fault, exact.case) or math.nan
 
 
-def _text(exact: Resolved, fault: Fault, size: float) -> str:
+def _text(exact: Resolved, fault: str, size: float) -> str:
     """In units of L and EI, as all that is said of a sweep."""
     stated, unit = _stated(exact, fault)
     ours = exact.case.beam.length if fault == "tip_radius" else abs(unit)
@@ -250,7 +242,7 @@ def _text(exact: Resolved, fault: Fault, size: float) -> str:
     )
 
 
-def _change(exact: Resolved, fault: Fault, scale: Floats, size: float) -> Floats | None:
+def _change(exact: Resolved, fault: str, scale: Floats, size: float) -> Floats | None:
     added = exact.change(fault, size)
     return None if added is None else added / scale[:, None]
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -28,17 +27,6 @@ _BEYOND = 0.02  # L; what a slightly longer vibrissa would reach, beyond the con
 _SAME = 1e-3  # of the largest magnitude; the contour must reproduce the reference so well (rms)
 
 _KEPT = 64  # sweeps, 32 kB each: a reference is often compared with many candidates
-
-Fault: TypeAlias = Literal[
-    "length",
-    "radius",
-    "clamp",
-    "clamp_compliance",
-    "friction",
-    "natural_curvature",
-    "height",
-    "tip_radius",
-]
 
 
 @dataclass(frozen=True)
@@ -73,7 +61,7 @@ class Resolved:
         same = np.sqrt(np.nanmean(miss**2)) < _SAME
         return cls(case, points, foot_x, _at(solved, foot_x)) if same else None
 
-    def change(self, fault: Fault, size: float) -> Floats | None:
+    def change(self, fault: str, size: float) -> Floats | None:
         """What a fault adds to the clamp readings, by its size in the unit of `unit_of`."""
         try:
             there = _at(_sweep(self._changed(fault, size)), self.foot_x)
@@ -84,7 +72,8 @@ class Resolved:
             there[2] -= size * self.case.beam.length * there[0]
         return there - self.seen
 
-    def _changed(self, fault: Fault, size: float) -> Case:
+    def _changed(self, fault: str, size: float) -> Case:
+        """With one of `QUANTITIES` larger, or with a ``"clamp"`` that reaches so far along it."""
         if fault != "clamp":
             return QUANTITIES[fault].larger(self.case, size * unit_of(fault, self.case))
         by = size * self.case.beam.length
@@ -92,7 +81,7 @@ class Resolved:
         return replace(shorter, profile=_smooth(self.points - [0.0, by]))
 
 
-def unit_of(fault: Fault, case: Case) -> float:
+def unit_of(fault: str, case: Case) -> float:
     """What a fault of size 1 is: a tip that is thinner by the radius at the clamp, for one."""
     return -case.beam.radius if fault == "tip_radius" else QUANTITIES[fault].unit(case)
 

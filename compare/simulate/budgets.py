@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import TypeAlias, overload
 
 from analytic import Case, InputError, Readings, solve_sweep
-from analytic.problem.mirror import facing
+from analytic.problem.mirror import facing, leftward
 from analytic.space import SpatialCase, SpatialReadings, solve_space
 from compare.explain.budget import Budget, budget
 from compare.explain.changes import controlled_changes
@@ -127,7 +127,7 @@ def budget_at_rest(
     # Equal settings are swept once, and the longest first, so that no core waits for it at the end.
     # As a sweep to the left: in a mirror it is turned here, where tables are loaded.
     longest_first = sorted(set(changes.values()), key=lambda one: -one.segments)
-    sweeps = {one: (simulate_sweep, _leftward(case), one) for one in longest_first}
+    sweeps = {one: (simulate_sweep, leftward(case), one) for one in longest_first}
     with running(sweeps, advance, SWEEPERS) as swept:
         exact, varied, faceted = solve_sweep(case), variations(case), None
         if smooth and settings.obstacle == "mesh":
@@ -144,7 +144,7 @@ def has_primitive(case: Case) -> bool:
     from mujoco_models.obstacles.primitive import Primitive
 
     try:
-        Primitive.of(_leftward(case))
+        Primitive.of(leftward(case))
     except InputError:
         return False
     return True
@@ -154,8 +154,4 @@ def has_corners(case: Case, settings: Settings) -> bool:
     """Whether MuJoCo's object has edges at sharp corners."""
     from mujoco_models.obstacles.kinds import place
 
-    return len(place(_leftward(case), settings).corners) > 0
-
-
-def _leftward(case: Case) -> Case:
-    return case.mirrored() if case.sweep.direction == "right" else case
+    return len(place(leftward(case), settings).corners) > 0
