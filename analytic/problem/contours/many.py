@@ -1,6 +1,6 @@
 """Many contours at once: points of each in one call."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property, partial
 from types import MethodType
 from typing import Any
@@ -10,7 +10,7 @@ import numpy as np
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.contours.contour import Contour, ContourPoint
 from analytic.problem.contours.parallel import Parallel
-from analytic.problem.contours.profile import Profile
+from analytic.problem.contours.profile import Profile, unchecked
 
 
 class Contours:
@@ -73,63 +73,49 @@ class Contours:
         return contour.at(t)
 
 
+def _parts(value: Any) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:  # noqa: ANN401
+    """What makes a profile, or a part of one, and of what; None of what is taken as it is."""
+    match value:
+        case tuple() if type(value) is tuple:  # a named one has more than its parts
+            return _tuple, value
+        case Profile() if value.radius_of_curvature is not None:
+            return _profile, tuple(getattr(value, name) for name in _CURVES)
+        case Parallel():
+            return _parallel, (value.of, value.radius)
+        case partial() if not value.keywords and getattr(value.func, "__module__", "") in _FAMILIES:
+            return partial, (value.func, *value.args)  # of our own functions, which take arrays
+        case MethodType():
+            return MethodType, (value.__func__, value.__self__)
+    return None
+
+
 def _taken_apart(value: Any) -> tuple[Any, tuple[float, ...]]:  # noqa: ANN401
     """What a profile, or a part of one, has in common with its family, and its own numbers."""
-    common: Any
-    parts: tuple[Any, ...]
-    match value:
-        case float() | int():
-            return float, (float(value),)
-        case tuple() if type(value) is tuple:  # a named one has more than its parts
-            common, parts = "tuple", value
-        case Profile() if value.radius_of_curvature is not None:
-            common, parts = "profile", _curves(value)
-        case Parallel():
-            common, parts = "parallel", (value.of, value.radius)
-        case partial() if _takes_arrays(value):
-            common, parts = value.func, value.args
-        case MethodType():
-            common, parts = value.__func__, (value.__self__,)
-        case _:
-            return value if callable(value) else id(value), ()
-    found = [_taken_apart(part) for part in parts]
-    return (common, *(key for key, _ in found)), tuple(x for _, own in found for x in own)
+    if isinstance(value, float | int):
+        return float, (float(value),)
+    made = _parts(value)
+    if made is None:
+        return value if callable(value) else id(value), ()
+    found = [_taken_apart(part) for part in made[1]]
+    return (made[0], *(key for key, _ in found)), tuple(x for _, own in found for x in own)
 
 
 def _put_together(value: Any, numbers: Iterator[Floats]) -> Any:  # noqa: ANN401
     """The same with other numbers, in the order in which `_taken_apart` found them."""
-    match value:
-        case float() | int():
-            return next(numbers)
-        case tuple() if type(value) is tuple:
-            return tuple(_put_together(part, numbers) for part in value)
-        case Profile() if value.radius_of_curvature is not None:
-            # The parts are those of checked profiles: they are not checked again.
-            profile = object.__new__(Profile)
-            for name, part in zip(_PARTS, _curves(value), strict=True):
-                object.__setattr__(profile, name, _put_together(part, numbers))
-            return profile
-        case Parallel():
-            # As an array the distance is one for each point.
-            below = object.__new__(Parallel)
-            for name in ("of", "radius"):
-                object.__setattr__(below, name, _put_together(getattr(value, name), numbers))
-            return below
-        case partial() if _takes_arrays(value):
-            return partial(value.func, *(_put_together(part, numbers) for part in value.args))
-        case MethodType():
-            return MethodType(value.__func__, _put_together(value.__self__, numbers))
-    return value
+    if isinstance(value, float | int):
+        return next(numbers)
+    made = _parts(value)
+    if made is None:
+        return value
+    make, parts = made
+    return make(*(_put_together(part, numbers) for part in parts))
 
 
-def _takes_arrays(function: partial[Any]) -> bool:
-    """Whether arrays may stand for its numbers: of our own functions we know, of others not."""
-    return not function.keywords and getattr(function.func, "__module__", None) in _FAMILIES
+def _tuple(*parts: object) -> tuple[object, ...]:
+    return parts
 
 
 _FAMILIES = tuple(f"{__package__}.{name}" for name in ("families", "profile"))
-_PARTS = ("xi", "eta", "alpha_range", "radius_of_curvature")
-
-
-def _curves(profile: Profile) -> tuple[Any, ...]:
-    return tuple(getattr(profile, name) for name in _PARTS)
+_CURVES = ("xi", "eta", "alpha_range", "radius_of_curvature")
+_profile = partial(unchecked, Profile, _CURVES)
+_parallel = partial(unchecked, Parallel, ("of", "radius"))

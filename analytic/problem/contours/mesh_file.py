@@ -59,7 +59,10 @@ def read_body(file: str | Path, hull: bool, tolerance: float) -> MeshBody:
         _check_closed(read, file)
     try:
         kept, miss = thinned(read.vertices, tolerance / size, _MOST_VERTICES)
-        body, volume = _hull(kept)
+        spread = np.linalg.svd(kept - kept.mean(axis=0), compute_uv=False)
+        if spread[-1] < _FLAT * spread[0]:
+            raise QhullError
+        body, volume = hull_of(kept)
     except QhullError as error:
         raise InputError(f"mesh {file}", "flat", "a solid", "check it") from error
     if 0 < tolerance < miss * size:
@@ -159,13 +162,10 @@ def _in_ascii(content: bytes, kind: str) -> BytesIO:
     return BytesIO(content[:text].translate(_ASCII) + content[text:])
 
 
-def _hull(points: Floats) -> tuple[MeshBody, float]:
+def hull_of(points: Floats) -> tuple[MeshBody, float]:
     """The convex hull of points, and its volume."""
-    from scipy.spatial import ConvexHull, QhullError
+    from scipy.spatial import ConvexHull
 
-    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-    if spread[-1] < _FLAT * spread[0]:
-        raise QhullError
     found = ConvexHull(points)
     body = MeshBody(
         points[found.vertices],

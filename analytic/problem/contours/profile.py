@@ -1,8 +1,10 @@
 """A strictly convex contour, as triples (alpha, xi, eta) by slope angle."""
 
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, field, fields
 from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
@@ -17,6 +19,8 @@ from analytic.problem.numbers import pair, positive
 _STEPS = 5e-3 / 4.0 ** np.arange(4)  # rad
 _STENCIL = np.arange(-3.0, 4.0)  # in steps
 _TO_POWERS = np.linalg.inv(np.vander(_STENCIL, increasing=True))
+
+_Kind = TypeVar("_Kind", bound=Contour)
 
 
 @dataclass(frozen=True)
@@ -184,10 +188,16 @@ def of_family(
     What rounding hides is refused all the same, in a fifth of the time.
     """
     check_convex(xi, eta, alpha_range, radius_of_curvature, label, known=True)
-    found = object.__new__(Profile)
+    names = tuple(part.name for part in fields(Profile))
     parts = (xi, eta, alpha_range, radius_of_curvature, label, kinks)
-    for part, value in zip(fields(Profile), parts, strict=True):
-        object.__setattr__(found, part.name, value)
+    return unchecked(Profile, names, *parts)
+
+
+def unchecked(kind: type[_Kind], names: Sequence[str], *parts: object) -> _Kind:
+    """A contour of parts that are known to be right, or of arrays that stand for numbers."""
+    found = object.__new__(kind)
+    for name, part in zip(names, parts, strict=True):
+        object.__setattr__(found, name, part)
     return found
 
 

@@ -41,6 +41,11 @@ class Contact(NamedTuple):
     """Of the vibrissa's axis at the contact, shape (3,)."""
 
     @property
+    def free(self) -> float:
+        """What its phase leaves free: the rotation w of the tip, or the arc length."""
+        return self.arc_length if self.tangent else self.excess
+
+    @property
     def force(self) -> float:
         """Magnitude f of the contact's force [EI/L^2]."""
         return (self.loaded.root_f / self.arc_length) ** 2

@@ -19,13 +19,12 @@ from analytic.space.problem.bodies.feature import Feature
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from analytic.space.solver.contact import APART, Contact, Scene, contact_at
 from analytic.space.solver.descent import Touching, descend
-from analytic.space.solver.newton import settle
+from analytic.space.solver.newton import settle, settle_whole
 from analytic.space.solver.stability import is_stable
 
 _FARTHEST = 0.12  # L, of the contact: what lands farther away depends on its motion
 _STEPS = 100
 _ABOVE = 1e-9  # L; a point that far outside has its nearest point on the surface
-_SAME = 1e-7  # L, between a face that has no end and the mesh
 _SLACK = 1e-9  # of the energy: rounding
 _NEAR = 0.02  # L, between a chain's contact and the one of the closed form
 _ASTRAY = 0.05  # L; what Newton's method goes so far to find is another contact (observed: 4e-3)
@@ -134,11 +133,10 @@ def _steps(
     energy: float,
 ) -> Iterator[_Step]:
     """Ways on from a point of the surface, on faces and along edges that meet there."""
-    free = last.arc_length if last.tangent else last.excess
     for feature in features:
         alone = scene._replace(body=feature)
         above = feature.nearest(point + APART * last.spot.normal, APART).normal
-        start = contact_at(alone, point + APART * above, free, last.tangent)
+        start = contact_at(alone, point + APART * above, last.free, last.tangent)
         target = settle(alone, start, foot)
         if target is None or target.energy > energy:
             continue
@@ -150,12 +148,8 @@ def _steps(
 
 def _landed(scene: Scene, target: Contact, foot: Floats) -> Contact | None:
     """That state on the mesh as it is, if it is there and stable."""
-    free = target.arc_length if target.tangent else target.excess
-    start = contact_at(scene, target.on_parallel, free, target.tangent)
-    found = settle(scene, start, foot)
-    if found is None or not is_stable(found, scene.radius):
-        return None
-    return found if _apart(found.on_parallel, target.on_parallel) < _SAME else None
+    found = settle_whole(scene, target, foot)
+    return found if found is not None and is_stable(found, scene.radius) else None
 
 
 def _apart(one: Floats, other: Floats) -> float:

@@ -15,6 +15,7 @@ _STEPS = 20
 _HALVINGS = 6
 _WIDE = 0.1  # L on the parallel surface and rad of the tip, the longest step
 _FLATTEST = 1e-12  # rad, alpha, where the plane of bending is lost, and w, where there is no force
+_SAME = 1e-7  # L on the parallel surface, between a face that has no end and the mesh
 _SWITCHES = 4  # of the phase
 _PHASE_SLACK = 1e-12  # rad and L: at the limit both phases are the same state
 
@@ -33,6 +34,15 @@ def settle(scene: Scene, start: Contact, foot: Floats, reach: float = np.inf) ->
         else:
             return found
     return None
+
+
+def settle_whole(scene: Scene, alone: Contact, foot: Floats) -> Contact | None:
+    """The contact with the whole of a mesh where one rests that knows a part of it alone."""
+    start = contact_at(scene, alone.on_parallel, alone.free, alone.tangent)
+    found = settle(scene, start, foot)
+    if found is None or np.linalg.norm(found.on_parallel - alone.on_parallel) > _SAME:
+        return None
+    return found
 
 
 def _newton(scene: Scene, start: Contact, foot: Floats, reach: float) -> Contact | None:
@@ -79,8 +89,7 @@ def _trials(scene: Scene, at: Contact, foot: Floats) -> Iterator[Contact]:
         return
     step *= min(1.0, _WIDE / float(np.abs(step).max()))
     for _ in range(_HALVINGS):
-        free = at.arc_length if at.tangent else at.excess
-        new = max(free + step[2], free / 10)
+        new = max(at.free + step[2], at.free / 10)
         place = at.on_parallel + step[:2] @ sides
         trial = contact_at(scene, place, new, at.tangent)
         if trial.plane.alpha > _FLATTEST and trial.excess > _FLATTEST:

@@ -11,7 +11,7 @@ from analytic.space.problem.bodies.polyhedron import Polyhedron
 from analytic.space.problem.straight import Way
 from analytic.space.solver.contact import APART, Contact, Scene, contact_at
 from analytic.space.solver.hop import landing
-from analytic.space.solver.newton import settle
+from analytic.space.solver.newton import settle, settle_whole
 from analytic.space.solver.stability import is_stable
 
 _CLOSE = 1e-13  # L of the way, to which events are enclosed
@@ -23,7 +23,6 @@ _BARELY = 1e-7  # L and rad: how far a contact that has just begun is bent
 _LOOSE = 1e-5  # EI/L^2; a contact that ends with less has been released
 _LEAP = 0.3  # L on the parallel surface between neighbouring states: more is another branch
 _STEADY = 1e-6  # the same across an edge, where the foot moves by 1e-9
-_SAME = 1e-7  # the same between a face that has no end and the mesh
 
 
 class Walked(NamedTuple):
@@ -109,15 +108,13 @@ class _Walker:
 
     def _stable_at(self, start: Contact, travel: float) -> Contact | None:
         """On the same face, edge or corner of a mesh."""
-        foot, radius = self._way.foot(travel), self._scene.radius
+        foot = self._way.foot(travel)
         found = self._on_feature(start, foot)
         if found is None or _apart(found, start) > _LEAP:
             return None
         if not self._smooth:
-            alone, found = found, settle(self._scene, self._there(found), foot)
-            if found is None or _apart(found, alone) > _SAME:
-                return None
-        return found if is_stable(found, radius) else None
+            found = settle_whole(self._scene, found, foot)
+        return found if found is not None and is_stable(found, self._scene.radius) else None
 
     def _on(self, start: Contact, _: float, travel: float) -> Contact | None:
         return self._stable_at(start, travel)
@@ -142,13 +139,9 @@ class _Walker:
         ahead = self._on_feature(start, foot)
         if ahead is None:
             return None
-        found = self._stable_at(self._there(ahead), travel)
+        beside = contact_at(self._scene, ahead.on_parallel, ahead.free, ahead.tangent)
+        found = self._stable_at(beside, travel)
         return found if found is not None and _apart(found, start) < steady else None
-
-    def _there(self, ahead: Contact) -> Contact:
-        """The contact with the whole body at the place of one with a feature of it."""
-        free = ahead.arc_length if ahead.tangent else ahead.excess
-        return contact_at(self._scene, ahead.on_parallel, free, ahead.tangent)
 
     def _land(self, contact: Contact, travel: float) -> tuple[float, Contact] | None:
         """The state to which a vibrissa hops, and where its foot is then."""

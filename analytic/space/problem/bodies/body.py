@@ -99,6 +99,11 @@ class Body(ABC):
         """
 
 
+def flat_spot(x: Floats, normal: Floats, height: float) -> Spot:
+    """Below a point on a plane; without a normal, of a point that lies inside a body."""
+    return Spot(x - height * normal, normal, height, np.zeros((3, 3)))
+
+
 def grid_patches(x: Floats) -> Floats:
     """The cells of a grid of points."""
     cells = np.stack([x[:-1, :-1], x[1:, :-1], x[1:, 1:], x[:-1, 1:]], axis=2)

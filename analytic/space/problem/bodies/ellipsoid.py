@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import positive
-from analytic.space.problem.bodies.body import Body, Spot, grid_patches, sphere_grid
+from analytic.space.problem.bodies.body import Body, Spot, flat_spot, grid_patches, sphere_grid
 from analytic.space.problem.numbers import Vector, axes, vector
 
 _STEPS = 60  # of Newton's method, from below: it cannot overshoot
@@ -43,7 +43,7 @@ class Ellipsoid(Body):
         inside = float(y @ (y / squares))
         if inside <= 1:
             inward = (math.sqrt(inside) - 1) * float(self.semi_axes.min())
-            return Spot(x, np.zeros(3), inward, np.zeros((3, 3)))
+            return flat_spot(x, np.zeros(3), inward)
         multiplier = _multiplier((squares * y * y).tolist(), squares.tolist())
         gradient = y / (squares + multiplier)
         steepness = math.sqrt(gradient @ gradient)

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.space.problem.bodies.body import Body, Spot
+from analytic.space.problem.bodies.body import Body, Spot, flat_spot
 
 _TURNS = 0.5  # of the largest turning: a principal value is that or zero
 
@@ -53,8 +53,7 @@ class Feature(Body):
         """Its foot of the perpendicular."""
         away = x - self.point
         if self.flat:
-            height = float(away @ self.normal)
-            return Spot(x - height * self.normal, self.normal, height, np.zeros((3, 3)))
+            return flat_spot(x, self.normal, float(away @ self.normal))
         across = self._span @ away
         distance = math.sqrt(across @ across)
         normal = across / max(distance, 1e-300)

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
-from analytic.problem.contours.mesh_file import read_body
+from analytic.problem.contours.mesh_file import hull_of, read_body
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import positive, within
-from analytic.space.problem.bodies.body import Body, Spot, cross
+from analytic.space.problem.bodies.body import Body, Spot, cross, flat_spot
 from analytic.space.problem.bodies.feature import Feature
 from analytic.space.problem.numbers import Vector, vector
 
@@ -78,7 +78,7 @@ class Polyhedron(Body):
         ahead = self.normals @ x - self.heights
         face = int(np.argmax(ahead))
         if ahead[face] <= 0:
-            return Spot(x, np.zeros(3), float(ahead[face]), np.zeros((3, 3)))
+            return flat_spot(x, np.zeros(3), float(ahead[face]))
         tried = np.array([face])
         best = np.inf
         while True:
@@ -141,9 +141,7 @@ class Polyhedron(Body):
     ) -> Spot:
         on = weight > 0
         if on.all():
-            return Spot(
-                x - height * self.normals[face], self.normals[face], height, np.zeros((3, 3))
-            )
+            return flat_spot(x, self.normals[face], height)
         away = x - point
         distance = float(np.linalg.norm(away))
         normal = away / distance
@@ -152,8 +150,7 @@ class Polyhedron(Body):
             first, second = self.corners[face][on]
             along = (second - first) / np.linalg.norm(second - first)
             if self._is_flat(self.faces[face][on], face):
-                normal, distance = self.normals[face], height
-                return Spot(x - height * normal, normal, height, np.zeros((3, 3)))
+                return flat_spot(x, self.normals[face], height)
             # An edge: the normal turns about it, and that only.
             flat = flat - np.outer(along, along)
         return Spot(point, normal, distance, flat / apart)
@@ -347,17 +344,15 @@ def polyhedron(points: Floats, label: str = "polyhedron") -> Polyhedron:
     InputError
         If they have no volume.
     """
-    from scipy.spatial import ConvexHull, QhullError  # slow to load, and few cases need it
+    from scipy.spatial import QhullError  # slow to load, and few cases need it
 
     try:
-        given = np.asarray(points, dtype=float)
-        found = ConvexHull(given)
+        found, _ = hull_of(np.asarray(points, dtype=float))
     except (QhullError, ValueError) as error:
         what = f"not usable ({error!s:.80})"
         allowed, remedy = "four points or more with a volume", "an array of shape (n, 3)"
         raise InputError("body polyhedron.points", what, allowed, remedy) from error
-    faces = np.searchsorted(found.vertices, found.simplices)
-    return solid(given[found.vertices], faces, found.equations[:, :3], label)
+    return solid(found.vertices, found.faces, found.normals, label)
 
 
 def solid(vertices: Floats, faces: Integers, normals: Floats, label: str) -> Polyhedron:

@@ -1,6 +1,7 @@
 """Bodies that are the same all along an axis: round cylinders, and prisms of planar contours."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import require
 from analytic.problem.numbers import positive
 from analytic.space.problem.bodies.body import Body, Spot, across, grid_patches
+from analytic.space.problem.bodies.feature import Feature
 from analytic.space.problem.numbers import Vector, direction, vector
 
 _PLACES = 33  # of the contour, to begin with: NumPy takes hardly longer for them than for one
@@ -35,20 +37,14 @@ class Cylinder(Body):
     label: str
 
     def nearest(self, x: Floats, apart: float) -> Spot:
-        """Straight to the axis."""
-        away = x - self.through
-        away = away - (away @ self.axis) * self.axis
-        far = float(np.linalg.norm(away))
-        if far <= self.radius:
-            return Spot(x, np.zeros(3), far - self.radius, np.zeros((3, 3)))
-        normal = away / far
-        around = np.cross(self.axis, normal)
-        return Spot(
-            x - (far - self.radius) * normal,
-            normal,
-            far - self.radius,
-            np.outer(around, around) / (self.radius + apart),
-        )
+        """From the nearest point of the axis."""
+        middle, normal, far, turning = self._line.nearest(x, self.radius + apart)
+        return Spot(middle + self.radius * normal, normal, far - self.radius, turning)
+
+    @cached_property
+    def _line(self) -> Feature:
+        sides = across(self.axis)
+        return Feature(self.through, sides, sides[0])
 
     def scaled(self, factor: float) -> "Cylinder":
         """With the same label."""
