@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 import numpy as np
 
 from analytic import PHASES, Case, InputError, Readings
+from analytic.problem.errors import require
 from analytic.space import SpatialReadings
 from compare.align.travel import check_same_stations
 from compare.explain.budget import Budget
@@ -30,7 +31,6 @@ from compare.judge.tolerances import (
 )
 from compare.measure.in_space import SpatialMeasurement, measure_in_space
 from compare.measure.measurement import Measurement, measure
-from compare.sense.given import checked_sweep
 from compare.sense.noise import checked_level, noise_level
 from compare.sense.occurrence import Occurrence
 from compare.sense.touching import component_levels, component_scales
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
 
 _EVENTS = {"touch": "touch", "slip_off": "slip-off", "release": "release"}  # in space
 _KEPT = ("rms", "max", "at", "phase", "rms_by_phase", "scale")  # of a disagreement in space
+_AS_TABLE = "wrap a table as Readings(table, beam), in space SpatialReadings(table, beam)"
 _OF_95 = 1.96  # standard deviations: half the width of an interval that holds 95 % of a normal
 
 
@@ -289,13 +290,13 @@ def compare(
     if isinstance(reference, SpatialReadings):
         if offset != 0:
             raise InputError("offset", offset, "0 in space", "leave it out, or widen the limits")
-        candidate = checked_sweep("candidate", candidate, SpatialReadings)
+        candidate = require("candidate", candidate, SpatialReadings, _AS_TABLE)
         in_space = checked_limits(tolerances, SpatialTolerances)
         return _in_space(reference, candidate, in_space, noise, frame)
     if frame != "world":
         raise InputError("frame", repr(frame), "'world' in the plane", "leave it out")
-    reference = checked_sweep("reference", reference, Readings)
-    candidate = checked_sweep("candidate", candidate, Readings)
+    reference = require("reference", reference, Readings, _AS_TABLE)
+    candidate = require("candidate", candidate, Readings, _AS_TABLE)
     tolerances = checked_limits(tolerances, Tolerances).suited_to(candidate)
     found = measure(reference, candidate, tolerances.snap_off_window, offset)
     level = noise_level(reference, found.candidate) if noise == "auto" else checked_level(noise)

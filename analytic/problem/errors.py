@@ -1,6 +1,9 @@
 """The one exception for input that cannot be used."""
 
 from pathlib import PurePath
+from typing import TypeVar
+
+_Kind = TypeVar("_Kind")
 
 
 class InputError(ValueError):
@@ -52,8 +55,9 @@ def _written(value: object) -> str:
         return "an integer of thousands of digits"
 
 
-def require(name: str, value: object, kind: type, remedy: str) -> None:
-    """Refuse what is of another kind, before something inside stumbles over it."""
+def require(name: str, value: object, kind: type[_Kind], remedy: str) -> _Kind:
+    """The value; refuse what is of another kind, before something inside stumbles over it."""
     if not isinstance(value, kind):
         found = repr(value) if isinstance(value, str) else f"a {type(value).__name__}"
         raise InputError(name, found[:80], f"a {kind.__name__}", remedy)
+    return value

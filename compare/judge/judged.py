@@ -52,13 +52,7 @@ class Judged(SweepPair[Sweep]):
         yield from ()
 
     def lines(self) -> Iterator[str]:
-        """The verdict, the disagreement of each component, and what failed, for a terminal.
-
-        Yields
-        ------
-        str
-            A line.
-        """
+        """The verdict, the disagreement of each component, and what failed, for a terminal."""
         length = self.reference.beam.length
         yield (
             f"{self.candidate.source} {'agrees' if self.agrees else 'disagrees'} with "
@@ -126,13 +120,7 @@ class Judged(SweepPair[Sweep]):
         return next(iter(self.disagreement.values())).stations
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``comparison.json`` holds.
-
-        Returns
-        -------
-        dict
-            Lengths in the beam's unit, contacts in space in L, the rest relative; JSON can hold it.
-        """
+        """What ``comparison.json`` holds: lengths in the beam's unit, contacts in space in L."""
         limits = self.tolerances.limits()
         found: dict[str, Any] = _plain(
             {
@@ -149,14 +137,7 @@ class Judged(SweepPair[Sweep]):
         return found
 
     def metrics(self) -> dict[str, Number]:
-        """What a row of a table holds: plain numbers by name.
-
-        Returns
-        -------
-        dict
-            ``disagreement_COMPONENT_rms`` and ``_max``, ``agrees``, ``phase_agreement``,
-            ``stations_compared``, and each event's ``_reference``, ``_candidate``, ``_difference``.
-        """
+        """What a row of a table holds: plain numbers, by component and by event."""
         row: dict[str, Number] = {}
         for name, one in self.disagreement.items():
             row[f"disagreement_{name}_rms"] = one.rms

@@ -3,9 +3,11 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeGuard
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from analytic.problem.numbers import is_finite_number
 
 if TYPE_CHECKING:  # limits are checked before pandas is needed
     from analytic import Readings
@@ -31,7 +33,9 @@ class Rate:
         of_the_model: Mapping[str, Any] = measured if isinstance(measured, Mapping) else {}
         speed = motion.get("speed")
         damping = of_the_model.get("damping_ratio", motion.get("damping_ratio"))
-        return cls(speed, damping) if _is_size(speed) and _is_size(damping) else None
+        if is_finite_number(speed) and is_finite_number(damping) and min(speed, damping) >= 0:
+            return cls(speed, damping)
+        return None
 
     @property
     def lag(self) -> float:
@@ -83,9 +87,3 @@ def soft_tip_fraction(readings: "Readings") -> float:
     spread = np.sqrt(2 * np.maximum(readings.values("penetration"), 0.0) * length)
     near = (table["phase"] == "tangent").to_numpy() & (short < spread)
     return float(np.mean(near[readings.trusted]))
-
-
-def _is_size(value: object) -> TypeGuard[float]:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return False
-    return math.isfinite(value) and value >= 0

@@ -1,6 +1,5 @@
 """How far two sweeps may disagree, with the reason for every limit."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, TypeVar
@@ -8,9 +7,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, TypeV
 import numpy as np
 
 from analytic import CLAMP_READINGS, PHASES, InputError
+from analytic.problem.errors import require
+from analytic.problem.numbers import within
 from compare.align.frames import COMPONENTS
 from compare.judge.rate import Rate, free_fraction, soft_tip_fraction
-from compare.sense.given import checked
 
 if TYPE_CHECKING:  # limits are checked before pandas is needed
     from analytic import Readings
@@ -73,33 +73,12 @@ class Limits:
         object.__setattr__(self, "special", special)
 
     def limits(self) -> dict[str, Limit]:
-        """All limits by name, the special ones by their dotted names.
-
-        Returns
-        -------
-        dict of Limit
-            Each with its reason.
-        """
+        """All limits by name, the special ones by their dotted names."""
         named = {name: getattr(self, name) for name in self.general()} | dict(self.special)
         return {name: as_limit(name, value) for name, value in named.items()}
 
     def of(self, component: str, kind: Kind, phase: str = "") -> Limit:
-        """The limit of a component: the most special that there is.
-
-        Parameters
-        ----------
-        component : str
-            As ``"force_x"``.
-        kind : {"rms", "max"}
-            Over all stations, or at one.
-        phase : str
-            That it is asked of; of all if left out.
-
-        Returns
-        -------
-        Limit
-            With its reason.
-        """
+        """The limit of a component, as ``"force_x"``, the most special that there is."""
         found = self._most_special(
             f"{component}.{phase}.{kind}", f"{component}.{kind}", f"{phase}.{kind}"
         )
@@ -117,13 +96,7 @@ class Limits:
         return next((as_limit(n, self.special[n]) for n in names if n in self.special), None)
 
     def usual(self) -> set[str]:
-        """Names of the limits that nobody asked for.
-
-        Returns
-        -------
-        set of str
-            Those with the reasons of the defaults.
-        """
+        """Names of the limits that nobody asked for: with the reasons of the defaults."""
         return {
             n for n in self.general() if getattr(self, n).reason == getattr(type(self), n).reason
         }
@@ -347,16 +320,12 @@ def as_limit(name: str, value: float) -> Limit:
     """A limit of that name, checked."""
     if isinstance(value, Limit):
         return value
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InputError(f"tolerances.{name}", repr(value), "a number", "correct it")
-    if not (math.isfinite(value) and value >= 0):
-        raise InputError(f"tolerances.{name}", value, "finite, 0 or more", "correct it")
-    return Limit(value)
+    return Limit(within(f"tolerances.{name}", value, 0.0))
 
 
 def checked_limits(given: object, kind: type[_Kind]) -> _Kind:
     """What a caller asked for, or the defaults."""
-    return kind() if given is None else checked("tolerances", given, kind, "see its fields")
+    return kind() if given is None else require("tolerances", given, kind, "see its fields")
 
 
 def _reason(limit: float) -> str:

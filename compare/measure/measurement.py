@@ -72,13 +72,7 @@ class Measurement(SweepPair[Readings]):
         return self.events["snap_off"]
 
     def phase_agreement(self) -> dict[str, float]:
-        """Fraction of stations whose judged phase is the true one.
-
-        Returns
-        -------
-        dict
-            Of those of ``"reference"`` and ``"candidate"`` that recorded the contact.
-        """
+        """Fraction of stations judged rightly, of each sweep that recorded the contact."""
         return {
             which: float(np.trace(table) / table.to_numpy().sum())
             for which, table in self.confusion.items()
@@ -86,13 +80,7 @@ class Measurement(SweepPair[Readings]):
         }
 
     def phases_alike(self) -> float | None:
-        """Fraction of the candidate's stations whose judged phase is that of the reference there.
-
-        Returns
-        -------
-        float or None
-            Of the stations where both are known; None if neither is in contact at any of them.
-        """
+        """Fraction of stations judged as the reference there; None if neither touches anywhere."""
         counts, table = self.alignment.counts, self.alignment.table
         judged = self.judged["candidate"].phase[table["station"].to_numpy()]
         alike = counts["free"] + int((judged == table["phase"].to_numpy()).sum())
@@ -100,13 +88,7 @@ class Measurement(SweepPair[Readings]):
         return alike / (counts["free"] + touching) if touching else None
 
     def beyond(self) -> list[str]:
-        """Events that the candidate lacks because its sweep does not cover them.
-
-        Returns
-        -------
-        list of str
-            Names of the reference's transitions, and ``"snap_off"``.
-        """
+        """Events of the reference that lie beyond the stretch that the candidate covers."""
         foot_x = self.candidate.values("foot_x")
         return [
             name
@@ -117,13 +99,7 @@ class Measurement(SweepPair[Readings]):
         ]
 
     def made_by_noise(self) -> list[str]:
-        """Limits of a Phase B that one sweep alone has, as far as its noise lets it be seen.
-
-        Returns
-        -------
-        list of str
-            Names of transitions.
-        """
+        """Limits of a Phase B that one sweep alone has, as far as its noise lets it be seen."""
         found = []
         for name, has, _, _ in self._one_sided():
             here = self.judged[has].phase == "tangent"
@@ -133,13 +109,7 @@ class Measurement(SweepPair[Readings]):
         return found
 
     def not_trusted(self) -> list[str]:
-        """Events that one sweep lacks where its stations are not to be trusted.
-
-        Returns
-        -------
-        list of str
-            Names of transitions, and ``"snap_off"``.
-        """
+        """Events that one sweep lacks where its stations are not to be trusted."""
         found = []
         for name, _, lacks, at in self._one_sided():
             sweep = self.reference if lacks == "reference" else self.candidate

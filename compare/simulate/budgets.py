@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import TypeAlias, overload
 
 from analytic import Case, InputError, Readings, solve_sweep
+from analytic.problem.errors import require
 from analytic.problem.mirror import facing, leftward
 from analytic.space import SpatialCase, SpatialReadings, solve_space
 from compare.explain.budget import Budget, budget
@@ -11,7 +12,6 @@ from compare.explain.changes import controlled_changes
 from compare.explain.motion import MotionBudget
 from compare.explain.split_space import Parts, split_space
 from compare.explain.variations import on_polygon, variations
-from compare.sense.given import checked
 from compare.simulate.dispatch import softened
 from compare.simulate.moving import budget_in_motion, budget_of_model
 from compare.simulate.workers import SWEEPERS, running
@@ -89,9 +89,9 @@ def measure_budget(
     """
     if isinstance(case, SpatialCase):
         chosen = SpatialSettings() if settings is None else settings
-        return _in_space(case, checked("settings", chosen, SpatialSettings, _REMEDY), advance)
+        return _in_space(case, require("settings", chosen, SpatialSettings, _REMEDY), advance)
     chosen = Settings() if settings is None else settings
-    planar = checked("settings", chosen, Settings, _REMEDY)
+    planar = require("settings", chosen, Settings, _REMEDY)
     if motion is None:
         return budget_at_rest(case, planar, advance)
     if model is not None:

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from analytic import Case, InputError, Readings
+from analytic.problem.errors import require
 from analytic.space import SpatialCase, SpatialReadings
-from compare.sense.given import checked
 from mujoco_models import simulate_model, simulate_motion, simulate_space, simulate_sweep
 from mujoco_models.allowed import CONTACT_STIFFNESSES
 from mujoco_models.motion import Motion
@@ -35,9 +35,9 @@ def simulate(
     """
     if isinstance(case, SpatialCase):
         _require_mujoco(engine, "in space")
-        spatial = checked("settings", settings, SpatialSettings, "as SpatialSettings(segments=40)")
+        spatial = require("settings", settings, SpatialSettings, "as SpatialSettings(segments=40)")
         return simulate_space(case, spatial, advance, keep)
-    settings = checked("settings", settings, Settings, "as Settings(segments=40)")
+    settings = require("settings", settings, Settings, "as Settings(segments=40)")
     if model is not None:
         _require_mujoco(engine, "of a model")
         return simulate_model(case, model, motion, settings, advance, keep)

@@ -9,6 +9,7 @@ import numpy as np
 
 from analytic import CLAMP_READINGS, InputError
 from analytic.problem.arrays import Floats
+from analytic.problem.numbers import within
 from compare.validate.inputs import GAINS, INPUTS
 
 Distribution: TypeAlias = Literal["normal", "uniform"]
@@ -33,10 +34,7 @@ class Input:
     distribution: Distribution = "normal"
 
     def __post_init__(self) -> None:
-        if isinstance(self.standard, bool | str) or not 0 <= self.standard < math.inf:
-            raise InputError(
-                "standard uncertainty", self.standard, "a number from 0 up", "correct it"
-            )
+        within("standard uncertainty", self.standard, 0.0, remedy="check the units")
 
     @classmethod
     def within(cls, half_width: float) -> "Input":
@@ -96,8 +94,7 @@ class Uncertainties:
                 raise InputError(
                     f"uncertainty.noise.{name}", "unknown", f"one of {known}", "fix it"
                 )
-            if isinstance(size, bool | str) or not 0 <= size < math.inf:
-                raise InputError(f"uncertainty.noise.{name}", size, "0 or more", "correct it")
+            within(f"uncertainty.noise.{name}", size, 0.0, remedy="check the units")
         normal = [n for n, x in self.inputs.items() if x.distribution == "normal"]
         for first, second, coefficient in self.correlations:
             if first == second or not {first, second} <= set(normal) or not -1 <= coefficient <= 1:

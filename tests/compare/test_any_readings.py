@@ -89,7 +89,7 @@ def test_a_reference_that_never_touches_is_no_reference():
 @pytest.mark.parametrize(
     ("given_", "said"),
     [
-        ({"candidate": pd.DataFrame()}, "candidate = a DataFrame: must be Readings"),
+        ({"candidate": pd.DataFrame()}, "candidate = a DataFrame: must be a Readings"),
         ({"reference": None}, "reference = a NoneType"),
         ({"tolerances": 2e-3}, "tolerances = a float"),
         ({"offset": np.nan}, "offset = nan"),

@@ -37,8 +37,8 @@ def test_what_is_swept_is_what_was_asked_for():
         ((SPACE, SpatialSettings(), None, None, "drake"), "mujoco in space"),
         ((CASE, COARSE, Motion(), None, "drake"), "mujoco in motion"),
         ((CASE, COARSE, None, None, "none"), "one of mujoco"),
-        ((SPACE, COARSE), "a Settings: must be SpatialSettings"),
-        ((CASE, SpatialSettings()), "a SpatialSettings: must be Settings"),
+        ((SPACE, COARSE), "a Settings: must be a SpatialSettings"),
+        ((CASE, SpatialSettings()), "a SpatialSettings: must be a Settings"),
     ],
 )
 def test_what_no_engine_can_sweep_is_refused(arguments, said):

@@ -150,7 +150,7 @@ def test_what_is_no_sweep_is_said_in_a_line(pytester, given):
     )
     result = pytester.runpytest("--tb=line")
     result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(["*InputError: candidate = *: must be Readings; *"])
+    result.stdout.fnmatch_lines(["*InputError: candidate = *: must be a Readings; *"])
 
 
 @pytest.mark.parametrize("hidden", ["compare", "analytic", "mujoco_models"])
