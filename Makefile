@@ -113,7 +113,7 @@ install-mujoco3: .venv-mujoco3/installed   ## build .venv-mujoco3 with MuJoCo 3.
 test-mujoco3: install-mujoco3    ## the fast tests under MuJoCo 3.17
 	$(BIN_MUJOCO3)/python -m pytest $(PARALLEL) $(ARGS)
 
-install-engines: .venv-engines/installed   ## build .venv-engines with Drake, Exudyn, DART and MuJoCo Warp
+install-engines: .venv-engines/installed   ## build .venv-engines with all engines of the extras
 
 test-engines: install-engines    ## the tests of the other engines, on two cases each; ARGS="-m slow" for more
 	$(BIN_ENGINES)/python -m pytest $(PARALLEL) tests/engines $(ARGS)
@@ -153,7 +153,7 @@ results/runs/%-cable/report.html: | install-mujoco3
 
 .venv-engines/installed: pyproject.toml
 	$(PYTHON) -m venv .venv-engines
-	$(BIN_ENGINES)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,drake,exudyn,dart,warp]'
+	$(BIN_ENGINES)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,drake,exudyn,dart,pinocchio,warp,mjx]'
 	touch $@
 
 .venv-mujoco3/installed: pyproject.toml

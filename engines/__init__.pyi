@@ -7,8 +7,10 @@ from .engine import Engine as Engine
 from .found import Found as Found
 from .found import find_engine as find_engine
 from .found import list_engines as list_engines
+from .linkage import Linkage as Linkage
 from .stations import Rest as Rest
 from .stations import Row as Row
 from .stations import sweep_stations as sweep_stations
 from .stepping import Stepper as Stepper
 from .stepping import sweep_stepping as sweep_stepping
+from .twin import sweep_twin as sweep_twin

@@ -11,6 +11,7 @@ _SHIPPED = {
     "mujoco": "engines.mujoco:ENGINE",
     "drake": "engines.drake.engine:ENGINE",
     "exudyn": "engines.exudyn.engine:ENGINE",
+    "pinocchio": "engines.pinocchio.engine:ENGINE",
     "dart": "engines.dart.engine:ENGINE",
 }
 

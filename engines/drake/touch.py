@@ -31,7 +31,6 @@ from pydrake.multibody.tree import MultibodyForces, RigidBody
 from pydrake.systems.framework import Context
 
 from analytic.problem.arrays import Floats, Integers
-from mujoco_models.model.contacts import Contacts
 
 
 class Beads:
@@ -92,30 +91,18 @@ class CompliantContact:
         outward = np.asarray(pair.nhat_BA_W)  # in whichever order Drake has them
         return outward if pair.id_B == self._id else -outward, float(pair.distance)
 
-    def moments(self, context: Context, contacts: Contacts) -> Floats:
+    def moments(self, context: Context, beads: Integers, forces: Floats) -> Floats:
         """Drake's generalised contact forces, in its own order [EI/L]."""
         instance = self._obstacle.model_instance()
         port = self._plant.get_generalized_contact_forces_output_port(instance)
         return np.array(port.Eval(context))
 
-    def wrench(self, context: Context, contacts: Contacts, foot_x: float) -> Floats:
-        """Forces on the beam and their moment about the foot: the sum of Drake's results."""
-        found = self._plant.get_contact_results_output_port().Eval(context)
-        total = np.zeros(3)
-        for i in range(found.num_point_pair_contacts()):
-            pair = found.point_pair_contact_info(i)
-            on_beam = -1.0 if pair.bodyB_index() == self._obstacle.index() else 1.0
-            force = on_beam * pair.contact_force()
-            arm = pair.contact_point() - [foot_x, 0.0, 0.0]
-            total += [force[0], force[1], arm[0] * force[1] - arm[1] * force[0]]
-        return total
-
 
 class DistanceContact:
     """Stiffness times the depth that Drake's distances have, as external forces."""
 
-    def __init__(self, plant: MultibodyPlant, beads: Beads, stiffness: float) -> None:
-        self._plant, self._beads, self._stiffness = plant, beads, stiffness
+    def __init__(self, plant: MultibodyPlant, beads: Beads) -> None:
+        self._plant, self._beads = plant, beads
 
     def collide(self, root: Context, beads: frozenset[int]) -> None:
         """The contacts are of watched beads only."""
@@ -125,33 +112,20 @@ class DistanceContact:
         (found,) = query.ComputeSignedDistanceToPoint(np.append(point, 0.0))
         return np.asarray(found.grad_W), float(found.distance - self._beads.radii[bead])
 
-    def moments(self, context: Context, contacts: Contacts) -> Floats:
+    def moments(self, context: Context, beads: Integers, forces: Floats) -> Floats:
         """Of the forces that are applied; Drake's reactions then know of them, too."""
-        forces, applied = MultibodyForces(self._plant), []
-        for i in np.flatnonzero(contacts.loaded).tolist():
-            bead = int(contacts.touch[i])
+        total, applied = MultibodyForces(self._plant), []
+        for bead, force in zip(beads.tolist(), forces, strict=True):
             body, place = self._beads.body(bead), np.append(self._beads.places[bead], 0.0)
-            force = np.append(self._force(contacts, i), 0.0)
             one = ExternallyAppliedSpatialForce()
             one.body_index, one.p_BoBq_B = body.index(), place
-            one.F_Bq_W = SpatialForce(np.zeros(3), force)
+            one.F_Bq_W = SpatialForce(np.zeros(3), np.append(force, 0.0))
             applied.append(one)
             turned = body.EvalPoseInWorld(context).rotation() @ place
-            body.AddInForceInWorld(context, one.F_Bq_W.Shift(-turned), forces)
+            body.AddInForceInWorld(context, one.F_Bq_W.Shift(-turned), total)
         port = self._plant.get_applied_spatial_force_input_port()
         port.FixValue(context, Value[list[ExternallyAppliedSpatialForce]](applied))
-        return np.asarray(self._plant.CalcGeneralizedForces(context, forces))
-
-    def wrench(self, context: Context, contacts: Contacts, foot_x: float) -> Floats:
-        """The sum of the forces that are applied."""
-        total = np.zeros(3)
-        for i in np.flatnonzero(contacts.loaded).tolist():
-            force, arm = self._force(contacts, i), contacts.point[i] - [foot_x, 0.0]
-            total += [*force, arm[0] * force[1] - arm[1] * force[0]]
-        return total
-
-    def _force(self, contacts: Contacts, i: int) -> Floats:
-        return np.asarray(-self._stiffness * contacts.distance[i] * contacts.normal[i])
+        return np.asarray(self._plant.CalcGeneralizedForces(context, total))
 
 
 def material(stiffness: float) -> ProximityProperties:

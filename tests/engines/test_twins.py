@@ -1,4 +1,4 @@
-"""Drake computes MuJoCo's chain: on a smooth obstacle to rounding, on a mesh to its facets."""
+"""Twins compute MuJoCo's chain: on a smooth obstacle to rounding, on a mesh to its facets."""
 
 from dataclasses import replace
 
@@ -6,59 +6,65 @@ import numpy as np
 import pytest
 
 from analytic import CLAMP_READINGS, Beam, Case, InputError, circle, named_case, polygon
+from engines import find_engine, list_engines
 from mujoco_models import Settings, simulate_sweep
 from mujoco_models.obstacles.prism import Prism
-
-pytest.importorskip("pydrake", reason="Drake is an extra: pip install '.[drake]'")
-
-from engines import find_engine
 
 SMOOTH = Settings(obstacle="primitive")
 
 
-def apart(case: Case, settings: Settings) -> tuple[dict[str, float], float]:
+@pytest.fixture(params=["drake", "pinocchio"])
+def name(request) -> str:
+    """Of a twin that is there."""
+    found = {one.name: one for one in list_engines()}[request.param]
+    if found.trouble is not None:
+        pytest.skip(found.trouble)
+    return request.param
+
+
+def apart(name: str, case: Case, settings: Settings) -> tuple[dict[str, float], float]:
     """Largest difference by reading over its largest magnitude, and of the snap-off [L]."""
-    twin, mujoco = find_engine("drake").sweep(case, settings), simulate_sweep(case, settings)
+    twin, mujoco = find_engine(name).sweep(case, settings), simulate_sweep(case, settings)
     assert (twin.table["phase"] == mujoco.table["phase"]).all()
     assert (twin.table["status"] == mujoco.table["status"]).all()
     settled = twin.trusted & mujoco.trusted
     assert settled.mean() > 0.95
     found = {
-        name: np.abs(twin.values(name) - mujoco.values(name))[settled].max()
-        / np.abs(mujoco.values(name)).max()
-        for name in CLAMP_READINGS
+        reading: np.abs(twin.values(reading) - mujoco.values(reading))[settled].max()
+        / np.abs(mujoco.values(reading)).max()
+        for reading in CLAMP_READINGS
     }
     assert np.nanmax(twin.values("discrepancy")) < 1e-6  # EI/L^2, EI/L
     return found, (twin.snap_off - mujoco.snap_off) / case.beam.length
 
 
-def short(name: str, stations: int) -> Case:
-    case = named_case(name)
+def short(of: str, stations: int) -> Case:
+    case = named_case(of)
     return replace(case, sweep=replace(case.sweep, stations=stations))
 
 
-@pytest.mark.parametrize("name", ["catenary", "parabola"])
-def test_the_twin_equals_mujoco_on_a_smooth_obstacle(name):
+@pytest.mark.parametrize("of", ["catenary", "parabola"])
+def test_the_twin_equals_mujoco_on_a_smooth_obstacle(name, of):
     """A rest to 1e-8 EI/L, in either, is all that they may differ by."""
-    readings, snap_off = apart(short(name, 40), replace(SMOOTH, segments=20))
+    readings, snap_off = apart(name, short(of, 40), replace(SMOOTH, segments=20))
     assert max(readings.values()) < 1e-8
     assert abs(snap_off) < 1e-9
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("segments", [10, 20, 40, 80])
-@pytest.mark.parametrize("name", ["catenary", "parabola", "two-circles", "tip-only"])
-def test_so_it_does_with_links_of_any_size(name, segments):
-    readings, snap_off = apart(short(name, 30), replace(SMOOTH, segments=segments))
+@pytest.mark.parametrize("of", ["catenary", "parabola", "two-circles", "tip-only"])
+def test_so_it_does_with_links_of_any_size(name, of, segments):
+    readings, snap_off = apart(name, short(of, 30), replace(SMOOTH, segments=segments))
     assert max(readings.values()) < 1e-8
     assert abs(snap_off) < 1e-9
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["catenary", "parabola", "tip-only"])
-def test_so_it_does_where_its_forces_come_from_distances(name):
-    """8,000 spheres: as on a mesh, but the cylinder's normals are right to rounding."""
-    readings, snap_off = apart(short(name, 15), replace(SMOOTH, segments=160))
+@pytest.mark.parametrize("of", ["catenary", "parabola", "tip-only"])
+def test_so_it_does_where_its_forces_come_from_distances(name, of):
+    """8,000 spheres: in Drake as on a mesh, but the cylinder's normals are right to rounding."""
+    readings, snap_off = apart(name, short(of, 15), replace(SMOOTH, segments=160))
     assert max(readings.values()) < 1e-8
     assert abs(snap_off) < 1e-9
 
@@ -72,30 +78,30 @@ def test_so_it_does_where_its_forces_come_from_distances(name):
     ],
     ids=["cone", "curved", "in metres"],
 )
-def test_so_it_does_for_other_vibrissae(beam):
+def test_so_it_does_for_other_vibrissae(name, beam):
     scale = beam.length
     case = Case(beam, circle(scale, (0.0, 0.4 * scale)), clamp_stiffness=20 * beam.moment_unit)
     case = replace(case, sweep=replace(case.sweep, stations=20))
-    readings, snap_off = apart(case, replace(SMOOTH, segments=12))
+    readings, snap_off = apart(name, case, replace(SMOOTH, segments=12))
     assert max(readings.values()) < 1e-8
     assert abs(snap_off) < 1e-9
 
 
-def test_a_sweep_to_the_right_is_the_mirror_image():
+def test_a_sweep_to_the_right_is_the_mirror_image(name):
     case = short("parabola", 20)
     mirrored = case.mirrored()
     settings = replace(SMOOTH, segments=10)
-    left, right = (find_engine("drake").sweep(one, settings) for one in (case, mirrored))
+    left, right = (find_engine(name).sweep(one, settings) for one in (case, mirrored))
     np.testing.assert_allclose(right.values("force_x"), -left.values("force_x"), atol=1e-12)
 
 
-def test_on_a_mesh_they_differ_by_mujocos_normals():
-    """MuJoCo keeps a mesh's vertices in single precision; Drake's normals are the facets' own.
+def test_on_a_mesh_they_differ_by_mujocos_normals(name):
+    """MuJoCo keeps a mesh's vertices in single precision; a twin's normals are the facets' own.
 
     A tip that rests on one facet feels its normal, and the force turns with it.
     """
     case, settings = short("parabola", 30), Settings(segments=20)
-    twin, mujoco = find_engine("drake").sweep(case, settings), simulate_sweep(case, settings)
+    twin, mujoco = find_engine(name).sweep(case, settings), simulate_sweep(case, settings)
     tips = ((twin.table["phase"] == "tip") & twin.trusted & mujoco.trusted).to_numpy()
     assert tips.sum() > 5
     facets = Prism.of(case, settings.contour_points).facet_angles
@@ -108,7 +114,7 @@ def test_on_a_mesh_they_differ_by_mujocos_normals():
     assert 1e-7 < np.median(off(theirs)) < 1e-5
     turned = np.abs(ours - theirs).max()
     assert turned < 1e-5
-    readings, snap_off = apart(case, settings)
+    readings, snap_off = apart(name, case, settings)
     assert max(readings.values()) < 10 * turned
     assert abs(snap_off) < 1e-4
 
@@ -116,7 +122,7 @@ def test_on_a_mesh_they_differ_by_mujocos_normals():
 @pytest.mark.parametrize(
     ("case", "settings", "says"),
     [
-        (named_case("catenary"), Settings(beam="rod"), "beam for drake"),
+        (named_case("catenary"), Settings(beam="rod"), "beam for"),
         (named_case("catenary"), Settings(planar=False), "out of the plane"),
         (
             Case(profile=polygon([(-0.5, 0.8), (0.0, 0.5), (0.5, 0.8)])),
@@ -128,6 +134,6 @@ def test_on_a_mesh_they_differ_by_mujocos_normals():
         (replace(named_case("catenary"), friction=0.2), Settings(), "friction"),
     ],
 )
-def test_what_drake_has_not_is_a_line(case, settings, says):
+def test_what_a_twin_has_not_is_a_line(name, case, settings, says):
     with pytest.raises(InputError, match=says):
-        find_engine("drake").sweep(case, settings)
+        find_engine(name).sweep(case, settings)
