@@ -58,9 +58,16 @@ def inspect(
     contact_stiffness: Annotated[
         str, option("What is looked at beside the case's own [EI/L^3].", "A,B,..."), _IN_SINGLE
     ] = "1e4,1e5,1e6,1e7,1e8,1e9",
+    write: Annotated[
+        Path | None,
+        option("Write the model without its faults, and case.toml beside it.", "FILE"),
+        _OF_A_FILE,
+    ] = None,
     out: Annotated[Path | None, out_folder("none; with --float32 results/CASE-float32")] = None,
 ) -> int:
-    """Measure what beam a MuJoCo model is, and what is wrong.
+    """Measure what beam a MuJoCo model is, what is wrong, and what to set.
+
+    With --write: a copy of its file with just these settings, and the case that it is a model of.
 
     With --float32: where contacts are lost in single precision, and how far off the forces are,
     over the contact stiffness, beside what float32's resolution predicts. Contacts that are lost at
@@ -81,31 +88,43 @@ def inspect(
         inspection = _of_a_case(model)
     else:
         names = {"foot": foot, "force": force, "torque": torque, "geoms": geoms, "site": site}
-        inspection = _of_a_file(model, names, beam)
+        inspection = _of_a_file(_path(model), names, beam)
     from compare.commands import terminal
 
     for line in inspection.lines():
         terminal.print_line(line)
+    if write is not None:
+        from compare.simulate.mending import case_of, mend
+
+        with output_folder(write.parent):
+            mended = mend(_path(model), names, inspection, write)
+            for line in mended.lines():
+                terminal.print_line(line)
+            text = case_of(mended.inspection.found, write, names)
+            terminal.keep(write.with_name("case.toml"), text)
     if out is not None:
         with output_folder(out) as folder:
             terminal.keep(folder / "inspection.json", inspection.to_dict())
     return AGREES if inspection.sound else DISAGREES
 
 
-def _of_a_file(model: str, names: dict[str, str | None], beam: Path | None) -> "Inspection":
-    from compare.read.tables import read_beam
+def _path(model: str) -> Path:
     from mujoco_models import shipped_models
 
-    stated = None if beam is None else read_beam(beam)[0]
     shipped = shipped_models()
     if model not in shipped and not Path(model).suffix:
         raise InputError(
             "MODEL", repr(model), f"a file, or one of {', '.join(shipped)}", "name one of them"
         )
-    path = regular_file(shipped.get(model, Path(model)), "model", sys.maxsize)
+    return regular_file(shipped.get(model, Path(model)), "model", sys.maxsize)
+
+
+def _of_a_file(path: Path, names: dict[str, str | None], beam: Path | None) -> "Inspection":
+    from compare.read.tables import read_beam
     from compare.simulate.inspection import Inspection
     from mujoco_models import inspect_model
 
+    stated = None if beam is None else read_beam(beam)[0]
     return Inspection(inspect_model(path, **names), stated)
 
 

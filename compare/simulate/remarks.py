@@ -10,13 +10,33 @@ from analytic import Beam
 from compare.simulate.rigidity import (
     as_intended,
     as_stated,
+    at_its_tip,
     by_its_clamp,
+    contact_stiffness,
     elastica_error,
     is_curved,
     smooth_rigidity,
     tapers,
 )
-from mujoco_models.inspect.measured import Geom, MeasuredBeam, Sensed
+from compare.simulate.treatment import (
+    HARD,
+    at_clamp,
+    contacts,
+    damped,
+    first_stiffness,
+    frictionless,
+    hardened,
+    hardest,
+    held,
+    joints,
+    on_rail,
+    steps,
+    stiffened,
+    straightened,
+    with_sensors,
+)
+from mujoco_models.inspect.measured import Geom, MeasuredBeam, Sensed, nearest_axes
+from mujoco_models.mend.edit import Edit, Insert
 
 # Each limit is what moves a reading by about one per cent of its largest magnitude.
 _RIGIDITY = 0.01  # relative; forces and moments are proportional to EI
@@ -33,6 +53,9 @@ _FORCE = 3.0  # EI/L^2; the largest of a usual sweep
 _BENDS = 5.0  # rad; what all joints together turn by in a usual sweep, at most
 _ELASTICA = 0.02  # L; a sound chain of ten links is off by 4e-3 at P L^2/EI = 10
 _METRES = 3.0  # a longer vibrissa is rather one in millimetres
+_HARDEST, _HARDEST_EXPLICIT = 30.0, 3.0  # EI/L^3 times the time step [T1] squared
+_READS = 0.01  # of a load, by the sensor that should read all of it
+_LONGEST_STEP = 0.05  # T1; leaves about 0.8 per cent
 _EXPLICIT = ("euler", "implicit", "implicitfast", "rk4")  # in the springs
 
 
@@ -44,9 +67,12 @@ class Remark:
     kind: Literal["fault", "note"]
     subject: str  # as ``"clamp"``
     text: str  # in a sentence
+    remedy: str = ""  # what to do, beside edits
+    edits: tuple[Edit | Insert, ...] = ()  # that mend it
 
     def __str__(self) -> str:
-        return f"{self.kind}, {self.subject}: {self.text}"
+        said = [self.remedy, *(f"set {edit}" for edit in self.edits)]
+        return "; ".join(filter(None, (f"{self.kind}, {self.subject}: {self.text}", *said)))
 
 
 def remarks(found: MeasuredBeam, stated: Beam | None = None) -> tuple[Remark, ...]:
@@ -68,57 +94,74 @@ def remarks(found: MeasuredBeam, stated: Beam | None = None) -> tuple[Remark, ..
 def _stiffness(found: MeasuredBeam) -> Iterator[Remark]:
     rigidity = smooth_rigidity(found)
     own = np.array([joint.flexural_rigidity for joint in found.joints])
-    off = by_its_clamp(found) / as_intended(found) - 1
-    first = own[0] / rigidity[0]
+    off = by_its_clamp(found) / at_its_tip(found) - 1
     if abs(off) > _RIGIDITY:
-        why = ""
-        if 0.3 < first < 0.8:
-            why = ": the hinge at the clamp stands for half a cell, and should be twice as stiff"
-        elif 1.2 < first < 2:
-            why = ": the first link is rigid over a whole cell, half a cell too much"
-        elif tapers(found):
-            why = ": too few links for its taper"
         yield Remark("fault", "clamp", f"bends like EI {abs(off):.1%} "
-                     f"{'lower' if off < 0 else 'higher'} than its joints say{why}")  # fmt: skip
-    for joint, off_by in list(zip(found.joints, own / rigidity - 1, strict=True))[1:-1]:
+                     f"{'lower' if off < 0 else 'higher'} than its joints say: "
+                     f"{_cause(found, own[0] / rigidity[0])}",
+                     edits=stiffened(found, {0: first_stiffness(found)}))  # fmt: skip
+    for i, (joint, off_by) in list(enumerate(zip(found.joints, own / rigidity - 1, strict=True)))[
+        1:-1
+    ]:
         if abs(off_by) > _JOINT:
             yield Remark("fault", "uniformity", f"the joint of {joint.name!r}, at s = "
                          f"{joint.s / found.length:.2f} L, is {abs(off_by):.0%} too "
-                         f"{'stiff' if off_by > 0 else 'soft'} beside its neighbours")  # fmt: skip
+                         f"{'stiff' if off_by > 0 else 'soft'} beside its neighbours",
+                         edits=stiffened(found, {i: 1 / (joint.compliance * (1 + off_by))})
+                         )  # fmt: skip
     if tapers(found):
         yield Remark("note", "uniformity", f"EI goes from {rigidity[0]:.4g} at the clamp to "
                      f"{rigidity[-1]:.4g} at the tip")  # fmt: skip
     error = elastica_error(found)
     if abs(off) <= _RIGIDITY and error > _ELASTICA and not found.limits:
-        why = "take more links" if found.linear else "its springs stiffen as they turn"
+        straight = {i: 1 / joint.compliance for i, joint in enumerate(found.joints)}
         yield Remark("fault", "large bending", f"the tip is up to {error:.1e} L off the exact "
-                     f"cantilever: {why}")  # fmt: skip
+                     "cantilever",
+                     "take more links" if found.linear else "its springs stiffen as they turn",
+                     () if found.linear else stiffened(found, straight))  # fmt: skip
     if found.limits and found.limits[0] < _BENDS * max(j.cell for j in found.joints) / found.length:
         yield Remark("fault", "limits", f"a joint is limited to {np.rad2deg(found.limits[0]):.3g} "
-                     "degrees, less than a sweep bends it")  # fmt: skip
+                     "degrees, less than a sweep bends it",
+                     edits=(*joints(found, limited="false"),))  # fmt: skip
     stretch = found.stretch * _FORCE * found.tip_rigidity / found.length**2
     if stretch > _LENGTH:
         far = f"by {stretch:.1%}" if stretch < 1 else "to more than twice its length"
-        yield Remark("fault", "edges", f"a pull of {_FORCE:g} EI/L^2 stretches one {far}"
-                     ": stiffen their constraint, as <edge equality=\"true\" solref=\"0.001 1\" "
-                     "solimp=\"0.9999 0.9999 0.001\"/>")  # fmt: skip
+        hard = Edit("edge", (("solref", hardest(found)), ("solimp", HARD)), (0,))
+        yield Remark("fault", "edges", f"a pull of {_FORCE:g} EI/L^2 stretches one {far}",
+                     edits=(hard,))  # fmt: skip
     if found.friction_loss > 0:
         yield Remark("fault", "friction in joints", f"frictionloss of {found.friction_loss:.3g} "
-                     "holds moments: the vibrissa stays bent")  # fmt: skip
+                     "holds moments: the vibrissa stays bent",
+                     edits=(*joints(found, frictionloss="0"),))  # fmt: skip
+
+
+def _cause(found: MeasuredBeam, first: float) -> str:
+    """Why the first joint is not what its cell is."""
+    links = np.diff([joint.s for joint in found.joints])
+    place = found.joints[0].s / float(np.median(links))
+    if place < 0.25:
+        return "the hinge at the clamp should stand for half a cell"
+    if place > 0.75:
+        return "the first link is rigid over a whole cell, half a cell too much"
+    if abs(first - 1) > _JOINT:
+        return f"the first joint is {first:.2g} times as stiff as its cell"
+    return "too few links for its taper" if tapers(found) else "too few links"
 
 
 def _stated(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
     if stated is None or _in_other_units(found, stated):
         return
-    own = as_intended(found)
-    for what, measured, wanted, allowed in (
-        ("length", found.length, stated.length, _LENGTH),
-        ("EI", own, as_stated(stated), _RIGIDITY),
+    own, wanted_rigidity = as_intended(found), as_stated(stated)
+    scaled = {i: wanted_rigidity / own / joint.compliance for i, joint in enumerate(found.joints)}
+    for what, measured, wanted, allowed, edits in (
+        ("length", found.length, stated.length, _LENGTH, ()),
+        ("EI", own, wanted_rigidity, _RIGIDITY, stiffened(found, scaled)),
     ):
         off = measured / wanted - 1
         if abs(off) > allowed:
             yield Remark("fault", what, f"{measured:.6g}, which is {abs(off):.1%} "
-                         f"{'more' if off > 0 else 'less'} than stated ({wanted:.6g})")  # fmt: skip
+                         f"{'more' if off > 0 else 'less'} than stated ({wanted:.6g})",
+                         edits=edits)  # fmt: skip
     middles = np.array([(geom.start + geom.end) / 2 for geom in found.geoms])
     wanted_radii = stated.radius_at(np.clip(middles, 0, stated.length))
     radii = np.array([geom.radius for geom in found.geoms])
@@ -149,8 +192,11 @@ def _rest(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
     if stated is not None:
         s = np.linspace(0, stated.length, 1001)
         wanted = float(np.trapezoid(stated.curvature_at(s), s)) / stated.length
-    if is_curved(found, wanted):
-        own, should = (x * found.length for x in (found.natural_curvature, wanted))
+    own, should = (x * found.length for x in (found.natural_curvature, wanted))
+    if stated is None and is_curved(found):
+        yield Remark("note", "natural curvature", f"the tip is turned by {own:.3g} rad at rest, as "
+                     "a curved vibrissa's is")  # fmt: skip
+    elif is_curved(found, wanted):
         yield Remark("fault", "natural curvature", f"{own:.3g}/L instead of {should:.3g}/L: at "
                      "rest the tip is turned by so much")  # fmt: skip
     if any(found.medium):
@@ -160,9 +206,14 @@ def _rest(found: MeasuredBeam, stated: Beam | None) -> Iterator[Remark]:
     strength = float(np.linalg.norm(found.gravity))
     if strength > 0:
         sag = found.sag / found.length
-        kind: Literal["fault", "note"] = "fault" if sag > _SAG else "note"
+        weight = found.weight * found.length**2 / found.tip_rigidity
+        kind: Literal["fault", "note"] = "note"
+        if sag > _SAG or weight > _RIGIDITY * _FORCE:
+            kind = "fault"
         yield Remark(kind, "gravity", f"{strength:.3g} bends the vibrissa by {sag:.1e} L at the "
-                     "tip; the theory has none")  # fmt: skip
+                     f"tip, and the force sensor reads {weight:.2g} EI/L^2 of it before anything "
+                     "touches; the theory has none",
+                     edits=(Edit("option", (("gravity", "0 0 0"),)),))  # fmt: skip
 
 
 def _plane(found: MeasuredBeam) -> Iterator[Remark]:
@@ -174,10 +225,14 @@ def _plane(found: MeasuredBeam) -> Iterator[Remark]:
 
 
 def _foot(found: MeasuredBeam) -> Iterator[Remark]:
-    if found.drive is None:
-        yield Remark("fault", "foot", f"nothing can move {found.foot!r}: make it a mocap body, or "
-                     "give it a slide joint across the vibrissa")  # fmt: skip
-    elif "force" in found.drive:
+    yield from _hand(found)
+    if found.drive is None and found.objects:
+        shown = ", ".join(map(repr, found.objects[:4]))
+        yield Remark("note", "foot", f"{found.foot!r} stands, and the object moves ({shown})")
+    elif found.drive is None:
+        yield Remark("fault", "foot", f"nothing can move {found.foot!r}", "make it a mocap body, "
+                     "or give it a slide joint across the vibrissa", on_rail(found))  # fmt: skip
+    elif "which is a force" in found.drive:
         yield Remark("note", "foot", f"{found.drive}: a position or velocity actuator would hold "
                      "its speed")  # fmt: skip
     elif "mocap" in found.drive:
@@ -186,11 +241,29 @@ def _foot(found: MeasuredBeam) -> Iterator[Remark]:
                      "A slide joint with a velocity actuator has one")  # fmt: skip
 
 
+def _hand(found: MeasuredBeam) -> Iterator[Remark]:
+    hand, rigidity, length = found.hand, as_intended(found), found.length
+    if hand is None:
+        return
+    gives = _FORCE * rigidity / length**3 * hand.displacement
+    softer = 3 * rigidity / length * hand.rotation
+    if gives > _SINKS or softer > _RIGIDITY:
+        through = ", ".join(map(repr, hand.joints[:4]))
+        where = "the weld of " if hand.welds else ""
+        turns = f"turns as by a spring of {3 / softer:.2g} EI/L, and " if softer > 0 else ""
+        yield Remark("fault", "clamp", f"gives way between drive and vibrissa, at {where}{through}"
+                     f": it {turns}moves by {gives:.1e} L under {_FORCE:g} EI/L^2",
+                     edits=held(found))  # fmt: skip
+
+
 def _sensors(found: MeasuredBeam) -> Iterator[Remark]:
     for word, sensor in (("force", found.force), ("torque", found.torque)):
         if sensor is None:
-            yield Remark("fault", f"{word} sensor", f"none on {found.foot!r} or the vibrissa: add "
-                         f"a site at the clamp and <{word} site=.../>")  # fmt: skip
+            missing = [w for w, one in (("force", found.force), ("torque", found.torque))
+                       if one is None]  # fmt: skip
+            edits = with_sensors(found, *missing) if word == missing[0] else ()
+            yield Remark("fault", f"{word} sensor", f"none on {found.foot!r} or the vibrissa",
+                         f"add a site at the clamp and <{word} site=.../>", edits)  # fmt: skip
             continue
         if not sensor.feels_contacts:
             yield Remark(
@@ -199,17 +272,26 @@ def _sensors(found: MeasuredBeam) -> Iterator[Remark]:
                 "free body that is welded to the one with the sensors"
             )  # fmt: skip
             continue
+        if np.abs(sensor.axes).max() < _READS:
+            yield Remark(
+                "fault", f"{word} sensor", f"{sensor.name!r} reads nothing: MuJoCo leaves the weld "
+                "that holds its free body out of what it feels",
+                "make that body the mocap body itself, without joint and weld"
+            )  # fmt: skip
+            continue
         yield from _axes(word, sensor)
         most = _FORCE * found.tip_rigidity / found.length ** (2 if word == "force" else 1)
         if sensor.cutoff < 2 * most:
             yield Remark("fault", f"{word} sensor", f"{sensor.name!r} is cut off at "
-                         f"{sensor.cutoff:.3g}; a sweep has up to {2 * most:.2g}")  # fmt: skip
+                         f"{sensor.cutoff:.3g}; a sweep has up to {2 * most:.2g}",
+                         edits=(Edit("sensor", (("cutoff", "0"),), (sensor.number,)),))  # fmt: skip
         lever = np.linalg.norm(sensor.lever) / found.length
         if lever > _LEVER:
             yield Remark("fault" if word == "torque" else "note", f"{word} sensor",
                          f"{sensor.name!r} is {lever:.3g} L away from where the vibrissa "
                          "begins" + ("; its moments are counted from there"
-                                     if word == "torque" else ""))  # fmt: skip
+                                     if word == "torque" else ""),
+                         edits=at_clamp(sensor, found.length))  # fmt: skip
 
 
 def _axes(word: str, sensor: Sensed) -> Iterator[Remark]:
@@ -218,14 +300,13 @@ def _axes(word: str, sensor: Sensed) -> Iterator[Remark]:
         yield Remark("fault", f"{word} sensor", f"{sensor.name!r} does not read the whole {word} "
                      "at the clamp: it is not between foot and vibrissa")  # fmt: skip
         return
-    nearest = np.zeros((3, 3))
-    for row, column in enumerate(np.argmax(np.abs(axes), axis=1)):
-        nearest[row, column] = np.sign(axes[row, column])
+    nearest = nearest_axes(axes)
     rotation = axes.T @ nearest
     angle = float(np.arccos(np.clip((np.trace(rotation) - 1) / 2, -1, 1)))
     if angle > _ROTATED:
         yield Remark("fault", f"{word} sensor", f"{sensor.name!r} is turned by "
-                     f"{np.rad2deg(angle):.2g} degrees against vibrissa and sweep")  # fmt: skip
+                     f"{np.rad2deg(angle):.2g} degrees against vibrissa and sweep",
+                     edits=straightened(sensor))  # fmt: skip
     if not np.array_equal(nearest, np.eye(3)):
         words = ", ".join(
             f"{'-' if row[k] < 0 else ''}{'xyz'[k]}"
@@ -236,15 +317,17 @@ def _axes(word: str, sensor: Sensed) -> Iterator[Remark]:
 
 
 def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
+    meeting_objects = contacts(found, contype="0", conaffinity="1")
     through = [geom for geom in found.geoms if not geom.meets]
     if through:
         ends = (through[0].start / found.length, through[-1].end / found.length)
         shown = ", ".join(repr(geom.name) for geom in through[:4])
         yield Remark("fault", "contact", f"{len(through)} of {len(found.geoms)} geoms, s = "
                      f"{ends[0]:.2f} to {ends[1]:.2f} L, meet no object of MuJoCo's default "
-                     f"contype and conaffinity: {shown}")  # fmt: skip
+                     f"contype and conaffinity: {shown}", edits=meeting_objects)  # fmt: skip
     for pair in found.self_contacts[:3]:
-        yield Remark("fault", "contact", f"{pair} touch before anything moves: exclude the pair")
+        yield Remark("fault", "contact", f"{pair} touch before anything moves",
+                     "exclude the pair", meeting_objects)  # fmt: skip
     meeting = [geom for geom in found.geoms if geom.meets]
     if not meeting:
         return
@@ -255,13 +338,24 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
         if sinks * found.length > 2 * softest.radius:
             depth = "deeper into the object than the vibrissa is thick, and slips past"
         yield Remark("fault", "contact", f"{_softness(softest, found)} a force of {_FORCE:g} "
-                     f"EI/L^2 sinks {depth}")  # fmt: skip
+                     f"EI/L^2 sinks {depth}", edits=hardened(found))  # fmt: skip
+    hard, fraction = contact_stiffness(found), found.timestep / found.period
+    explicit = found.integrator in _EXPLICIT
+    if hard * fraction**2 > (_HARDEST_EXPLICIT if explicit else _HARDEST):
+        yield Remark("fault", "contact", f"{hard:.2g} EI/L^3 is too hard for steps of "
+                     f"{fraction:.2g} T1: it {'diverges' if explicit else 'chatters'}",
+                     edits=hardened(found))  # fmt: skip
     thickest = max(meeting, key=lambda geom: geom.margin)
     if abs(thickest.margin) > _RADIUS * found.length:
         yield Remark("fault", "contact", f"a margin of {thickest.margin:.3g} pushes before "
-                     "anything touches, as if the vibrissa were so much thicker")  # fmt: skip
+                     "anything touches, as if the vibrissa were so much thicker",
+                     edits=contacts(found, margin="0", gap="0"))  # fmt: skip
     rubs = max(geom.friction for geom in meeting)
-    if rubs > 0:
+    if rubs > 0 and found.cone == "pyramidal":
+        which = ", MuJoCo's default," if rubs == 1 else ""
+        yield Remark("fault", "contact", f"friction {rubs:g}{which} by a pyramidal cone chatters",
+                     edits=frictionless(found))  # fmt: skip
+    elif rubs > 0:
         yield Remark("note", "contact", f"friction {rubs:g}; state it in the case, or set "
                      'condim="1"')  # fmt: skip
 
@@ -275,13 +369,23 @@ def _softness(geom: Geom, found: MeasuredBeam) -> str:
 
 def _steps(found: MeasuredBeam) -> Iterator[Remark]:
     limit = found.stable_step
-    if found.integrator in _EXPLICIT and found.timestep > limit:
+    explicit = found.integrator in _EXPLICIT or found.springs == "plugin"
+    fraction = found.timestep / found.period
+    if found.timestep <= 0:
+        yield Remark("fault", "time step", f"{found.timestep:g}: nothing ever moves",
+                     edits=steps(found))  # fmt: skip
+    elif explicit and found.timestep > limit:
         yield Remark("fault", "time step", f"{found.timestep:g} is above {limit:.2g}, where "
-                     f"{found.integrator} becomes unstable with such springs: shorten it, add "
-                     'armature, or take integrator="discrete"')  # fmt: skip
+                     f"{found.integrator} becomes unstable with such springs",
+                     "shorten it, add armature, or take integrator=\"discrete\"",
+                     steps(found))  # fmt: skip
+    elif fraction > _LONGEST_STEP:
+        yield Remark("fault", "time step", f"{found.timestep:g} is {fraction:.2g} of the first "
+                     "period: steps leap over what the vibrissa does",
+                     edits=steps(found))  # fmt: skip
     slower = found.period / found.period_without_armature
     if slower > 1 + _RIGIDITY:
         yield Remark("note", "armature", f"makes the first period {slower:.3g} times as long")
     if found.damping_ratio > 1:
-        yield Remark("note", "damping", f"{found.damping_ratio:.2g} times critical: the vibrissa "
-                     "lags behind the foot")  # fmt: skip
+        yield Remark("fault", "damping", f"{found.damping_ratio:.2g} times critical: the vibrissa "
+                     "lags behind the foot", edits=damped(found))  # fmt: skip

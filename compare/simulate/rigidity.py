@@ -40,6 +40,22 @@ def as_intended(found: MeasuredBeam) -> float:
     return _of_tip(s, smooth_rigidity(found, s))
 
 
+def at_its_tip(found: MeasuredBeam) -> float:
+    """The same of a beam that is as curved, whose tip moves by less."""
+    s = np.linspace(0, found.length, _POINTS)
+    at = np.array([0.0, *(joint.s for joint in found.joints), found.length])
+    arms = np.interp(s, at, [joint_arms(found)[0] + found.joints[0].s, *joint_arms(found), 0.0])
+    flexibility = np.trapezoid(arms**2 / smooth_rigidity(found, s), s)
+    return float(found.length**3 / (3 * flexibility))
+
+
+def joint_arms(found: MeasuredBeam) -> Floats:
+    """How far ahead of each joint the tip is, along the vibrissa's first direction."""
+    slopes = np.cumsum([joint.angle for joint in found.joints])
+    links = np.diff([joint.s for joint in found.joints], append=found.length)
+    return np.asarray(np.cumsum((links * np.cos(slopes))[::-1])[::-1])
+
+
 def as_stated(beam: Beam) -> float:
     """EI that the tip of a vibrissa shows under a small force across it."""
     s = np.linspace(0, beam.length, _POINTS)
@@ -64,8 +80,7 @@ def by_its_clamp(found: MeasuredBeam) -> float:
     rigidity = smooth_rigidity(found)
     compliance = np.array([joint.cell for joint in found.joints]) / rigidity
     compliance[0] = found.joints[0].compliance
-    arm = found.length - np.array([joint.s for joint in found.joints])
-    return float(found.length**3 / (3 * compliance @ arm**2))
+    return float(found.length**3 / (3 * compliance @ joint_arms(found) ** 2))
 
 
 def clamp_stiffness(found: MeasuredBeam) -> float:
@@ -75,6 +90,13 @@ def clamp_stiffness(found: MeasuredBeam) -> float:
     if compliance <= _LEAST_COMPLIANCE * bends:
         return float("inf")
     return float(found.length / (as_intended(found) * compliance))
+
+
+def contact_stiffness(found: MeasuredBeam) -> float:
+    """Median of what touches and moves [EI/L^3]."""
+    stiffness = [g.stiffness for g in found.geoms if g.meets and np.isfinite(g.stiffness)]
+    unit = as_intended(found) / found.length**3
+    return float(np.median(stiffness) / unit) if stiffness else float("nan")
 
 
 def tapers(found: MeasuredBeam) -> bool:

@@ -72,6 +72,20 @@ def drive_of(model: mujoco.MjModel, foot: int, left: Floats) -> str | None:
     return f"slide {joint!r} with actuator {model.actuator(mover.actuator).name!r}{how}"
 
 
+def movable(model: mujoco.MjModel, mine: set[int]) -> tuple[str, ...]:
+    """Bodies that touch and that a mocap body, a slide or a free joint moves, but for mine."""
+    found = []
+    for body in range(1, model.nbody):
+        moves = model.body_mocapid[body] >= 0 or any(
+            model.jnt_type[joint] in (_FREE, _SLIDE) for joint in joints_of(model, body)
+        )
+        on_it = np.flatnonzero(model.body_rootid[model.geom_bodyid] == model.body_rootid[body])
+        touches = (model.geom_contype[on_it] | model.geom_conaffinity[on_it]).any()
+        if moves and touches and body not in mine:
+            found.append(model.body(body).name or f"body {body}")
+    return tuple(found)
+
+
 def joints_of(model: mujoco.MjModel, body: int) -> range:
     """The joints of a body."""
     first = int(model.body_jntadr[body])

@@ -37,16 +37,17 @@ class HeldModel:
 
     small: float  # EI/L^2 and EI/L; the loads by which sensors are probed
 
-    def __init__(self, model: mujoco.MjModel, parts: Parts, heavy: Integers) -> None:
-        """With what is not to move made too heavy for that."""
-        self.model, self.parts = copy(model), parts
+    def __init__(
+        self, model: mujoco.MjModel, parts: Parts, dofs: Integers, heavy: Integers
+    ) -> None:
+        """With the coordinates that move, and what is not to move made too heavy for that."""
+        self.model, self.parts, self.dofs = copy(model), parts, dofs
         self.gravity = np.array(model.opt.gravity)
         self.model.opt.gravity[:] = 0
         self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
         self.cutoffs = np.array(model.sensor_cutoff)
         self.model.sensor_cutoff[:] = 0
         self.model.sensor_noise[:] = 0
-        self.dofs: Integers = np.flatnonzero(np.isin(model.dof_bodyid, parts.chain))
         self._masses = model.body_mass[list(parts.chain)]
         self.model.dof_armature[heavy] += _HEAVY * self._masses.sum()
         self.data = mujoco.MjData(self.model)

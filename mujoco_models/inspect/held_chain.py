@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from scipy.linalg import eigh
 
-from analytic.problem.arrays import Floats
+from analytic.problem.arrays import Floats, Integers
 from analytic.problem.errors import InputError
 from mujoco_models.inspect.held import Bending, HeldModel
 from mujoco_models.inspect.parts import Parts, axis_of
@@ -15,16 +15,19 @@ _STEP = 1e-6  # rad; MuJoCo's forces are smooth there, and exact to 1e-14 of the
 _ITERATIONS = 100
 _LONGEST_TURN = 0.2  # rad, of any coordinate in an iteration
 _SOFTEST = 1e-9  # of the stiffest joint; what is softer, nothing holds
+_NONE = np.zeros(0, int)
 _AT_REST = 1e-9  # of a joint's stiffness: rad by which it is out of balance
 
 
 class HeldChain(HeldModel):
-    """Links on hinges or balls."""
+    """Links on hinges or balls, and coordinates of the hand that are not held."""
 
     small = 1e-4
 
-    def __init__(self, model: mujoco.MjModel, parts: Parts) -> None:
-        super().__init__(model, parts, np.flatnonzero(~np.isin(model.dof_bodyid, parts.chain)))
+    def __init__(self, model: mujoco.MjModel, parts: Parts, hand: Integers = _NONE) -> None:
+        moves = np.isin(model.dof_bodyid, parts.chain)
+        moves[hand] = True
+        super().__init__(model, parts, np.flatnonzero(moves), np.flatnonzero(~moves))
         self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS
         self.model.opt.tolerance = 0
         self._tip_body = parts.chain[-1]
@@ -76,7 +79,17 @@ class HeldChain(HeldModel):
         data.xfrc_applied[self._tip_body, :3] = self._force
         data.xfrc_applied[self._tip_body, 3:] = self._torque + moment
         mujoco.mj_forwardSkip(self.model, data, int(mujoco.mjtStage.mjSTAGE_POS), 0)
-        return np.asarray((data.qfrc_smooth + data.qfrc_constraint)[self.dofs])
+        return np.asarray((data.qfrc_smooth + self._constrained())[self.dofs])
+
+    def _constrained(self) -> Floats:
+        """What welds, limits and other constraints hold with where nothing accelerates."""
+        data, forces = self.data, np.zeros(self.model.nv)
+        if data.nefc:
+            held = data.efc_D * data.efc_aref
+            pushes = data.efc_type > int(mujoco.mjtConstraint.mjCNSTR_FRICTION_TENDON)
+            held[pushes] = np.maximum(held[pushes], 0)
+            mujoco.mj_mulJacTVec(self.model, data, forces, held)
+        return forces
 
     def stiffness(self) -> Floats:
         """How what is out of balance falls with each turn, at the present state."""
@@ -98,11 +111,15 @@ class HeldChain(HeldModel):
         def moving(speed: Floats) -> Floats:
             self.data.qvel[:] = speed
             mujoco.mj_forward(self.model, self.data)
-            return np.array(self.data.qfrc_passive[self.dofs])
+            return np.array(self.data.qfrc_smooth[self.dofs])
 
         slope = self._slope_of(moving)
         self.evaluate()
         return slope
+
+    def slopes(self) -> tuple[Floats, Floats, Floats]:
+        """Stiffness, damping and inertia at the present state, shape (n, n) each."""
+        return self.stiffness(), self._damping(), self._inertia(armature=True)
 
     def _slope_of(self, force: Callable[[Floats], Floats]) -> Floats:
         """How a force falls with each coordinate's change, by central differences."""

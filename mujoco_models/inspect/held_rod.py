@@ -40,7 +40,8 @@ class HeldRod(HeldModel):
         # The hand is: what is welded to it moves as far as its weld lets it.
         free = model.jnt_type[model.dof_jntid] == mujoco.mjtJoint.mjJNT_FREE
         hand = np.isin(model.dof_bodyid, [*holders(model, parts.foot)])
-        super().__init__(model, parts, np.flatnonzero(hand & ~free))
+        mine = np.isin(model.dof_bodyid, parts.chain)
+        super().__init__(model, parts, np.flatnonzero(mine), np.flatnonzero(hand & ~free))
         self.model.opt.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
         self.model.opt.solver = mujoco.mjtSolver.mjSOL_NEWTON
         self.model.opt.tolerance = _TOLERANCE

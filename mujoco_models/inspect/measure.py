@@ -1,19 +1,28 @@
 """Measure the beam that a user's model is: stiffness, mass, clamp, sensors, contacts."""
 
+import math
 from pathlib import Path
-from typing import TypeAlias, cast
+from typing import Literal, TypeAlias, cast
 
 import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.errors import InputError
-from mujoco_models.inspect.drive import bodies_of_constraint, drive_of, joints_of, slides
+from mujoco_models.inspect.drive import (
+    bodies_of_constraint,
+    drive_of,
+    holders,
+    joints_of,
+    movable,
+    slides,
+)
+from mujoco_models.inspect.hand import measure_hand, on_weld
 from mujoco_models.inspect.held import lengths
 from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.held_rod import HeldRod
 from mujoco_models.inspect.load import load
-from mujoco_models.inspect.measured import Joint, MeasuredBeam, Sensed
+from mujoco_models.inspect.measured import Joint, MeasuredBeam, Sensed, nearest_axes
 from mujoco_models.inspect.parts import Names, Parts, find
 from mujoco_models.inspect.probe import probe_of
 from mujoco_models.inspect.touching import self_contacts, thickness, touching
@@ -59,13 +68,29 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
     squares, damping = bending.squares, bending.damping
     tip_rigidity = length**3 / (3 * bending.tip_compliance)
     joints = _joints(held, s[:-1], bending.compliances, nodes, axes)
-    force, torque = _sensed(held, axes, tip_rigidity, length)
+    period = float(2 * np.pi / np.sqrt(squares[0]))
+    if not (math.isfinite(period) and period > 0):
+        raise InputError(
+            "model", f"with a first period of {period:g}", "one with a mass that its springs move",
+            "correct the masses of the vibrissa and of what holds it",
+        )  # fmt: skip
+    chain = parts.rod is None
+    welded = on_weld(model, parts, -axes[0]) if chain else None
+    force, torque = _sensed(welded or held, axes, tip_rigidity, length)
     probe = probe_of(path, thickness(model, parts))
     loads, bent = _bent(held, axes, tip_rigidity / length**2)
+    sag, weight = _sag(held, axes)
     return MeasuredBeam(
         model=_model_name(model),
         foot=model.body(parts.foot).name,
+        body=parts.foot,
+        body_mass=float(model.body_mass[parts.foot]),
+        frame=np.vstack([held.clamp - held.data.xpos[parts.foot], axes])
+        @ _on_body(held, parts.foot),
+        springs=_springs(model, parts),
         drive=drive_of(model, parts.foot, -axes[0]),
+        objects=movable(model, {*parts.chain, *holders(model, parts.foot)}),
+        hand=measure_hand(model, parts, axes, length, period) if chain else None,
         length=length,
         joints=joints,
         geoms=touching(model, parts, held.data, (nodes[0], axes), probe),
@@ -75,14 +100,15 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
         bent=bent,
         straightness=float(np.linalg.norm(_aside(nodes - nodes[0], axes[1]), axis=1).max()),
         mass=float(model.body_mass[list(parts.chain)].sum()),
-        period=float(2 * np.pi / np.sqrt(squares[0])),
+        period=period,
         period_without_armature=float(2 * np.pi / np.sqrt(bending.slowest_without_armature)),
         stable_step=_stable_step(model, squares, damping),
         damping_ratio=float(damping[0] / (2 * np.sqrt(squares[0]))),
         linear=_linear(model, parts),
         medium=(model.opt.density, model.opt.viscosity, float(np.linalg.norm(model.opt.wind))),
         gravity=tuple((axes @ held.gravity).tolist()),
-        sag=_sag(held),
+        sag=sag,
+        weight=weight,
         force=force,
         torque=torque,
         planar=_planar(held, axes[2]),
@@ -92,6 +118,7 @@ def measure(model: mujoco.MjModel, parts: Parts, path: Path) -> MeasuredBeam:
             IntegratorKind,
             mujoco.mjtIntegrator(model.opt.integrator).name.removeprefix("mjINT_").lower(),
         ),
+        cone="elliptic" if model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC else "pyramidal",
         friction_loss=float(model.dof_frictionloss[held.dofs].max()),
         limits=_limits(model, parts),
     )
@@ -181,12 +208,13 @@ def _joints(
     ways = np.diff(nodes, axis=0)[1:]
     slopes = np.arctan2(-ways @ axes[0], ways @ axes[1])
     angles = np.diff(np.unwrap(slopes), prepend=0.0)
-    names = [held.model.body(body).name or f"body {body}" for body in held.parts.chain]
+    bodies = held.parts.chain
+    names = [held.model.body(body).name or f"body {body}" for body in bodies]
+    damping = [held.model.dof_damping[held.model.dof_bodyid == body].max() for body in bodies]
+    figures = np.stack([s, np.diff(bounds), compliance, angles, damping], axis=1).tolist()
     return tuple(
-        Joint(name, float(at), float(cell), float(c), float(angle))
-        for name, at, cell, c, angle in zip(
-            names, s, np.diff(bounds), compliance, angles, strict=True
-        )
+        Joint(name, (*joints_of(held.model, body),), *row)
+        for name, body, row in zip(names, bodies, figures, strict=True)
     )
 
 
@@ -204,15 +232,20 @@ def _bent(held: Held, axes: Floats, unit: float) -> tuple[Floats, Floats]:
     return loads, np.array(bent)
 
 
-def _sag(held: Held) -> float:
-    """How far gravity moves the tip."""
+def _sag(held: Held, axes: Floats) -> tuple[float, float]:
+    """How far gravity moves the tip, and what the force sensor reads of it in the plane."""
     start = held.tip
     held.model.opt.gravity[:] = held.gravity
     held.rest()
     sag = float(np.linalg.norm(held.tip - start))
+    sensor = held.parts.force
+    weight = 0.0
+    if sensor is not None:
+        _, turn = held.site(sensor)
+        weight = float(np.linalg.norm(axes[:2] @ turn @ held.sensed(sensor)))
     held.model.opt.gravity[:] = 0
     held.unload()
-    return sag
+    return sag, weight
 
 
 def _sensed(held: Held, axes: Floats, rigidity: float, length: float) -> list[Sensed | None]:
@@ -259,7 +292,36 @@ def _seen(
     offset = axes @ (place - held.clamp)
     lever = offset if is_force else arm - seen
     cutoff = held.cutoffs[sensor] or np.inf
-    return Sensed(name, turned, offset, lever, _feels_contacts(held, sensor), cutoff)
+    site = int(held.model.sensor_objid[sensor])
+    on_body = _on_body(held, int(held.model.site_bodyid[site]))
+    upright = on_body.T @ axes.T @ nearest_axes(turned).T
+    quaternion = np.empty(4)
+    mujoco.mju_mat2Quat(quaternion, upright.ravel())
+    clamp = on_body.T @ (held.clamp - held.data.xpos[held.model.site_bodyid[site]])
+    return Sensed(
+        name,
+        sensor,
+        site,
+        clamp,
+        quaternion,
+        turned,
+        offset,
+        lever,
+        _feels_contacts(held, sensor),
+        cutoff,
+    )
+
+
+def _on_body(held: Held, body: int) -> Floats:
+    """How a body is turned."""
+    return np.array(held.data.xmat[body].reshape(3, 3))
+
+
+def _springs(model: mujoco.MjModel, parts: Parts) -> Literal["joints", "plugin", "flex"]:
+    if parts.rod is not None:
+        return "flex"
+    plugins = getattr(model, "body_plugin", np.full(model.nbody, -1))[list(parts.chain)]
+    return "plugin" if (plugins >= 0).any() else "joints"
 
 
 def _feels_contacts(held: Held, sensor: int) -> bool:

@@ -2,10 +2,13 @@
 
 import math
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Literal
+
+import numpy as np
 
 from analytic.problem.arrays import Floats
-from mujoco_models.motion import IntegratorKind
+from mujoco_models.inspect.hand import Hand
+from mujoco_models.motion import ConeKind, IntegratorKind
 
 
 @dataclass(frozen=True, eq=False)
@@ -13,6 +16,12 @@ class Sensed:
     """A sensor at the clamp."""
 
     name: str  # the sensor's
+    number: int  # in the model; and of its site
+    site: int
+    # What would put the site at the clamp, and turn its axes to the sweep's nearest: its place and
+    # quaternion on its body, shapes (3,) and (4,).
+    clamp: Floats
+    quaternion: Floats
     # Shape (3, 3); Its reading of a unit of the clamp's action on the vibrissa along x, y, z of the
     # sweep, in columns: a rotation, if it reads what it should.
     axes: Floats
@@ -30,11 +39,13 @@ class Joint:
     """A joint, as the springs of one body."""
 
     name: str  # the body's, or as ``"body 3"``
+    numbers: tuple[int, ...]  # of the body's joints in the model
     s: float  # its arc length from the clamp [length]
     # Length of the piece of beam that it stands for: half way to its neighbours [length].
     cell: float
     compliance: float  # turn over moment
     angle: float  # its turn at rest [rad]
+    damping: float  # of its dampers, the largest [force length time]
 
     @property
     def flexural_rigidity(self) -> float:
@@ -47,11 +58,13 @@ class Geom:
     """A geom of the vibrissa."""
 
     name: str  # its own, its body's, or as ``"geom 3"``
+    number: int  # in the model; of a flex's edge, the flex
     start: float  # arc lengths of its axis [length]
     end: float  # arc lengths of its axis [length]
     radius: float  # [length]
     # Whether it collides with an object that has MuJoCo's default contype and conaffinity.
     meets: bool
+    weight: float  # the acceleration by a unit of force that MuJoCo takes; 0 if it cannot move
     stiffness: float  # force over penetration of its contacts at rest, about [force/length]
     # Of its contacts, as its solref says; NaN if solref states a stiffness [time].
     time_constant: float
@@ -67,8 +80,20 @@ class MeasuredBeam:
     ----------
     model, foot : str
         Name of the model and of the body that holds the vibrissa.
+    body : int
+        Number of that body; 0 is the world.
+    body_mass : float
+        Of that body alone.
+    frame : array, shape (4, 3)
+        Where the vibrissa begins on that body, and the axes of the sweep, in rows.
+    springs : str
+        What bends it: ``"joints"``, ``"plugin"`` or ``"flex"``.
     drive : str or None
         What can move the foot; None if nothing can.
+    objects : tuple of str
+        Other bodies that touch and can be moved.
+    hand : Hand or None
+        What gives way between drive and vibrissa; None if nothing can.
     length : float
         From the clamp to the centre of the round tip [length].
     joints : tuple of Joint
@@ -100,6 +125,8 @@ class MeasuredBeam:
         In the axes of the sweep.
     sag : float
         How far gravity moves the tip [length].
+    weight : float
+        What the force sensor reads of gravity in the plane, with nothing touching [force].
     force, torque : Sensed or None
         The sensors at the clamp.
     planar : bool
@@ -108,6 +135,8 @@ class MeasuredBeam:
         Pairs of geoms, one of them the vibrissa's, that touch in the first state.
     timestep : float
     integrator : str
+    cone : str
+        Of friction.
     friction_loss : float
         The largest of a joint.
     limits : tuple of float
@@ -116,7 +145,13 @@ class MeasuredBeam:
 
     model: str
     foot: str
+    body: int
+    body_mass: float
+    frame: Floats
+    springs: Literal["joints", "plugin", "flex"]
     drive: str | None
+    objects: tuple[str, ...]
+    hand: Hand | None
     length: float
     joints: tuple[Joint, ...]
     geoms: tuple[Geom, ...]
@@ -134,12 +169,14 @@ class MeasuredBeam:
     medium: tuple[float, float, float]
     gravity: tuple[float, float, float]
     sag: float
+    weight: float
     force: Sensed | None
     torque: Sensed | None
     planar: bool
     self_contacts: tuple[str, ...]
     timestep: float
     integrator: IntegratorKind
+    cone: ConeKind
     friction_loss: float
     limits: tuple[float, ...]
 
@@ -158,6 +195,14 @@ class MeasuredBeam:
         """
         found = asdict(self) | {"natural_curvature": self.natural_curvature}
         return {name: _plain(value) for name, value in found.items()}
+
+
+def nearest_axes(turned: Floats) -> Floats:
+    """The turn by right angles that is nearest to what a sensor reads, shape (3, 3)."""
+    nearest = np.zeros((3, 3))
+    for row, column in enumerate(np.argmax(np.abs(turned), axis=1)):
+        nearest[row, column] = np.sign(turned[row, column])
+    return nearest
 
 
 def _plain(value: Any) -> Any:  # noqa: ANN401  # whatever the fields hold

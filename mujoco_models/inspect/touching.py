@@ -83,10 +83,12 @@ def _geom(
     none_does = model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
     return Geom(
         name=piece.name,
+        number=piece.number,
         start=start,
         end=end,
         radius=piece.radius,
         meets=not none_does and bool((stated("contype") | stated("conaffinity")) & 1),
+        weight=weight,
         stiffness=stiffness,
         time_constant=time_constant,
         friction=float(stated("friction")[0]) if stated("condim") > 1 else 0.0,
@@ -127,7 +129,7 @@ def self_contacts(model: mujoco.MjModel, parts: Parts) -> tuple[str, ...]:
     found = []
     for contact in data.contact:
         mine = not {*parts.geoms}.isdisjoint(contact.geom.tolist()) or flex in contact.flex
-        if contact.dist < 0 and mine:
+        if contact.efc_address >= 0 and mine:
             names = [name_of_geom(model, g) for g in contact.geom.tolist()]
             found.append(" and ".join(names))
     return tuple(dict.fromkeys(found))

@@ -273,7 +273,7 @@ def test_a_force_is_no_drive_and_a_weak_one_is_noticed(tmp_path):
 def test_springs_that_are_too_stiff_for_the_step_are_reported(tmp_path):
     path = Chain().write(tmp_path)
     explicit = 'timestep="0.03" integrator="Euler"'
-    path.write_text(path.read_text().replace('timestep="0.02" integrator="discrete"', explicit))
+    path.write_text(path.read_text().replace('timestep="0.01" integrator="discrete"', explicit))
     kept = []
     with pytest.raises(DivergedError, match="shorten the time step"):
         simulate_model(UNIT, OwnModel(path, contact="ours"), FAST, COARSE, keep=kept.append)

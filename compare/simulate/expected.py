@@ -1,0 +1,55 @@
+"""The error of a measured model's sweep, before it is swept."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from compare.simulate.rigidity import at_its_tip, by_its_clamp, contact_stiffness
+from mujoco_models.inspect.measured import MeasuredBeam
+
+# What each setting costs, as the worst reading's rms: `mujoco_models/quasi-static.md`, but for the
+# contact, of which a part is handed on from link to link.
+_LINKS = 1.8  # over the square of their number
+_CONTACT = 16.0  # over the stiffness [EI/L^3]
+_STEP = 3.1  # of the square of the time step [T1]
+_SPEED = 0.06  # of the speed [L/T1] to the power of 1.5
+_DAMPING = 0.2  # of the damping ratio, times the speed
+_REST = 3e-4
+_WITHIN = 3.0  # the factor that 95 per cent of random models stay within: `make models`
+
+
+@dataclass(frozen=True)
+class Expected:
+    """The rms of the worst reading of a sweep, relative to its largest magnitude."""
+
+    parts: dict[str, float]
+
+    @property
+    def rms(self) -> float:
+        """Of all parts."""
+        return math.hypot(_REST, *self.parts.values())
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Of 95 per cent."""
+        return self.rms / _WITHIN, self.rms * _WITHIN
+
+    def __str__(self) -> str:
+        low, high = self.interval
+        most = max(self.parts, key=self.parts.__getitem__)
+        return f"{self.rms:.1e} rms ({low:.1e} to {high:.1e}), most of it {most}"
+
+
+def expected(found: MeasuredBeam, speed: float) -> Expected:
+    """What a sweep at a speed [L/T1] is off by, of a model without faults."""
+    cell = float(np.median([joint.cell for joint in found.joints])) / found.length
+    step = found.timestep / found.period
+    return Expected({
+        "links": _LINKS * cell**2,
+        "clamp": abs(by_its_clamp(found) / at_its_tip(found) - 1),
+        "contact": _CONTACT / contact_stiffness(found),
+        "time step": _STEP * step**2,
+        "speed": _SPEED * speed**1.5,
+        "damping": _DAMPING * found.damping_ratio * speed,
+    })  # fmt: skip

@@ -1,0 +1,103 @@
+"""A model's faults mended in a copy of its file, and the case that the copy is a model of."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from analytic import InputError
+from compare.simulate.expected import expected
+from compare.simulate.inspection import Inspection
+from compare.simulate.rigidity import (
+    as_intended,
+    clamp_stiffness,
+    is_curved,
+    smooth_rigidity,
+    tapers,
+)
+from mujoco_models import inspect_model
+from mujoco_models.inspect.load import load
+from mujoco_models.inspect.measured import MeasuredBeam
+from mujoco_models.mend.edit import Edit, Insert
+from mujoco_models.mend.write import mended
+
+SPEED = 0.05
+"""Of the sweep that is predicted [L/T1]."""
+_ROUNDS = 4  # a contact is as hard as the step lets it, and its inertia goes with the step
+_STATIONS = 21  # of a varying EI
+
+
+@dataclass(frozen=True)
+class Mended:
+    """What was written, and what it is."""
+
+    files: tuple[Path, ...]
+    edits: tuple[Edit | Insert, ...]
+    inspection: Inspection  # of the mended model
+
+    def lines(self) -> Iterator[str]:
+        """What was done, and what to expect."""
+        names = " and ".join(str(file) for file in self.files)
+        yield f"wrote {names}: {len(self.edits)} edits"
+        for remark in self.inspection.remarks:
+            if remark.kind == "fault":
+                yield f"  left, {remark.subject}: {remark.text}"
+        if self.inspection.sound:
+            yield f"  expected at {SPEED} L/T1: {expected(self.inspection.found, SPEED)}"
+
+
+def mend(path: Path, names: dict[str, str | None], inspection: Inspection, out: Path) -> Mended:
+    """Write a copy without the faults that a number mends."""
+    model, done = load(path), list[Edit | Insert]()
+    files: tuple[Path, ...] = ()
+    for _ in range(_ROUNDS):
+        new = [
+            edit
+            for remark in inspection.remarks
+            if remark.kind == "fault"
+            for edit in remark.edits
+            if not (isinstance(edit, Insert) and edit in done)
+        ]
+        if not new and files:
+            break
+        done += new
+        files = mended(path, model, done, out)
+        try:
+            inspection = Inspection(inspect_model(out, **names), inspection.stated)
+        except InputError as error:
+            for file in files:
+                file.unlink()
+            raise InputError("--write", out, "a model that can be inspected",
+                             f"mend by hand what is said of it ({error})") from error  # fmt: skip
+    return Mended(files, tuple(done), inspection)
+
+
+def case_of(found: MeasuredBeam, file: Path, names: dict[str, str | None]) -> str:
+    """A case file: the vibrissa that the model is, past a circle."""
+    length, rigidity = found.length, as_intended(found)
+    meeting = [geom for geom in found.geoms if geom.meets] or found.geoms
+    radius, tip = meeting[0].radius, meeting[-1].radius
+    along = f"{rigidity:.6g}"
+    if tapers(found):
+        s = np.linspace(0, length, _STATIONS)
+        pairs = zip(s.tolist(), smooth_rigidity(found, s).tolist(), strict=True)
+        along = f"[{', '.join(f'[{at:.6g}, {ei:.6g}]' for at, ei in pairs)}]"
+    lines = ["[beam]", f"length = {length:.6g}", f"flexural_rigidity = {along}",
+             f"radius = {radius:.6g}"]  # fmt: skip
+    if tip != radius:
+        lines.append(f"tip_radius = {tip:.6g}")
+    if is_curved(found):
+        lines.append(f"natural_curvature = {found.natural_curvature:.6g}")
+    stiffness = clamp_stiffness(found)
+    if np.isfinite(stiffness):
+        lines += ["[support]", f"rotational_stiffness = {stiffness * rigidity / length:.6g}"]
+    friction = max(geom.friction for geom in meeting)
+    if friction:
+        lines += ["[contact]", f"friction = {friction:g}"]
+    lines += ["[profile]", 'kind = "circle"', f"radius = {0.8 * length:.6g}",
+              f"lowest = [0.0, {0.4 * length:.6g}]", "[sweep]", "stations = 60",
+              "[model]", f'file = "{file.name}"']  # fmt: skip
+    lines += [f'{name} = "{value}"' for name, value in names.items() if value is not None]
+    lines += ["[motion]", f"speed = {SPEED}"]
+    return "\n".join(lines) + "\n"

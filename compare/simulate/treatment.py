@@ -1,0 +1,167 @@
+"""What to set in a model so that a fault is gone."""
+
+import math
+
+import numpy as np
+
+from analytic.problem.arrays import Floats
+from compare.simulate.rigidity import as_intended, at_its_tip, joint_arms, smooth_rigidity
+from mujoco_models.inspect.measured import Geom, MeasuredBeam, Sensed
+from mujoco_models.mend.edit import Edit, Insert, number
+
+HARD = "0.9999 0.9999 0.001"
+"""MuJoCo's largest impedance, of what should not give way."""
+_STEPS = 50  # in T1; 100 and 200 do no better at 0.05 L/T1, 25 leave half a per cent
+_SAFE = 0.5  # of the longest stable step, which a contact makes shorter
+_CONTACT = 4e3  # EI/L^3; of the softest contact
+_IMPEDANCE = 0.9  # with 0.99 a quarter of all stations chatter
+_BESIDE = 0.01  # of the first joint's place
+_DAMPING = 0.05  # ratio
+_RIGID = 2e3  # EI/L and EI/L^3; what gives way by so little moves no reading by 0.5 per cent
+_INERTIA = 1e6  # of a carriage, in masses of the vibrissa
+
+
+def timestep(found: MeasuredBeam) -> float:
+    """The longest that is right."""
+    most = found.period / _STEPS
+    if found.springs == "plugin":  # explicit, whatever the integrator
+        most = min(most, _SAFE * found.stable_step)
+    wanted = _CONTACT * as_intended(found) / found.length**3
+    lightest = max((g.weight for g in moving(found)), default=0.0)
+    if lightest:
+        most = min(most, 1 / math.sqrt(4 * wanted * (1 - _IMPEDANCE) * lightest))
+    return min(most, found.timestep) if found.timestep > 0 else most
+
+
+def steps(found: MeasuredBeam) -> tuple[Edit, ...]:
+    """Integrator and time step."""
+    return (Edit("option", (("timestep", number(timestep(found))), ("integrator", "discrete"))),)
+
+
+def hardest(found: MeasuredBeam) -> str:
+    """The solref of a constraint that is as hard as the time step allows."""
+    return f"{number(2 * timestep(found))} 1"
+
+
+def moving(found: MeasuredBeam) -> list[Geom]:
+    """What touches and moves: not what is fixed to the foot."""
+    start = found.joints[0].s
+    return [g for g in found.geoms if g.meets and g.weight and g.end > start + _BESIDE * start]
+
+
+def hardened(found: MeasuredBeam) -> tuple[Edit, ...]:
+    """Contacts that neither sink in nor chatter, at a time step that takes them."""
+    own = contacts(found, solref=hardest(found), solimp=f"{_IMPEDANCE} {_IMPEDANCE} 0.001",
+                   priority="1")  # fmt: skip
+    return (*steps(found), *own)
+
+
+def frictionless(found: MeasuredBeam) -> tuple[Edit, ...]:
+    """Friction that nobody stated goes; what was stated gets a cone that rubs as it should."""
+    if max(geom.friction for geom in found.geoms) == 1:
+        return contacts(found, condim="1")
+    return (Edit("option", (("cone", "elliptic"), ("impratio", "100"))),)
+
+
+def contacts(found: MeasuredBeam, **attributes: str) -> tuple[Edit, ...]:
+    """Of all of it that touches."""
+    kind = "contact" if found.springs == "flex" else "geom"
+    numbers = dict.fromkeys(geom.number for geom in found.geoms)
+    return (Edit(kind, tuple(attributes.items()), tuple(numbers)),)
+
+
+def joints(found: MeasuredBeam, **attributes: str) -> tuple[Edit, ...]:
+    """Of all joints."""
+    numbers = tuple(i for joint in found.joints for i in joint.numbers)
+    return () if found.springs == "flex" else (Edit("joint", tuple(attributes.items()), numbers),)
+
+
+def stiffened(found: MeasuredBeam, stiffness: dict[int, float]) -> tuple[Edit, ...]:
+    """Some joints with another stiffness each."""
+    if found.springs != "joints":
+        return ()
+    alike: dict[str, list[int]] = {}
+    for i, k in stiffness.items():
+        alike.setdefault(f"{k:.6g}", []).extend(found.joints[i].numbers)
+    return tuple(Edit("joint", (("stiffness", k),), (*mine,)) for k, mine in alike.items())
+
+
+def damped(found: MeasuredBeam) -> tuple[Edit, ...]:
+    """Dampers in the same proportion, and as weak as they should be."""
+    weaker = _DAMPING / found.damping_ratio
+    alike: dict[str, list[int]] = {}
+    for joint in found.joints:
+        alike.setdefault(number(weaker * joint.damping), []).extend(joint.numbers)
+    return tuple(
+        Edit("joint", (("damping", c),), (*mine,))
+        for c, mine in alike.items()
+        if found.springs != "flex"
+    )
+
+
+def first_stiffness(found: MeasuredBeam) -> float:
+    """Of the first joint, such that the tip gives way as it is meant to."""
+    arms = joint_arms(found)
+    meant = np.array([joint.cell for joint in found.joints]) / smooth_rigidity(found)
+    wanted = found.length**3 / (3 * at_its_tip(found)) - meant[1:] @ arms[1:] ** 2
+    return float(arms[0] ** 2 / wanted)
+
+
+def held(found: MeasuredBeam) -> tuple[Edit, ...]:
+    """What gives way between drive and clamp, held."""
+    hand = found.hand
+    if hand is None:
+        return ()
+    if hand.welds:
+        return (Edit("weld", (("solref", hardest(found)), ("solimp", HARD)), hand.welds),)
+    rigid = _RIGID * as_intended(found) / found.length
+    return (Edit("joint", (("stiffness", number(rigid)),), hand.numbers),)
+
+
+def straightened(sensor: Sensed) -> tuple[Edit, ...]:
+    """A sensor's site with its axes along those of the sweep."""
+    turned = ("euler", "axisangle", "xyaxes", "zaxis")
+    gone = tuple((name, "") for name in turned)
+    return (Edit("site", (("quat", _text(sensor.quaternion)), *gone), (sensor.site,)),)
+
+
+def at_clamp(sensor: Sensed, length: float) -> tuple[Edit, ...]:
+    """A sensor's site where the vibrissa begins."""
+    return (Edit("site", (("pos", _text(sensor.clamp, length)),), (sensor.site,)),)
+
+
+def with_sensors(found: MeasuredBeam, *words: str) -> tuple[Insert, ...]:
+    """Sensors at the clamp."""
+    if not found.body:
+        return ()
+    place = " ".join(
+        f"{x:.6g}" for x in np.round(found.frame[0] / found.length, 9) * found.length + 0.0
+    )
+    xy = " ".join(f"{x:.9g}" for x in np.round(found.frame[1:3].ravel(), 9) + 0.0)
+    names = "".join(f'<{word} name="clamp-{word}" site="clamp-{words[0]}"/>' for word in words)
+    return (
+        Insert(f'<site name="clamp-{words[0]}" pos="{place}" xyaxes="{xy}"/>', found.body),
+        Insert(f"<sensor>{names}</sensor>"),
+    )
+
+
+def on_rail(found: MeasuredBeam) -> tuple[Insert, ...]:
+    """A slide along the sweep, and a motor that keeps its speed."""
+    if not found.body:
+        return ()
+    axis = _text(found.frame[1])
+    inertia = _INERTIA * found.mass
+    gain, weight = number(inertia / (0.01 * found.period)), number(found.mass)
+    moment = number(found.mass * found.length**2)
+    inertial = f'<inertial pos="0 0 0" mass="{weight}" diaginertia="{moment} {moment} {moment}"/>'
+    return (
+        Insert(f'<joint name="rail" type="slide" axis="{axis}" armature="{number(inertia)}"/>',
+               found.body),
+        *(() if found.body_mass else (Insert(inertial, found.body),)),
+        Insert(f'<actuator><velocity name="motor" joint="rail" kv="{gain}"/></actuator>'),
+    )  # fmt: skip
+
+
+def _text(numbers: Floats, unit: float = 1.0) -> str:
+    """Without what rounding leaves of zeros."""
+    return " ".join(f"{x:.9g}" for x in np.round(numbers / unit, 9) * unit + 0.0)

@@ -1,0 +1,98 @@
+"""What carries the foot of a user's model: joints, servos and welds between drive and vibrissa."""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from analytic.problem.arrays import Floats, Integers
+from mujoco_models.inspect.drive import bodies_of_constraint, holders, joints_of, mover_of
+from mujoco_models.inspect.held_chain import HeldChain
+from mujoco_models.inspect.parts import Parts
+
+_SWEEP = 40.0  # T1; two lengths at 0.05 L/T1
+_SHARE = 0.05  # of what the tip gives way by; what has less is not named
+_FREE = int(mujoco.mjtJoint.mjJNT_FREE)
+_COORDINATES = {_FREE: 6, int(mujoco.mjtJoint.mjJNT_BALL): 3}  # of a joint; of others 1
+
+
+@dataclass(frozen=True, eq=False)
+class Hand:
+    """How far the clamp gives way while the drive itself is held."""
+
+    joints: tuple[str, ...]  # those that do, the most first
+    numbers: tuple[int, ...]  # of these joints in the model
+    welds: tuple[int, ...]  # of the first of them, if it is free
+    rotation: float  # of the clamp about the axis of the sweep, over a moment [1/(force length)]
+    displacement: float  # of the clamp in the plane of the sweep, over a force [length/force]
+
+
+def joints_of_hand(model: mujoco.MjModel, parts: Parts, left: Floats) -> list[int]:
+    """The joints between drive and vibrissa."""
+    mover = mover_of(model, parts.foot, left)
+    drive = mover.joint if mover is not None and mover.mocap is None else None
+    bodies = holders(model, parts.foot)
+    return [j for body in bodies for j in joints_of(model, body) if j != drive]
+
+
+def on_weld(model: mujoco.MjModel, parts: Parts, left: Floats) -> HeldChain | None:
+    """The chain on a free body that a weld holds; None if there is no such body."""
+    free = [
+        j for j in joints_of_hand(model, parts, left)
+        if model.jnt_type[j] == _FREE and _welds_of(model, int(model.jnt_bodyid[j]))
+    ]  # fmt: skip
+    return HeldChain(model, parts, _dofs_of(model, free)) if free else None
+
+
+def measure_hand(
+    model: mujoco.MjModel, parts: Parts, axes: Floats, length: float, period: float
+) -> Hand | None:
+    """How the clamp gives way; None if the drive holds it without a joint in between.
+
+    What no spring, servo or weld holds, a damper or an inertia may hold for the time of a sweep.
+    """
+    joints = joints_of_hand(model, parts, -axes[0])
+    if not joints:
+        return None
+    hand = _dofs_of(model, joints)
+    held = HeldChain(model, parts, hand)
+    stiffness, damping, inertia = held.slopes()
+    resists = stiffness + damping / (_SWEEP * period) + inertia / (_SWEEP * period) ** 2
+    mine = np.isin(held.dofs, hand)
+    inner, across = resists[np.ix_(~mine, ~mine)], resists[np.ix_(~mine, mine)]
+    ground = resists[np.ix_(mine, mine)] - across.T @ np.linalg.solve(inner, across)
+    way, rotation = np.zeros((2, 3, model.nv))
+    mujoco.mj_jac(held.model, held.data, way, rotation, held.clamp, parts.foot)
+    # Shares of the coordinates in motions along x and y, a rotation, and the tip's along x.
+    shares = np.array([axes[0] @ way, axes[1] @ way, axes[2] @ rotation])[:, hand]
+    shares = np.vstack([shares, shares[0] - length * shares[2]])
+    given = np.linalg.lstsq(ground, shares.T, rcond=None)[0]
+    compliances = np.einsum("ij,ji->i", shares, given)
+    of_tip = {
+        j: float((shares[3] * given[:, 3])[np.isin(hand, _dofs_of(model, [j]))].sum())
+        for j in joints
+    }
+    giving = [
+        j for j in sorted(joints, key=of_tip.__getitem__, reverse=True)
+        if of_tip[j] > _SHARE * compliances[3]
+    ]  # fmt: skip
+    free = bool(giving) and model.jnt_type[giving[0]] == _FREE
+    return Hand(
+        joints=tuple(model.joint(j).name or f"joint {j}" for j in giving),
+        numbers=tuple(giving),
+        welds=_welds_of(model, int(model.jnt_bodyid[giving[0]])) if free else (),
+        rotation=float(compliances[2]),
+        displacement=float(compliances[:2].max()),
+    )
+
+
+def _dofs_of(model: mujoco.MjModel, joints: list[int]) -> Integers:
+    counts = [_COORDINATES.get(int(model.jnt_type[j]), 1) for j in joints]
+    return np.concatenate(
+        [model.jnt_dofadr[j] + np.arange(n) for j, n in zip(joints, counts, strict=True)]
+    )
+
+
+def _welds_of(model: mujoco.MjModel, body: int) -> tuple[int, ...]:
+    welds = np.flatnonzero((model.eq_type == mujoco.mjtEq.mjEQ_WELD) & model.eq_active0).tolist()
+    return tuple(w for w in welds if body in bodies_of_constraint(model, w))

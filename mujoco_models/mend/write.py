@@ -1,0 +1,212 @@
+"""Write a copy of a model with some edits, the rest of its text as it is."""
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import mujoco
+
+from analytic.problem.errors import InputError
+from mujoco_models.mend.edit import Edit, Insert
+from mujoco_models.mend.places import Places
+from mujoco_models.mend.tree import Element, read_tree
+
+_MANY = 3  # elements for which a default is edited, or made
+
+
+def mended(
+    path: Path, model: mujoco.MjModel, edits: Iterable[Edit | Insert], out: Path
+) -> tuple[Path, ...]:
+    """Write the model as `out`, and files that it includes beside it if they change.
+
+    Returns what was written. What MuJoCo does not take is not left behind.
+    """
+    if path.suffix != ".xml":
+        raise InputError("--write", path, "MJCF", "URDF has no place for what is to be set")
+    if out.resolve() == path.resolve():
+        raise InputError("--write", out, "another file than the model", "name a new one")
+    texts = Texts(Places(model, read_tree(path)), path)
+    for edit in edits:
+        if isinstance(edit, Insert):
+            texts.insert(edit)
+        else:
+            texts.set(edit)
+    written = texts.write(path, out)
+    try:
+        mujoco.MjModel.from_xml_path(str(out))
+    except (ValueError, mujoco.FatalError) as error:
+        for file in written:
+            file.unlink()
+        said = " ".join(str(error).split())[:200]
+        raise InputError(
+            "--write", out, "such that MuJoCo takes the mended model",
+            f"write it into {path.parent}, beside what it includes ({said})",
+        ) from error  # fmt: skip
+    return written
+
+
+class Texts:
+    """Changes of files, by their places in bytes."""
+
+    def __init__(self, places: Places, main: Path) -> None:
+        self._places, self._main = places, main
+        self._changes: dict[Path, dict[tuple[int, int], str]] = defaultdict(dict)
+        self._bytes: dict[Path, bytes] = {}
+        self._new: dict[str, dict[str, str]] = defaultdict(dict)  # of a default to be made, by kind
+        # By the identity of an element, and of a kind that is to be made in it.
+        self._attributes: dict[int, dict[str, str]] = defaultdict(dict)
+        self._within: dict[int, dict[str, dict[str, str]]] = defaultdict(lambda: defaultdict(dict))
+        self._elements: dict[int, Element] = {}
+
+    def set(self, edit: Edit) -> None:
+        """Where an attribute stands already; else in a default of many, or in each element."""
+        if edit.kind == "option":
+            self._set_option(dict(edit.attributes))
+            return
+        found = [self._places.element(edit.kind, i) for i in edit.numbers]
+        many = self._places.many(edit.kind)
+        if None in found and many is not None:
+            self._within[id(many)][edit.kind].update(edit.attributes)
+            self._elements[id(many)] = many
+            return
+        if None in found:
+            raise InputError(
+                "--write", f"{edit.kind} {edit.numbers[found.index(None)]} of the model",
+                "to be seen in its file", f"it is made by another element: set {edit} there",
+            )  # fmt: skip
+        elements = list({id(e): e for e in found if e is not None}.values())
+        for name, value in edit.attributes:
+            own = [e for e in elements if name in e.attributes]
+            others = [e for e in elements if name not in e.attributes]
+            for element in own:
+                self._give(element, name, value)
+            if len(others) < _MANY:
+                for element in others:
+                    self._give(element, name, value)
+            else:
+                self._set_default(edit.kind, others, name, value)
+
+    def _set_default(self, kind: str, elements: list[Element], name: str, value: str) -> None:
+        chains = [list(self._places.defaults(kind, e)) for e in elements]
+        for chain in chains:
+            stated = next((d for d in chain if name in d.attributes), chain[0] if chain else None)
+            if stated is not None:
+                self._give(stated, name, value)
+            elif value:
+                self._new[kind][name] = value
+
+    def insert(self, new: Insert) -> None:
+        """At the beginning of a body, or at the end of the file."""
+        if new.body is None:
+            root = self._places.root
+            self._change(self._main, root.end, root.end, f"  {new.text}\n")
+            return
+        element = self._places.element("body", new.body)
+        if element is None:
+            raise InputError("--write", f"body {new.body}", "to be seen in the file",
+                             f"put {new.text} into it")  # fmt: skip
+        self._put_into(element, new.text)
+
+    def _put_into(self, element: Element, text: str) -> None:
+        """As its first child."""
+        end = self._end_of_tag(element)
+        if self._text(element.file)[end - 2 : end] == b"/>":
+            self._change(element.file, end - 2, end, f">{text}</{element.tag}>")
+        else:
+            self._change(element.file, end, end, f"{self._indent(element)}  {text}")
+
+    def _set_option(self, attributes: dict[str, str]) -> None:
+        options = [e for e in self._places.root.children if e.tag == "option"]
+        for name, value in attributes.items():
+            stated = [e for e in options if name in e.attributes] or options[:1]
+            if stated:
+                self._give(stated[-1], name, value)
+            else:
+                self._new["option"][name] = value
+
+    def _give(self, element: Element, name: str, value: str) -> None:
+        self._attributes[id(element)][name] = value
+        self._elements[id(element)] = element
+
+    def _text(self, file: Path) -> bytes:
+        return self._bytes.setdefault(file, file.read_bytes())
+
+    def _end_of_tag(self, element: Element) -> int:
+        """Behind the > of its start tag."""
+        quoted = re.compile(rb"""<(?:[^>"']|"[^"]*"|'[^']*')*>""")
+        found = quoted.match(self._text(element.file), element.start)
+        assert found is not None
+        return found.end()
+
+    def _indent(self, element: Element) -> str:
+        text = self._text(element.file)
+        line = text.rfind(b"\n", 0, element.start) + 1
+        lead = text[line : element.start]
+        return "\n" + (lead.decode() if not lead.strip() else "")
+
+    def _change(self, file: Path, start: int, end: int, text: str) -> None:
+        before = self._changes[file].get((start, end), "")
+        self._changes[file][start, end] = before + text
+
+    def write(self, path: Path, out: Path) -> tuple[Path, ...]:
+        """All files that change; the model itself even if none does."""
+        for key, kinds in self._within.items():
+            self._put_into(self._elements[key], "".join(_tag(k, a) for k, a in kinds.items()))
+        for key, attributes in self._attributes.items():
+            element = self._elements[key]
+            start, end = element.start, self._end_of_tag(element)
+            tag = self._text(element.file)[start:end].decode()
+            for name, value in attributes.items():
+                tag = _with(tag, name, value)
+            self._change(element.file, start, end, tag)
+        if self._new:
+            root = self._places.root
+            end = self._end_of_tag(root)
+            lines = [_tag("option", self._new.pop("option"))] if "option" in self._new else []
+            if self._new:
+                inner = "".join(_tag(kind, given) for kind, given in self._new.items())
+                lines.append(f"<default>{inner}</default>")
+            self._change(self._main, end, end, "".join(f"\n  {line}" for line in lines))
+        files = {element.file for element in self._places.root.below()}
+        changed = set(self._changes)
+        while more := {f for f in files - changed for g in changed if self._include_of(g, f)}:
+            changed |= more
+        copies = {f: out.with_name(f"{out.stem}-{f.name}") for f in changed - {self._main}}
+        for included, copy in copies.items():
+            for file in changed:
+                if found := self._include_of(included, file):
+                    self._change(file, *found.span(1), copy.name)
+        for file, copy in (*copies.items(), (self._main, out)):
+            copy.write_bytes(self._changed(file))
+        return (out, *copies.values())
+
+    def _include_of(self, included: Path, file: Path) -> re.Match[bytes] | None:
+        """Where a file includes another one: the name in it."""
+        for found in re.finditer(rb"""<include\s[^>]*?file\s*=\s*["']([^"']+)""", self._text(file)):
+            if self._main.parent / found[1].decode() == included:
+                return found
+        return None
+
+    def _changed(self, file: Path) -> bytes:
+        text = self._text(file)
+        for (start, end), new in sorted(self._changes[file].items(), reverse=True):
+            text = text[:start] + new.encode() + text[end:]
+        return text
+
+
+def _with(tag: str, name: str, value: str) -> str:
+    """A start tag with another value of an attribute, or without it."""
+    stated = re.compile(rf"""(\s+){name}(\s*=\s*)(["']).*?\3""", re.DOTALL)
+    if stated.search(tag):
+        with_value = rf"\g<1>{name}\g<2>\g<3>{value}\g<3>" if value else ""
+        return stated.sub(with_value, tag, count=1)
+    if not value:
+        return tag
+    end = "/>" if tag.endswith("/>") else ">"
+    return f'{tag[: -len(end)].rstrip()} {name}="{value}"{end}'
+
+
+def _tag(name: str, attributes: dict[str, str]) -> str:
+    return f"<{name}{''.join(f' {k}={quoteattr(v)}' for k, v in attributes.items())}/>"

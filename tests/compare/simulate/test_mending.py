@@ -1,0 +1,115 @@
+"""What `inspect --write` makes of models that are written badly."""
+
+import pytest
+
+from analytic import solve_sweep
+from compare import compare
+from compare.read.case import load_case
+from compare.simulate.expected import expected
+from compare.simulate.inspection import Inspection
+from compare.simulate.mending import SPEED, case_of, mend
+from mujoco_models import inspect_model, shipped_models, simulate_model
+from tests.mujoco_models.inspect.chains import Chain
+
+WELDED = (
+    '<body name="hand" mocap="true"/>',
+    '<equality><weld body1="hand" body2="whisker-foot"/></equality></mujoco>',
+)
+RAIL = '<joint name="rail" type="slide" axis="1 0 0" armature="1e5"/>'
+WEIGHT = '<inertial pos="0 0 0" mass="1e-3" diaginertia="1e-3 1e-3 1e-3"/>'
+MOTOR = '<actuator><velocity joint="rail" kv="1e7"/></actuator></mujoco>'
+
+
+def faults(inspection):
+    return {remark.subject for remark in inspection.remarks if remark.kind == "fault"}
+
+
+def mended(path):
+    before = Inspection(inspect_model(path))
+    return before, mend(path, {}, before, path.with_name("mended.xml"))
+
+
+def on_rail(tmp_path, *changes, **chain):
+    path = Chain(foot="", inside_foot=RAIL + WEIGHT, **chain).write(tmp_path)
+    text = path.read_text().replace("</mujoco>", MOTOR)
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text)
+    return path
+
+
+def test_a_soft_weld_is_no_clamp_and_its_free_body_feels_nothing(tmp_path):
+    path = Chain(foot="", inside_foot="<freejoint/>").write(tmp_path)
+    text = path.read_text().replace("<worldbody>", "<worldbody>" + WELDED[0])
+    path.write_text(text.replace("</mujoco>", WELDED[1]))
+    before, after = mended(path)
+    assert faults(before) >= {"clamp", "force sensor", "torque sensor"}
+    assert "reads nothing" in str(before.remarks)
+    assert faults(after.inspection) == {"force sensor", "torque sensor"}
+    weld = after.inspection.found.hand
+    assert weld.rotation < 1e-3
+    assert weld.displacement < 1e-3
+
+
+@pytest.mark.parametrize(("stiffness", "sound"), [("0", False), ("2e3", True)])
+def test_a_driven_hinge_between_drive_and_vibrissa_has_to_be_stiff(tmp_path, stiffness, sound):
+    wrist = f'<joint name="wrist" axis="0 0 1" stiffness="{stiffness}"/>'
+    motors = '<actuator><motor joint="wrist"/>'
+    path = on_rail(tmp_path, (RAIL, RAIL + wrist), ("<actuator>", motors))
+    before, after = mended(path)
+    assert before.sound is sound
+    assert after.inspection.sound
+    if not sound:
+        assert before.found.hand.joints == ("wrist",)
+        assert "gives way between drive and vibrissa, at 'wrist'" in str(before.remarks[0])
+
+
+@pytest.mark.parametrize(
+    ("changes", "chain", "subjects"),
+    [
+        ([('timestep="0.01"', 'timestep="0"')], {}, {"time step"}),
+        ([('timestep="0.01"', 'timestep="18"')], {}, {"time step", "contact"}),
+        ([('solref="0.02 1" solimp="0.98 0.98 0.001"', 'solref="0.1 1"')], {}, {"contact"}),
+        ([('solref="0.02 1"', 'solref="-1e8 -2e4"')], {}, {"contact"}),
+        ([('condim="1"', 'margin="0.02"')], {}, {"contact"}),
+        ([], {"first": "start"}, {"clamp"}),
+        ([], {"first": "end", "links": 30}, {"clamp"}),
+        ([], {"stiffer": {5: 1.3}}, {"uniformity"}),
+        ([], {"gravity": "0 -2 0"}, {"gravity"}),
+        ([], {"sensors": ""}, {"force sensor", "torque sensor"}),
+        ([], {"site": 'euler="0 0 0.2"'}, {"force sensor", "torque sensor"}),
+        ([], {"site": 'pos="0 -0.1 0"'}, {"torque sensor"}),
+        ([('damping="0.3', 'damping="9.3')], {}, {"damping"}),
+    ],
+)  # fmt: skip
+def test_what_a_number_mends_is_mended(tmp_path, changes, chain, subjects):
+    before, after = mended(on_rail(tmp_path, *changes, **chain))
+    assert faults(before) == subjects
+    assert after.inspection.sound, after.inspection.remarks
+    assert len(after.files) == 1
+
+
+def test_what_was_meant_is_no_fault(tmp_path):
+    curved = Inspection(inspect_model(on_rail(tmp_path, curvature=0.3)))
+    assert curved.sound
+    assert "natural curvature" in {remark.subject for remark in curved.remarks}
+    peg = '<body name="peg" pos="0 2 0" mocap="true"><geom size="0.1" type="sphere"/></body>'
+    bodies = Chain(foot="", beside=peg).write(tmp_path)
+    foot = [r for r in Inspection(inspect_model(bodies)).remarks if r.subject == "foot"]
+    assert [r.kind for r in foot] == ["note"]
+    assert "'peg'" in foot[0].text
+
+
+@pytest.mark.slow
+def test_a_mended_model_sweeps_as_was_expected(tmp_path):
+    path = tmp_path / "tutorial.xml"
+    path.write_text(shipped_models()["tutorial-chain"].read_text())
+    _, after = mended(path)
+    (tmp_path / "case.toml").write_text(case_of(after.inspection.found, after.files[0], {}))
+    job = load_case(tmp_path / "case.toml")
+    moved = simulate_model(job.case, job.model, job.motion, job.settings)
+    worst = max(d.rms for d in compare(solve_sweep(job.case), moved).disagreement.values())
+    low, high = expected(after.inspection.found, SPEED).interval
+    assert low < worst < high  # observed 2.3e-3
+    assert worst < 0.01

@@ -1,0 +1,107 @@
+"""A mended copy differs from the file by its edits alone."""
+
+import difflib
+
+import mujoco
+import pytest
+
+from analytic import InputError
+from mujoco_models.mend.edit import Edit, Insert
+from mujoco_models.mend.write import mended
+
+MAIN = """\
+<!-- of a user's own -->
+<mujoco model='m'>
+  <option   timestep='0.002'
+            gravity="0 0 -9.81"/> <!-- metres -->
+  <default>
+    <geom type="capsule" size="0.001"/>
+    <default class="thin"> <geom solref="0.02 1"/> </default>
+  </default>
+  <include file="links.xml"/>
+</mujoco>
+"""
+LINKS = """\
+<mujoco>
+  <worldbody>
+    <body name="foot"><site name="clamp" euler="0 0 0.3"/>
+      <frame childclass="thin">
+      <body name="a > b"><joint axis="0 0 1" stiffness="1"/><geom fromto="0 0 0 0 1 0"/>
+        <body pos="0 1 0"><joint axis="0 0 1"/><geom fromto="0 0 0 0 1 0"/>
+          <body pos="0 1 0"><joint axis="0 0 1"/><geom fromto="0 0 0 0 1 0"/></body></body></body>
+      </frame>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.fixture
+def path(tmp_path):
+    (tmp_path / "links.xml").write_text(LINKS)
+    path = tmp_path / "m.xml"
+    path.write_text(MAIN)
+    return path
+
+
+def write(path, *edits):
+    model = mujoco.MjModel.from_xml_path(str(path))
+    files = mended(path, model, edits, path.with_name("mended.xml"))
+    return mujoco.MjModel.from_xml_path(str(files[0])), files
+
+
+def changed(old, new):
+    lines = difflib.ndiff(old.splitlines(), new.splitlines())
+    return [line for line in lines if line[0] in "+-"]
+
+
+def test_an_option_is_set_where_it_stands(path):
+    model, files = write(path, Edit("option", (("timestep", "0.001"), ("integrator", "discrete"))))
+    assert model.opt.timestep == 0.001
+    assert changed(MAIN, files[0].read_text()) == [
+        "-   <option   timestep='0.002'",
+        "+   <option   timestep='0.001'",
+        '-             gravity="0 0 -9.81"/> <!-- metres -->',
+        '+             gravity="0 0 -9.81" integrator="discrete"/> <!-- metres -->',
+    ]
+
+
+def test_what_many_have_by_default_is_set_in_the_default(path):
+    model, files = write(path, Edit("geom", (("solref", "0.004 1"), ("condim", "1")), (0, 1, 2)))
+    assert (model.geom_solref[:, 0] == 0.004).all()
+    assert (model.geom_condim == 1).all()
+    assert len(files) == 1
+    assert len(changed(MAIN, files[0].read_text())) == 2
+
+
+def test_an_included_file_gets_a_copy_that_the_model_includes(path):
+    model, (main, links) = write(path, Edit("joint", (("stiffness", "2"),), (0,)))
+    assert model.jnt_stiffness[0, 0] == 2 if model.jnt_stiffness.ndim > 1 else True
+    assert len(changed(LINKS, links.read_text())) == 2
+    assert changed(MAIN, main.read_text()) == [
+        '-   <include file="links.xml"/>', f'+   <include file="{links.name}"/>'
+    ]  # fmt: skip
+    assert path.read_text() == MAIN
+    assert path.with_name("links.xml").read_text() == LINKS
+
+
+def test_elements_that_are_lacking_are_put_in(path):
+    rail = Insert('<joint name="rail" type="slide" axis="1 0 0"/>', 1)
+    weight = Insert('<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>', 1)
+    sensor = Insert('<sensor><force name="F" site="clamp"/></sensor>')
+    model, files = write(
+        path, rail, weight, sensor, Edit("site", (("quat", "1 0 0 0"), ("euler", "")), (0,))
+    )
+    assert model.joint("rail").type[0] == mujoco.mjtJoint.mjJNT_SLIDE
+    assert model.sensor("F").id == 0
+    assert model.site_quat[0].tolist() == [1, 0, 0, 0]
+    assert len(files) == 2
+
+
+def test_what_mujoco_does_not_take_is_not_left_behind(path):
+    with pytest.raises(InputError, match="takes the mended model") as caught:
+        write(path, Insert("<nonsense/>"))
+    assert "\n" not in str(caught.value)
+    assert not path.with_name("mended.xml").exists()
+    with pytest.raises(InputError, match="another file than the model"):
+        mended(path, mujoco.MjModel.from_xml_path(str(path)), (), path)
