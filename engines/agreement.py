@@ -70,7 +70,7 @@ def hinges(case: Case, count: int, last: float = 0.5) -> Layout:
     """
     cell = 1 / (count - 0.5 + last)
     edges: Floats = cell * np.arange(count + 1.0)
-    vibrissa = Vibrissa.of(case.beam, case.clamp_stiffness)
+    vibrissa = Vibrissa.of(case.beam, case.support)
     joints: Floats = edges[:-1] + cell / 2
     return Layout.of(joints, np.full(count, cell), edges, np.inf, vibrissa)
 

@@ -69,7 +69,7 @@ class Row:
 
 def free_row(case: Case) -> Row:
     """What a vibrissa reads that touches nothing."""
-    return Row(tip_angle=float(case.beam.unloaded.at(np.array(1.0))[2]))
+    return Row(tip_angle=float(case.unloaded.at(np.array(1.0))[2]))
 
 
 class Rest(Protocol):
@@ -132,6 +132,7 @@ def sweep_stations(
         As `rest` does.
     """
     begun, swept = time.process_time(), leftward(case)
+    swept.require_upright(source)
     stations = (swept.foot_x / swept.beam.length).tolist()
     walk = _Walk(rest(swept), free_row(swept), stations[0], smallest)
     unsettled: Counter[str] = Counter()

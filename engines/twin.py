@@ -69,6 +69,7 @@ def sweep_twin(
     from mujoco_models.sweep.sweep import follow
     from mujoco_models.sweep.walk import Walk
 
+    case.require_upright(name)
     if settings.beam != "chain" or not settings.planar:
         kind = settings.beam if settings.planar else f"{settings.beam} out of the plane"
         allowed = "'chain' in the plane"

@@ -34,9 +34,10 @@ def certify(readings: Readings) -> pd.DataFrame:
         ``residual_moment`` is that of M = F_y (xi - x0) - F_x eta + mu r f. Zero where the vibrissa
         is free, NaN where the readings have no contact to check.
     """
-    clamp_stiffness, friction = support_of(readings.provenance)
+    held = support_of(readings.provenance)
+    clamp_stiffness, friction, clamp_angle = held
     beam, foot_x = readings.beam, readings.values("foot_x")
-    plain = is_plain(beam, clamp_stiffness, friction)
+    plain = is_plain(beam, held)
     if readings.bends_left if plain else foot_x[-1] > foot_x[0]:
         return certify(readings.mirrored())
     length = beam.length
@@ -69,6 +70,7 @@ def certify(readings: Readings) -> pd.DataFrame:
             moment[touching],
             arc_length[touching],
             compliance=compliance,
+            clamp_angle=clamp_angle,
             natural=lambda s: length * beam.curvature_at(length * s),
             breaks=beam.breaks / length,
             flexibility=lambda s: beam.base_rigidity / beam.rigidity_at(length * s),

@@ -35,6 +35,7 @@ def integrate_span(
     length: Floats,
     tolerance: float = 1e-13,
     compliance: float = 0.0,
+    clamp_angle: float = 0.0,
     natural: Quantity = _none,
     flexibility: Quantity = np.ones_like,
     breaks: Sequence[float] | Floats = (),
@@ -59,7 +60,9 @@ def integrate_span(
             [length * cos, length * sin, length * kappa, length * (force_y * cos - force_x * sin)]
         )
 
-    state = np.concatenate([np.zeros(2 * n), np.pi / 2 - compliance * moment, -moment])
+    state = np.concatenate(
+        [np.zeros(2 * n), np.pi / 2 + clamp_angle - compliance * moment, -moment]
+    )
     least_phi = np.full(n, np.inf)
     for low, high in pairwise([0.0, *breaks, 1.0]):
         begin = np.minimum(low, length)

@@ -60,7 +60,8 @@ class ClampEnd(NamedTuple):
     def of(cls, force_x: Floats, force_y: Floats, moment: Floats, vibrissa: Vibrissa) -> "ClampEnd":
         """What the readings say of the clamp's end."""
         direction = np.arctan2(-force_x, force_y)
-        theta = np.pi / 2 - vibrissa.compliance * moment - direction
+        leant = vibrissa.clamp_angle - vibrissa.compliance * moment
+        theta = np.pi / 2 + leant - direction
         return cls(np.hypot(force_x, force_y), direction, moment, theta, vibrissa)
 
     def parallel(self, theta: Floats) -> Floats:
@@ -143,7 +144,9 @@ def _contacts(end: ClampEnd) -> Floats:
     for which, length, slope in _in_closed_form(end) if rod is None else _marched(end, rod):
         aside = np.where(length < 1, np.abs(slope - end.parallel(slope)), np.inf)
         missed = np.fmin(np.abs(length - 1), aside)
-        nearer = missed < least[which]
+        # A pendulum's turning points are all as parallel: of those it is the first one.
+        apart = missed - least[which]
+        nearer = (apart < -_SAME) | ((apart < _SAME) & (length < best[which]))
         best[which[nearer]], least[which[nearer]] = length[nearer], missed[nearer]
     return np.where(_is_flat(end), 1.0, best)
 

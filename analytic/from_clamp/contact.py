@@ -58,8 +58,8 @@ class SweptVibrissa(NamedTuple):
         foot_x = readings.values("foot_x")
         rightward = foot_x[-1] > foot_x[0]
         beam = readings.beam.mirrored() if rightward else readings.beam
-        plain = is_plain(beam, *readings.support)
-        return cls(Vibrissa.of(beam, *readings.support), plain, -1.0 if rightward else 1.0)
+        held = readings.support.mirrored() if rightward else readings.support
+        return cls(Vibrissa.of(beam, held), is_plain(beam, held), -1.0 if rightward else 1.0)
 
     def clamp_end(self, sensed: Floats) -> ClampEnd:
         """The clamp's end of the vibrissa."""

@@ -61,7 +61,7 @@ def deflected_shapes(readings: Readings) -> tuple[Floats, Floats]:
         [
             np.zeros_like(foot_x),
             np.zeros_like(foot_x),
-            np.pi / 2 - held.vibrissa.compliance * moment,
+            np.pi / 2 + readings.support.clamp_angle - held.vibrissa.compliance * moment,
             np.zeros_like(foot_x),
         ]
     )

@@ -17,7 +17,14 @@ from analytic.problem.errors import InputError, require
 from analytic.problem.numbers import finite, whole, within
 from analytic.problem.reach import FARTHEST, contact_range, out_of_reach
 from analytic.problem.rest import first_touch
-from analytic.problem.support import check_support, is_plain, require_plain, support_record
+from analytic.problem.support import (
+    Support,
+    check_support,
+    is_plain,
+    require_plain,
+    support_record,
+)
+from analytic.problem.unloaded import Unloaded
 
 Direction: TypeAlias = Literal["left", "right"]
 
@@ -83,6 +90,8 @@ class Case:
         Moment of the clamp by its rotation [force length/rad]; by default it is rigid.
     friction : float
         Coulomb's coefficient between a sliding vibrissa and the object, from 0 to 1.
+    clamp_angle : float
+        By which the clamp leans to the left of the upright, phi(0) = pi/2 + clamp_angle [rad].
 
     Raises
     ------
@@ -98,6 +107,7 @@ class Case:
     name: str = "case"
     clamp_stiffness: float = field(default=math.inf, kw_only=True)
     friction: float = field(default=0.0, kw_only=True)
+    clamp_angle: float = field(default=0.0, kw_only=True)
 
     def __post_init__(self) -> None:
         for name, kind, remedy in (
@@ -107,8 +117,8 @@ class Case:
             ("name", str, "it names files and reports"),
         ):
             require(f"case.{name}", getattr(self, name), kind, remedy)
-        check_support(self.clamp_stiffness, self.friction, self.beam, signed=False)
-        for name in ("clamp_stiffness", "friction"):
+        check_support(self.support, self.beam)
+        for name in Support._fields:
             object.__setattr__(self, name, float(getattr(self, name)))
         touch = self._first_contact * self.beam.length
         farthest = 2 * FARTHEST * self.beam.length
@@ -127,6 +137,16 @@ class Case:
             remedy = f"the foot moves to the {self.sweep.direction} (sweep.direction)"
             raise InputError("sweep.stop", stop, allowed, remedy)
 
+    @property
+    def support(self) -> Support:
+        """Clamp and friction."""
+        return Support(self.clamp_stiffness, self.friction, self.clamp_angle)
+
+    @property
+    def unloaded(self) -> Unloaded:
+        """The vibrissa at rest in its clamp, dimensionless."""
+        return self.support.unloaded(self.beam)
+
     @cached_property
     def centreline(self) -> Contour:
         """The contour that the centreline feels, a cone's at its tip; in units of the length."""
@@ -142,8 +162,8 @@ class Case:
 
     @property
     def is_plain(self) -> bool:
-        """Whether the vibrissa is the paper's: straight, uniform, its clamp rigid, no friction."""
-        return is_plain(self.beam, self.clamp_stiffness, self.friction)
+        """Whether the vibrissa is the paper's: straight, uniform, held upright, not rubbed."""
+        return is_plain(self.beam, self.support)
 
     def require_plain(self, who: str) -> None:
         """Refuse a case that is not the paper's vibrissa.
@@ -156,9 +176,26 @@ class Case:
         Raises
         ------
         InputError
-            If the vibrissa is curved at rest or not uniform, its clamp turns, or it rubs.
+            If the vibrissa is curved at rest or not uniform, its clamp turns or leans, or it rubs.
         """
-        require_plain(who, self.beam, self.clamp_stiffness, self.friction)
+        require_plain(who, self.beam, self.support)
+
+    def require_upright(self, who: str) -> None:
+        """Refuse a case whose clamp leans.
+
+        Parameters
+        ----------
+        who : str
+            Who cannot take that into account.
+
+        Raises
+        ------
+        InputError
+            If it leans.
+        """
+        if self.clamp_angle:
+            allowed = f"0: {who} cannot take it into account"
+            raise InputError("clamp_angle", self.clamp_angle, allowed, "leave it out")
 
     @property
     def radius(self) -> float:
@@ -182,6 +219,8 @@ class Case:
             base_curvature = float(beam.curvature_at(0.0))
             beyond = base_curvature, self.clamp_stiffness, self.friction
             numbers = np.append(numbers, beyond)
+        if self.clamp_angle:
+            numbers = np.append(numbers, self.clamp_angle)
         text = " ".join(["%.12e"] * numbers.size) % tuple(numbers.tolist())
         if beam.varies:
             given = asdict(beam)
@@ -196,8 +235,8 @@ class Case:
         -------
         dict
             ``case`` and ``profile`` by name, ``digest``, and ``contour``: two lists, xi and eta
-            [length]; ``support``, if the clamp turns or the object rubs: ``clamp_stiffness``, None
-            if rigid, and ``friction``.
+            [length]; ``support``, if the clamp turns or leans or the object rubs:
+            ``clamp_stiffness``, None if rigid, ``friction``, and ``clamp_angle``, unless upright.
         """
         xi, eta = self.outline()
         return {
@@ -205,7 +244,7 @@ class Case:
             "profile": self.profile.label,
             "digest": self.digest,
             "contour": [xi.tolist(), eta.tolist()],
-            **support_record(self.clamp_stiffness, self.friction),
+            **support_record(self.support),
         }
 
     def outline(self, points: int = 181) -> tuple[Floats, Floats]:
@@ -238,8 +277,13 @@ class Case:
         """
         opposite: Direction = "left" if self.sweep.direction == "right" else "right"
         sweep = Sweep(self.sweep.stations, -self._start, -self._stop, opposite)
-        beam = self.beam.mirrored()
-        return replace(self, beam=beam, profile=self.profile.mirrored(), sweep=sweep)
+        return replace(
+            self,
+            beam=self.beam.mirrored(),
+            profile=self.profile.mirrored(),
+            sweep=sweep,
+            **self.support.mirrored()._asdict(),
+        )
 
     @property
     def _way(self) -> int:
@@ -248,11 +292,12 @@ class Case:
 
     @cached_property
     def _first_contact(self) -> float:
-        if self.beam.natural_curvature != 0 or self.beam.varies:
+        if self.beam.natural_curvature != 0 or self.beam.varies or self.clamp_angle:
             if self._way > 0:
-                mirrored, rest = self.centreline.mirrored(), self.beam.mirrored().unloaded
+                mirrored = self.centreline.mirrored()
+                rest = self.support.mirrored().unloaded(self.beam.mirrored())
                 return -first_touch(mirrored, contact_range(mirrored), rest).foot_x
-            return first_touch(self.centreline, self.reach, self.beam.unloaded).foot_x
+            return first_touch(self.centreline, self.reach, self.unloaded).foot_x
         left, right = self.reach
         first = left if self._way > 0 else right
         return float(self.centreline.place(np.array([first]))[0][0])

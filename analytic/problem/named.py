@@ -89,5 +89,6 @@ def named_case(name: str) -> Case:
         named_contour(name),
         name=name,
         clamp_stiffness=tables.get("support", {}).get("rotational_stiffness", math.inf),
+        clamp_angle=tables.get("support", {}).get("angle", 0.0),
         friction=tables.get("contact", {}).get("friction", 0.0),
     )

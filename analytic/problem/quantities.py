@@ -111,6 +111,12 @@ QUANTITIES: dict[str, Quantity] = {
         lambda case, by: replace(case, friction=case.friction + by),
         positive=True,
     ),
+    "clamp_angle": Quantity(
+        "rad",
+        lambda case: case.clamp_angle,
+        lambda case: 1.0,
+        lambda case, by: replace(case, clamp_angle=case.clamp_angle + by),
+    ),
     "foot_x": Quantity("m", lambda case: 0.0, _length, _farther),
     "height": Quantity(
         "m",

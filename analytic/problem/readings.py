@@ -16,7 +16,13 @@ from analytic.problem.errors import InputError
 from analytic.problem.files import as_path
 from analytic.problem.places import Place, row_number
 from analytic.problem.provenance import check_provenance
-from analytic.problem.support import beyond_the_paper, require_plain, support_of, support_record
+from analytic.problem.support import (
+    Support,
+    beyond_the_paper,
+    require_plain,
+    support_of,
+    support_record,
+)
 from analytic.problem.sweep_table import SweepTable, usable
 
 if TYPE_CHECKING:
@@ -169,8 +175,8 @@ class Readings(SweepTable):
         return float(np.nansum(self.values("moment_z"))) < 0
 
     @property
-    def support(self) -> tuple[float, float]:
-        """Clamp stiffness [force length/rad] and friction, as the provenance has them."""
+    def support(self) -> Support:
+        """The clamp and the friction, as the provenance has them."""
         return support_of(self.provenance)
 
     def with_friction(self, coefficient: float) -> "Readings":
@@ -186,14 +192,14 @@ class Readings(SweepTable):
         Readings
             The provenance says it.
         """
-        stiffness, _ = self.support
+        held = self.support._replace(friction=coefficient)
         known = {name: value for name, value in self.provenance.items() if name != "support"}
-        return replace(self, provenance={**known, **support_record(stiffness, coefficient)})
+        return replace(self, provenance={**known, **support_record(held)})
 
     @property
     def beyond_the_paper(self) -> dict[str, Varying]:
         """What of vibrissa, clamp and contact is not the paper's, by what it is."""
-        return beyond_the_paper(self.beam, *self.support)
+        return beyond_the_paper(self.beam, self.support)
 
     def require_plain(self, who: str) -> None:
         """Refuse readings of a vibrissa that is not the paper's.
@@ -206,10 +212,10 @@ class Readings(SweepTable):
         Raises
         ------
         InputError
-            If the vibrissa is curved at rest or, as the provenance has it, its clamp turns or the
-            object rubs.
+            If the vibrissa is curved at rest or, as the provenance has it, its clamp turns or leans
+            or the object rubs.
         """
-        require_plain(who, self.beam, *self.support)
+        require_plain(who, self.beam, self.support)
 
     def mirrored(self) -> "Readings":
         """The readings in a mirror, x to -x.
@@ -225,6 +231,8 @@ class Readings(SweepTable):
         if "events" in provenance:
             events = provenance["events"]
             provenance["events"] = {n: None if x is None else -x for n, x in events.items()}
+        if "support" in provenance:
+            provenance |= support_record(self.support.mirrored())
         if "contour" in provenance:
             xi, eta = provenance["contour"]
             provenance["contour"] = [[-x for x in reversed(xi)], list(reversed(eta))]

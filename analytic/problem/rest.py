@@ -73,7 +73,7 @@ def first_touch(contour: Contour, reach: tuple[float, float], rest: Unloaded) ->
 
 def _arc_length(point: ContourPoint, rest: Unloaded) -> Floats:
     """Arc length at which the vibrissa at rest is as high as the contour at given points."""
-    if not rest.is_arc:
+    if not rest.is_arc or (rest.angle and rest.natural):
 
         def above(which: Integers, s: Floats) -> Floats:
             alpha, eta = point.alpha[which], point.eta[which]
@@ -83,4 +83,4 @@ def _arc_length(point: ContourPoint, rest: Unloaded) -> Floats:
     natural = rest.natural
     assert isinstance(natural, float)
     turn = np.arcsin(np.clip(natural * point.eta, -1, 1))
-    return point.eta if natural == 0 else turn / natural
+    return point.eta / np.cos(rest.angle) if natural == 0 else turn / natural

@@ -2,36 +2,69 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 from analytic.problem.along import Along
 from analytic.problem.beam import Beam, Varying
 from analytic.problem.errors import InputError
 from analytic.problem.numbers import within
+from analytic.problem.unloaded import Unloaded
 
 _MOST_FRICTION = 1.0
 _SOFTEST = 0.01  # EI/L, of the clamp
+_MOST_LEANT = 1.55  # rad; the vibrissa of a clamp that leans more lies along the foot's line
 _MOST_TURNED = math.pi / 2  # rad; beyond, the vibrissa at rest leans over itself
 
 
-def check_support(clamp_stiffness: object, friction: object, beam: Beam, signed: bool) -> None:
+class Support(NamedTuple):
+    """How a vibrissa is held, and how the object rubs."""
+
+    clamp_stiffness: float = math.inf  # moment by angle [force length/rad]
+    friction: float = 0.0  # Coulomb's coefficient
+    clamp_angle: float = 0.0  # by which the clamp leans to the left of the upright [rad]
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the clamp is the paper's, rigid and upright, and nothing rubs."""
+        return self == UPRIGHT
+
+    def mirrored(self) -> "Support":
+        """The mirror image, x to -x."""
+        return self._replace(clamp_angle=0.0 - self.clamp_angle)
+
+    def unloaded(self, beam: Beam) -> Unloaded:
+        """A vibrissa at rest in this clamp, dimensionless."""
+        return replace(beam.unloaded, angle=self.clamp_angle)
+
+
+UPRIGHT = Support()
+"""The paper's clamp, and no friction."""
+
+
+def check_support(held: Support, beam: Beam, signed: bool = False) -> None:
     """Refuse a clamp or a friction that cannot be."""
+    clamp_stiffness, friction, clamp_angle = held
     if not (isinstance(clamp_stiffness, float) and clamp_stiffness == math.inf):
         remedy = "it is moment by angle, at least a hundredth of EI/L; a rigid clamp has none"
         within("clamp_stiffness", clamp_stiffness, _SOFTEST * beam.moment_unit, remedy=remedy)
     least = -_MOST_FRICTION if signed else 0.0
     within("friction", friction, least, _MOST_FRICTION, "0.1 to 0.5 is usual")
-    turned = beam.unloaded.most_turned
+    within("clamp_angle", clamp_angle, -_MOST_LEANT, _MOST_LEANT, "it is in rad, from the upright")
+    turned = held.unloaded(beam).most_turned
+    if clamp_angle and turned > _MOST_TURNED:
+        what = f"{clamp_angle:g}, where the vibrissa at rest turns by up to {turned:.6g} rad"
+        allowed = f"such that it turns by at most {_MOST_TURNED:.6g} rad"
+        raise InputError("clamp_angle", what, allowed, "beyond, it overhangs at rest")
     if turned > _MOST_TURNED * (1 + 1e-12):
         what = f"{beam.natural_curvature:g}, which turns the vibrissa by {turned:.6g} rad"
         allowed = f"such that it turns by at most {_MOST_TURNED:.6g} rad"
         raise InputError("beam.natural_curvature", what, allowed, "beyond, it overhangs at rest")
 
 
-def is_plain(beam: Beam, clamp_stiffness: float, friction: float) -> bool:
-    """Whether a vibrissa is the paper's: straight, uniform, rigidly clamped, without friction."""
-    straight = beam.natural_curvature == 0 and not beam.varies
-    return straight and clamp_stiffness == math.inf and friction == 0
+def is_plain(beam: Beam, held: Support) -> bool:
+    """Whether a vibrissa is the paper's: straight, uniform, held upright, not rubbed."""
+    return beam.natural_curvature == 0 and not beam.varies and held.is_plain
 
 
 def require_uniform(who: str, beam: Beam) -> None:
@@ -46,44 +79,45 @@ def require_uniform(who: str, beam: Beam) -> None:
         raise InputError("beam.tip_radius", beam.tip_radius, allowed, "leave it out")
 
 
-def require_plain(
-    who: str, beam: Beam, clamp_stiffness: float = math.inf, friction: float = 0.0
-) -> None:
+def require_plain(who: str, beam: Beam, held: Support = UPRIGHT) -> None:
     """Refuse what someone cannot take into account."""
     require_uniform(who, beam)
     for name, value, plain in (
         ("beam.natural_curvature", beam.natural_curvature, 0.0),
-        ("clamp_stiffness", clamp_stiffness, math.inf),
-        ("friction", friction, 0.0),
+        ("clamp_stiffness", held.clamp_stiffness, math.inf),
+        ("friction", held.friction, 0.0),
+        ("clamp_angle", held.clamp_angle, 0.0),
     ):
         if value != plain:
             allowed = f"{plain:g}: {who} cannot take it into account"
             raise InputError(name, value, allowed, "leave it out")
 
 
-def beyond_the_paper(
-    beam: Beam, clamp_stiffness: float = math.inf, friction: float = 0.0
-) -> dict[str, Varying]:
+def beyond_the_paper(beam: Beam, held: Support) -> dict[str, Varying]:
     """What of a vibrissa, its clamp and its contact is not the paper's."""
     tip_radius = beam.radius if beam.tip_radius is None else beam.tip_radius
     numbers: tuple[tuple[str, Varying, float], ...] = (
         ("tip radius", tip_radius, beam.radius),
         ("natural curvature", beam.natural_curvature, 0.0),
-        ("clamp stiffness", clamp_stiffness, math.inf),
-        ("friction", friction, 0.0),
+        ("clamp stiffness", held.clamp_stiffness, math.inf),
+        ("friction", held.friction, 0.0),
+        ("clamp angle", held.clamp_angle, 0.0),
     )
     return {name: value for name, value, plain in numbers if value != plain}
 
 
-def support_record(clamp_stiffness: float, friction: float) -> dict[str, Any]:
+def support_record(held: Support) -> dict[str, Any]:
     """What provenance says of the clamp and the contact."""
-    if clamp_stiffness == math.inf and friction == 0:
+    if held.is_plain:
         return {}
-    stiffness = clamp_stiffness if clamp_stiffness < math.inf else None
-    return {"support": {"clamp_stiffness": stiffness, "friction": friction}}
+    stiffness = held.clamp_stiffness if held.clamp_stiffness < math.inf else None
+    leant = {"clamp_angle": held.clamp_angle} if held.clamp_angle else {}
+    return {"support": {"clamp_stiffness": stiffness, "friction": held.friction, **leant}}
 
 
-def support_of(provenance: Mapping[str, Any]) -> tuple[float, float]:
-    """Clamp stiffness and friction that readings were made with."""
+def support_of(provenance: Mapping[str, Any]) -> Support:
+    """The clamp and the friction that readings were made with."""
     held = provenance.get("support", {})
-    return float(held.get("clamp_stiffness") or math.inf), float(held.get("friction", 0.0))
+    stiffness = float(held.get("clamp_stiffness") or math.inf)
+    friction, angle = (float(held.get(name) or 0.0) for name in ("friction", "clamp_angle"))
+    return Support(stiffness, friction, angle)

@@ -19,6 +19,7 @@ class Unloaded:
     natural: float | Along = 0.0
     base_radius: float = 0.0  # of the cross-section at the clamp and at the tip, linear between [L]
     tip_radius: float = 0.0  # of the cross-section at the clamp and at the tip, linear between [L]
+    angle: float = 0.0  # by which its clamp leans to the left of the upright [rad]
 
     @property
     def lean(self) -> float:
@@ -29,7 +30,7 @@ class Unloaded:
     def most_turned(self) -> float:
         """The largest angle by which it turns from the upright, to either side [rad]."""
         if not isinstance(self.natural, Along):
-            return abs(self.natural)
+            return max(abs(self.angle), abs(self.angle + self.natural))
         s = np.linspace(0, 1, _PLACES)
         return float(np.abs(self.at(s)[2] - np.pi / 2).max())
 
@@ -48,7 +49,14 @@ class Unloaded:
         return (self.base_radius - self.tip_radius) * (1 - s)
 
     def at(self, s: Floats) -> tuple[Floats, Floats, Floats]:
-        """Places on the axis."""
+        """Places on the axis, as seen from the foot, and the slope angle there."""
+        x, y, slope = self._upright(s)
+        if self.angle == 0:
+            return x, y, slope
+        sin, cos = np.sin(self.angle), np.cos(self.angle)
+        return x * cos - y * sin, x * sin + y * cos, slope + self.angle
+
+    def _upright(self, s: Floats) -> tuple[Floats, Floats, Floats]:
         natural = self.natural
         if isinstance(natural, Along):
             x, y, turn = self._integrals

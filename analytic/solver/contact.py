@@ -11,7 +11,7 @@ from analytic.problem.beam import Beam
 from analytic.problem.columns import COLUMNS
 from analytic.problem.contours.contour import Contour
 from analytic.problem.errors import InputError, require
-from analytic.problem.support import check_support
+from analytic.problem.support import Support, check_support
 from analytic.problem.table import as_table
 from analytic.solver.columns import Units, to_columns, without
 from analytic.solver.equilibria import equilibria
@@ -30,6 +30,7 @@ def solve_contact(
     *,
     clamp_stiffness: float = math.inf,
     friction: float = 0.0,
+    clamp_angle: float = 0.0,
 ) -> pd.DataFrame:
     """Clamp readings and contact of a vibrissa that touches `profile` where its slope is `alpha`.
 
@@ -46,6 +47,8 @@ def solve_contact(
     friction : float
         Coulomb's coefficient, positive where the object pushes the vibrissa along its contour to
         the right, as in a sweep to the left; negative for the other sense of sliding.
+    clamp_angle : float
+        By which the clamp leans to the left of the upright [rad].
 
     Returns
     -------
@@ -67,7 +70,8 @@ def solve_contact(
     beam = Beam() if beam is None else beam
     require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
     require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
-    check_support(clamp_stiffness, friction, beam, signed=True)
+    held = Support(clamp_stiffness, friction, clamp_angle)
+    check_support(held, beam, signed=True)
     try:
         angles = np.atleast_1d(np.asarray(alpha, dtype=float))
     except (TypeError, ValueError) as error:
@@ -78,7 +82,7 @@ def solve_contact(
         raise InputError("alpha", what, allowed, "they are slope angles of the lower side")
     contour = profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
     t = contour.parameter(angles)
-    vibrissa, units = Vibrissa.of(beam, clamp_stiffness, friction), Units.of(beam)
+    vibrissa, units = Vibrissa.of(beam, held), Units.of(beam)
     if vibrissa.is_plain:
         return _plain(contour, t, vibrissa, units)
     found = contacts(contour, t, vibrissa)

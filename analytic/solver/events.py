@@ -18,7 +18,7 @@ from analytic.problem.contours.many import Contours
 from analytic.problem.errors import require
 from analytic.problem.reach import contact_range
 from analytic.problem.rest import first_touch
-from analytic.problem.support import check_support, is_plain, require_plain
+from analytic.problem.support import Support, check_support, is_plain, require_plain
 from analytic.solver.branch import trace
 from analytic.solver.columns import ReadingColumns, Units, to_columns, without
 from analytic.solver.contact_length import surplus_and_rate
@@ -79,6 +79,7 @@ def find_events(
     *,
     clamp_stiffness: float = math.inf,
     friction: float = 0.0,
+    clamp_angle: float = 0.0,
 ) -> Events:
     """The events of a sweep of `beam` along `profile`, each with the readings there.
 
@@ -92,6 +93,8 @@ def find_events(
         Moment of the clamp by its rotation [force length/rad]; by default it is rigid.
     friction : float
         Coulomb's coefficient, from 0 to 1.
+    clamp_angle : float
+        By which the clamp leans to the left of the upright [rad].
 
     Returns
     -------
@@ -109,11 +112,12 @@ def find_events(
     beam = Beam() if beam is None else beam
     require("profile", profile, Contour, "as catenary(0.5, -0.8), or polygon([...])")
     require("beam", beam, Beam, "as Beam(length=..., flexural_rigidity=...)")
-    check_support(clamp_stiffness, friction, beam, signed=False)
+    held = Support(clamp_stiffness, friction, clamp_angle)
+    check_support(held, beam)
     contour = profile.scaled(1 / beam.length).offset(beam.unloaded.tip_radius)
     reach = contact_range(contour)
-    if not is_plain(beam, clamp_stiffness, friction):
-        vibrissa = Vibrissa.of(beam, clamp_stiffness, friction)
+    if not is_plain(beam, held):
+        vibrissa = Vibrissa.of(beam, held)
         return _general_events(contour, reach, vibrissa, beam)
     return _plain_events([contour], [reach], [beam])[0]
 

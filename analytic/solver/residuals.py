@@ -107,7 +107,7 @@ def _span(
         q, C, S = (values / root_f for values in span_of_moment(moment / root_f, direction))
         sine = np.cos(direction) - moment**2 / (2 * force)
         return _Span(C, S, q - length, sine - np.sin(slope))
-    clamp = np.pi / 2 - vibrissa.compliance * moment - direction
+    clamp = np.pi / 2 + vibrissa.clamp_angle - vibrissa.compliance * moment - direction
     if vibrissa.rod is not None:
         end = march(vibrissa.rod, slope, -couple, force, length, finer=2)
         return _Span(end.along, end.across, end.theta - clamp, end.m + moment)

@@ -173,7 +173,7 @@ def _check(case: Case) -> None:
 
 def _unloaded(case: Case, foot: Floats) -> ReadingColumns:
     """The readings of a vibrissa that touches nothing, with no angle of friction."""
-    columns = unloaded_columns(foot, float(case.beam.unloaded.at(np.array(1.0))[2]))
+    columns = unloaded_columns(foot, float(case.unloaded.at(np.array(1.0))[2]))
     return {**columns, "friction_angle": np.full(foot.size, np.nan)}
 
 

@@ -33,7 +33,7 @@ def calibrate(
     fit: Annotated[
         str,
         option(
-            "What is unknown: flexural_rigidity, clamp_stiffness, natural_curvature, tip_radius, "
+            "What is unknown: flexural_rigidity, clamp_stiffness, clamp_angle, natural_curvature, tip_radius, "
             "friction, offset (of foot_x).",
             "A,B,...",
         ),

@@ -35,7 +35,7 @@ def _cases() -> Iterator[str]:
         lowest = profile.at(profile.parameter(np.array([0.0])))
         place = f"lowest at x = {lowest.xi[0]:g} L, y = {lowest.eta[0]:.4g} L"
         case = named_case(name)
-        beyond = beyond_the_paper(case.beam, case.clamp_stiffness, case.friction)
+        beyond = beyond_the_paper(case.beam, case.support)
         parts = [place, *(f"{what} {value:g}" for what, value in beyond.items())]
         yield f"{name:18}{profile.label:40}{'; '.join(parts)}"
 

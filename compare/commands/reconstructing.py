@@ -98,5 +98,5 @@ def _rubbing(readings: Readings, said: str, noise: Mapping[str, float] | None) -
             f"from {found.stations} stations of Phase B"
         )
         friction = found.coefficient
-    check_support(readings.support[0], friction, readings.beam, signed=True)
+    check_support(readings.support._replace(friction=friction), readings.beam, signed=True)
     return readings.with_friction(friction)

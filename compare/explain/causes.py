@@ -61,6 +61,11 @@ _SOLVED: dict[str, tuple[str, float, float]] = {
         -1.5,
         1.5,
     ),
+    "clamp_angle": (
+        "clamp leaning by about {value:+.3g} rad, not {stated:.3g}, to the left of the upright",
+        -0.5,
+        0.5,
+    ),
     "height": (
         "height of the object (or the foot's, the other way) {size:+.2e} L off",
         -0.1,

@@ -48,9 +48,8 @@ class Resolved:
         beam, swept = reference.beam, reference.values("foot_x")
         sweep = Sweep(_STATIONS, direction="left" if swept[-1] < swept[0] else "right")
         points = _extended(np.transpose(contour), _BEYOND * beam.length)
-        stiff, friction = reference.support
         try:
-            case = Case(beam, _smooth(points), sweep, clamp_stiffness=stiff, friction=friction)
+            case = Case(beam, _smooth(points), sweep, **reference.support._asdict())
             solved = _sweep(case)
         except (InputError, ArithmeticError):
             return None

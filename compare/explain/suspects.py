@@ -9,7 +9,12 @@ from analytic.problem.arrays import Floats
 from compare.explain.fit import fitted
 from compare.explain.variations import STEP
 
-_UNITS = {"friction": "", "natural_curvature": "/L", "clamp_compliance": " L/EI"}
+_UNITS = {
+    "friction": "",
+    "natural_curvature": "/L",
+    "clamp_compliance": " L/EI",
+    "clamp_angle": " rad",
+}
 _CONVINCING = 0.8  # fraction of the unexplained that a suspect must account for
 
 
@@ -19,8 +24,8 @@ class Suspect:
 
     `change` is by how much in the candidate, relative to its value (``foot_x``: to the length L;
     ``friction``: the coefficient itself; ``natural_curvature``: 1/L; ``clamp_compliance``, the
-    clamp's rotation by its moment: L/EI); `share` is how much of the unexplained disagreement's
-    square it accounts for.
+    clamp's rotation by its moment: L/EI; ``clamp_angle``: rad); `share` is how much of the
+    unexplained disagreement's square it accounts for.
     """
 
     name: str

@@ -19,6 +19,7 @@ VARIED = (
     "friction",
     "clamp_compliance",
     "natural_curvature",
+    "clamp_angle",
 )
 """What may differ in any case; a cone's `tip_radius` comes beside them."""
 
@@ -28,10 +29,10 @@ def variations(case: Case) -> dict[str, Readings]:
 
     ``flexural_rigidity``, ``length``, ``radius`` and ``tip_radius`` are larger by a thousandth,
     ``foot_x`` is by a thousandth of the length, ``natural_curvature`` by a thousandth over the
-    length, ``clamp_compliance``, its rotation by moment, by a thousandth of L/EI, and ``friction``
-    is a coefficient larger by a thousandth. A tip is never thicker than the vibrissa, and one that
-    is more curved towards the object may touch it twice: of those two the sweep is the exact one
-    less what the opposite change does.
+    length, ``clamp_compliance``, its rotation by moment, by a thousandth of L/EI, ``clamp_angle``
+    by a milliradian, and ``friction`` is a coefficient larger by a thousandth. A tip is never
+    thicker than the vibrissa, and one that is more curved towards the object may touch it twice: of
+    those two the sweep is the exact one less what the opposite change does.
     """
     start, stop = (float(x) for x in case.foot_x[[0, -1]])
     # Nearby cases start a little elsewhere by default; all are swept over the same stations.

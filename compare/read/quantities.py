@@ -31,6 +31,7 @@ EXAMPLES = {
     "1/m": ("inverse length", "0.5 1/mm"),
     "N m^2": ("force times length squared", "2 N mm^2"),
     "N m/rad": ("moment by angle", "0.3 mN m/rad"),
+    "rad": ("angle", "2 deg"),
     "m/s": ("speed", "10 mm/s"),
     "s": ("time", "1 ms"),
     "1/s": ("rate", "500 Hz"),
@@ -101,6 +102,8 @@ Pairs = tuple[tuple[float, float], ...]
 RigidityAlong = Annotated[float | Pairs, PlainValidator(Varying("N m^2")), PLAIN]
 CurvatureAlong = Annotated[float | Pairs, PlainValidator(Varying("1/m")), PLAIN]
 RotationalStiffness = Annotated[float, PlainValidator(Dimension("N m/rad")), PLAIN]
+# A plain number of radians goes with either kind of file.
+Angle = Annotated[float, PlainValidator(lambda value: float(Dimension("rad")(value))), PLAIN]
 Point = Annotated[tuple[Length, Length], Field(strict=False)]
 Points = list[Point]
 

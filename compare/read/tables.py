@@ -14,7 +14,7 @@ from analytic import (
     InputError,
     Sweep,
 )
-from analytic.problem.support import check_support
+from analytic.problem.support import Support, check_support, support_record
 from compare.judge.tolerances import Tolerances
 from compare.read.complaints import name_of
 from compare.read.job import Job, engines_beside_exact
@@ -22,6 +22,7 @@ from compare.read.limits import tolerances_of
 from compare.read.motion import MotionTable
 from compare.read.profiles import Drawn, MeshTable
 from compare.read.quantities import (
+    Angle,
     CurvatureAlong,
     FileName,
     InSI,
@@ -68,6 +69,7 @@ class SupportTable(Table):
     rotational_stiffness: (
         Annotated[RotationalStiffness, Field(gt=0, allow_inf_nan=False)] | None
     ) = None
+    angle: Angle = 0.0
 
 
 class ContactTable(Table):
@@ -94,9 +96,7 @@ class Physics(NamedTuple):
 
     beam: Beam
     profile: Contour
-    clamp_stiffness: float
-    """[force length/rad]; infinite if rigid."""
-    friction: float
+    support: Support
 
 
 class ModelTable(Table):
@@ -157,23 +157,21 @@ class CaseFile(Table):
         found = Physics(
             self.beam.build(),
             self.profile.build(folder),
-            math.inf if stiffness is None else stiffness,
-            self.contact.friction,
+            Support(stiffness or math.inf, self.contact.friction, self.support.angle),
         )
-        check_support(found.clamp_stiffness, found.friction, found.beam, signed=False)
+        check_support(found.support, found.beam)
         return found
 
     def case(self, folder: Path, name: str) -> Case:
         """The whole problem."""
-        beam, contour, clamp_stiffness, friction = self.physics(folder)
+        beam, contour, held = self.physics(folder)
         try:
             return Case(
                 beam,
                 contour,
                 self.sweep.build(),
                 self.name or name,
-                clamp_stiffness=clamp_stiffness,
-                friction=friction,
+                **held._asdict(),
             )
         except InputError as error:
             is_mesh = isinstance(self.profile, MeshTable)
@@ -198,10 +196,10 @@ class BeamFile(Table):
         """What the provenance of measured readings says of clamp and contact."""
         if self.support is None and self.contact is None:
             return {}
-        stiffness = None if self.support is None else self.support.rotational_stiffness
-        friction = 0.0 if self.contact is None else self.contact.friction
-        check_support(stiffness or math.inf, friction, self.beam.build(), signed=False)
-        return {"support": {"clamp_stiffness": stiffness, "friction": friction}}
+        clamp, contact = self.support or SupportTable(), self.contact or ContactTable()
+        held = Support(clamp.rotational_stiffness or math.inf, contact.friction, clamp.angle)
+        check_support(held, self.beam.build())
+        return {"support": {}} | support_record(held)
 
 
 def job_in_the_plane(file: TomlFile) -> Job:

@@ -11,6 +11,7 @@ _UNITS = {
     "flexural_rigidity": "N m^2",
     "clamp_stiffness": "N m",
     "natural_curvature": "1/m",
+    "clamp_angle": "rad",
     "tip_radius": "m",
     "offset": "m",
 }

@@ -40,7 +40,7 @@ class CableOnContour:
     def __init__(self, case: Case, elements: int) -> None:
         rest, self._line = case.beam.unloaded, case.centreline
         self._rest, self._radius, self._free = rest, case.radius, free_row(case)
-        self._cable = Cable(elements, Vibrissa.of(case.beam, case.clamp_stiffness))
+        self._cable = Cable(elements, Vibrissa.of(case.beam, case.support))
         self._last, self._first = case.reach
         self._breaks = self._line.breaks()
         self._surface = Surface(case)

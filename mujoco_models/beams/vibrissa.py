@@ -1,6 +1,5 @@
 """The vibrissa that MuJoCo's beams stand for: its shape at rest, its bending and its clamp."""
 
-import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -8,6 +7,7 @@ import numpy as np
 from analytic.problem.along import Along
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
+from analytic.problem.support import Support
 from analytic.problem.unloaded import Unloaded
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)  # of a piece of a cell, where it is smooth
@@ -24,11 +24,11 @@ class Vibrissa:
     clamp_compliance: float = 0.0  # turn of the clamp by moment, 0 if it is rigid [L/EI]
 
     @classmethod
-    def of(cls, beam: Beam, clamp_stiffness: float = math.inf) -> "Vibrissa":
+    def of(cls, beam: Beam, held: Support) -> "Vibrissa":
         """That of a case whose foot moves to the left."""
         given = beam.flexural_rigidity
         rigidity = given if isinstance(given, Along) else None
-        return cls(beam.unloaded, rigidity, beam.moment_unit / clamp_stiffness)
+        return cls(held.unloaded(beam), rigidity, beam.moment_unit / held.clamp_stiffness)
 
     @property
     def is_straight(self) -> bool:
@@ -42,9 +42,9 @@ class Vibrissa:
 
     @property
     def is_plain(self) -> bool:
-        """Whether it is straight and uniform, and its clamp rigid."""
+        """Whether it is straight and uniform, and its clamp rigid and upright."""
         uniform = self.rigidity is None and not self.is_cone
-        return self.is_straight and uniform and self.clamp_compliance == 0
+        return self.is_straight and uniform and self.clamp_compliance == self.rest.angle == 0
 
     def turn(self, s: Floats) -> Floats:
         """By how much the unloaded vibrissa is turned from the upright, to the left."""

@@ -52,7 +52,7 @@ class Whisker:
     @property
     def beam(self) -> Beam:
         """Chain, rod or cable, dimensionless."""
-        vibrissa = Vibrissa.of(self.case.beam, self.case.clamp_stiffness)
+        vibrissa = Vibrissa.of(self.case.beam, self.case.support)
         return build(self.settings, np.inf, vibrissa)
 
     def xml(self, *said: str) -> str:
@@ -64,6 +64,7 @@ class Whisker:
         """The vibrissa on a carriage that a motor moves, and the obstacle."""
         if self.case.radius == 0:
             raise InputError("beam.radius", 0, "positive for MuJoCo", "it cannot collide a line")
+        self.case.require_upright("an exported whisker, which is mounted at any angle,")
         beam = self.beam
         own = beam.spec(self.case.radius)
         give_mass(own, beam.layout, self.motion)

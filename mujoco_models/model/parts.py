@@ -21,7 +21,7 @@ def parts(case: Case, settings: Settings, engine: str = "MuJoCo") -> tuple[Beam,
     if len(obstacle.corners) == 0:
         thinnest = case.beam.unloaded.tip_radius
         spacing = bead_spacing(settings.segments, thinnest, obstacle.largest_curvature)
-    return build(settings, spacing, Vibrissa.of(case.beam, case.clamp_stiffness)), obstacle
+    return build(settings, spacing, Vibrissa.of(case.beam, case.support)), obstacle
 
 
 def parts_at_rest(case: Case, settings: Settings, engine: str = "MuJoCo") -> tuple[Beam, Obstacle]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from analytic.problem.beam import Beam
+from analytic.problem.support import Support
 from mujoco_models.beams.kinds import build
 from mujoco_models.beams.vibrissa import Vibrissa
 from mujoco_models.model.spec import add_options
@@ -26,7 +27,7 @@ def load_tip(
     rest.
     """
     vibrissa = vibrissa or Beam()
-    beam = build(settings, 1.0, Vibrissa.of(vibrissa, clamp_stiffness))
+    beam = build(settings, 1.0, Vibrissa.of(vibrissa, Support(clamp_stiffness)))
     layout = beam.layout
     spec = beam.spec(Beam().radius)
     add_options(spec)

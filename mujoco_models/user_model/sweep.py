@@ -38,6 +38,7 @@ def run_user_model(
         measured = measure(model, parts, own.file)
         held = hold(model, parts)
         held.unload()
+    case.require_upright("a model of your own, whose clamp stands as it does,")
     _check(case, measured)
     moved = replace(
         motion, timestep=measured.timestep / measured.period, integrator=measured.integrator

@@ -12,6 +12,7 @@ _THINNEST = 0.05  # radius of the tip over that at the clamp; thinner ones are h
 _SOFTEST = 20.0  # L/EI; a clamp so soft holds nothing
 _MOST_BENT = 1.5  # 1/L, at rest
 _MOST_RIGID = 100.0  # times what the readings' magnitudes suggest
+_MOST_LEANT = 0.5  # rad
 _FARTHEST = 0.3  # L
 
 
@@ -80,6 +81,9 @@ UNKNOWNS: dict[str, Unknown] = {
         _MOST_BENT,
         (False, False),
         (-0.6, -0.2, 0.2, 0.6),
+    ),
+    "clamp_angle": Unknown(
+        "clamp_angle", lambda given: 1.0, -_MOST_LEANT, _MOST_LEANT, (False, False), (-0.1, 0.1)
     ),
     "tip_radius": Unknown(
         "tip_radius",

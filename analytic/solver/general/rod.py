@@ -31,9 +31,9 @@ class RodProperties:
     share: float = 1.0
 
     @classmethod
-    def of(cls, beam: Beam) -> "RodProperties":
-        """What varies along a beam."""
-        rest, rigidity = beam.unloaded, beam.flexural_rigidity
+    def of(cls, beam: Beam, rest: Unloaded) -> "RodProperties":
+        """What varies along a beam of a shape at rest."""
+        rigidity = beam.flexural_rigidity
         if isinstance(rigidity, Along):
             return cls(rest, rigidity.times(1 / beam.base_rigidity, 1 / beam.length))
         return cls(rest, rest.tip_radius / rest.base_radius if rest.base_radius else 1.0)
@@ -44,7 +44,8 @@ class RodProperties:
         natural = rest.natural
         less = natural.times(share) if isinstance(natural, Along) else natural * share
         base = rest.tip_radius + share * (rest.base_radius - rest.tip_radius)
-        return replace(self, unloaded=Unloaded(less, base, rest.tip_radius), share=share)
+        less_leant = replace(rest, natural=less, base_radius=base, angle=share * rest.angle)
+        return replace(self, unloaded=less_leant, share=share)
 
     def flexibility(self, s: Floats) -> Floats:
         """EI(0)/EI(s)."""

@@ -21,6 +21,7 @@ from analytic.problem.arrays import Booleans, Floats, Integers
 from analytic.problem.beam import Beam
 from analytic.problem.case import Case
 from analytic.problem.contours.contour import Contour, ContourPoint
+from analytic.problem.support import Support
 from analytic.problem.unloaded import Unloaded
 from analytic.solver.general import march
 from analytic.solver.general.rod import RodProperties
@@ -46,28 +47,30 @@ class Vibrissa(NamedTuple):
     radius: float | Floats = 0.0  # at the tip, or one a state [L]
     # what varies along the vibrissa, if anything does; the natural curvature is then its.
     rod: RodProperties | None = None
+    clamp_angle: float = 0.0  # by which its clamp leans to the left of the upright [rad]
 
     @classmethod
-    def of(cls, beam: Beam, clamp_stiffness: float, friction: float) -> "Vibrissa":
+    def of(cls, beam: Beam, held: Support) -> "Vibrissa":
         """The numbers of a beam in its clamp, made dimensionless."""
-        rest = beam.unloaded
+        rest = held.unloaded(beam)
         return cls(
             0.0 if isinstance(rest.natural, Along) else rest.natural,
-            beam.moment_unit / clamp_stiffness,
-            friction,
+            beam.moment_unit / held.clamp_stiffness,
+            held.friction,
             rest.tip_radius,
-            RodProperties.of(beam) if beam.varies else None,
+            RodProperties.of(beam, rest) if beam.varies else None,
+            held.clamp_angle,
         )
 
     @classmethod
     def of_case(cls, case: Case) -> "Vibrissa":
         """That of a case."""
-        return cls.of(case.beam, case.clamp_stiffness, case.friction)
+        return cls.of(case.beam, case.support)
 
     @property
     def is_plain(self) -> bool:
-        """Whether it is the paper's: straight, uniform, rigidly clamped, without friction."""
-        held = self.natural_curvature == 0 and self.compliance == 0
+        """Whether it is the paper's: straight, uniform, upright in a rigid clamp, not rubbed."""
+        held = self.natural_curvature == self.compliance == self.clamp_angle == 0
         return self.rod is None and held and not np.any(self.friction)
 
     @property
@@ -76,7 +79,7 @@ class Vibrissa(NamedTuple):
         if self.rod is not None:
             return self.rod.unloaded
         radius = float(self.radius)
-        return Unloaded(self.natural_curvature, radius, radius)
+        return Unloaded(self.natural_curvature, radius, radius, self.clamp_angle)
 
     def turn_after(self, s: Floats) -> Floats | float:
         """By how much it turns at rest on the way from a place to its tip [rad]."""
@@ -143,6 +146,7 @@ class Vibrissa(NamedTuple):
             share * self.friction,
             self.radius,
             None if self.rod is None else self.rod.scaled(share),
+            share * self.clamp_angle,
         )
 
 
@@ -234,7 +238,7 @@ def states(point: ContourPoint, force: Floats, excess: Floats, vibrissa: Vibriss
         moment,
         start.along * sin + start.across * cos,
         start.along * cos - start.across * sin,
-        vibrissa.compliance * moment - 2 * turned,
+        vibrissa.compliance * moment - 2 * turned - vibrissa.clamp_angle,
         start.amplitude,
         vibrissa,
     )

@@ -61,7 +61,7 @@ def reconstruct_space(
         If the vibrissa is not straight and uniform, or the noise is none of the components'.
     """
     beam, tangent = readings.beam, readings.clamp_tangent
-    require_plain("the reconstruction in space", beam, np.inf, 0.0)
+    require_plain("the reconstruction in space", beam)
     clamp = _Clamp.of(readings)
     foot = clamp.foot
     units = np.repeat([beam.force_unit, beam.moment_unit], 3)

@@ -1,6 +1,5 @@
 """The problem in space: a vibrissa, a convex body, and the way of the foot."""
 
-import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -57,7 +56,7 @@ class SpatialCase:
             ("name", str, "it names files and reports"),
         ):
             require(f"case.{name}", getattr(self, name), kind, remedy)
-        require_plain("a sweep in space", self.beam, math.inf, 0.0)
+        require_plain("a sweep in space", self.beam)
         self._check_place()
         way = self.way
         begin = way.gap(0.0)

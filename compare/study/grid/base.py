@@ -25,6 +25,7 @@ from engines.known import named_engines
 _KEYS = {
     "clamp_stiffness": ["support", "rotational_stiffness"],
     "friction": ["contact", "friction"],
+    "clamp_angle": ["support", "angle"],
     "engine": ["engine", "name"],
 }
 

@@ -61,10 +61,10 @@ COLUMNS_IN_SPACE: Mapping[Record, Mapping[str, str]] = {
 
 def find(physics: Physics, direction: Direction = "left") -> Events:
     """Find the events of the sweep in closed form."""
-    beam, profile, clamp_stiffness, friction = physics
+    beam, profile, held = physics
     if direction == "right":
-        beam, profile = beam.mirrored(), profile.mirrored()
-    return find_events(profile, beam, clamp_stiffness=clamp_stiffness, friction=friction)
+        beam, profile, held = beam.mirrored(), profile.mirrored(), held.mirrored()
+    return find_events(profile, beam, **held._asdict())
 
 
 def events(

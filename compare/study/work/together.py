@@ -47,8 +47,8 @@ def _with_events(known: list[Known]) -> list[Known]:
         if one.run is None:
             continue
         try:
-            beam, profile, stiffness, friction = one.run.physics(Path())
-            if is_plain(beam, stiffness, friction):
+            beam, profile, held = one.run.physics(Path())
+            if is_plain(beam, held):
                 mirrored = one.run.sweep.direction == "right"
                 profiles.append(profile.mirrored() if mirrored else profile)
                 beams.append(beam)

@@ -20,6 +20,7 @@ from analytic import (
     relative_noise,
     solve_sweep,
 )
+from analytic.problem.support import Support
 from tests.analytic.noisy import noisy
 
 
@@ -137,8 +138,8 @@ def test_no_friction_is_not_taken_for_some(profile):
 
 def test_readings_say_what_rubs():
     readings = swept(0.3, stiffness=6.0)
-    assert readings.support == (6.0, 0.3)
-    assert readings.with_friction(0.0).support == (6.0, 0.0)
+    assert readings.support == Support(6.0, 0.3)
+    assert readings.with_friction(0.0).support == Support(6.0)
     bare = Readings(readings.table, readings.beam)
-    assert bare.with_friction(0.2).support == (np.inf, 0.2)
+    assert bare.with_friction(0.2).support == Support(friction=0.2)
     assert "support" not in bare.with_friction(0.0).provenance

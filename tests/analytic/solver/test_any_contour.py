@@ -20,6 +20,7 @@ from analytic import (
     solve_sweep,
     with_friction,
 )
+from analytic.problem.support import Support
 from tests.fuzz.contours import KINDS, trial
 
 THIN = Beam(radius=0.0)
@@ -130,7 +131,7 @@ def test_residuals_show_a_wrong_answer(column):
     columns = {name: exact.table[name].to_numpy() for name in exact.table}
     columns[column] = columns[column] * (1 + 1e-4)
     free = columns["phase"] == "free"
-    vibrissa = Vibrissa.of(exact.beam, np.inf, 0.0)
+    vibrissa = Vibrissa.of(exact.beam, Support())
     found = np.maximum(*residuals(columns, vibrissa, Units.of(exact.beam)).values())
     touching = ~free & (np.abs(columns[column]) > 1e-2)
     assert (found[touching] > 1e-8).all()

@@ -47,6 +47,7 @@ def by_hand(case):
         "natural_curvature": replace(
             case, beam=replace(beam, natural_curvature=beam.natural_curvature + 1e-3 / length)
         ),
+        "clamp_angle": replace(case, clamp_angle=case.clamp_angle + 1e-3),
         "tip_radius": replace(case, beam=replace(beam, tip_radius=1.001 * beam.tip_radius)),
     }
 

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 from analytic import CLAMP_READINGS, Case, Readings, circle, named_case, solve_sweep
+from analytic.problem.support import Support
 from compare.align.offset import without_offset
 from compare.measure.cantilever import tip_of
 from compare.measure.conditions import as_believed
@@ -147,7 +148,7 @@ def test_what_a_method_believes():
     case = Case(BEAM, named_case("parabola").profile.scaled(2.0))
     soft = replace(solved(), provenance={"support": {"clamp_stiffness": 15.0, "friction": 0.2}})
     believed = as_believed(soft, replace(case, beam=replace(BEAM, radius=0.02)))
-    assert believed.support == (np.inf, 0.0)
+    assert believed.support == Support()
     assert believed.beam.radius == 0.02
 
 

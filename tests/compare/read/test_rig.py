@@ -16,6 +16,7 @@ from analytic import (
     reconstruct,
     solve_sweep,
 )
+from analytic.problem.support import Support
 from compare import read_measured, read_sweeps
 
 FOOT = np.linspace(1, -1, 40)
@@ -158,9 +159,9 @@ def test_clamp_and_friction_come_with_the_beam(tmp_path):
     assert there.sum() == (exact.table["phase"] != "free").sum()
     assert np.abs(found["contact_x"] - exact.values("contact_x"))[there].max() < 1e-12
     exact.write(tmp_path / "ours.parquet")
-    assert read_measured(tmp_path / "ours.parquet").support == (6.0, 0.25)
+    assert read_measured(tmp_path / "ours.parquet").support == Support(6.0, 0.25)
     beam.write_text("[beam]\nnatural_curvature = -0.4\n[contact]\nfriction = 0.0\n")
-    assert read_measured(tmp_path / "ours.parquet", beam).support == (np.inf, 0.0)
+    assert read_measured(tmp_path / "ours.parquet", beam).support == Support()
     beam.write_text("[beam]\n[support]\nrotational_stiffness = 1e-9\n")
     with pytest.raises(InputError, match="hundredth"):
         read_measured(tmp_path / "rig.csv", beam)

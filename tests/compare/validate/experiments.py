@@ -38,6 +38,7 @@ def off(case: Case, errors: dict[str, float]) -> Readings:
         beam=beam,
         profile=case.profile.raised(errors.get("height", 0.0)),
         friction=abs(errors.get("friction", 0.0)),
+        clamp_angle=errors.get("clamp_angle", 0.0),
         sweep=Sweep(2),
     )
     first = max(first, varied.foot_x[0])  # a sweep starts clear of the object

@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
 from analytic import Beam, InputError
+from analytic.problem.support import Support
 from mujoco_models import Settings, available_beams, load_tip
 
 SEGMENTS = (10, 20, 40)
@@ -84,7 +85,9 @@ def test_unloaded_it_is_the_arc(beam):
 
     natural = 0.7
     made = build(
-        Settings(beam=beam, segments=5), 0.05, Vibrissa.of(Beam(natural_curvature=natural), 5.0)
+        Settings(beam=beam, segments=5),
+        0.05,
+        Vibrissa.of(Beam(natural_curvature=natural), Support(5.0)),
     )
     spec = made.spec(0.005)
     add_options(spec)

@@ -1,6 +1,5 @@
 """A vibrissa that is curved towards the object and lies down on its other side."""
 
-import math
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +7,7 @@ import pandas as pd
 import pytest
 
 from analytic import Beam, Case, Sweep, catenary, certify, find_events, reconstruct, solve_sweep
+from analytic.problem.support import Support
 from analytic.solver.general.states import Vibrissa, states_at
 from analytic.solver.general.stations import solve_near
 
@@ -57,7 +57,7 @@ def test_references_of_sweeps(natural, friction, radius):
 
 def test_references_of_equilibria_with_friction():
     rows = rows_of(1.0, 0.2, 0.0)
-    vibrissa = Vibrissa.of(beam_of(1.0, 0.0), math.inf, 0.2)
+    vibrissa = Vibrissa.of(beam_of(1.0, 0.0), Support(friction=0.2))
     start = rows[["alpha", "f", "s1"]].to_numpy(float)
     start[:, 2] = np.pi + 1 - start[:, 2]
     z, balanced = solve_near(PROFILE, vibrissa, rows["foot_x"].to_numpy(), start + 1e-3)

@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 
 from analytic import Beam, catenary, parabola, solve_contact
+from analytic.problem.support import Support
 from analytic.problem.table import as_table
 from analytic.solver.columns import Units, to_columns
 from analytic.solver.general.contacts import contacts
@@ -42,7 +43,7 @@ def test_references(variant, profile):
     beam = Beam(radius=radius, natural_curvature=natural)
     alpha = np.deg2rad(rows["alpha_deg"].to_numpy(dtype=float))
     states = contacts(
-        PROFILES[profile].offset(radius), alpha, Vibrissa.of(beam, stiffness, friction)
+        PROFILES[profile].offset(radius), alpha, Vibrissa.of(beam, Support(stiffness, friction))
     )
     # The references do not ask what else of the vibrissa touches; only one that is curved may.
     found = as_table(to_columns(states, Units.of(beam))).set_index(rows.index)

@@ -28,6 +28,7 @@ from analytic import (
     solve_sweep,
 )
 from analytic.problem.rest import first_touch
+from analytic.problem.support import Support
 from analytic.problem.unloaded import Unloaded
 from analytic.solver.columns import Units
 from analytic.solver.general.clearance import is_rest_clear
@@ -181,7 +182,7 @@ def test_march_is_the_integral(force, length, theta, m, ratio, wave):
     """Of the pendulum's equation, by the Dormand-Prince method of order 8."""
     beam = Beam(flexural_rigidity=cone(ratio), natural_curvature=lambda s: np.cos(wave * s) / 2)
     given_ = (np.array([x]) for x in (theta, m, force, length))
-    found = march(RodProperties.of(beam), *given_)
+    found = march(RodProperties.of(beam, beam.unloaded), *given_)
 
     def rate(s, state):
         slope, moment = state[:2]
@@ -268,7 +269,7 @@ def test_natural_bow_that_a_couple_straightens():
     beam = Beam(flexural_rigidity=cone(0.5), natural_curvature=lambda s: 0.05 / cone(0.5)(s))
     lengths = np.linspace(0.1, 1.0, 7)
     slope, none = np.full(7, 0.4), np.zeros(7)
-    found = march(RodProperties.of(beam), slope, np.full(7, -0.05), none, lengths)
+    found = march(RodProperties.of(beam, beam.unloaded), slope, np.full(7, -0.05), none, lengths)
     np.testing.assert_allclose(found.along, lengths * np.cos(0.4), rtol=1e-14)
     np.testing.assert_allclose(found.across, lengths * np.sin(0.4), rtol=1e-14)
 
@@ -306,7 +307,7 @@ def test_first_contact_is_that_of_two_rigid_bodies(name):
     for profile in (OBJECT, parabola(1.0, 0.4), SQUARE):
         case = case_of(beam, profile)
         touch = first_touch(case.centreline, case.reach, beam.unloaded)
-        vibrissa = Vibrissa.of(beam, math.inf, 0.0)
+        vibrissa = Vibrissa.of(beam, Support())
         beside = touch.foot_x + np.array([-1e-2, 1e-6])
         # Its 16 places may lie beside the contact, and one that goes along enters by a square.
         assert list(is_rest_clear(case.centreline, vibrissa, beside)) == [False, True]
@@ -328,7 +329,7 @@ def test_curve_ends_where_a_flexible_tip_would_wind_up():
     """Past the snap-off the tip of a sharp cone turns on, into the body: thousands of states."""
     beam = Beam(radius=0.003, tip_radius=0.0003, natural_curvature=-0.4)
     case = case_of(beam, PROFILES["g1"], stations=200, friction=0.3, clamp_stiffness=8.0)
-    contour, vibrissa = case.centreline, Vibrissa.of(beam, 8.0, 0.3)
+    contour, vibrissa = case.centreline, Vibrissa.of(beam, Support(8.0, 0.3))
     touch = first_touch(contour, case.reach, vibrissa.unloaded)
     path = follow(contour, vibrissa, touch, case.reach)
     assert path.complete
@@ -359,7 +360,7 @@ def test_residuals_find_a_wrong_rigidity():
     table = solve_sweep(case).table
     columns = {name: table[name].to_numpy() for name in table}
     other = Beam(tip_radius=0.00201)
-    vibrissa = Vibrissa.of(other, math.inf, 0.0)
+    vibrissa = Vibrissa.of(other, Support())
     missed = residuals(columns, vibrissa, Units.of(other))["residual_boundary"]
     assert 1e-5 < np.nanmax(missed) < 1e-1
 
