@@ -51,10 +51,13 @@ def first_touch(contour: Contour, reach: tuple[float, float], rest: Unloaded) ->
     steep = lean(grid)
     at_tip = top < first or at_first >= tip_y * (1 - 1e-15)
     if not at_tip and steep[0] < -_ROUNDING:
-        what = f"{float(rest.curvature(np.array(1.0))):.6g}/L at the tip"
+        name, what = "clamp_angle", f"{rest.angle:.6g}"
+        if rest.angle == 0:
+            name = "beam.natural_curvature"
+            what = f"{float(rest.curvature(np.array(1.0))):.6g}/L at the tip"
         allowed = f"such that it does not lean over the upper side of the object ({contour.label})"
         remedy = "lessen it; only the object's lower side can be touched"
-        raise InputError("beam.natural_curvature", what, allowed, remedy)
+        raise InputError(name, what, allowed, remedy)
     crossings = np.flatnonzero((steep[:-1] > 0) & (steep[1:] <= 0))
     tangents = zeros(lambda _, t: lean(t), grid[crossings + 1], grid[crossings])
     places = np.append(top, tangents)

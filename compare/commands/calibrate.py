@@ -33,8 +33,8 @@ def calibrate(
     fit: Annotated[
         str,
         option(
-            "What is unknown: flexural_rigidity, clamp_stiffness, clamp_angle, natural_curvature, tip_radius, "
-            "friction, offset (of foot_x).",
+            "What is unknown: flexural_rigidity, clamp_stiffness, clamp_angle, natural_curvature, "
+            "tip_radius, friction, offset (of foot_x).",
             "A,B,...",
         ),
     ] = "flexural_rigidity",

@@ -100,9 +100,9 @@ def calibrate(
         The object and all that is known of the vibrissa. What is unknown is first tried as it is
         there. Its stations do not matter.
     unknowns : sequence of str
-        Some of ``flexural_rigidity`` (at the clamp), ``clamp_stiffness``, ``clamp_angle``, ``natural_curvature``,
-        ``tip_radius`` (of a cone whose rigidity follows it), ``friction``, and ``offset``, by how
-        much ``foot_x`` is too large.
+        Some of ``flexural_rigidity`` (at the clamp), ``clamp_stiffness``, ``clamp_angle``,
+        ``natural_curvature``, ``tip_radius`` (of a cone whose rigidity follows it), ``friction``,
+        and ``offset``, by how much ``foot_x`` is too large.
     noise : mapping, optional
         Standard deviation of each sensed column's noise, in the column's unit. If it is not given,
         it is what the readings themselves show.
