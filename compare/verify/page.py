@@ -6,8 +6,9 @@ from itertools import groupby
 
 from matplotlib.figure import Figure
 
-from compare.show.document import Document, Picture, Section, Table, Text, Tile, Verdict
+from compare.show.document import Document, Items, Picture, Section, Table, Text, Tile, Verdict
 from compare.show.style import BLUE, FAINT, GREEN, ORANGE, PAGE_WIDTH, PINK, SMALL
+from compare.verify.peers import PeerRow
 from compare.verify.record import Row, State
 
 _COLOURS: dict[State, str] = {
@@ -20,7 +21,7 @@ _LEAST = 1e-16  # of a difference that is drawn
 _LINE = 0.19  # inches
 
 
-def verified(rows: Sequence[Row]) -> Document:
+def verified(rows: Sequence[Row], peers: Sequence[PeerRow] = ()) -> Document:
     """All that is said of them."""
     sources = {row.source for row in rows}
     contact = {row.source for row in rows if row.contact}
@@ -29,6 +30,7 @@ def verified(rows: Sequence[Row]) -> Document:
         *(Tile(state, str(_count(rows, state)), f"of {len(rows)} numbers") for state in _COLOURS),
     ]
     picture = Picture("verify", {_CAPTION: partial(drawn, rows)}, _CAPTION)
+    others = [Section("peers", "Peers' own cases", [peer_table(peers), _reasons(peers)])]
     return Document(
         "Checked by strangers",
         "What others printed, measured or derived, beside what is computed here.",
@@ -36,6 +38,7 @@ def verified(rows: Sequence[Row]) -> Document:
         [
             Section("numbers", "Number by number", [table(rows)]),
             Section("picture", "How far apart", [picture]),
+            *(others if peers else []),
             Section("sources", "Sources", [_sources(rows)]),
             Section("meaning", "How to read it", [Text(_MEANING)]),
         ],
@@ -46,9 +49,9 @@ def verified(rows: Sequence[Row]) -> Document:
 _CAPTION = "How far each number here is from the quoted one; 1e-16 stands for less."
 _MEANING = (
     "A number agrees in all digits if ours rounds to the printed one. Explained: it does not, but "
-    "the difference is no larger than what the reason on its line makes. Open: the difference has "
-    "no reason here, and is no larger than when it was found. Differs: it is larger than that, and "
-    "the exit code is 1."
+    "the difference is no larger than what the reason on its line makes; where that is computed, "
+    "the number with it in stands there too. Open: the difference has no reason here, and is no "
+    "larger than when it was found. Differs: it is larger than that, and the exit code is 1."
 )
 
 
@@ -57,7 +60,7 @@ def verdict(rows: Sequence[Row]) -> Verdict:
     said: dict[State, list[str]] = {state: [] for state in _COLOURS}
     for row in rows:
         line = f"{row.source}, {row.what}: {row.quoted}, here {row.ours:.{row.digits + 3}g}"
-        said[row.state].append(f"{row.state}: {line}; {row.why}".rstrip("; "))
+        said[row.state].append(f"{row.state}: {line}; {_why(row)}".rstrip("; "))
     wrong = said["differs"]
     counts = ", ".join(f"{_count(rows, state)} {state}" for state in _COLOURS)
     claim = "Some numbers differ." if wrong else "All numbers agree, or differ as stated."
@@ -69,7 +72,7 @@ def table(rows: Sequence[Row]) -> Table:
     lines = [
         (
             *(row.source, row.what, row.quoted, f"{row.ours:.{max(row.digits + 2, 5)}g}"),
-            *(str(row.digits), ": ".join(filter(None, (row.state, row.why)))),
+            *(str(row.digits), ": ".join(filter(None, (row.state, _why(row))))),
         )
         for row in rows
     ]
@@ -105,6 +108,32 @@ def drawn(rows: Sequence[Row]) -> Figure:
     ax.grid(axis="x", color=FAINT, alpha=0.35, linewidth=0.6)
     figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return figure
+
+
+def peer_table(peers: Sequence[PeerRow]) -> Table:
+    """One line a number of theirs."""
+    head = ("peer", "case and number", "published", "its engine here", "exact", "our chain")
+    lines = [
+        (
+            *(row.peer, f"{row.case}: {row.what}", row.published, row.run, f"{row.exact:.7g}"),
+            "" if row.mujoco is None else f"{row.mujoco:.4g}",
+        )
+        for row in peers
+    ]
+    return Table(
+        "What peers publish of their own cases, and what is found here", head, lines, (0, 1, 3)
+    )
+
+
+def _reasons(peers: Sequence[PeerRow]) -> Items:
+    return Items(list(dict.fromkeys(f"{row.peer}, {row.case}: {row.why}" for row in peers)))
+
+
+def _why(row: Row) -> str:
+    """The reason, and what comes with it in."""
+    if row.because is None:
+        return row.why
+    return f"{row.why}: with it {row.because:.{max(row.digits + 4, 6)}g}"
 
 
 def _sources(rows: Sequence[Row]) -> Table:

@@ -2,7 +2,7 @@
 
 import math
 import tomllib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
@@ -32,6 +32,7 @@ class Row:
     digits: int  # that agree
     state: State
     why: str
+    because: float | None = None  # ours with what is said to make the difference
 
     @property
     def difference(self) -> float:
@@ -44,30 +45,37 @@ def sources(file: Path = FILE) -> list[dict[str, Any]]:
     return list(tomllib.loads(file.read_text(encoding="utf-8"))["source"])
 
 
-def verify(given: Sequence[Mapping[str, Any]]) -> Iterator[Row]:
+def verify(given: Iterable[Mapping[str, Any]]) -> Iterator[Row]:
     """The rows of these sources, one after the other as they are computed."""
     for source in given:
         known: dict[str, rods.Parts] = {}
         for row in source["row"]:
             arguments = {**source.get("given", {}), **row.get("at", {})}
-            made = known.get(repr(arguments))
-            if made is None:
-                made = known[repr(arguments)] = _MODELS[source["model"]](**arguments)
-            yield _judged(source, row, made)
+            made = []
+            for one in (arguments, {**arguments, **row.get("because", {})}):
+                if repr(one) not in known:
+                    known[repr(one)] = _MODELS[source["model"]](**one)
+                made.append(known[repr(one)])
+            yield _judged(source, row, *made)
 
 
-def _judged(source: Mapping[str, Any], row: Mapping[str, Any], made: rods.Parts) -> Row:
+def _judged(
+    source: Mapping[str, Any], row: Mapping[str, Any], made: rods.Parts, explained: rods.Parts
+) -> Row:
     ours, printed = made[row["value"]], row.get("quoted")
     theirs = made[row["against"]] if printed is None else float(printed)
+    if "coarser" in row:  # of half as many elements: their limit, of second order
+        theirs += (theirs - float(row["coarser"])) / 3
     missed = abs(ours - theirs)
     whole, last = _FORMULA, _ROUNDED * abs(theirs)
     if printed is not None:
         number = Decimal(printed).as_tuple()
         whole, last = len(number.digits), 0.5 * 10.0 ** int(number.exponent)
+    left = abs(explained[row["value"]] - theirs)  # by the reason, where it can be computed
     state: State = "differs"
     if missed <= _EDGE * last:
         state = "all digits"
-    elif missed <= row.get("within", source.get("within", 0.0)):
+    elif left <= max(_EDGE * last, row.get("within", source.get("within", 0.0))):
         state = "open" if row.get("open") else "explained"
     agree = whole if state == "all digits" else min(whole, _digits(missed / abs(theirs)))
     why = row.get("why", "" if state == "all digits" else source.get("why", ""))
@@ -82,6 +90,7 @@ def _judged(source: Mapping[str, Any], row: Mapping[str, Any], made: rods.Parts)
         agree,
         state,
         why,
+        explained[row["value"]] if "because" in row else None,
     )
 
 

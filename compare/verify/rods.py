@@ -9,6 +9,7 @@ from scipy.special import ellipe, ellipk
 
 from analytic.solver.elastica import frame, span
 from analytic.space.checks.rod import Cantilever
+from compare.verify import elements as finite
 
 Parts: TypeAlias = dict[str, float]
 """Numbers by name."""
@@ -70,11 +71,14 @@ def rectangle(
     shear: float = math.inf,
     shear_z: float | None = None,
     torsion: float | None = None,
+    twisted: float = 1.0,
+    elements: int | None = None,
 ) -> Parts:
     """A cantilever of rectangular section: `height` along y, `width` along z.
 
     Shear correction factors (infinite: no shear), and that of the polar moment for torsion; else
-    the rectangle's own torsion constant (Timoshenko and Goodier, Theory of elasticity).
+    the rectangle's own torsion constant (Timoshenko and Goodier, Theory of elasticity), times
+    `twisted`. The rod itself, or `elements` of it.
     """
     area, sliding = width * height, modulus / (2 * (1 + poisson))
     about_y, about_z = height * width**3 / 12, width * height**3 / 12
@@ -82,32 +86,40 @@ def rectangle(
         thin, wide = sorted((width, height))
         odd = np.arange(1, 60, 2)
         tails = np.tanh(odd * math.pi * wide / (2 * thin)) / odd**5
-        twist = wide * thin**3 / 3 * (1 - 192 * thin / (math.pi**5 * wide) * float(tails.sum()))
+        whole = 1 - 192 * thin / (math.pi**5 * wide) * float(tails.sum())
+        twist = twisted * wide * thin**3 / 3 * whole
     else:
         twist = torsion * (about_y + about_z)
     stiff = np.array([modulus, sliding * shear, sliding * (shear_z or shear)]) * area
     bending = np.array([sliding * twist, modulus * about_y, modulus * about_z])
-    rod = Cantilever(
-        length, 1 / stiff, 1 / bending, force=np.array(force, float), moment=np.array(moment, float)
-    )
-    tip = rod.tip()
+    loads = np.array(force, float), np.array(moment, float)
+    if elements is None:
+        tip = Cantilever(length, 1 / stiff, 1 / bending, *loads).tip()
+    else:
+        nodes = np.linspace(0, [length, 0, 0], elements + 1)
+        tip = finite.tip(nodes, 1 / stiff, 1 / bending, *loads)
     return {"u": length - tip[0], "x": tip[0] - length, "y": tip[1], "z": tip[2]}
 
 
 def bend(
-    radius: float, degrees: float, load: float, stretching: list[float], bending: list[float]
+    radius: float,
+    degrees: float,
+    load: float,
+    stretching: list[float],
+    bending: list[float],
+    elements: int | None = None,
 ) -> Parts:
-    """An arc from the clamp, pulled out of its plane at its tip."""
-    turn = math.radians(degrees)
-    rod = Cantilever(
-        radius * turn,
-        1 / np.array(stretching),
-        1 / np.array(bending),
-        force=np.array([0, 0, load]),
-        curvature=lambda s: 1 / radius,
-    )
-    tip = rod.tip()
-    moved = tip - radius * np.array([math.sin(turn), 1 - math.cos(turn), 0])
+    """An arc from the clamp, pulled out of its plane at its tip; or `elements` along it."""
+    turn, force = math.radians(degrees), np.array([0, 0, load])
+    yielding = 1 / np.array(stretching), 1 / np.array(bending)
+    turns = np.linspace(0, turn, (elements or 1) + 1)
+    nodes = radius * np.column_stack([np.sin(turns), 1 - np.cos(turns), np.zeros(len(turns))])
+    if elements is None:
+        rod = Cantilever(radius * turn, *yielding, force=force, curvature=lambda s: 1 / radius)
+        tip = rod.tip()
+    else:
+        tip = finite.tip(nodes, *yielding, force, np.zeros(3))
+    moved = tip - nodes[-1]
     return dict(zip("xyzuvw", map(float, [*tip, *moved]), strict=True))
 
 

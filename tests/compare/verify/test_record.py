@@ -52,6 +52,47 @@ def test_digits_are_those_of_the_printed_number():
     assert (row.state, row.digits) == ("differs", 3)
 
 
+def test_a_reason_that_is_computed_must_make_the_number():
+    (source,) = (one for one in record.sources() if one["name"].startswith("Nachbagauer et al. 2011"))
+    small = {**source, "row": source["row"][:2]}
+    rows = list(record.verify([small]))
+    assert [row.state for row in rows] == ["explained", "explained"]
+    assert f"{rows[1].because:.8e}" == "8.09900305e-04"
+    coarse = [{**row, "because": {"elements": 128}} for row in small["row"]]
+    assert [row.state for row in record.verify([{**small, "row": coarse}])] == ["differs"] * 2
+
+
+def test_elements_have_the_rod_for_their_limit():
+    given = dict(width=0.1, height=0.1, modulus=1e6, poisson=0.3, force=[0.0, -0.4, 0.3])
+    rod, *coarse = (rods.rectangle(1.0, **given, elements=n)["y"] for n in (None, 8, 16, 32))
+    missed = np.abs(np.array(coarse) - rod)
+    assert np.log2(missed[:-1] / missed[1:]) == pytest.approx([2, 2], abs=0.05)
+
+
+def test_two_by_two_cells_of_a_section_stiffen_its_torsion():
+    """Saint-Venant's warping by biquadratic cells: what the Princeton beam's reason says."""
+    height, width, cells = 12.3777e-3, 3.2024e-3, 2
+    at = np.linspace(-0.5, 0.5, 2 * cells + 1)
+    points, weights = np.polynomial.legendre.leggauss(3)
+    shape = np.stack([points * (points - 1) / 2, 1 - points**2, points * (points + 1) / 2])
+    slope = np.stack([points - 0.5, -2 * points, points + 0.5])
+    places = np.arange(at.size**2).reshape(at.size, -1)
+    stiff, load, polar = np.zeros((at.size**2,) * 2), np.zeros(at.size**2), 0.0
+    half = np.array([height, width]) / cells / 2
+    for i, j in np.ndindex(cells, cells):
+        these = places[2 * i : 2 * i + 3, 2 * j : 2 * j + 3].ravel()
+        for p, q in np.ndindex(3, 3):
+            size = weights[p] * weights[q] * half.prod()
+            y, z = height * at[2 * i + 1] + half[0] * points[p], width * at[2 * j + 1] + half[1] * points[q]
+            along = np.outer(slope[:, p], shape[:, q]).ravel() / half[0]
+            across = np.outer(shape[:, p], slope[:, q]).ravel() / half[1]
+            stiff[np.ix_(these, these)] += size * (np.outer(along, along) + np.outer(across, across))
+            load[these] += size * (z * along - y * across)
+            polar += size * (y**2 + z**2)
+    constant = polar - load @ np.linalg.lstsq(stiff, load, rcond=None)[0]
+    assert constant / 1.1340719e-10 == pytest.approx(1.0333, abs=5e-5)
+
+
 def test_a_source_of_another_rigidity_differs():
     (source,) = sources("pressed")
     given = dict(source["given"], rigidity=1.2 * source["given"]["rigidity"])

@@ -1,0 +1,203 @@
+"""Other projects' own published cases: what they print, what their engines give here, and ours."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from importlib import import_module
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from analytic.problem.beam import Beam
+from analytic.space.checks.rod import integrate_rod
+from compare.verify import rods
+from mujoco_models import Settings, load_tip
+
+_Clamp: TypeAlias = Literal["naive", "second-order"]
+
+
+@dataclass(frozen=True)
+class PeerRow:
+    """One number of a case that a peer publishes."""
+
+    peer: str
+    case: str
+    what: str
+    published: str  # by the peer, with its own engine
+    run: str  # the same engine on this machine; or why it was not run
+    exact: float
+    mujoco: float | None  # of the chain, with as many segments; none where it has no such model
+    why: str = ""
+
+
+def _tip(load: float, segments: int, clamp: _Clamp = "second-order") -> tuple[float, float]:
+    return load_tip(load, Settings(segments=segments, clamp=clamp), Beam(radius=0.0))
+
+
+def _run(distribution: str, number: Callable[[], float]) -> str:
+    """What an engine gives here; a line if it is missing or gives up."""
+    try:
+        return f"{number():.10g}"
+    except ImportError as error:
+        return f"not run: {error.name or distribution} is not installed"
+    except Exception as error:  # whatever another's engine does
+        return f"failed: {' '.join(str(error).split())[:80]}"
+
+
+def _cosseratbench_cantilever() -> list[PeerRow]:
+    """Its error is relative to F L^3/(3 E I); github.com/jakeryderv/cosseratbench, 0.3.0."""
+    case, segments = "cantilever", 20
+    load = 7.5e-3 / (1e6 * math.pi / 4 * 0.02**4)
+    bernoulli = load / 3
+
+    def of(solver: str) -> float:
+        bench, registry = map(import_module, ("cosseratbench.experiment", "cosseratbench.registry"))
+        done = bench.run(registry.load_experiment(case), registry.load_solver(solver))
+        if done.failure or done.missing:
+            raise RuntimeError(done.failure or f"{solver} lacks {', '.join(done.missing)}")
+        return float(done.metrics["tip_deflection_error"])
+
+    exact = 1 - rods.tip_load(load)["w"] / bernoulli
+    naive, ours = (1 - _tip(load, segments, clamp)[0] / bernoulli for clamp in get_args(_Clamp))
+    why = f"the clamped link rigid: our chain so has {naive:.4g}; else {ours:.2g}"
+    printed = {"mujoco": "0.0740595", "pyelastica": "0.073"}
+    return [
+        PeerRow("cosseratbench", case, f"error of the tip, {solver}", said,
+                _run("cosseratbench", partial(of, solver)), exact, ours, why)
+        for solver, said in printed.items()
+    ]  # fmt: skip
+
+
+def _buckles(moment: float, tension: float) -> float:
+    """Zero where a clamped rod under this twisting moment and tension has a bent neighbour."""
+    slight, along = 1e-6, np.array([1.0, 0, 0])
+    ends = []
+    for push, turn in ((slight, 0), (0, slight)):
+        clamp = np.array([-tension, push, 0]), np.array([moment, turn, 0])
+        place, way, _ = integrate_rod(along, *clamp, 1.0)
+        ends.append(np.array([place[-1], way[-1]]) @ [0, 1, 1j] / slight)
+    # What happens in one direction happens in all, turned: so a complex number stands for both.
+    return float((np.linalg.det(np.array(ends)) * np.exp(0.5j * moment)).imag)
+
+
+def _cosseratbench_twist() -> list[PeerRow]:
+    """Greenhill's moment M L/(E I) of a rod that is clamped, twisted and pulled."""
+    rows = []
+    for tension, between, published in ((1e-9, (8, 10), "2.861 pi"), (10.0, (9, 12), "")):
+
+        def theirs(tension: float = tension) -> float:
+            return float(import_module("cosseratbench.experiments.twist").critical_moment(tension))
+
+        rows.append(
+            PeerRow(
+                "cosseratbench",
+                "twist",
+                f"critical moment at a tension of {tension:g}",
+                published,
+                _run("cosseratbench", theirs),
+                float(brentq(_buckles, *between, args=(tension,), xtol=1e-10)),
+                None,
+                "a rod in space integrated; PyElastica reaches 0.978, 0.989, 0.991 of it",
+            )
+        )
+    return rows
+
+
+def _cosseratbench_capstan() -> list[PeerRow]:
+    """The overhang that holds, from dT/dphi = mu T + w R (cos phi + mu sin phi), by quadrature."""
+    friction, short, radius = 0.3, 0.15, 0.051
+
+    def gained(phi: float) -> float:
+        own = math.cos(phi) + friction * math.sin(phi)
+        return math.exp(friction * (math.pi - phi)) * own
+
+    whole = quad(gained, 0, math.pi, epsabs=1e-14)[0]
+    exact = math.exp(friction * math.pi) * short + radius * whole
+
+    def theirs() -> float:
+        return float(import_module("cosseratbench.experiments.capstan").holding_overhang(friction))
+
+    return [
+        PeerRow("cosseratbench", "capstan", "overhang that holds, m", "1.26 exp(mu pi) 0.15",
+                _run("cosseratbench", theirs), exact, None, "no model here lies round a cylinder")
+    ]  # fmt: skip
+
+
+def _exudyn() -> list[PeerRow]:
+    """Exudyn, Examples/ANCFcantileverTest.py: the tip's x by number of elements."""
+    printed = {4: "-0.5074287154557922", 16: "-0.5085365799149556", 64: "-0.5085373030408489"}
+    exact = rods.rectangle(2.0, 0.1, 0.1, 2.07e11, 0.0, [0.0, -1293750.0, 0.0])["x"]
+    stretch = "the chain does not stretch, which makes 3.0e-4"
+    return [
+        PeerRow("Exudyn", "ANCFcantileverTest", f"x of the tip, {elements} elements, m", said,
+                _run("exudyn", partial(_exudyn_tip, elements)), exact,
+                -2 * _tip(3.0, elements)[1], stretch)
+        for elements, said in printed.items()
+    ]  # fmt: skip
+
+
+def _exudyn_tip(elements: int) -> float:
+    exudyn, items, beams = map(import_module, ("exudyn", "exudyn.itemInterface", "exudyn.beams"))
+    container = exudyn.SystemContainer()
+    system = container.AddSystem()
+    stiff = {"physicsBendingStiffness": 2.07e11 * 0.1**4 / 12, "physicsAxialStiffness": 2.07e9}
+    cable = items.Cable2D(physicsMassPerLength=78.0, useReducedOrderIntegration=0, **stiff)
+    made: Any = beams.GenerateStraightLineANCFCable2D(
+        system, [0, 0, 0], [2, 0, 0], elements, cable,
+        fixedConstraintsNode0=[1, 1, 0, 1], fixedConstraintsNode1=[0, 0, 0, 0],
+    )  # fmt: skip
+    marker = system.AddMarker(items.MarkerNodePosition(nodeNumber=made[0][-1]))
+    system.AddLoad(items.Force(markerNumber=marker, loadVector=[0, -1293750.0, 0]))
+    system.Assemble()
+    settings = exudyn.SimulationSettings()
+    settings.solutionSettings.writeSolutionToFile = False
+    settings.staticSolver.verboseMode = 0
+    settings.staticSolver.newton.relativeTolerance = 1e-8
+    settings.staticSolver.newton.absoluteTolerance = 1e-3
+    system.SolveStatic(settings)
+    return float(system.systemData.GetODE2Coordinates()[-4])
+
+
+def _pyelastica() -> list[PeerRow]:
+    """PyElastica, examples/CantileverTransversalLoadCase: the 45-degree bend of radius 1."""
+    area, inertia, modulus = 1e-4, 1e-8 / 12, 1e9
+    shear = modulus / 3  # as its helper sets it; its script says E/(1 + 0)
+    stiff = [modulus * area, *[27 / 28 * shear * area] * 2]
+    bending = [shear * 2 * inertia, modulus * inertia, modulus * inertia]
+    exact = rods.bend(1.0, 45.0, 6.0, stiff, bending)["z"]
+    other = rods.bend(1.0, 45.0, 6.0, stiff, [modulus * 2 * inertia, *bending[1:]])["z"]
+    return [
+        PeerRow("PyElastica", "CantileverTransversalLoadCase", "z of the tip, 400 elements, m",
+                "0.530065092", "not run: 2e6 steps", exact, None,
+                f"1.5 % off the rod of its own stiffnesses; with the script's G {other:.4f}, 0.2 %")
+    ]  # fmt: skip
+
+
+def _newton() -> list[PeerRow]:
+    """Newton, examples/vbd/example_cable_bend_stiffness.py: deflection times stiffness."""
+    segments, size, force, joints = 16, 0.1, 0.5, (100.0, 300.0, 900.0)
+    length = segments * size
+    loads = [force * length**2 / (joint * size) for joint in joints]
+    exact, ours = (
+        [length * across * joint for across, joint in zip(found, joints, strict=True)]
+        for found in (
+            [rods.tip_load(load)["w"] for load in loads],
+            [_tip(load, segments, "naive")[0] for load in loads],
+        )
+    )
+    apart, chain = (max(abs(one / of[0] - 1) for one in of) for of in (exact, ours))
+    return [
+        PeerRow("Newton", "cable_bend_stiffness", "how far deflection times stiffness varies",
+                "below 0.10", "not run: python -m newton.examples cable_bend_stiffness --test",
+                apart, chain, "the large rotation alone; Newton's test allows fifty times as much")
+    ]  # fmt: skip
+
+
+CASES = (
+    *(_cosseratbench_cantilever, _cosseratbench_twist, _cosseratbench_capstan),
+    *(_exudyn, _pyelastica, _newton),
+)
+"""Each makes its rows. SimBenchmark's have rigid bodies alone: nothing of them applies to a rod."""
