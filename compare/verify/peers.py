@@ -73,7 +73,7 @@ def _cosseratbench_cantilever() -> list[PeerRow]:
 
 def _buckles(moment: float, tension: float) -> float:
     """Zero where a clamped rod under this twisting moment and tension has a bent neighbour."""
-    slight, along = 1e-6, np.array([1.0, 0, 0])
+    slight, along = 1e-4, np.array([1.0, 0, 0])
     ends = []
     for push, turn in ((slight, 0), (0, slight)):
         clamp = np.array([-tension, push, 0]), np.array([moment, turn, 0])

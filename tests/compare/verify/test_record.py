@@ -53,7 +53,9 @@ def test_digits_are_those_of_the_printed_number():
 
 
 def test_a_reason_that_is_computed_must_make_the_number():
-    (source,) = (one for one in record.sources() if one["name"].startswith("Nachbagauer et al. 2011"))
+    (source,) = (
+        one for one in record.sources() if one["name"].startswith("Nachbagauer et al. 2011")
+    )
     small = {**source, "row": source["row"][:2]}
     rows = list(record.verify([small]))
     assert [row.state for row in rows] == ["explained", "explained"]
@@ -63,8 +65,8 @@ def test_a_reason_that_is_computed_must_make_the_number():
 
 
 def test_elements_have_the_rod_for_their_limit():
-    given = dict(width=0.1, height=0.1, modulus=1e6, poisson=0.3, force=[0.0, -0.4, 0.3])
-    rod, *coarse = (rods.rectangle(1.0, **given, elements=n)["y"] for n in (None, 8, 16, 32))
+    given = 1.0, 0.1, 0.1, 1e6, 0.3, [0.0, -0.4, 0.3]
+    rod, *coarse = (rods.rectangle(*given, elements=n)["y"] for n in (None, 8, 16, 32))
     missed = np.abs(np.array(coarse) - rod)
     assert np.log2(missed[:-1] / missed[1:]) == pytest.approx([2, 2], abs=0.05)
 
@@ -83,10 +85,15 @@ def test_two_by_two_cells_of_a_section_stiffen_its_torsion():
         these = places[2 * i : 2 * i + 3, 2 * j : 2 * j + 3].ravel()
         for p, q in np.ndindex(3, 3):
             size = weights[p] * weights[q] * half.prod()
-            y, z = height * at[2 * i + 1] + half[0] * points[p], width * at[2 * j + 1] + half[1] * points[q]
+            y, z = (
+                height * at[2 * i + 1] + half[0] * points[p],
+                width * at[2 * j + 1] + half[1] * points[q],
+            )
             along = np.outer(slope[:, p], shape[:, q]).ravel() / half[0]
             across = np.outer(shape[:, p], slope[:, q]).ravel() / half[1]
-            stiff[np.ix_(these, these)] += size * (np.outer(along, along) + np.outer(across, across))
+            stiff[np.ix_(these, these)] += size * (
+                np.outer(along, along) + np.outer(across, across)
+            )
             load[these] += size * (z * along - y * across)
             polar += size * (y**2 + z**2)
     constant = polar - load @ np.linalg.lstsq(stiff, load, rcond=None)[0]
