@@ -9,6 +9,7 @@ import pandas as pd
 
 from analytic import CLAMP_READINGS, InputError, Readings
 from analytic.problem.arrays import Booleans, Floats, Integers
+from analytic.space import SpatialReadings
 from compare.sense.phases import Classification
 
 _SAME_STATION = 1e-9  # L; nearer foot positions are one and the same
@@ -50,13 +51,7 @@ def align(
     interpolated by a cubic spline through one uninterrupted stretch of one phase.
     """
     length = reference.beam.length
-    if not _same_beam(reference, candidate):
-        raise InputError(
-            "beams of the two readings",
-            f"{reference.beam} and {candidate.beam}",
-            "the same, in the same units",
-            "compare sweeps of one vibrissa, both in its units",
-        )
+    check_same_beam(reference, candidate)
     x, x_ref = candidate.values("foot_x"), reference.values("foot_x")
     outside = (x < x_ref.min() - _SAME_STATION * length) | (
         x > x_ref.max() + _SAME_STATION * length
@@ -112,16 +107,19 @@ def align(
     return Alignment(pd.DataFrame(columns), counts)
 
 
-def _same_beam(reference: Readings, candidate: Readings) -> bool:
+def check_same_beam(
+    reference: Readings | SpatialReadings, candidate: Readings | SpatialReadings
+) -> None:
+    """Refuse sweeps of two vibrissae, but for what the digits of a file leave."""
     one, other = reference.beam, candidate.beam
-    return bool(
-        np.allclose(
-            [one.length, one.base_rigidity],
-            [other.length, other.base_rigidity],
-            rtol=1e-9,
-            atol=0,
+    sizes, others = ((beam.length, beam.base_rigidity) for beam in (one, other))
+    if not np.allclose(sizes, others, rtol=1e-9, atol=0):
+        raise InputError(
+            "beams of the two readings",
+            f"{one} and {other}",
+            "the same, in the same units",
+            "compare sweeps of one vibrissa, both in its units",
         )
-    )
 
 
 def _covering(x_ref: Floats, starts: Integers, x: Floats) -> Integers:

@@ -6,9 +6,9 @@ from analytic import InputError
 from analytic.problem.arrays import Floats
 from analytic.space import SpatialReadings
 from analytic.space.problem.readings import FOOT
+from compare.align.stations import check_same_beam
 
 _SAME_FOOT = 1e-6  # L
-_SAME_BEAM = 1e-9  # of a length or rigidity: what a file's digits leave
 _SAME_TANGENT = 1e-6
 
 
@@ -23,13 +23,7 @@ def travel_of(readings: SpatialReadings) -> Floats:
 
 def check_same_stations(reference: SpatialReadings, candidate: SpatialReadings) -> None:
     """Refuse sweeps of two vibrissae, of two clamps, or at other stations."""
-    for name in ("length", "flexural_rigidity"):
-        ours, theirs = getattr(reference.beam, name), getattr(candidate.beam, name)
-        if not abs(ours - theirs) <= _SAME_BEAM * abs(ours):
-            raise InputError(
-                f"beam.{name} of {candidate.source}", theirs,
-                f"{ours:g}, that of {reference.source}", "compare sweeps of one vibrissa",
-            )  # fmt: skip
+    check_same_beam(reference, candidate)
     if np.abs(reference.clamp_tangent - candidate.clamp_tangent).max() > _SAME_TANGENT:
         raise InputError(
             f"tangent of {candidate.source}", candidate.clamp_tangent.tolist(),

@@ -15,7 +15,7 @@ from compare.explain.parts import (
     SAFETY,
     Parted,
     Shared,
-    Step,
+    Term,
     as_uncertain,
     by_reading,
     common_stations,
@@ -112,7 +112,7 @@ def budget(
     unrest = run["base"] - run["calm"]
     # As segments are refined, nothing is left of the load's hand-over from bead to bead.
     still = shifted_inward(signatures, _sunk(runs["stiff"], shared), beam.radius / beam.length)
-    steps: dict[str, Step] = {
+    steps: dict[str, Term] = {
         "discretisation": (
             run["stiff"] - limit,
             np.hypot(beyond, doubt),

@@ -20,7 +20,7 @@ from compare.explain.signatures import Resolved, unit_of
 from compare.measure.measurement import Measurement
 from compare.sense.record import direction
 
-Place: TypeAlias = Callable[[float, Floats], Floats]
+FootPlace: TypeAlias = Callable[[float, Floats], Floats]
 """Where the foot is in truth, by the size of a fault and where it is said to be."""
 
 _STEP = 1e-3  # of a length, and so on: the size that a signature is taken from
@@ -155,7 +155,9 @@ def physical_faults(
     if "phase" in reference.table:
         rows[:, says(reference.table["phase"], "free")] = np.nan
 
-    def displaced(text: str, only: Floats, most: float, rate: float | Floats, at: Place) -> Cause:
+    def displaced(
+        text: str, only: Floats, most: float, rate: float | Floats, at: FootPlace
+    ) -> Cause:
         """Some readings are of another place of the foot, which changes with the size by `rate`."""
 
         def change(size: float) -> Floats:

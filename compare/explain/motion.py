@@ -11,7 +11,7 @@ from compare.explain.parts import (
     SAFETY,
     Parted,
     Shared,
-    Step,
+    Term,
     as_uncertain,
     by_reading,
     common_stations,
@@ -119,7 +119,7 @@ def motion_budget(
     coarse, fine = fast - middle, middle - slow
     order = observed_order(coarse, fine, nominal=1.0, least=_LEAST_ORDER)
     limit = slow - fine / (2**order - 1)
-    steps: dict[str, Step] = {"rate": (run["base"] - limit, SAFETY * rms(slow - limit))}
+    steps: dict[str, Term] = {"rate": (run["base"] - limit, SAFETY * rms(slow - limit))}
     if "undamped" in run:
         # As much again as was measured is extrapolated, and as uncertain.
         damping = 2 * (run["base"] - run["undamped"])

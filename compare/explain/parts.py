@@ -17,7 +17,7 @@ SAFETY = 1.25
 what the finest grid says, and from what the two finest alone would make of it."""
 
 
-Step: TypeAlias = tuple[Floats, Floats]
+Term: TypeAlias = tuple[Floats, Floats]
 """A part at every station, shape (3, stations), and how uncertain its root mean square is, (3,)."""
 
 
@@ -91,24 +91,24 @@ def common_stations(exact: Readings, runs: Iterable[Readings], window: float) ->
     return kept
 
 
-def as_uncertain(signal: Floats) -> Step:
+def as_uncertain(signal: Floats) -> Term:
     """A part that is as uncertain as it is large."""
     return signal, rms(signal)
 
 
-def extrapolated(more: Floats, less: Floats, factor: float) -> Step:
+def extrapolated(more: Floats, less: Floats, factor: float) -> Term:
     """A part that falls in proportion, from two sweeps of which one has less of it by a factor."""
     signal = (more - less) * factor / (factor - 1)
     return signal, SAFETY * rms(signal) / (factor - 1)
 
 
-def unexplained(whole: Floats, steps: Mapping[str, Step]) -> Step:
+def unexplained(whole: Floats, steps: Mapping[str, Term]) -> Term:
     """What the parts leave of a whole, as uncertain as all of them."""
     signals, uncertainties = zip(*steps.values(), strict=True)
     return whole - np.sum(signals, axis=0), np.sqrt(np.sum(np.square(uncertainties), axis=0))
 
 
-def parts_of(names: Iterable[str], steps: Mapping[str, Step]) -> dict[str, dict[str, Part]]:
+def parts_of(names: Iterable[str], steps: Mapping[str, Term]) -> dict[str, dict[str, Part]]:
     """The parts by name and reading, those of the names that there are."""
     return {
         name: {

@@ -16,7 +16,7 @@ if TYPE_CHECKING:  # limits are checked before pandas is needed
     from analytic import Readings
     from analytic.space import SpatialReadings
 
-Kind: TypeAlias = Literal["rms", "max"]
+LimitKind: TypeAlias = Literal["rms", "max"]
 
 CONTACT_PHASES = PHASES[1:]
 KINDS = ("rms", "max")
@@ -77,7 +77,7 @@ class Limits:
         named = {name: getattr(self, name) for name in self.general()} | dict(self.special)
         return {name: as_limit(name, value) for name, value in named.items()}
 
-    def of(self, component: str, kind: Kind, phase: str = "") -> Limit:
+    def of(self, component: str, kind: LimitKind, phase: str = "") -> Limit:
         """The limit of a component, as ``"force_x"``, the most special that there is."""
         found = self._most_special(
             f"{component}.{phase}.{kind}", f"{component}.{kind}", f"{phase}.{kind}"

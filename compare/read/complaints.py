@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
 from analytic.problem.errors import InputError
-from compare.read.toml import Place
+from compare.read.toml import KeyPlace
 
 _LONGEST_NAME = 100
 
@@ -23,7 +23,7 @@ def shown(value: object) -> str:
     return _brief.repr(value)
 
 
-def complaint(error: ValidationError, place: Place, outer: Sequence[str] = ()) -> InputError:
+def complaint(error: ValidationError, place: KeyPlace, outer: Sequence[str] = ()) -> InputError:
     """What a validation error says, in one line; an unknown key explains what else is wrong."""
     found = error.errors(include_url=False)
     first = min(found, key=lambda one: one["type"] != UNKNOWN_KEY)
@@ -70,7 +70,7 @@ def require_known(given: object, allowed: Sequence[str]) -> None:
 
 
 def _refused(
-    error: Exception, value: str, inside: Sequence[str], outer: Sequence[str], place: Place
+    error: Exception, value: str, inside: Sequence[str], outer: Sequence[str], place: KeyPlace
 ) -> InputError:
     """What a table says against a value, of one of its keys if it names one."""
     if isinstance(error, InputError):

@@ -10,7 +10,7 @@ from analytic import InputError
 from compare.judge.tolerances import Limit, SpatialTolerances, Tolerances
 from compare.read.complaints import complaint
 from compare.read.quantities import Table
-from compare.read.toml import Place, TomlFile
+from compare.read.toml import KeyPlace, TomlFile
 
 _Limits = TypeVar("_Limits", Tolerances, SpatialTolerances)
 
@@ -30,7 +30,7 @@ def read_tolerances(path: Path, kind: type[_Limits]) -> _Limits:
     return tolerances_of(file.tables["tolerances"], file.place, kind)
 
 
-def tolerances_of(table: Mapping[str, Any], place: Place, kind: type[_Limits]) -> _Limits:
+def tolerances_of(table: Mapping[str, Any], place: KeyPlace, kind: type[_Limits]) -> _Limits:
     """What a ``[tolerances]`` table says; what it leaves out keeps its default."""
     general: dict[str, Limit] = {}
     special: dict[str, Limit] = {}

@@ -7,7 +7,7 @@ from pydantic import Field, PlainValidator
 
 from analytic import Beam, InputError
 from compare.read.quantities import PLAIN, Dimension, InSI, Table
-from compare.read.toml import Place
+from compare.read.toml import KeyPlace
 from mujoco_models.motion import ConeKind, IntegratorKind, Motion, SolverKind
 
 _FIRST_ROOT = 1.8751040687119611  # of cos(x) cosh(x) = -1: the first vibration of a cantilever
@@ -18,9 +18,9 @@ _OF_A_MODEL = ("speed", "ramp", "average", "cutoff", "contact_stiffness")
 
 Speed = Annotated[float, PlainValidator(Dimension("m/s")), PLAIN]
 Time = Annotated[float, PlainValidator(Dimension("s")), PLAIN]
-Rate = Annotated[float, PlainValidator(Dimension("1/s")), PLAIN]
+Frequency = Annotated[float, PlainValidator(Dimension("1/s")), PLAIN]
 Density = Annotated[float, PlainValidator(Dimension("kg/m^3")), PLAIN]
-Contact = Annotated[tuple[Time, float], Field(strict=False)]
+Solref = Annotated[tuple[Time, float], Field(strict=False)]
 _POSITIVE = Field(gt=0, allow_inf_nan=False)
 
 
@@ -40,7 +40,7 @@ class MotionTable(Table):
     damping_ratio: float = Motion.damping_ratio
     armature: float = Motion.armature
     contact_stiffness: float | None = Motion.contact_stiffness
-    solref: Contact | None = Motion.solref
+    solref: Solref | None = Motion.solref
     solimp: float = Motion.solimp
     solver: SolverKind = Motion.solver
     cone: ConeKind = Motion.cone
@@ -48,7 +48,7 @@ class MotionTable(Table):
     impratio: float = Motion.impratio
     ramp: Time = Motion.ramp
     average: float = Motion.average
-    cutoff: Rate | None = Motion.cutoff
+    cutoff: Frequency | None = Motion.cutoff
 
     def build(self, beam: Beam) -> Motion:
         """The motion."""
@@ -68,7 +68,7 @@ class MotionTable(Table):
             )
         return Motion(**{**numbers, "solref": solref})
 
-    def of_a_model(self, beam: Beam, place: Place) -> Motion:
+    def of_a_model(self, beam: Beam, place: KeyPlace) -> Motion:
         """The motion of a user's own model, which brings most of it with it."""
         for name in type(self).model_fields:
             if name in self.model_fields_set and name not in _OF_A_MODEL:

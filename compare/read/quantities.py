@@ -19,7 +19,7 @@ from pydantic_core import PydanticCustomError
 
 from analytic import InputError
 from compare.read.complaints import complaint, plain_name, require_known
-from compare.read.toml import Place
+from compare.read.toml import KeyPlace
 from compare.read.units import in_si
 
 _WITH_UNITS = ("beam", "support", "profile", "sweep", "body", "path")
@@ -71,7 +71,7 @@ class Dimension:
 
 
 @dataclass(frozen=True)
-class Varying(Dimension):
+class VaryingDimension(Dimension):
     """The same, or a table of it: pairs of an arc length from the clamp and the value there."""
 
     def __call__(self, value: object) -> Any:  # noqa: ANN401  # a number, or pairs of them
@@ -99,8 +99,8 @@ PLAIN = PlainSerializer(_plain, when_used="unless-none")
 Length = Annotated[float, PlainValidator(Dimension("m")), PLAIN]
 PerLength = Annotated[float, PlainValidator(Dimension("1/m")), PLAIN]
 Pairs = tuple[tuple[float, float], ...]
-RigidityAlong = Annotated[float | Pairs, PlainValidator(Varying("N m^2")), PLAIN]
-CurvatureAlong = Annotated[float | Pairs, PlainValidator(Varying("1/m")), PLAIN]
+RigidityAlong = Annotated[float | Pairs, PlainValidator(VaryingDimension("N m^2")), PLAIN]
+CurvatureAlong = Annotated[float | Pairs, PlainValidator(VaryingDimension("1/m")), PLAIN]
 RotationalStiffness = Annotated[float, PlainValidator(Dimension("N m/rad")), PLAIN]
 # A plain number of radians goes with either kind of file.
 Angle = Annotated[float, PlainValidator(lambda value: float(Dimension("rad")(value))), PLAIN]
@@ -143,7 +143,7 @@ class Table(BaseModel):
 _Schema = TypeVar("_Schema", bound=Table)
 
 
-def validated(schema: type[_Schema], tables: Mapping[str, Any], place: Place) -> _Schema:
+def validated(schema: type[_Schema], tables: Mapping[str, Any], place: KeyPlace) -> _Schema:
     """What a file's tables say."""
     try:
         file = schema.model_validate(tables)
@@ -153,7 +153,7 @@ def validated(schema: type[_Schema], tables: Mapping[str, Any], place: Place) ->
     return file
 
 
-def _require_units(file: Table, place: Place) -> None:
+def _require_units(file: Table, place: KeyPlace) -> None:
     """Refuse dimensions with and without units side by side, also those left to a default."""
     bare: list[list[str]] = []
     united: list[list[str]] = []

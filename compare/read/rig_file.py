@@ -12,7 +12,7 @@ from compare.read.toml import TomlFile
 from compare.read.units import DIMENSIONS, unit_in_si
 
 
-class Column(Table):
+class RigColumn(Table):
     """Which column of a file is a sensed quantity: value = gain (cell - zero), in the unit."""
 
     column: str
@@ -25,16 +25,16 @@ class Column(Table):
         return self.gain * (unit_in_si(self.unit, DIMENSIONS[name]) if self.unit else 1.0)
 
 
-class Columns(Table):
+class RigColumns(Table):
     """The four sensed quantities."""
 
-    foot_x: Column
-    force_x: Column
-    force_y: Column
-    moment_z: Column
+    foot_x: RigColumn
+    force_x: RigColumn
+    force_y: RigColumn
+    moment_z: RigColumn
 
 
-class Passes(Table):
+class RigPasses(Table):
     """How the rows of a file are passes of the foot, and where these are certainly free."""
 
     # A column whose value changes from pass to pass; without it the stage's turns divide them.
@@ -49,8 +49,8 @@ class Rig(Table):
     """What a rig's description holds."""
 
     beam: BeamTable  # the vibrissa, in units if the columns are
-    columns: Columns  # by sensed quantity
-    passes: Passes = Passes()  # how rows are passes
+    columns: RigColumns  # by sensed quantity
+    passes: RigPasses = RigPasses()  # how rows are passes
     # What the rig writes into a cell for which it has no number, as ``"OVL"``.
     missing: Annotated[list[str], Field(max_length=100, default_factory=list)]
 

@@ -18,8 +18,8 @@ from compare.read.tables import BeamTable
 from compare.read.toml import TomlFile
 from mujoco_models.settings import SpatialSettings
 
-Place = Annotated[tuple[Length, Length, Length], Field(strict=False)]
-Way = Annotated[tuple[float, float, float], Field(strict=False)]
+Position = Annotated[tuple[Length, Length, Length], Field(strict=False)]
+Axis = Annotated[tuple[float, float, float], Field(strict=False)]
 
 
 class BodyTable(Table):
@@ -38,16 +38,16 @@ class SphereTable(BodyTable):
 
     kind: Literal["sphere"]
     radius: Length
-    centre: Place
+    centre: Position
 
 
 class EllipsoidTable(BodyTable):
     """See `analytic.space.ellipsoid`."""
 
     kind: Literal["ellipsoid"]
-    semi_axes: Place
-    centre: Place
-    frame: Annotated[list[Way], Field(min_length=3, max_length=3)] | None = None
+    semi_axes: Position
+    centre: Position
+    frame: Annotated[list[Axis], Field(min_length=3, max_length=3)] | None = None
 
 
 class CylinderTable(BodyTable):
@@ -55,23 +55,23 @@ class CylinderTable(BodyTable):
 
     kind: Literal["cylinder"]
     radius: Length
-    through: Place
-    axis: Way
+    through: Position
+    axis: Axis
 
 
 class HullTable(BodyTable):
     """See `analytic.space.polyhedron`."""
 
     kind: Literal["polyhedron"]
-    points: list[Place]
+    points: list[Position]
 
 
 class PrismTable(BodyTable):
     """See `analytic.space.prism`; the contour is the table ``[profile]``."""
 
     kind: Literal["prism"]
-    axis: Way = (0.0, 0.0, 1.0)
-    origin: Place = (0.0, 0.0, 0.0)
+    axis: Axis = (0.0, 0.0, 1.0)
+    origin: Position = (0.0, 0.0, 0.0)
 
 
 class SolidTable(BodyTable):
@@ -80,7 +80,7 @@ class SolidTable(BodyTable):
     kind: Literal["mesh"]
     file: str
     scale: Length = Field(default=1.0, gt=0)
-    offset: Place = (0.0, 0.0, 0.0)
+    offset: Position = (0.0, 0.0, 0.0)
     hull: bool = False
     tolerance: Length = Field(default=0.0, ge=0)
 
@@ -94,7 +94,7 @@ class PathTable(Table):
 
     points: Annotated[list[Point], Field(min_length=2)]
     height: Length = 0.0
-    tangent: Way = (0.0, 1.0, 0.0)
+    tangent: Axis = (0.0, 1.0, 0.0)
     stations: int = 200
     turn: float = Field(default=0.0, allow_inf_nan=False)
 

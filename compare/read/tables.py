@@ -78,7 +78,7 @@ class ContactTable(Table):
     friction: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)] = 0.0
 
 
-class SweepTable(Table):
+class StationsTable(Table):
     """The positions of the foot."""
 
     stations: int = Sweep().stations
@@ -137,7 +137,7 @@ class CaseFile(Table):
     support: SupportTable = SupportTable()  # the physics
     contact: ContactTable = ContactTable()  # the physics
     profile: Annotated[Drawn | MeshTable, Field(discriminator="kind")]  # the physics
-    sweep: SweepTable = SweepTable()  # the physics
+    sweep: StationsTable = StationsTable()  # the physics
     # The numerics of the simulation.
     mujoco: Annotated[Settings, known_keys(Settings), Field(default_factory=Settings)]
     # A model of the user's own, if it is to be swept instead of ours.

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 from analytic.problem.errors import InputError
 from analytic.problem.files import regular_file
 
-Place: TypeAlias = Callable[[Sequence[str]], str]
+KeyPlace: TypeAlias = Callable[[Sequence[str]], str]
 """What an error calls a key: where it is, and its name."""
 
 _LARGEST = 2_000_000  # bytes: some 50,000 points; what is slower to parse than to compute

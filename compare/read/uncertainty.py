@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field, model_validator
 from analytic import CLAMP_READINGS, Case, InputError
 from compare.read.complaints import shown
 from compare.read.quantities import EXAMPLES, Table
-from compare.read.toml import Place
+from compare.read.toml import KeyPlace
 from compare.read.units import DIMENSIONS, in_si
 from compare.validate.inputs import GAINS, INPUTS, nominal
 from compare.validate.stated import NAMES, Input, Uncertainties
@@ -48,7 +48,7 @@ class UncertaintyTable(Table):
         return [*NAMES, *super().keys()]
 
 
-def uncertainties_of(table: UncertaintyTable, case: Case, place: Place) -> Uncertainties | None:
+def uncertainties_of(table: UncertaintyTable, case: Case, place: KeyPlace) -> Uncertainties | None:
     """What an ``[uncertainty]`` table says."""
     if not table.model_fields_set:
         return None
@@ -68,7 +68,7 @@ def uncertainties_of(table: UncertaintyTable, case: Case, place: Place) -> Uncer
         raise error.called(place(error.name.split("."))) from error
 
 
-def _input(name: str, said: InputTable, case: Case, place: Place) -> Input:
+def _input(name: str, said: InputTable, case: Case, place: KeyPlace) -> Input:
     dimension = "" if name in GAINS else INPUTS[name].dimension
     value = 1.0 if name in GAINS else nominal(case, name)
     if not math.isfinite(value):

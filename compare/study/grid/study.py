@@ -7,7 +7,7 @@ from typing import Any, Literal, TypeAlias
 from compare.read.quantities import validated
 from compare.read.space import SpaceFile
 from compare.read.tables import CaseFile
-from compare.read.toml import Place
+from compare.read.toml import KeyPlace
 from compare.study.grid.axes import Axis
 from compare.study.grid.instrument import Estimator, SensorNoise
 
@@ -116,7 +116,7 @@ def run_of(parameters: Mapping[str, Any]) -> PlanarRun | SpatialRun:
     return checked_run(tables, ".".join)
 
 
-def checked_run(tables: Mapping[str, Any], place: Place) -> PlanarRun | SpatialRun:
+def checked_run(tables: Mapping[str, Any], place: KeyPlace) -> PlanarRun | SpatialRun:
     """The run of some tables, in space if it has a body."""
     if "body" in tables:
         return validated(SpatialRun, tables, place)

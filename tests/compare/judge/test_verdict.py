@@ -81,16 +81,6 @@ def test_the_stations_that_figures_rest_on_are_said():
     assert f"{rest_on} stations" in verdict(found)
 
 
-@pytest.mark.parametrize("side", ["reference", "candidate"])
-def test_a_stretch_of_either_side_that_is_not_trusted_is_said(side):
-    status = np.where((np.arange(128) >= 40) & (np.arange(128) < 60), "touches again", "ok")
-    sweeps = {"reference": solved(), "candidate": solved()}
-    sweeps[side] = changed(solved(), status=status)
-    at = solved().values("foot_x") / solved().beam.length
-    said = words(compare(**sweeps))
-    assert f"20 touches again, foot_x {at[40]:.4g} to {at[59]:.4g} L" in said
-
-
 def test_a_phase_that_noise_alone_makes_is_no_failure():
     """Past a circle on which the contact stays at the tip: one station of another phase."""
     exact = solve_sweep(Case(profile=circle(1.0, (0, 0.65))))
@@ -104,13 +94,18 @@ def test_a_phase_that_noise_alone_makes_is_no_failure():
 
 
 @pytest.mark.parametrize("side", ["reference", "candidate"])
-def test_one_station_that_is_not_trusted_is_said_though_the_sweeps_agree(side):
-    exact = exact_sweep("catenary")
+@pytest.mark.parametrize("count", [1, 20])
+def test_a_stretch_of_either_side_that_is_not_trusted_is_said(side, count):
+    """Of a single station, too, with which the sweeps agree."""
+    exact, here = exact_sweep("catenary"), slice(90, 90 + count)
+    status = np.full(200, "ok", dtype=object)
+    status[here] = "touches again"
     sweeps = {"reference": exact, "candidate": exact}
-    sweeps[side] = changed(exact, status=np.where(np.arange(200) == 90, "touches again", "ok"))
+    sweeps[side] = changed(exact, status=status)
+    at = exact.values("foot_x")[here]
     found = compare(**sweeps)
-    assert found.agrees
-    assert f"the {side} is not to be trusted everywhere: 1 touches again" in words(found)
+    assert f"{count} touches again, foot_x {at[0]:.4g} to {at[-1]:.4g} L" in words(found)
+    assert found.agrees or count > 1
 
 
 @pytest.mark.parametrize("side", ["reference", "candidate"])

@@ -9,7 +9,6 @@ import pytest
 from analytic import InputError
 from compare.read.case import load_job
 from compare.read.toml import TomlFile
-from mujoco_models import Settings
 
 CIRCLE = '[profile]\nkind = "circle"\nradius = 1.0\nlowest = [0.0, 0.4]\n'
 
@@ -103,22 +102,6 @@ def test_units_are_mixed_only_where_the_scale_has_one(tmp_path):
     assert "line 6: profile.a = without a unit" in refused(tmp_path, mixed)
 
 
-@pytest.mark.parametrize("numbers", [{"segments": 2.5}, {"segments": True}, {"tolerance": "1e-8"}])
-def test_settings_in_python_are_held_to_the_same(numbers):
-    with pytest.raises(InputError, match="number between"):
-        Settings(**numbers)
-
-
-@pytest.mark.parametrize("number", ["9" * 4000, "0x" + "f" * 5000])
-@pytest.mark.parametrize("key", ["kind", "radius", "c"])
-def test_integers_beyond_floats_are_one_line(tmp_path, capfd, key, number):
-    """Some libraries print a traceback of their own when they cannot print the number."""
-    text = f'[profile]\nkind = "catenary"\n{key} = {number}\n'
-    text = text.replace('kind = "catenary"\nkind', "a = 1\nkind")
-    assert "line 3 = a number of 309 digits" in refused(tmp_path, text)
-    assert capfd.readouterr() == ("", "")
-
-
 UNITED = """[beam]
 length = "50 mm"
 flexural_rigidity = "2e-6 N m^2"
@@ -149,14 +132,6 @@ lowest = [0, "20 mm"]
 def test_beside_units_nothing_is_one_by_default(tmp_path, change, said):
     assert change[0] in UNITED
     assert said in refused(tmp_path, UNITED.replace(*change))
-
-
-def test_a_case_with_units_remembers_that_it_is_in_si(tmp_path):
-    path = tmp_path / "case.toml"
-    path.write_text(UNITED)
-    assert load_job(str(path)).case.beam.si
-    path.write_text(CIRCLE)
-    assert not load_job(str(path)).case.beam.si
 
 
 def test_a_mesh_without_a_scale_beside_units(tmp_path):
