@@ -3,13 +3,10 @@ from .align.offset import separate_lag as separate_lag
 from .comparison import Comparison as Comparison
 from .comparison import SpatialComparison as SpatialComparison
 from .comparison import compare as compare
-from .comparison import compare_space as compare_space
-from .explain.split_space import split_space as split_space
 from .judge.tolerances import Limit as Limit
 from .judge.tolerances import SpatialTolerances as SpatialTolerances
 from .judge.tolerances import Tolerances as Tolerances
 from .read.case import load_case as load_case
-from .read.case import load_space as load_space
 from .read.job import Job as Job
 from .read.job import SpaceJob as SpaceJob
 from .read.rig import read_measured as read_measured

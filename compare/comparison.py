@@ -308,9 +308,6 @@ def compare(
     return Comparison(**(vars(found) | {"events": widened}), tolerances=tolerances, noise=allowance)
 
 
-compare_space = compare  # as it was called
-
-
 def _in_space(
     reference: SpatialReadings,
     candidate: SpatialReadings,

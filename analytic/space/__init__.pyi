@@ -1,5 +1,4 @@
 from .checks.rod import deflected_rods as deflected_rods
-from .checks.rod import integrate_rod as integrate_rod
 from .checks.rod import rod_residuals as rod_residuals
 from .from_clamp.cloud import Cloud as Cloud
 from .from_clamp.cloud import Misses as Misses
@@ -25,9 +24,4 @@ from .problem.case import SpatialCase as SpatialCase
 from .problem.path import FootPath as FootPath
 from .problem.readings import SENSED_IN_SPACE as SENSED_IN_SPACE
 from .problem.readings import SpatialReadings as SpatialReadings
-from .solver.contact import Contact as Contact
-from .solver.contact import Scene as Scene
-from .solver.contact import contact_at as contact_at
-from .solver.stability import is_stable as is_stable
-from .solver.stability import second_variation as second_variation
 from .solver.sweep import solve_space as solve_space

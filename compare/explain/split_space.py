@@ -53,22 +53,7 @@ def split_space(
     settings: SpatialSettings,
     sweep: Callable[[SpatialSettings], SpatialReadings],
 ) -> Parts:
-    """Split the disagreement of a MuJoCo sweep in space, by two more sweeps.
-
-    Parameters
-    ----------
-    exact, base : SpatialReadings
-        The closed form's, and MuJoCo's with `settings`.
-    settings : SpatialSettings
-        Of the sweep.
-    sweep : callable
-        Maps settings to readings.
-
-    Returns
-    -------
-    Parts
-        Root mean squares.
-    """
+    """Split the disagreement of a sweep in MuJoCo, by two more with one other setting each."""
     other = 2 * settings.segments  # where there cannot be so many, half as many show the same
     if other > _MOST:
         other = settings.segments // 2

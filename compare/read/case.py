@@ -2,14 +2,10 @@
 
 import difflib
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from analytic import NAMED_TABLES, InputError, named_case
 from compare.read.job import Job, SpaceJob
 from mujoco_models.settings import Settings
-
-if TYPE_CHECKING:
-    from analytic.space import SpatialCase
 
 
 def load_case(name_or_path: str | Path) -> Job | SpaceJob:
@@ -74,24 +70,3 @@ def load_space_job(path: str | Path) -> SpaceJob:
     raise InputError(
         f"{path}: [body]", "missing", "given for a sweep in space", "`vibrissa run` takes it"
     )
-
-
-def load_space(path: str | Path) -> "SpatialCase":
-    """The case in space from a TOML file.
-
-    Parameters
-    ----------
-    path : str or Path
-        Named ``*.toml``.
-
-    Returns
-    -------
-    SpatialCase
-        See `load_case`, which takes cases in the plane, too.
-
-    Raises
-    ------
-    InputError
-        As there, and if the case is in the plane.
-    """
-    return load_space_job(path).case

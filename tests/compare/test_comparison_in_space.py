@@ -17,8 +17,9 @@ from analytic.space import (
     sphere,
 )
 from analytic.space.problem.readings import FORCE, MOMENT, SENSED_IN_SPACE
-from compare import SpatialTolerances, assert_agreement, compare, split_space
+from compare import SpatialTolerances, assert_agreement, compare
 from compare.align.frames import clamp_axes, components, from_frame
+from compare.explain.split_space import split_space
 from compare.show.spatial_page import spatial_summary, spatial_verdict
 from mujoco_models import SpatialSettings, simulate_space
 from tests.compare.command import vibrissa

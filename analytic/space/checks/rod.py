@@ -24,22 +24,7 @@ _SHOWN = 33  # points of a loaded part that is drawn
 def integrate_rod(
     tangent: Floats, force: Floats, moment: Floats, length: float, points: int = 2
 ) -> tuple[Floats, Floats, Floats]:
-    """March from the clamp.
-
-    Parameters
-    ----------
-    tangent, force, moment : array, shape (3,)
-        Of the clamp, dimensionless; force and moment act on the vibrissa.
-    length : float
-        Arc length to march [L].
-    points : int
-        How many states are wanted, at equal distances, both ends among them.
-
-    Returns
-    -------
-    place, direction, moment : array, shape (points, 3)
-        Relative to the foot [L], of length 1, and in the section [EI/L].
-    """
+    """Places, directions and moments in the section of one rod, each of shape (points, 3)."""
     place, along, bending = integrate_rods(
         tangent, force[None], moment[None], np.array([length]), points
     )
@@ -49,7 +34,11 @@ def integrate_rod(
 def integrate_rods(
     tangent: Floats, force: Floats, moment: Floats, length: Floats, points: int = 2
 ) -> tuple[Floats, Floats, Floats]:
-    """March many rods from the same clamp together, each by the same share of its length."""
+    """March many rods from the same clamp together, each to `points` places along its length.
+
+    Force and moment are the clamp's on the rod, of shape (n, 3) and dimensionless; what is found
+    has the shape (n, points, 3), places relative to the foot.
+    """
     n = len(length)
 
     def rate(_: float, state: Floats) -> Floats:

@@ -62,19 +62,7 @@ class Contact(NamedTuple):
         return np.asarray(self.centre - up * self.plane.tangent - reach * self.plane.lateral)
 
     def foot_rates(self, radius: float) -> Floats:
-        """How the foot moves with the contact.
-
-        Parameters
-        ----------
-        radius : float
-            Of the vibrissa [L].
-
-        Returns
-        -------
-        array, shape (3, 4)
-            Derivatives by the place on the parallel surface (three; only those along it count) and
-            by the free number: w in Phase A, the arc length in Phase B.
-        """
+        """How the foot moves with the place on the parallel surface and `free`, shape (3, 4)."""
         plane, loaded, s = self.plane, self.loaded, self.arc_length
         turning = self.spot.turning
         by_alpha, by_excess = loaded.by_alpha, loaded.by_excess
@@ -92,24 +80,7 @@ class Contact(NamedTuple):
 
 
 def contact_at(scene: Scene, x: Floats, free: float, tangent: bool) -> Contact:
-    """The contact at the body's point nearest to a place.
-
-    Parameters
-    ----------
-    scene : Scene
-        Body, clamp tangent, radius.
-    x : array, shape (3,)
-        A place outside the body [L].
-    free : float
-        Rotation w of the tip [rad] in Phase A, arc length [L] in Phase B.
-    tangent : bool
-        Phase B.
-
-    Returns
-    -------
-    Contact
-        There.
-    """
+    """The contact at the nearest point of the body to a place outside; `free` as `Contact.free`."""
     spot = scene.body.nearest(x, APART)
     plane = Plane.of(scene.tangent, spot.normal)
     excess, arc_length = (np.pi / 2 - plane.alpha, free) if tangent else (free, 1.0)

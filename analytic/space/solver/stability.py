@@ -40,20 +40,7 @@ _FLATTEST = 1e-9  # 1/L, curvature given to a flat surface along the vibrissa
 
 
 def second_variation(contact: Contact, radius: float) -> Floats:
-    """The quadratic form Q.
-
-    Parameters
-    ----------
-    contact : Contact
-        An equilibrium.
-    radius : float
-        Of the vibrissa [L].
-
-    Returns
-    -------
-    array, shape (2, 2) or (3, 3)
-        Symmetric, in v1, v2 and, in Phase B, omega; dimensionless.
-    """
+    """The quadratic form Q in v1, v2 and, in Phase B, omega; dimensionless and symmetric."""
     force, alpha = contact.force, contact.plane.alpha
     k11, k12, k22 = _curvatures(contact, radius)
     swing = force * np.sin(alpha) / (contact.arc_length * contact.loaded.place[1])
@@ -73,20 +60,7 @@ def second_variation(contact: Contact, radius: float) -> Floats:
 
 
 def is_stable(contact: Contact, radius: float) -> bool:
-    """Whether the vibrissa returns, whichever way it is pushed.
-
-    Parameters
-    ----------
-    contact : Contact
-        An equilibrium.
-    radius : float
-        Of the vibrissa [L].
-
-    Returns
-    -------
-    bool
-        True if the second variation is positive.
-    """
+    """Whether the vibrissa returns, whichever way it is pushed: Q is positive."""
     form = second_variation(contact, radius)
     return bool(np.isfinite(form).all()) and margin(form) > 0
 

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from analytic.space import Scene, contact_at, cylinder, ellipsoid, polyhedron, second_variation
+from analytic.space import cylinder, ellipsoid, polyhedron
+from analytic.space.solver.contact import Scene, contact_at
 from analytic.space.solver.rod import Plane
-from analytic.space.solver.stability import margin
+from analytic.space.solver.stability import margin, second_variation
 from tests.analytic.space.second_variation import least_eigenvalue
 
 UP, RADIUS = np.array([0.0, 1.0, 0.0]), 0.02

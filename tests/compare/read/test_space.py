@@ -9,7 +9,7 @@ from analytic import InputError
 from analytic.space import solve_space
 from compare import compare, read_space
 from compare.align.frames import components
-from compare.read.case import load_job, load_space, load_space_job
+from compare.read.case import load_case, load_job, load_space_job
 
 BALL = """
 [beam]
@@ -30,7 +30,7 @@ stations = 20
 def loaded(text, tmp_path):
     path = tmp_path / "ball.toml"
     path.write_text(text)
-    return load_space(path)
+    return load_case(path).case
 
 
 def test_a_case_with_units_is_in_si(tmp_path):
@@ -103,14 +103,9 @@ def test_what_cannot_be_is_refused_in_one_line(old, new, says, tmp_path):
     assert "\n" not in str(refused.value)
 
 
-def test_a_planar_case_is_sent_to_its_command(tmp_path):
+def test_a_case_of_the_other_kind_is_sent_to_its_command(tmp_path):
     with pytest.raises(InputError, match="vibrissa run"):
-        loaded('[profile]\nkind = "circle"\nradius = 1\nlowest = [0, 0.4]\n', tmp_path)
-    with pytest.raises(InputError, match="vibrissa run"):
-        load_space("catenary")
-
-
-def test_a_case_in_space_is_sent_to_its_command(tmp_path):
+        load_space_job("catenary")
     (tmp_path / "ball.toml").write_text(BALL)
     with pytest.raises(
         InputError, match=r"body = given: must be left out in the plane; `vibrissa run`"
