@@ -9,14 +9,10 @@ from .from_clamp.reconstruct import reconstruct_space as reconstruct_space
 from .from_clamp.reconstruct import wrench_complaint as wrench_complaint
 from .problem.bodies.body import Body as Body
 from .problem.bodies.body import Spot as Spot
-from .problem.bodies.ellipsoid import Ellipsoid as Ellipsoid
 from .problem.bodies.ellipsoid import ellipsoid as ellipsoid
 from .problem.bodies.ellipsoid import sphere as sphere
-from .problem.bodies.polyhedron import Polyhedron as Polyhedron
 from .problem.bodies.polyhedron import convex_mesh as convex_mesh
 from .problem.bodies.polyhedron import polyhedron as polyhedron
-from .problem.bodies.prism import Cylinder as Cylinder
-from .problem.bodies.prism import Prism as Prism
 from .problem.bodies.prism import cylinder as cylinder
 from .problem.bodies.prism import prism as prism
 from .problem.bodies.support import SmoothBody as SmoothBody

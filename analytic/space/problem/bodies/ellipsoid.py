@@ -19,22 +19,12 @@ _ALL = np.eye(3)
 
 @dataclass(frozen=True, eq=False)
 class Ellipsoid(Body):
-    """An ellipsoid; made by `sphere` and `ellipsoid`.
+    """An ellipsoid; made by `sphere` and `ellipsoid`."""
 
-    Parameters
-    ----------
-    semi_axes, centre : array, shape (3,)
-        Its numbers [length].
-    frame : array, shape (3, 3)
-        Unit vectors along the semi-axes, a row each.
-    label : str
-        What reports call it.
-    """
-
-    semi_axes: Floats
-    centre: Floats
-    frame: Floats
-    label: str
+    semi_axes: Floats  # shape (3,) [length]
+    centre: Floats  # shape (3,) [length]
+    frame: Floats  # unit vectors along the semi-axes, a row each
+    label: str  # what reports call it
 
     def nearest(self, x: Floats, apart: float) -> Spot:
         """By the root of the secular equation sum (a_i y_i/(a_i^2 + m))^2 = 1."""
@@ -103,7 +93,7 @@ def sphere(radius: float, centre: Vector) -> Ellipsoid:
 
     Returns
     -------
-    Ellipsoid
+    Body
         With three equal semi-axes.
 
     Raises
@@ -130,7 +120,7 @@ def ellipsoid(semi_axes: Vector, centre: Vector, frame: ArrayLike | None = None)
 
     Returns
     -------
-    Ellipsoid
+    Body
         The body.
 
     Raises

@@ -22,24 +22,13 @@ _TIED = 1e-14  # of a square of a distance: so near to each other rounding decid
 
 @dataclass(frozen=True, eq=False)
 class Polyhedron(Body):
-    """A bounded convex mesh; made by `convex_mesh`.
+    """A bounded convex mesh; made by `convex_mesh` and `polyhedron`."""
 
-    Parameters
-    ----------
-    vertices : array, shape (n, 3)
-        [length]
-    faces : array of int, shape (m, 3)
-        Triangles of vertices.
-    normals : array, shape (m, 3)
-        Outward, of length 1, exactly alike on triangles of one plane.
-    label : str
-        What reports call it.
-    """
-
-    vertices: Floats
-    faces: Integers
+    vertices: Floats  # shape (n, 3) [length]
+    faces: Integers  # triangles of vertices, shape (m, 3)
+    # Outward, of length 1, exactly alike on triangles of one plane, shape (m, 3).
     normals: Floats = field(repr=False)
-    label: str
+    label: str  # what reports call it
 
     @cached_property
     def corners(self) -> Floats:
@@ -167,20 +156,7 @@ class Polyhedron(Body):
         return Feature.of(spot)
 
     def features(self, point: Floats, off: float = 0.0) -> tuple[list[Feature], list[Feature]]:
-        """The faces that meet at a point of the surface, and the edges between them.
-
-        Parameters
-        ----------
-        point : array, shape (3,)
-            [length]
-        off : float, optional
-            By how much faces may miss the point, in addition to rounding [length].
-
-        Returns
-        -------
-        faces, edges : list of Feature
-            As if they had no end.
-        """
+        """Faces at a point of the surface, or that miss it by `off`, and the edges between them."""
         on = np.abs(self.normals @ point - self.heights) < self._rounding + off
         normals = np.unique(self.normals[on], axis=0)
         faces, edges = [Feature(point, np.zeros((0, 3)), n) for n in normals], []
@@ -195,20 +171,7 @@ class Polyhedron(Body):
         return faces, edges
 
     def snapped(self, point: Floats, within: float) -> Floats:
-        """The corner that is near a point of the surface, else the edge's place, else the point.
-
-        Parameters
-        ----------
-        point : array, shape (3,)
-            [length]
-        within : float
-            How far away they may be [length].
-
-        Returns
-        -------
-        array, shape (3,)
-            Of the surface [length].
-        """
+        """The corner near a point of the surface, else the place on an edge, else itself."""
         away = np.linalg.norm(self.vertices - point, axis=1)
         corner = int(np.argmin(away))
         if away[corner] <= within:
@@ -224,18 +187,7 @@ class Polyhedron(Body):
         return np.asarray(point + left[edge] / size[edge] * along[edge])
 
     def room(self, point: Floats, step: Floats) -> float:
-        """How much of a step along a face or an edge stays on it.
-
-        Parameters
-        ----------
-        point, step : array, shape (3,)
-            A point of the surface, and a step in the plane of a face that it is on [length].
-
-        Returns
-        -------
-        float
-            From 0 to 1.
-        """
+        """How much of a step along a face or an edge stays on it, from 0 to 1."""
         towards = self.normals @ step
         ahead = towards > _PARALLEL * float(np.linalg.norm(step))
         if not ahead.any():
@@ -248,18 +200,7 @@ class Polyhedron(Body):
         return _ON_PLANE * float(np.abs(self.vertices).max())
 
     def with_vertices(self, vertices: Floats) -> "Polyhedron":
-        """The same mesh with its vertices elsewhere by rounding.
-
-        Parameters
-        ----------
-        vertices : array, shape (n, 3)
-            [length]
-
-        Returns
-        -------
-        Polyhedron
-            Normals are exactly alike where they have been.
-        """
+        """The same mesh, its vertices elsewhere by rounding; normals that are alike stay so."""
         _, first, of_plane = np.unique(self.normals, axis=0, return_index=True, return_inverse=True)
         one, other, third = vertices[self.faces].swapaxes(0, 1)
         areas = np.cross(other - one, third - one)
@@ -306,7 +247,7 @@ def convex_mesh(
 
     Returns
     -------
-    Polyhedron
+    Body
         The body.
 
     Raises
@@ -336,7 +277,7 @@ def polyhedron(points: Floats, label: str = "polyhedron") -> Polyhedron:
 
     Returns
     -------
-    Polyhedron
+    Body
         The body.
 
     Raises

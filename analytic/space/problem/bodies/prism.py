@@ -19,22 +19,12 @@ _ROUNDING = float(np.finfo(float).eps)  # of a parameter, relative to its range
 
 @dataclass(frozen=True, eq=False)
 class Cylinder(Body):
-    """An endless round cylinder; made by `cylinder`.
+    """An endless round cylinder; made by `cylinder`."""
 
-    Parameters
-    ----------
-    radius : float
-        [length]
-    through, axis : array, shape (3,)
-        A point of its axis [length] and the axis' direction, of length 1.
-    label : str
-        What reports call it.
-    """
-
-    radius: float
-    through: Floats
-    axis: Floats
-    label: str
+    radius: float  # [length]
+    through: Floats  # a point of its axis, shape (3,) [length]
+    axis: Floats  # of length 1, shape (3,)
+    label: str  # what reports call it
 
     def nearest(self, x: Floats, apart: float) -> Spot:
         """From the nearest point of the axis."""
@@ -65,23 +55,12 @@ class Prism(Body):
     """The prism of a planar contour; made by `prism`.
 
     Above the contour's ends its sides go straight up, without end.
-
-    Parameters
-    ----------
-    contour : Contour
-        The lower side of its section [length].
-    origin : array, shape (3,)
-        Of the contour's coordinates [length].
-    frame : array, shape (3, 3)
-        The contour's x and y and the prism's axis, a row each.
-    label : str
-        What reports call it.
     """
 
-    contour: Contour
-    origin: Floats
-    frame: Floats
-    label: str
+    contour: Contour  # the lower side of its section [length]
+    origin: Floats  # of the contour's coordinates, shape (3,) [length]
+    frame: Floats  # the contour's x and y and the prism's axis, a row each
+    label: str  # what reports call it
 
     def nearest(self, x: Floats, apart: float) -> Spot:
         """In the plane of the contour."""
@@ -162,7 +141,7 @@ def cylinder(radius: float, through: Vector, axis: Vector) -> Cylinder:
 
     Returns
     -------
-    Cylinder
+    Body
         The body.
 
     Raises
@@ -192,7 +171,7 @@ def prism(
 
     Returns
     -------
-    Prism
+    Body
         The body; with the default axis the planar problem's is its section at z = 0.
 
     Raises
