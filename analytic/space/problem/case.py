@@ -11,7 +11,7 @@ from analytic.problem.support import require_plain
 from analytic.space.problem.bodies.body import Body
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from analytic.space.problem.path import FootPath
-from analytic.space.problem.straight import Way
+from analytic.space.problem.straight import StraightVibrissa
 
 _FARTHEST = 1e4  # L, from the origin: positions are then good to 2e-12 L
 _LARGEST = 1e3  # L, of a mesh: a larger one is a wall, or in another unit
@@ -76,10 +76,10 @@ class SpatialCase:
             raise InputError("path", what, "within reach of the vibrissa", remedy)
 
     @property
-    def way(self) -> Way:
+    def way(self) -> StraightVibrissa:
         """The straight vibrissa along the way of its foot, in units of its length."""
         length = self.beam.length
-        return Way(self.body.scaled(1 / length), self.path, length, self.beam.radius)
+        return StraightVibrissa(self.body.scaled(1 / length), self.path, length, self.beam.radius)
 
     def provenance(self) -> dict[str, Any]:
         """What readings of this case say of it.

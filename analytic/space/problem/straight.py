@@ -47,7 +47,7 @@ def straight_gap(body: Body, foot: Floats, tangent: Floats, radius: float) -> Ga
     return Gap(spot.distance - radius, s, spot)
 
 
-class Way:
+class StraightVibrissa:
     """The straight vibrissa along a way of its foot, in units of its length."""
 
     def __init__(self, body: Body, path: FootPath, length: float, radius: float) -> None:

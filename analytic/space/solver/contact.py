@@ -31,7 +31,7 @@ class Contact(NamedTuple):
     """The spot's place on the parallel surface, shape (3,)."""
     plane: Plane
     loaded: Loaded
-    excess: float
+    rotation: float
     """Rotation w of the end of the loaded part [rad]."""
     arc_length: float
     """Of the loaded part."""
@@ -43,7 +43,7 @@ class Contact(NamedTuple):
     @property
     def free(self) -> float:
         """What its phase leaves free: the rotation w of the tip, or the arc length."""
-        return self.arc_length if self.tangent else self.excess
+        return self.arc_length if self.tangent else self.rotation
 
     @property
     def force(self) -> float:
@@ -65,11 +65,11 @@ class Contact(NamedTuple):
         """How the foot moves with the place on the parallel surface and `free`, shape (3, 4)."""
         plane, loaded, s = self.plane, self.loaded, self.arc_length
         turning = self.spot.turning
-        by_alpha, by_excess = loaded.by_alpha, loaded.by_excess
+        by_alpha, by_rotation = loaded.by_alpha, loaded.by_rotation
         if self.tangent:
-            by_alpha, free = by_alpha - by_excess, loaded.place
+            by_alpha, free = by_alpha - by_rotation, loaded.place
         else:
-            free = by_excess
+            free = by_rotation
         both = np.stack([plane.tangent, plane.lateral])
         moved = np.eye(3) - (APART - radius) * turning
         tilt = plane.along @ turning
@@ -83,13 +83,13 @@ def contact_at(scene: Scene, x: Floats, free: float, tangent: bool) -> Contact:
     """The contact at the nearest point of the body to a place outside; `free` as `Contact.free`."""
     spot = scene.body.nearest(x, APART)
     plane = Plane.of(scene.tangent, spot.normal)
-    excess, arc_length = (np.pi / 2 - plane.alpha, free) if tangent else (free, 1.0)
+    rotation, arc_length = (np.pi / 2 - plane.alpha, free) if tangent else (free, 1.0)
     return Contact(
         spot,
         spot.point + APART * spot.normal,
         plane,
-        loaded_part(excess, plane.alpha),
-        excess,
+        loaded_part(rotation, plane.alpha),
+        rotation,
         arc_length,
         tangent,
         spot.point + scene.radius * spot.normal,

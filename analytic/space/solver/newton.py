@@ -29,7 +29,7 @@ def settle(scene: Scene, start: Contact, foot: Floats, reach: float = np.inf) ->
         limit = np.pi / 2 - found.plane.alpha
         if found.tangent and found.arc_length > 1 + _PHASE_SLACK:
             start = contact_at(scene, found.on_parallel, limit, tangent=False)
-        elif not found.tangent and found.excess > limit + _PHASE_SLACK:
+        elif not found.tangent and found.rotation > limit + _PHASE_SLACK:
             start = contact_at(scene, found.on_parallel, 1.0, tangent=True)
         else:
             return found
@@ -50,7 +50,7 @@ def _newton(scene: Scene, start: Contact, foot: Floats, reach: float) -> Contact
 
     Not so within some roundings, where halves of a step are roundings too.
     """
-    if min(start.plane.alpha, start.excess) <= _FLATTEST:
+    if min(start.plane.alpha, start.rotation) <= _FLATTEST:
         return None
     extent = max(1.0, float(np.abs(foot).max()), float(np.abs(start.centre).max()))
     best, missed = start, _miss(start, foot)
@@ -92,6 +92,6 @@ def _trials(scene: Scene, at: Contact, foot: Floats) -> Iterator[Contact]:
         new = max(at.free + step[2], at.free / 10)
         place = at.on_parallel + step[:2] @ sides
         trial = contact_at(scene, place, new, at.tangent)
-        if trial.plane.alpha > _FLATTEST and trial.excess > _FLATTEST:
+        if trial.plane.alpha > _FLATTEST and trial.rotation > _FLATTEST:
             yield trial
         step = step / 2

@@ -59,20 +59,20 @@ class Loaded(NamedTuple):
     moment: float  # C: moment at the clamp over the root of the force
     place: Floats  # height along t and reach along d of its end, shape (2,)
     by_alpha: Floats  # rate of that with alpha at fixed w, shape (2,)
-    by_excess: Floats  # rate of that with w, shape (2,)
+    by_rotation: Floats  # rate of that with w, shape (2,)
     bending: float  # energy of bending over the root of the force: S - q sin(theta_1)
     root_f_rates: Floats  # rates of q with w and with alpha, shape (2,)
 
 
-def loaded_part(excess: float, alpha: float) -> Loaded:
+def loaded_part(rotation: float, alpha: float) -> Loaded:
     """A vibrissa loaded at its end."""
-    w, a = np.array(excess), np.array(alpha)
+    w, a = np.array(rotation), np.array(alpha)
     with np.errstate(all="ignore"):  # beyond an upright or level surface: not finite, and no state
         integrals = span(w, a)
         up, across = frame(integrals, a)
         height, reach = tip_rates(w, integrals, a)
-        by_excess = span_by_excess(integrals, w, a)
-        by_alpha = span_by_alpha(integrals, by_excess, a)
+        by_rotation = span_by_excess(integrals, w, a)
+        by_alpha = span_by_alpha(integrals, by_rotation, a)
         place = np.array([float(up), float(across)]) / integrals.q
     q = float(integrals.q)
     return Loaded(
@@ -82,5 +82,5 @@ def loaded_part(excess: float, alpha: float) -> Loaded:
         np.array([float(height.by_alpha), float(reach.by_alpha)]),
         np.array([float(height.by_excess), float(reach.by_excess)]),
         float(integrals.S) - q * float(np.cos(w + a)),
-        np.array([float(by_excess.q), float(by_alpha.q)]),
+        np.array([float(by_rotation.q), float(by_alpha.q)]),
     )

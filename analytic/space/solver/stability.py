@@ -78,7 +78,7 @@ def end_stiffness(contact: Contact) -> Floats:
     sine, cosine = np.sin(alpha), np.cos(alpha)
     # From (height, reach) to (along the surface, along the normal).
     turn = np.array([[sine, cosine], [-cosine, sine]])
-    place = s * turn @ np.column_stack([loaded.by_excess, loaded.by_alpha])
+    place = s * turn @ np.column_stack([loaded.by_rotation, loaded.by_alpha])
     # The force f n turns with alpha towards the surface, and grows with q^2.
     grows = 2 * contact.force * loaded.root_f_rates / loaded.root_f
     force = np.array([[0.0, contact.force], [grows[0], grows[1]]])
@@ -99,17 +99,17 @@ def _stiffness_of_any(contact: Contact) -> Floats:
     Shortening a vibrissa that is bent by w takes a stiffness of order 1/w^2 along it; so K is that
     at a larger w, its rows and columns along the surface multiplied by the ratio.
     """
-    if contact.excess >= _SLIGHT:
+    if contact.rotation >= _SLIGHT:
         return end_stiffness(contact)
     alpha = np.pi / 2 - _SLIGHT if contact.tangent else contact.plane.alpha
     more = contact._replace(
         plane=contact.plane._replace(alpha=alpha),
         loaded=loaded_part(_SLIGHT, alpha),
-        excess=_SLIGHT,
+        rotation=_SLIGHT,
     )
     found = end_stiffness(more)
-    found[0] *= _SLIGHT / contact.excess
-    found[:, 0] *= _SLIGHT / contact.excess
+    found[0] *= _SLIGHT / contact.rotation
+    found[:, 0] *= _SLIGHT / contact.rotation
     return found
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from analytic.numerics.walk import WalkEvent, first_unlike
 from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.polyhedron import Polyhedron
-from analytic.space.problem.straight import Way
+from analytic.space.problem.straight import StraightVibrissa
 from analytic.space.solver.contact import APART, Contact, Scene, contact_at
 from analytic.space.solver.hop import landing
 from analytic.space.solver.newton import settle, settle_whole
@@ -35,13 +35,13 @@ class Walked(NamedTuple):
     events: list[WalkEvent]
 
 
-def walk(scene: Scene, way: Way, travel: Sequence[float] | Floats) -> Walked:
+def walk(scene: Scene, way: StraightVibrissa, travel: Sequence[float] | Floats) -> Walked:
     """Every station's state, in order."""
     return _Walker(scene, way).along(travel)
 
 
 class _Walker:
-    def __init__(self, scene: Scene, way: Way) -> None:
+    def __init__(self, scene: Scene, way: StraightVibrissa) -> None:
         self._scene = scene
         self._way = way
         self._smooth = not isinstance(scene.body, Polyhedron)
