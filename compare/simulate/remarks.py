@@ -29,6 +29,7 @@ from compare.simulate.treatment import (
     hardest,
     held,
     joints,
+    moving,
     on_rail,
     steps,
     stiffened,
@@ -331,7 +332,7 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
     meeting = [geom for geom in found.geoms if geom.meets]
     if not meeting:
         return
-    softest = min(meeting, key=lambda geom: geom.stiffness)
+    softest = min(moving(found) or meeting, key=lambda geom: geom.stiffness)
     sinks = _FORCE * found.tip_rigidity / found.length**3 / softest.stiffness
     if sinks > _SINKS:
         depth = f"{sinks:.1e} L into the object"

@@ -30,6 +30,10 @@ def timestep(found: MeasuredBeam) -> float:
     lightest = max((g.weight for g in moving(found)), default=0.0)
     if lightest:
         most = min(most, 1 / math.sqrt(4 * wanted * (1 - _IMPEDANCE) * lightest))
+    if found.hand is not None and found.hand.welds and found.hand.rotation > 0:
+        harder = _RIGID * as_intended(found) / found.length * found.hand.rotation
+        hardest_now = found.hand.time_constant / 2 / math.sqrt(harder)
+        most = min(most, hardest_now if hardest_now < found.timestep else most)
     return min(most, found.timestep) if found.timestep > 0 else most
 
 
@@ -113,7 +117,8 @@ def held(found: MeasuredBeam) -> tuple[Edit, ...]:
     if hand is None:
         return ()
     if hand.welds:
-        return (Edit("weld", (("solref", hardest(found)), ("solimp", HARD)), hand.welds),)
+        hard = Edit("weld", (("solref", hardest(found)), ("solimp", HARD)), hand.welds)
+        return (hard, *steps(found)) if timestep(found) < found.timestep else (hard,)
     rigid = _RIGID * as_intended(found) / found.length
     return (Edit("joint", (("stiffness", number(rigid)),), hand.numbers),)
 

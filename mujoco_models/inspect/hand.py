@@ -12,6 +12,7 @@ from mujoco_models.inspect.parts import Parts
 
 _SWEEP = 40.0  # T1; two lengths at 0.05 L/T1
 _SHARE = 0.05  # of what the tip gives way by; what has less is not named
+_HARD = 0.999  # impedance
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 _COORDINATES = {_FREE: 6, int(mujoco.mjtJoint.mjJNT_BALL): 3}  # of a joint; of others 1
 
@@ -23,6 +24,7 @@ class Hand:
     joints: tuple[str, ...]  # those that do, the most first
     numbers: tuple[int, ...]  # of these joints in the model
     welds: tuple[int, ...]  # of the first of them, if it is free
+    time_constant: float  # of the weld as MuJoCo takes it; NaN if it is not as hard as it can be
     rotation: float  # of the clamp about the axis of the sweep, over a moment [1/(force length)]
     displacement: float  # of the clamp in the plane of the sweep, over a force [length/force]
 
@@ -77,10 +79,12 @@ def measure_hand(
         if of_tip[j] > _SHARE * compliances[3]
     ]  # fmt: skip
     free = bool(giving) and model.jnt_type[giving[0]] == _FREE
+    welds = _welds_of(model, int(model.jnt_bodyid[giving[0]])) if free else ()
     return Hand(
         joints=tuple(model.joint(j).name or f"joint {j}" for j in giving),
         numbers=tuple(giving),
-        welds=_welds_of(model, int(model.jnt_bodyid[giving[0]])) if free else (),
+        welds=welds,
+        time_constant=_time_constant(model, welds),
         rotation=float(compliances[2]),
         displacement=float(compliances[:2].max()),
     )
@@ -96,3 +100,9 @@ def _dofs_of(model: mujoco.MjModel, joints: list[int]) -> Integers:
 def _welds_of(model: mujoco.MjModel, body: int) -> tuple[int, ...]:
     welds = np.flatnonzero((model.eq_type == mujoco.mjtEq.mjEQ_WELD) & model.eq_active0).tolist()
     return tuple(w for w in welds if body in bodies_of_constraint(model, w))
+
+
+def _time_constant(model: mujoco.MjModel, welds: tuple[int, ...]) -> float:
+    if not welds or model.eq_solimp[welds[0], 0] < _HARD or model.eq_solref[welds[0], 0] <= 0:
+        return np.nan
+    return max(float(model.eq_solref[welds[0], 0]), 2 * float(model.opt.timestep))

@@ -5,10 +5,13 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.problem.arrays import Floats, Integers
 from mujoco_models.inspect.parts import Parts
 
+_TURNS = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_BALL)
+_PLACES = 2  # the last of a free joint's coordinates that slide
 _HEAVY = 1e12  # times the mass of the vibrissa, as the inertia of whatever is held
 
 
@@ -49,7 +52,15 @@ class HeldModel:
         self.model.sensor_cutoff[:] = 0
         self.model.sensor_noise[:] = 0
         self._masses = model.body_mass[list(parts.chain)]
-        self.model.dof_armature[heavy] += _HEAVY * self._masses.sum()
+        # A length for what slides, and 1 for what turns.
+        self.units = np.where(
+            np.isin(model.jnt_type[model.dof_jntid], _TURNS) | _turns_freely(model), 1.0,
+            np.linalg.norm(model.body_pos[list(parts.chain)], axis=1).sum(),
+        )  # fmt: skip
+        length = float(self.units.max())
+        self.model.dof_armature[heavy] += (
+            _HEAVY * self._masses.sum() * (length / self.units[heavy]) ** 2
+        )
         self.data = mujoco.MjData(self.model)
         self._force, self._torque = np.zeros((2, 3))
 
@@ -72,6 +83,12 @@ class HeldModel:
         """Where the site of a sensor is, and how it is turned."""
         site = self.model.sensor_objid[sensor]
         return np.array(self.data.site_xpos[site]), self.data.site_xmat[site].reshape(3, 3).copy()
+
+
+def _turns_freely(model: mujoco.MjModel) -> NDArray[np.bool_]:
+    """The last three coordinates of a free joint."""
+    free = model.jnt_type[model.dof_jntid] == mujoco.mjtJoint.mjJNT_FREE
+    return np.asarray(free & (np.arange(model.nv) - model.jnt_dofadr[model.dof_jntid] > _PLACES))
 
 
 def lengths(points: Floats) -> Floats:

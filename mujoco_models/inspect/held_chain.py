@@ -149,7 +149,7 @@ class HeldChain(HeldModel):
                 out = self._out_of_balance(residual)
             step = np.zeros(self.model.nv)
             step[self.dofs] = np.linalg.solve(self._slope, residual)
-            step *= _LONGEST_TURN / max(np.abs(step).max(), _LONGEST_TURN)
+            step *= _LONGEST_TURN / max(np.abs(step / self.units).max(), _LONGEST_TURN)
             mujoco.mj_integratePos(self.model, self.data.qpos, step, 1.0)
             before = out
         raise InputError(
@@ -161,7 +161,7 @@ class HeldChain(HeldModel):
 
     def _out_of_balance(self, residual: Floats) -> float:
         """By how much its joints would have to turn, at most [rad]; NaN without a slope yet."""
-        return float(np.abs(residual / np.diag(self._slope)).max())
+        return float(np.abs(residual / np.diag(self._slope) / self.units[self.dofs]).max())
 
     def _checked(self, slope: Floats) -> Floats:
         """A slope all of whose joints something holds, or raise InputError."""
@@ -171,7 +171,7 @@ class HeldChain(HeldModel):
                 "if it is a cable of MuJoCo 3 on a mocap body, put that on a slide: its plugin "
                 "reads the body's place before MuJoCo has written it",
             )  # fmt: skip
-        scale = np.abs(np.diag(slope))
+        scale = np.abs(np.diag(slope)) * self.units[self.dofs] ** 2
         least, most = int(np.argmin(scale)), int(np.argmax(scale))
         if _SOFTEST * scale[most] > np.median(scale) > 0:
             raise InputError(

@@ -1,0 +1,324 @@
+"""Random foreign models to inspect and mend: ``python -m tests.fuzz.models N [SEED [SWEPT]]``.
+
+Each is a vibrissa as others write one (hinges, pairs of hinges, balls, on a mocap body, a slide, a
+weld, a wrist or a mesh, in units from um to m and from mg to kg), written badly in up to three of
+the ways of `MISTAKES`; or, one in four, such a one, a URDF or a shipped chain, flex or cable, in
+which some numbers are others, or a tendon or a constraint was added. A line a model says what was
+planted, and as flags:
+
+- ``internal``: anything but a line of an `InputError`;
+- ``missed``: a planted mistake that no fault names;
+- ``left``: mended, faults of that kind are still there;
+- ``outside``: swept as mended, it is outside of the expected interval.
+
+Without a seed it takes a new one, from the clock. The exit code is 1 if there is a flag but
+``outside``, or more than one in twenty of those that were swept is outside.
+"""
+
+import random
+import re
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from rich.console import Console
+
+from analytic import InputError, solve_sweep
+from compare import compare
+from compare.read.case import load_case
+from compare.simulate.expected import expected
+from compare.simulate.inspection import Inspection
+from compare.simulate.mending import SPEED, case_of, mend
+from mujoco_models import inspect_model, shipped_models, simulate_model
+
+FAULTY = 0.05  # of the swept; the interval is one of 95 per cent
+
+
+@dataclass
+class Model:
+    """A vibrissa of length L and rigidity EI, of first period T1 as its mass makes it."""
+
+    links: int = 20
+    length: float = 1.0
+    rigidity: float = 1.0
+    mass: float = 0.313
+    joints: str = "hinge"  # or pair, ball
+    carrier: str = "motor"  # or mocap, slide, weld, servo, mesh
+    lead: float = 0.5  # links before the first joint
+    first: float = 1.0  # times as stiff
+    odd: int = 0  # a link that is too stiff
+    timestep: float = 0.01  # T1
+    integrator: str = "discrete"
+    gravity: str = "0 0 0"
+    damping: float = 0.0159  # T1 times the stiffness: a twentieth of critical
+    contact: str = 'condim="1" solimp="0.98 0.98 0.001"'
+    solref: float = 2.0  # time steps
+    site: str = ""
+    limit: str = ""
+    loss: str = ""
+    sensors: tuple[str, ...] = ("force", "torque")
+    planted: list[str] = field(default_factory=list)
+
+    @property
+    def period(self) -> float:
+        """T1 of the uniform vibrissa."""
+        return float(1.787 * (self.mass * self.length**3 / self.rigidity) ** 0.5)
+
+    def text(self) -> str:
+        """As MJCF."""
+        held = f"{self.limit} {self.loss}"
+        h, t1 = self.length / self.links, self.period
+        count = self.links if self.lead < 1 else self.links - 1
+        bodies, weight = "", self.mass / self.links
+        for i in range(1, count + 1):
+            k = self.rigidity / h * (self.first if i == 1 else 1.0) * (1.5 if i == self.odd else 1)
+            spring = f'stiffness="{k:.8g}" damping="{self.damping * t1 * k:.8g}"'
+            joint = {
+                "hinge": f'<joint axis="0 0 1" {spring} {held}/>',
+                "pair": f'<joint axis="0 0 1" {spring} {held}/><joint axis="1 0 0" {spring}/>',
+                "ball": f'<joint type="ball" {spring}/>',
+            }[self.joints]
+            long = h * (1 - self.lead % 1) if i == count else h
+            place = self.lead * h if i == 1 else h
+            bodies += (
+                f'<body name="link{i}" pos="0 {place:.8g} 0">{joint}'
+                f'<geom fromto="0 0 0 0 {long:.8g} 0" mass="{weight * long / h:.8g}"/>'
+            )
+        where = f'<site name="clamp" {self.site}/>'
+        stub = (
+            f'<geom fromto="0 0 0 0 {self.lead * h:.8g} 0" mass="{weight}"/>' if self.lead else ""
+        )
+        inside = f"{where}{stub}{bodies}{'</body>' * count}"
+        sensors = "".join(f'<{word} site="clamp"/>' for word in self.sensors)
+        return (
+            f'<mujoco model="foreign">\n<compiler angle="radian" boundinertia="1.1e-15"/>\n'
+            f'<option timestep="{self.timestep * t1:.8g}" integrator="{self.integrator}" '
+            f'gravity="{self.gravity}"/>\n<default><geom type="capsule" '
+            f'size="{0.005 * self.length:.8g}" {self.contact} '
+            f'solref="{self.solref * self.timestep * t1:.8g} 1"/></default>\n'
+            f"<worldbody>{self._carried(inside)}</worldbody>\n<sensor>{sensors}</sensor>\n"
+            f"{self._beside()}</mujoco>"
+        )
+
+    def _carried(self, inside: str) -> str:
+        inertia, length = 1e6 * self.mass, self.length
+        slide = f'<joint name="rail" type="slide" axis="1 0 0" armature="{inertia:.8g}"/>'
+        moments = _thrice(self.mass * length**2)
+        weight = f'<inertial pos="0 0 0" mass="{self.mass}" diaginertia="{moments}"/>'
+        wrist = f'<joint name="wrist" axis="0 0 1" stiffness="{5e3 * self.rigidity / length:.8g}"/>'
+        turned = f'<body name="wrist">{weight}{wrist}{inside}</body>'
+        mesh = f'<geom type="mesh" mesh="m" mass="{self.mass}" contype="0" conaffinity="0"/>'
+        return {
+            "motor": f'<body name="foot">{slide}{weight}{inside}</body>',
+            "slide": f'<body name="foot">{slide}{weight}{inside}</body>',
+            "mocap": f'<body name="foot" mocap="true">{inside}</body>',
+            "servo": f'<body name="foot">{slide}{weight}{turned}</body>',
+            "mesh": f'<body name="foot">{slide}{mesh}{inside}</body>',
+            "weld": f'<body name="hand" mocap="true"/><body name="foot"><freejoint/>{weight}'
+                    f'{inside}</body>',
+            "fixed": f'<body name="foot">{inside}</body>',
+        }[self.carrier]  # fmt: skip
+
+    def _beside(self) -> str:
+        gain = 1e8 * self.mass / self.period
+        motor = f'<velocity joint="rail" kv="{gain:.8g}"/>'
+        a = 0.05 * self.length
+        corners = f"0 0 0 {a} 0 0 0 {-a} 0 0 0 {a}"
+        return {
+            "motor": f"<actuator>{motor}</actuator>",
+            "servo": f'<actuator>{motor}<motor joint="wrist"/></actuator>',
+            "mesh": f'<asset><mesh name="m" vertex="{corners}"/></asset>'
+                    f"<actuator>{motor}</actuator>",
+            "weld": '<equality><weld body1="hand" body2="foot"/></equality>',
+        }.get(self.carrier, "")  # fmt: skip
+
+
+ADDED = (
+    "", "",
+    '<tendon><fixed><joint joint="rail" coef="1"/></fixed></tendon>',
+    '<tendon><spatial stiffness="1"><site site="clamp"/><site site="clamp"/></spatial></tendon>',
+    '<equality><joint joint1="rail"/></equality>',
+    '<equality><connect body1="link3" anchor="0 0 0"/></equality>',
+    '<contact><exclude body1="link1" body2="link3"/></contact>',
+    '<option><flag contact="disable"/></option>',
+    '<compiler angle="degree" balanceinertia="true"/>',
+)  # fmt: skip
+_FEW = 10  # links
+_GARBLED = 0.25  # of all
+
+
+def drawn_urdf(rng: random.Random) -> str:
+    """A chain of rods on continuous joints, which URDF gives no springs."""
+    links, length = rng.randint(3, 20), 10 ** rng.uniform(-3, 2)
+    text = '<robot name="r"><link name="link0"/>'
+    for i in range(1, links + 1):
+        text += (
+            f'<link name="link{i}"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" '
+            f'ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry><cylinder radius="0.1" '
+            f'length="{length}"/></geometry></collision></link><joint name="j{i}" '
+            f'type="continuous"><parent link="link{i - 1}"/><child link="link{i}"/>'
+            f'<origin xyz="0 0 {length}"/><axis xyz="1 0 0"/></joint>'
+        )
+    return text + "</robot>"
+
+
+def _thrice(x: float) -> str:
+    return f"{x:.8g} {x:.8g} {x:.8g}"
+
+
+def _changed(**values: object) -> Callable[[Model], None]:
+    def change(model: Model) -> None:
+        for name, value in values.items():
+            setattr(model, name, value)
+
+    return change
+
+
+# What is planted, by the subject of the fault that should name it.
+MISTAKES: dict[str, Callable[[Model], None]] = {
+    "clamp, start": _changed(lead=0.0),
+    "clamp, end": _changed(lead=1.0),
+    "clamp, soft": _changed(first=0.4),
+    "uniformity": _changed(odd=4),
+    "contact, soft": _changed(solref=20.0),
+    "contact, friction": _changed(contact='solimp="0.98 0.98 0.001"'),
+    "contact, nothing": _changed(contact='condim="1" contype="0" conaffinity="0"'),
+    "time step, long": _changed(timestep=0.2),
+    "time step, explicit": _changed(integrator="Euler"),
+    "limits": _changed(limit='limited="true" range="-0.01 0.01"'),
+    "friction in joints": _changed(loss='frictionloss="1e-3"'),
+    "damping": _changed(damping=0.8),
+    "force sensor, turned": _changed(site='euler="0 0 0.2"'),
+    "force sensor, none": _changed(sensors=()),
+    "foot": _changed(carrier="fixed"),
+}
+UNITS = {"m": 1.0, "cm": 1e2, "mm": 1e3, "um": 1e6}  # of a whisker of 0.1 m
+MASSES = {"kg": 1.0, "g": 1e3, "mg": 1e6}
+
+
+def drawn(rng: random.Random) -> Model:
+    """A whisker of a steel wire, more or less, in some units, with some mistakes."""
+    unit, mass = rng.choice([*UNITS.values()]), rng.choice([*MASSES.values()])
+    length = 0.1 * rng.uniform(0.3, 3)
+    model = Model(
+        links=rng.randint(8, 40),
+        length=length * unit,
+        rigidity=6.4e-4 * 10 ** rng.uniform(-2, 1) * mass * unit**3,
+        mass=1.5e-4 * 10 ** rng.uniform(-1, 1) * mass,
+        joints=rng.choice(["hinge", "hinge", "pair", "ball"]),
+        carrier=rng.choice(["motor", "motor", "slide", "mocap", "servo", "mesh", "weld"]),
+    )
+    for name in rng.sample([*MISTAKES], rng.randint(0, 3)):
+        if model.joints != "ball" or name not in ("limits", "friction in joints"):
+            MISTAKES[name](model)
+            model.planted.append(name)
+    return model
+
+
+@dataclass
+class Outcome:
+    """What came of a model."""
+
+    model: Model
+    said: str = ""
+    flags: list[str] = field(default_factory=list)
+
+
+def garbled(rng: random.Random) -> str:
+    """Another one's text with a number that is another, or with something added."""
+    text = rng.choice([drawn(rng).text(), *(p.read_text() for p in shipped_models().values())])
+    numbers = list(re.finditer(r"(?<=[\" ])-?[0-9.]+(e-?[0-9]+)?(?=[\" ])", text))
+    for one in sorted(rng.sample(numbers, 2), key=lambda one: -one.start()):
+        new = float(one[0]) * rng.choice([0, -1, 1e-6, 1e6, 1e300, 2, 0.5])
+        text = f"{text[: one.start()]}{new:g}{text[one.end() :]}"
+    return text.replace("</mujoco>", rng.choice(ADDED) + "</mujoco>")
+
+
+def trial(rng: random.Random, folder: Path, sweep: bool = False) -> Outcome:
+    """Inspect and mend one; sweep it as mended."""
+    outcome = Outcome(drawn(rng))
+    path = folder / "foreign.xml"
+    path.write_text(outcome.model.text())
+    if not sweep and rng.random() < _GARBLED:
+        outcome.model.planted = []
+        path.write_text(garbled(rng))
+        if rng.random() < _GARBLED:
+            path = path.with_suffix(".urdf")
+            path.write_text(drawn_urdf(rng))
+    try:
+        before = Inspection(inspect_model(path))
+        found = {r.subject for r in before.remarks if r.kind == "fault"}
+        planted = {name.split(",")[0] for name in outcome.model.planted}
+        outcome.said = f"{sorted(found)}"
+        if planted - found - _hidden(outcome.model):
+            outcome.flags.append(f"missed {sorted(planted - found)}")
+        after = mend(path, {}, before, path.with_name("mended.xml"))
+        left = {r.subject for r in after.inspection.remarks if r.kind == "fault"}
+        outcome.said += f" -> {sorted(left)}"
+        if outcome.model.planted and left - _stays(outcome.model):
+            outcome.flags.append(f"left {sorted(left)}")
+        if sweep and not left:
+            _sweep(outcome, after.inspection, after.files[0])
+    except InputError as error:
+        outcome.said = str(error)
+        if "\n" in outcome.said:
+            outcome.flags.append("internal")
+    except Exception as error:  # the point of this
+        outcome.said, outcome.flags = f"{type(error).__name__}: {error}", ["internal"]
+    return outcome
+
+
+def _hidden(model: Model) -> set[str]:
+    """What another mistake makes harmless."""
+    hidden = {"time step"} if model.integrator == "Euler" else set()
+    # A spring that is explicit may be slow enough for the step, or an overdamped one be stable.
+    if "damping" in model.planted or model.odd >= model.links:
+        hidden |= {"damping", "uniformity"}
+    if model.carrier == "weld":
+        hidden |= {"force sensor", "foot"}
+    return hidden
+
+
+def _stays(model: Model) -> set[str]:
+    """What no number mends: the sensors of a body that is free, and too few links."""
+    of_weld = {"force sensor", "torque sensor"} if model.carrier == "weld" else set()
+    return of_weld | ({"large bending"} if model.links < _FEW else set())
+
+
+def _sweep(outcome: Outcome, inspection: Inspection, file: Path) -> None:
+    case = file.with_name("case.toml")
+    case.write_text(case_of(inspection.found, file, {}))
+    job = load_case(case)
+    moved = simulate_model(job.case, job.model, job.motion, job.settings)
+    parts = compare(solve_sweep(job.case), moved).disagreement
+    worst = max(part.rms for part in parts.values())
+    low, high = expected(inspection.found, SPEED).interval
+    outcome.said += f" {low:.1e} < {worst:.1e} < {high:.1e}, {(~moved.trusted).sum()} untrusted"
+    if not low < worst < high:
+        outcome.flags.append("outside")
+
+
+def main(count: int, seed: int, swept: int = 0) -> int:
+    """Try some; 1 if something is wrong."""
+    console = Console(highlight=False, soft_wrap=True)
+    console.print(f"{count} models, seed {seed}")
+    outside = wrong = 0
+    with tempfile.TemporaryDirectory() as folder:
+        for i in range(count):
+            outcome = trial(random.Random(f"{seed} {i}"), Path(folder), i < swept)
+            outside += "outside" in outcome.flags
+            wrong += any(flag != "outside" for flag in outcome.flags)
+            model = outcome.model
+            about = f"{model.links} {model.joints} on {model.carrier}, L = {model.length:.3g}"
+            console.print(f"{i}: {about}, {model.planted} {outcome.said} {outcome.flags or ''}",
+                          markup=False)  # fmt: skip
+    console.print(f"{wrong} wrong, {outside} of {swept} outside")
+    return int(wrong > 0 or outside > FAULTY * swept)
+
+
+if __name__ == "__main__":
+    words = [int(word) for word in sys.argv[1:]]
+    sys.exit(main(words[0], words[1] if len(words) > 1 else time.time_ns() % 10**6, *words[2:3]))
