@@ -9,7 +9,7 @@ from packaging.requirements import InvalidRequirement, Requirement
 
 from analytic.problem.errors import InputError
 from engines.engine import Engine, Role
-from engines.known import known_engines
+from engines.known import known_engines, own_version
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,8 @@ class Found:
     engine : Engine or None
         None if its module cannot be imported.
     version : str or None
-        Of the distribution that it needs; None if that is not installed.
+        Of the distribution that offers it or, if it is shipped here, of the one that it needs; None
+        if that is not installed.
     trouble : str or None
         Why it cannot be used, and what to do; None if it can.
     """
@@ -86,7 +87,7 @@ def _found(name: str, target: str) -> Found:
             what = f"its requirement cannot be read: {what}"
         return Found(name, None, None, f"{target} cannot be loaded ({what})")
     there, trouble = installed(engine.requires)
-    return Found(name, engine, there, trouble)
+    return Found(name, engine, there and (own_version(name) or there), trouble)
 
 
 def _check(engine: Engine) -> None:

@@ -38,5 +38,11 @@ def known_engines() -> dict[str, str]:
     return {**_SHIPPED, **{n: where for n, where in offered.items() if n not in _SHIPPED}}
 
 
+def own_version(name: str) -> str | None:
+    """Of the distribution that offers an engine by an entry point."""
+    offered = (point.dist for point in _offered() if point.name == name)
+    return next((dist.version for dist in offered if dist is not None), None)
+
+
 def _offered() -> Iterator[EntryPoint]:
     yield from entry_points(group=GROUP)

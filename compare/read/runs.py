@@ -115,6 +115,7 @@ class EngineOutcome:
     snap_off_apart: float | None = None  # less that of the closed form [L]
     seconds_a_station: float | None = None  # of processor time
     agrees: bool = False
+    likely: str = ""  # why it disagrees, or why stations are not to be trusted
 
 
 @dataclass(frozen=True)

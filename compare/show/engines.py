@@ -28,6 +28,8 @@ from compare.show.side_by_side import (
     side_by_side,
 )
 
+_EDGE = 0.97  # of the picture's width
+
 
 @dataclass(frozen=True)
 class ManyEngines:
@@ -91,7 +93,18 @@ def _compared(one: EngineOutcome, found: Comparison) -> EngineOutcome:
         snap_off_apart=None if apart is None else apart / found.reference.beam.length,
         seconds_a_station=seconds_per_station(found.candidate),
         agrees=found.agrees,
+        likely="; ".join(_causes(found)),
     )
+
+
+def _causes(found: Comparison) -> Iterator[str]:
+    """Why it disagrees, and why stations of its own are not to be trusted."""
+    if not found.agrees:
+        yield f"likely {found.likely}" if found.likely else "the readings alone do not show why"
+    unsettled = found.candidate.provenance.get("unsettled") or {}
+    if unsettled:
+        most = max(unsettled, key=unsettled.__getitem__)
+        yield f"{sum(unsettled.values())} stations unsettled, mostly as {most}"
 
 
 def write_engines(many: ManyEngines, folder: Path) -> list[Path]:
@@ -134,8 +147,8 @@ def outcomes_table(found: Mapping[str, Sequence[EngineOutcome]]) -> Table:
                 f"{one.name} {one.version}, {one.role}",
                 *(short(one.rms[name]) if one.rms else "none" for name in CLAMP_READINGS),
                 short(one.snap_off_apart),
-                "" if one.seconds_a_station is None else f"{1e3 * one.seconds_a_station:.2g}",
-                one.trouble or ("agrees" if one.agrees else "disagrees"),
+                "none" if one.seconds_a_station is None else f"{1e3 * one.seconds_a_station:.2g}",
+                one.trouble or "; ".join(filter(None, (_verdict(one), one.likely))),
             )
             for one in outcomes
         ]
@@ -144,6 +157,10 @@ def outcomes_table(found: Mapping[str, Sequence[EngineOutcome]]) -> Table:
     head = ("engine", *CLAMP_READINGS, "snap-off apart / L", "ms a station", "")
     caption = "Each engine against the closed form, relative rms"
     return Table(caption, ("case", *head), _by_case(rows), words=(0, 1, 7))
+
+
+def _verdict(one: EngineOutcome) -> str:
+    return "agrees" if one.agrees else "disagrees"
 
 
 def parts_table(found: Mapping[str, Mapping[str, Mapping[str, float]]]) -> Table:
@@ -207,17 +224,21 @@ def error_against_time(many: ManyEngines) -> Figure:
     ax.set_title(f"{style.label(many.case.name)}: error against time", fontsize=style.LARGE)
     named = set()
     for one in many.outcomes:
-        if one.rms is None or one.seconds_a_station is None:
+        if one.rms is None:
             continue
-        x = 1e3 * one.seconds_a_station
+        # One that records no time is a mark at the right edge.
+        timed = one.seconds_a_station is not None
+        x = 1e3 * one.seconds_a_station if one.seconds_a_station is not None else _EDGE
+        across = ax.transData if timed else ax.get_yaxis_transform()
         for reading, rms in one.rms.items():
             said = "_" if reading in named else style.SYMBOLS[reading]
             colour, marker = style.READING_COLOURS[reading], style.READING_MARKERS[reading]
-            ax.plot(x, rms, marker, color=colour, label=said)
+            ax.plot(x, rms, marker, color=colour, label=said, transform=across)
             named.add(reading)
         ax.annotate(
-            style.label(one.name), (x, max(one.rms.values())), (0, 8), textcoords="offset points",
-            ha="center", fontsize=style.SMALL,
+            style.label(one.name) + ("" if timed else ", no time"), (x, max(one.rms.values())),
+            (0, 8), xycoords=across, textcoords="offset points",
+            ha="center" if timed else "right", fontsize=style.SMALL,
         )  # fmt: skip
     ax.margins(0.25)
     ax.grid(which="both", alpha=0.25)
