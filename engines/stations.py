@@ -141,7 +141,7 @@ def sweep_stations(
         source,
         {**about, "unsettled": unsettled},
         lambda: {"snap_off": walk.snap_off},
-        swept.foot_x,
+        {"foot_x": swept.foot_x},
         begun=begun,
     )
     for target in stations:

@@ -2,40 +2,54 @@
 
 import platform
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from analytic.problem.arrays import Floats, Integers
-from analytic.problem.case import Case
+from analytic.problem.beam import Beam
 from analytic.problem.columns import COLUMNS, WORDS, units
 from analytic.problem.errors import InputError
 from analytic.problem.readings import Readings, solved_readings
 
 DIVERGED = {"phase": "free", "status": "diverged"}
 """The row of a station without numbers."""
+Kept = TypeVar("Kept")
+
+
+class Swept(Protocol):
+    """A case, of whichever kind."""
+
+    @property
+    def beam(self) -> Beam:
+        """The vibrissa."""
+
+    def provenance(self) -> dict[str, Any]:
+        """What the readings of the case say of it."""
 
 
 @dataclass
-class Recorder:
-    """Dimensionless rows, L = EI = 1, of a sweep to the left past the stations of a case."""
+class AnyRecorder(ABC, Generic[Kept]):
+    """Dimensionless rows, L = EI = 1, of a sweep past the stations of a case."""
 
-    case: Case
+    case: Swept
     source: str  # who produces the readings
     # Of the provenance: ``engine``, with its version, ``settings`` and the like. It is read when
     # the readings are made, so it may hold what is counted on the way.
     about: Mapping[str, Any]
-    events: Callable[[], Mapping[str, float | None]]  # foot positions so far, by name [L]
-    foot_x: Floats  # shape (stations,); in the order in which they are passed [length]
+    events: Callable[[], Any]  # what has happened so far
+    # Columns that say where the stations are, in the order in which they are passed [length].
+    places: Mapping[str, Floats]
     rows: list[dict[str, Any]] = field(default_factory=list)
     begun: float = field(default_factory=time.process_time)  # processor time [s]
 
     @contextmanager
-    def rescued(self, keep: Callable[[Readings], None]) -> Iterator[None]:
+    def rescued(self, keep: Callable[[Kept], None]) -> Iterator[None]:
         """Hand over what there is when the work ends early, whatever ends it."""
         try:
             # The matrices are small: more threads only wait for each other, on a busy machine long.
@@ -46,35 +60,49 @@ class Recorder:
                 keep(self.readings())
             raise
 
-    def readings(self) -> Readings:
+    @abstractmethod
+    def readings(self) -> Kept:
         """All rows, in the units of the case's beam."""
-        columns, beam = self._columns(), self.case.beam
-        events = {n: None if x is None else x * beam.length for n, x in self.events().items()}
-        provenance = {
+
+    def _provenance(self, events: object) -> dict[str, Any]:
+        return {
             **self.case.provenance(),
             **self.about,
             "python": platform.python_version(),
             "seconds": round(time.process_time() - self.begun, 3),
             "events": events,
         }
+
+    def _columns(self, first: tuple[str, ...]) -> dict[str, Any]:
+        """By name, in the units of the beam; a station without numbers has NaN."""
+        names = [n for n in dict.fromkeys([*first, *self.rows[0]]) if n not in self.places]
+        columns: dict[str, Any] = {n: x[: len(self.rows)] for n, x in self.places.items()}
+        for name, unit in zip(names, units(self.case.beam, names), strict=True):
+            if name in WORDS:
+                columns[name] = [row[name] for row in self.rows]
+            else:
+                values = np.array([row.get(name, np.nan) for row in self.rows], dtype=float)
+                columns[name] = values * unit
+        return columns
+
+
+class Recorder(AnyRecorder[Readings]):
+    """Of a sweep in the plane to the left; its events are foot positions by name [L]."""
+
+    def readings(self) -> Readings:
+        """All rows, in the units of the case's beam."""
+        beam = self.case.beam
+        columns: dict[str, Floats | Integers] = self._columns(COLUMNS)
+        for name in WORDS:
+            columns[name] = np.array([_number(name, word) for word in columns[name]])
+        events = {n: None if x is None else x * beam.length for n, x in self.events().items()}
+        provenance = self._provenance(events)
         if any(np.isinf(values).any() for values in columns.values()):
             from analytic.problem.table import as_table  # slow to load
 
             # Beyond the largest number in the case's units: an error says so.
             return Readings(as_table(columns), beam, self.source, provenance)
         return solved_readings(columns, beam, self.source, lambda: provenance, events["snap_off"])
-
-    def _columns(self) -> dict[str, Floats | Integers]:
-        """As `analytic.problem.table.as_table` takes them; a station without numbers has NaN."""
-        names = [n for n in dict.fromkeys([*COLUMNS, *self.rows[0]]) if n != "foot_x"]
-        columns: dict[str, Floats | Integers] = {"foot_x": self.foot_x[: len(self.rows)]}
-        for name, unit in zip(names, units(self.case.beam, names), strict=True):
-            if name in WORDS:
-                columns[name] = np.array([_number(name, row[name]) for row in self.rows])
-            else:
-                values = np.array([row.get(name, np.nan) for row in self.rows], dtype=float)
-                columns[name] = values * unit
-        return columns
 
 
 def _number(column: str, word: str) -> int:

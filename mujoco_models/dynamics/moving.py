@@ -9,7 +9,7 @@ import numpy as np
 from analytic.problem.arrays import Booleans, Floats, Integers
 from mujoco_models.errors import DivergedError
 from mujoco_models.model.clamp import Clamp
-from mujoco_models.model.stiffness import impede, stiffen, weights_in_last_step
+from mujoco_models.model.stiffness import stiffen, weights_in_last_step
 from mujoco_models.model.warned import has_diverged
 
 
@@ -71,9 +71,8 @@ class SteppedModel(ABC):
         """Force over penetration of contacts with the object; what may move is as stiff now."""
         self._stiffness, self._impedance, self._friction = stiffness, impedance, friction
         geoms = np.flatnonzero(self._is_mine)
-        weight = self.model.body_invweight0[self.model.geom_bodyid[geoms], 0]
-        stiffen(self.model, geoms[weight > 0], weight[weight > 0], stiffness, impedance)
-        impede(self.model, geoms[weight > 0], impedance)
+        moves = self.model.body_invweight0[self.model.geom_bodyid[geoms], 0] > 0
+        stiffen(self.model, geoms[moves], stiffness, impedance)
 
     def _follow_inertia(self) -> None:
         """Make contacts as stiff as stated with the inertia that MuJoCo took in the last step."""
@@ -81,7 +80,7 @@ class SteppedModel(ABC):
         met = self._is_object[pairs].any(axis=1) & (weight > 0)
         mine = self._is_mine[pairs] & met[:, None]
         weights = np.repeat(weight, mine.sum(axis=1))
-        stiffen(self.model, pairs[mine], weights, self._stiffness, self._impedance)
+        stiffen(self.model, pairs[mine], self._stiffness, self._impedance, weights)
 
     def _share_of_kinetic(self, speeds: Floats, dofs: Integers | slice, elastic: float) -> float:
         """Kinetic energy of the vibrissa's velocities over kinetic and elastic energy."""

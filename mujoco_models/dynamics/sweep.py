@@ -3,10 +3,8 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, replace
-from importlib.metadata import version
 from typing import Any
 
-import mujoco
 import numpy as np
 
 from analytic.problem.case import Case
@@ -18,6 +16,7 @@ from mujoco_models.dynamics.moving import SteppedModel
 from mujoco_models.dynamics.record import StationMeans, Step
 from mujoco_models.errors import DivergedError
 from mujoco_models.model.parts import parts
+from mujoco_models.model.stations import engine
 from mujoco_models.motion import Motion
 from mujoco_models.quiet import unlogged
 from mujoco_models.settings import Settings
@@ -141,9 +140,8 @@ class Passes:
         """The readings of the way on, to the left, or of that back."""
         case, motion = self._case, self._motion
         turn_at = self._model.foot_x - motion.speed * motion.ramp / 2 if back else None
-        own = version("vibrissa-testbed")
         about = {
-            "engine": f"MuJoCo {mujoco.__version__}, vibrissa-testbed {own}",
+            "engine": engine(),
             **self._about,
             "motion": asdict(motion),
             "obstacle": self._model.label,
@@ -153,7 +151,7 @@ class Passes:
             self._source,
             about,
             lambda: self._events(record, turn_at),
-            case.foot_x[::-1] if back else case.foot_x,
+            {"foot_x": case.foot_x[::-1] if back else case.foot_x},
             record.rows,
         )
         with recorder.rescued(keep), unlogged():

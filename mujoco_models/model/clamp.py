@@ -5,6 +5,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
+from analytic.numerics.vectors import cross
 from analytic.problem.arrays import Booleans, Floats
 
 
@@ -26,19 +27,19 @@ def by_sensors(data: mujoco.MjData) -> Clamp:
     return Clamp(float(fx), float(fy), float(mz))
 
 
-def by_contacts(data: mujoco.MjData, foot: Floats, moves: Booleans) -> Clamp:
-    """The wrench at the foot that holds all contact forces."""
+def by_contacts(data: mujoco.MjData, foot: Floats, moves: Booleans) -> Floats:
+    """Force and moment at the foot that hold all contact forces, shape (2, 3)."""
     contact = data.contact
     carries = contact.efc_address >= 0  # others carry nothing
     force = data.efc_force[contact.efc_address[carries]]
     force = np.where(moves[contact.geom[carries, 1]], force, -force)
-    x, y = contact.frame[carries, :2].T
-    across, along = (contact.pos[carries, :2] - foot).T
-    return Clamp(*(-float(force @ part) for part in (x, y, across * y - along * x)))
+    outward = contact.frame[carries, :3].T
+    moment = cross((contact.pos[carries] - foot).T, outward)
+    return np.array([-outward @ force, -moment @ force])
 
 
 def discrepancy(sensed: Clamp, required: Clamp, first_joint: Floats, moment: float) -> float:
-    """By how much three accounts of the clamp differ, the worst of all."""
+    """By how much three accounts of the clamp differ in the plane, the worst of all."""
     by_contact = max(abs(a - b) for a, b in zip(sensed, required, strict=True))
     x, y = first_joint.tolist()
     at_joint = sensed.moment_z + y * sensed.force_x - x * sensed.force_y

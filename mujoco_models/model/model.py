@@ -16,7 +16,7 @@ from mujoco_models.model.search import Search
 from mujoco_models.model.sides import FUSED, Sides
 from mujoco_models.model.sliding import SlidingBeads
 from mujoco_models.model.spec import assemble, compiled
-from mujoco_models.model.stiffness import impede, stiffen
+from mujoco_models.model.stiffness import stiffen
 from mujoco_models.model.surface import Surface
 from mujoco_models.model.warned import has_diverged
 from mujoco_models.obstacles.protocol import Obstacle
@@ -50,20 +50,15 @@ class BeamModel:
         self.beads: Integers = self._surface.beads
         # One of those at each of the beam's joints: a universal joint has two of MuJoCo's.
         self._joints = np.unique(model.jnt_bodyid, return_index=True)[1]
-        self._set_contact_stiffness()
+        # The same stiffness at every contact, whatever the time step.
+        geoms = np.concatenate([self._surface.beads, self._surface.sides])
+        stiffen(model, geoms, contact_stiffness)
         self._sliding = SlidingBeads(model, self.beads, self.layout, obstacle)
         sharpest = obstacle.largest_curvature
         self._slides = self._sliding.needed(sharpest / (1 + radius * sharpest))
         self._sides: Sides | None = None  # of the configuration that was evaluated last
         scene = MujocoScene(model, self.data, self.beads, obstacle)
         self.lookout = Lookout(scene, obstacle, radius, self.layout)
-
-    def _set_contact_stiffness(self) -> None:
-        """The same stiffness at every contact, whatever the time step."""
-        geoms = np.concatenate([self._surface.beads, self._surface.sides])
-        weight = self.model.body_invweight0[self.model.geom_bodyid[geoms], 0]
-        stiffen(self.model, geoms, weight, self.contact_stiffness)
-        impede(self.model, geoms)
 
     def imbalance(self, foot_x: float, angles: Floats) -> Floats:
         """Moment out of balance at each joint, at rest.
@@ -232,7 +227,7 @@ class BeamModel:
 
     def discrepancy(self) -> float:
         """By how much three accounts of the clamp differ, see `clamp.discrepancy`."""
-        foot = self.data.xpos[self._foot, :2]
-        by_contacts = clamp.by_contacts(self.data, foot, self._surface.moves)
+        foot = self.data.xpos[self._foot]
+        (fx, fy, _), (_, _, mz) = clamp.by_contacts(self.data, foot, self._surface.moves).tolist()
         moment = float(self.elastic_moments()[0])
-        return clamp.discrepancy(self.clamp(), by_contacts, self.layout.base[0], moment)
+        return clamp.discrepancy(self.clamp(), clamp.Clamp(fx, fy, mz), self.layout.base[0], moment)

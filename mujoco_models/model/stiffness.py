@@ -9,27 +9,26 @@ IMPEDANCE = 0.9
 """MuJoCo's d, unless stated; with the stiffness it cancels out of the law at rest."""
 
 
-def impede(model: mujoco.MjModel, geoms: Integers, impedance: float = IMPEDANCE) -> None:
-    """Give contacts the same impedance at all depths."""
-    model.geom_solimp[geoms] = [impedance, impedance, 1e-3, 0.5, 2]
-
-
 def stiffen(
     model: mujoco.MjModel,
     geoms: Integers,
-    weight: Floats,
     stiffness: float,
     impedance: float = IMPEDANCE,
+    weight: Floats | None = None,
 ) -> None:
-    """Make contacts critically damped, and as stiff as stated at rest.
+    """Make contacts critically damped, with one impedance, and as stiff as stated at rest.
 
     At rest MuJoCo's contact force is -k/((1 - d) A) times the distance, with solref = (-k, -b), the
-    impedance d of solimp, and A the acceleration by a unit of force.
+    impedance d of solimp, and A the acceleration by a unit of force: MuJoCo's estimate, if no other
+    weight is given.
     """
+    if weight is None:
+        weight = model.body_invweight0[model.geom_bodyid[geoms], 0]
     with np.errstate(over="ignore"):  # of a motion that is about to diverge
         k = stiffness * (1 - impedance) * weight
     model.geom_solref[geoms, 0] = -k
     model.geom_solref[geoms, 1] = -2 * np.sqrt(k)
+    model.geom_solimp[geoms] = [impedance, impedance, 1e-3, 0.5, 2]
 
 
 def weights_in_last_step(

@@ -7,7 +7,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
-from mujoco_models.obstacles.protocol import GEOM, TOP, Obstacle
+from mujoco_models.obstacles.protocol import GEOM, TOP, Obstacle, add_collider
 
 # Corners +x, -x, +y, -y, +z, -z; every face has one of each pair, counterclockwise from outside.
 _OCTAHEDRON = (
@@ -226,11 +226,4 @@ def add_hull(spec: mujoco.MjSpec, vertices: Floats, inner: Floats, size: float) 
     faces = len(vertices) + np.array(_OCTAHEDRON, dtype=np.int32)
     mesh = spec.add_mesh(name=GEOM)
     mesh.uservert, mesh.userface = np.concatenate([vertices, speck]).ravel(), faces.ravel()
-    spec.worldbody.add_geom(
-        name=mesh.name,
-        type=mujoco.mjtGeom.mjGEOM_MESH,
-        meshname=mesh.name,
-        contype=1,
-        conaffinity=0,
-        condim=1,
-    )
+    add_collider(spec, mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh.name)

@@ -16,7 +16,7 @@ from analytic.problem.arrays import Floats, Integers
 from analytic.problem.case import Case
 from analytic.problem.errors import InputError
 from mujoco_models.obstacles.prism import Prism
-from mujoco_models.obstacles.protocol import GEOM, Obstacle
+from mujoco_models.obstacles.protocol import Obstacle, add_collider
 
 # rad, between neighbouring circles. A contact is off its circle's point of osculation by no more,
 # and the contour from the circle by the cube of that; where curvature jumps, by the square.
@@ -78,15 +78,8 @@ class Primitive(Obstacle):
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """One geom; not at the origin, or MuJoCo takes it that it never leaves it."""
-        spec.worldbody.add_geom(
-            name=GEOM,
-            type=mujoco.mjtGeom.mjGEOM_CYLINDER,
-            pos=[1, 1, 0],
-            size=[1, _HALF_LENGTH, 0],
-            contype=1,
-            conaffinity=0,
-            condim=1,
-        )
+        cylinder = mujoco.mjtGeom.mjGEOM_CYLINDER
+        add_collider(spec, cylinder, pos=[1, 1, 0], size=[1, _HALF_LENGTH, 0])
 
     def show(self, model: mujoco.MjModel, geom: int, window: int) -> None:
         """Put the cylinder where the window's circle is."""

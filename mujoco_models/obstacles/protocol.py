@@ -101,3 +101,11 @@ class Obstacle(ABC):
     @abstractmethod
     def is_inside(self, window: int, places: Floats) -> bool:
         """Whether a window has all of the contour around some places."""
+
+
+def add_collider(
+    spec: mujoco.MjSpec, kind: mujoco.mjtGeom, name: str = GEOM, **given: object
+) -> mujoco.MjsGeom:
+    """Add a geom to the world body that a vibrissa may touch, without friction."""
+    own = {"contype": 1, "conaffinity": 0, "condim": 1} | given
+    return spec.worldbody.add_geom(name=name, type=kind, **own)

@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats, Integers
-from mujoco_models.obstacles.protocol import GEOM
+from mujoco_models.obstacles.protocol import GEOM, add_collider
 
 # L, of the extrusion: more than the vibrissa's length, so that it cannot leave over the prism's
 # ends, and much more than a penetration, or depths come out wrong.
@@ -34,15 +34,8 @@ def add_room(spec: mujoco.MjSpec, count: int) -> None:
     )
     mesh = spec.add_mesh(name=GEOM)
     mesh.uservert = vertices.ravel()  # without faces, it has those of its hull
-    spec.worldbody.add_geom(
-        name=mesh.name,
-        type=mujoco.mjtGeom.mjGEOM_MESH,
-        meshname=mesh.name,
-        pos=[1, 1, 0],  # not at the origin, or MuJoCo takes it that it never leaves it
-        contype=1,
-        conaffinity=0,
-        condim=1,
-    )
+    # Not at the origin, or MuJoCo takes it that it never leaves it.
+    add_collider(spec, mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh.name, pos=[1, 1, 0])
 
 
 def write_prism(model: mujoco.MjModel, geom: int, polygon: Floats, origin: Floats) -> None:

@@ -15,9 +15,10 @@ from analytic.space.problem.bodies.polyhedron import Polyhedron, polyhedron, sol
 from analytic.space.problem.bodies.prism import Cylinder, Prism
 from analytic.space.problem.bodies.support import SmoothBody, spread
 from mujoco_models.model.spec import CCD_TOLERANCE
+from mujoco_models.obstacles.protocol import GEOM, add_collider
 from mujoco_models.obstacles.window import prism_faces
 
-GEOM, OUTLINE = "body", "outline"
+OUTLINE = "outline"
 _MARGIN = 1.5  # L beyond the way of the foot: how far endless bodies go on
 _MOST_VERTICES = 50_000  # the hull of a round body takes MuJoCo half a second then
 # MuJoCo seeks the nearest point of an ellipsoid until its distance is good to a tolerance: of 1,800
@@ -140,9 +141,7 @@ def _add(
     axis: Floats | None,
     size: Floats | list[float],
 ) -> mujoco.MjsGeom:
-    geom = spec.worldbody.add_geom(
-        name=GEOM, type=kind, pos=place, size=size, contype=1, conaffinity=0, condim=1
-    )
+    geom = add_collider(spec, kind, pos=place, size=size)
     if axis is not None:
         turn = np.zeros(4)
         mujoco.mju_quatZ2Vec(turn, axis)
@@ -161,14 +160,8 @@ def _add_mesh(spec: mujoco.MjSpec, body: Polyhedron, name: str = GEOM) -> None:
     mesh = spec.add_mesh(name=name)
     mesh.uservert, mesh.userface = body.vertices.ravel(), body.faces.astype(np.int32).ravel()
     mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
-    spec.worldbody.add_geom(
-        name=name,
-        type=mujoco.mjtGeom.mjGEOM_MESH,
-        meshname=name,
-        contype=1 if name == GEOM else 0,
-        conaffinity=0,
-        condim=1,
-    )
+    kind, touches = mujoco.mjtGeom.mjGEOM_MESH, int(name == GEOM)
+    add_collider(spec, kind, name, meshname=name, contype=touches)
 
 
 def _within_reach(

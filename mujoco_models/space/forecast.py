@@ -41,7 +41,7 @@ HEAD_ON = 1e-6
 """Cosine of a force with the way across the clamp, below which it has no plane with it."""
 
 
-class Bow(NamedTuple):
+class Planar(NamedTuple):
     """A chain in a plane with its clamp, and a contact; lengths in L."""
 
     angles: Floats  # of the links from the clamp's tangent, shape (n_links,) [rad]
@@ -65,7 +65,7 @@ class _Bent(NamedTuple):
 
 
 class Forecast:
-    """Newton's method on the picture of a chain."""
+    """Newton's method on the surrogate of a chain."""
 
     def __init__(
         self, layout: Layout, law: Law, tangent: Floats, radius: float, contact_stiffness: float
@@ -78,42 +78,42 @@ class Forecast:
 
     def rest(
         self,
-        start: Bow,
+        start: Planar,
         feature: Feature,
         foot: Floats,
         near: Floats | None = None,
         far: float = math.inf,
-    ) -> Bow | None:
+    ) -> Planar | None:
         """The equilibrium to which Newton's method leads."""
-        bow, before, apart, not_halved = start, math.inf, math.inf, 0
+        planar, before, apart, not_halved = start, math.inf, math.inf, 0
         onto = feature.basis @ self._tangent
         clamp = foot + self._begins[0] * self._tangent
         first = feature.basis @ (clamp - feature.point)
         for _ in range(_ITERATIONS):
-            if bow.force @ bow.force < _LEAST_FORCE**2:
+            if planar.force @ planar.force < _LEAST_FORCE**2:
                 return None
-            bent = self._bent(bow)
+            bent = self._bent(planar)
             if near is not None:
-                away = clamp + bent.along * self._tangent + bent.aside * bow.side - near
+                away = clamp + bent.along * self._tangent + bent.aside * planar.side - near
                 before_that, apart = apart, math.sqrt(away @ away)
                 if apart > max(far, before_that):
                     return None
-            stepped = self._step(bow, bent, feature.basis, first, onto)
+            stepped = self._step(planar, bent, feature.basis, first, onto)
             if stepped is None:
                 return None
-            bow, size = stepped
+            planar, size = stepped
             if size < _FOUND:
-                return bow
+                return planar
             not_halved += 2 * size > before
             if not_halved == _NOT_HALVED:
                 return None
             before = size
-            bow = self._slid_or_held(bow)
+            planar = self._slid_or_held(planar)
         return None
 
-    def bow(
+    def planar(
         self, tangents: Floats, link: int, s: float, force: Floats, sliding: bool
-    ) -> Bow | None:
+    ) -> Planar | None:
         """A chain, turned into the plane of its clamp and of the force on it."""
         across = force - (force @ self._tangent) * self._tangent
         size = float(np.linalg.norm(across))
@@ -121,43 +121,33 @@ class Forecast:
             return None
         side = across / size
         angles = np.arctan2(tangents @ side, tangents @ self._tangent)
-        return Bow(angles, side, link, s, force, sliding)
+        return Planar(angles, side, link, s, force, sliding)
 
-    def between(self, one: Bow, other: Bow, share: float) -> Bow | None:
-        """Between two equilibria on the same face, edge or corner."""
-        alike = one.sliding == other.sliding and (one.sliding or one.link == other.link)
-        if not alike or one.force @ other.force <= 0:
-            return None
-        force = one.force + share * (other.force - one.force)
-        link, s = self._slid(one, share * (other.s - one.s)) if one.sliding else (one.link, one.s)
-        angles = one.angles + share * (other.angles - one.angles)
-        return Bow(angles, self._side(force, one.side), link, s, force, one.sliding)
-
-    def centre(self, bow: Bow, foot: Floats) -> Floats:
+    def centre(self, planar: Planar, foot: Floats) -> Floats:
         """Of the bead."""
-        bent = self._bent(bow)
+        bent = self._bent(planar)
         along = self._begins[0] + bent.along
-        return np.asarray(foot + along * self._tangent + bent.aside * bow.side)
+        return np.asarray(foot + along * self._tangent + bent.aside * planar.side)
 
-    def _bent(self, bow: Bow) -> _Bent:
+    def _bent(self, planar: Planar) -> _Bent:
         """Of the links up to the contact, and two at least: LAPACK asks for it."""
-        link = bow.link
+        link = planar.link
         levers = self._lengths[: max(link, 1) + 1].copy()
         levers[link:] = 0.0
-        levers[link] = bow.s - self._begins[link]
-        angles = bow.angles[: len(levers)]
+        levers[link] = planar.s - self._begins[link]
+        angles = planar.angles[: len(levers)]
         ways = np.array([np.cos(angles), np.sin(angles)])
         along, aside = (ways @ levers).tolist()
         return _Bent(angles, levers, ways, along, aside)
 
     def _step(
-        self, bow: Bow, bent: _Bent, basis: Floats, first: Floats, onto_tangent: Floats
-    ) -> tuple[Bow, float] | None:
+        self, planar: Planar, bent: _Bent, basis: Floats, first: Floats, onto_tangent: Floats
+    ) -> tuple[Planar, float] | None:
         """One step, and its size."""
-        parts, slides, link, side = len(basis), int(bow.sliding), bow.link, bow.side
+        parts, slides, link, side = len(basis), int(planar.sliding), planar.link, planar.side
         angles, levers, ways, reach, aside = bent
         count = len(levers)
-        along, across = float(bow.force @ self._tangent), float(bow.force @ side)
+        along, across = float(planar.force @ self._tangent), float(planar.force @ side)
         if abs(across) <= HEAD_ON * abs(along):
             return None
         bends = angles.copy()
@@ -201,7 +191,7 @@ class Forecast:
             onto[2, -1] = 1.0
         products = onto.T @ np.array(inner)
         rows, rest = products[:, 1:] @ onto, products[:, 0]
-        force = basis @ bow.force
+        force = basis @ planar.force
         size = math.sqrt(force @ force)
         held = self._radius / size - 1 / self._k
         own_rows = rows[:parts, :parts]
@@ -233,15 +223,15 @@ class Forecast:
         share = min(
             1.0, _LARGEST_TURN / max(most, 1e-300), _LONGEST_SLIDE / max(abs(slide), 1e-300)
         )
-        pushed = bow.force + (share * more) @ basis
-        if parts == 1 and pushed @ bow.force <= 0:
+        pushed = planar.force + (share * more) @ basis
+        if parts == 1 and pushed @ planar.force <= 0:
             return None
-        turned = bow.angles.copy()
+        turned = planar.angles.copy()
         turned[:count] += share * turns
         turned[count:] = turned[count - 1]
-        link, s = self._slid(bow, share * slide) if slides else (link, bow.s)
+        link, s = self._slid(planar, share * slide) if slides else (link, planar.s)
         turned_to = self._side(pushed, side)
-        return Bow(turned, turned_to, link, s, pushed, bow.sliding, stable), largest
+        return Planar(turned, turned_to, link, s, pushed, planar.sliding, stable), largest
 
     def _side(self, force: Floats, before: Floats) -> Floats:
         """Of the plane of a force, turned as little as may be."""
@@ -257,18 +247,18 @@ class Forecast:
         own[:-1] += own[1:]
         return _negative(own + pressed, -tension[1:])
 
-    def _slid_or_held(self, bow: Bow) -> Bow:
+    def _slid_or_held(self, planar: Planar) -> Planar:
         """Whether the bead slides, or is at the tip, and held there."""
-        if 1.0 - bow.s < _SAME:
-            last = float(bow.angles[-1])
-            slope = math.cos(last) * (bow.force @ self._tangent)
-            slope += math.sin(last) * (bow.force @ bow.side)
-            return bow._replace(sliding=bool(slope > _OUTWARD * np.linalg.norm(bow.force)))
-        return bow._replace(sliding=bow.s > self._begins[0])
+        if 1.0 - planar.s < _SAME:
+            last = float(planar.angles[-1])
+            slope = math.cos(last) * (planar.force @ self._tangent)
+            slope += math.sin(last) * (planar.force @ planar.side)
+            return planar._replace(sliding=bool(slope > _OUTWARD * np.linalg.norm(planar.force)))
+        return planar._replace(sliding=planar.s > self._begins[0])
 
-    def _slid(self, bow: Bow, by: float) -> tuple[int, float]:
+    def _slid(self, planar: Planar, by: float) -> tuple[int, float]:
         """Along the vibrissa, whose links beyond the contact are straight."""
-        s = max(min(bow.s + by, 1.0), self._begins[0])
+        s = max(min(planar.s + by, 1.0), self._begins[0])
         return bisect_left(self._begins, s, 1) - 1, s
 
 

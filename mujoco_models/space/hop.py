@@ -16,7 +16,7 @@ from analytic.problem.arrays import Floats
 from analytic.space.problem.bodies.feature import Feature
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from mujoco_models.space.balance import State
-from mujoco_models.space.forecast import Bow
+from mujoco_models.space.forecast import Planar
 from mujoco_models.space.model import SpaceModel
 from mujoco_models.space.rest import Rest, Settled
 from mujoco_models.space.surface import Surface
@@ -110,9 +110,9 @@ def _at_rest(
     return found if found is not None and found.stable else None
 
 
-def _use(rest: Rest, surface: Surface, foot: Floats, bow: Bow) -> bool:
+def _use(rest: Rest, surface: Surface, foot: Floats, planar: Planar) -> bool:
     """Whether a vibrissa that will rest there lands, or goes on along a face."""
     assert surface.feature is not None
     if surface.feature.flat:
-        return bow.stable
-    return bow.stable and surface.holds(bow.link, rest.centre(bow, foot))
+        return planar.stable
+    return planar.stable and surface.holds(planar.link, rest.centre(planar, foot))

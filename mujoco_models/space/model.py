@@ -7,14 +7,16 @@ import mujoco
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from analytic.space.problem.bodies.body import across, cross
+from analytic.space.problem.bodies.body import across
 from analytic.space.problem.bodies.polyhedron import Polyhedron
 from mujoco_models.beams.links import link_name
 from mujoco_models.beams.protocol import FOOT, SpatialBeam
 from mujoco_models.errors import DivergedError
-from mujoco_models.model.stiffness import impede, stiffen
+from mujoco_models.model.clamp import by_contacts
+from mujoco_models.model.stiffness import stiffen
+from mujoco_models.obstacles.protocol import GEOM
 from mujoco_models.space.assembly import assembled
-from mujoco_models.space.bodies import GEOM, OUTLINE, Shape
+from mujoco_models.space.bodies import OUTLINE, Shape
 
 _FOLLOWED, _SAME_NORMAL = 20, 1e-13  # rounds in which a cylinder finds the circle of curvature
 _FAR = 10.0  # L; beyond, MuJoCo need not say how far
@@ -67,6 +69,7 @@ class SpaceModel:
         numbers = range(len(self.ends))
         self._links = np.array([model.body(link_name(i)).id for i in numbers])
         self._beads = np.array([model.geom(f"bead{i}").id for i in numbers])
+        self._moves = np.isin(np.arange(model.ngeom), self._beads)
         self._sides = np.array([model.geom(f"side{i}").id for i in numbers])
         self._ends = np.zeros(6)
         self.mesh = shape.mesh and self._as_it_is_held(shape.mesh)
@@ -80,9 +83,7 @@ class SpaceModel:
         self.shared = model.jnt_type[0] == mujoco.mjtJoint.mjJNT_BALL
         """Whether the velocities of a joint turn about axes that it carries along."""
         self._anchors = np.unique(model.jnt_bodyid, return_index=True)[1][self.joint_of]
-        weight = model.body_invweight0[self._links, 0]
-        stiffen(model, self._beads, weight, contact_stiffness)
-        impede(model, self._beads)
+        stiffen(model, self._beads, contact_stiffness)
         self.straight = model.qpos0.copy()
 
     def _as_it_is_held(self, mesh: Polyhedron) -> Polyhedron:
@@ -249,14 +250,7 @@ class SpaceModel:
         """MuJoCo's sensors at the clamp, of what `rest` evaluated."""
         turn = self.data.site_xmat[self._site].reshape(3, 3)
         force, moment = (turn @ part for part in self.data.sensordata.reshape(2, 3))
-        held = np.zeros((2, 3))
-        wrench = np.zeros(6)
-        foot = self.data.xpos[self._foot]
-        for i in range(self.data.ncon):
-            mujoco.mj_contactForce(self.model, self.data, i, wrench)
-            contact = self.data.contact[i]
-            push = wrench[:3] @ contact.frame.reshape(3, 3)
-            push *= 1.0 if contact.geom[1] != self._body else -1.0
-            held += [push, cross(contact.pos - foot, push)]
-        miss = np.abs(np.stack([force, moment]) + held).max()
+        sensed = np.stack([force, moment])
+        required = by_contacts(self.data, self.data.xpos[self._foot], self._moves)
+        miss = np.abs(sensed - required).max()
         return Clamped(force, moment, float(miss))

@@ -12,7 +12,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from mujoco_models.space.balance import SHARE, Balance, State
-from mujoco_models.space.forecast import Bow, Forecast
+from mujoco_models.space.forecast import Forecast, Planar
 from mujoco_models.space.model import SpaceModel, Touch
 from mujoco_models.space.surface import Surface, surface_at
 
@@ -30,7 +30,7 @@ class Settled(NamedTuple):
     surface: Surface  # what it touches
     stays: bool  # whether that is where the body is, and no other link is deeper
     tangents: Floats  # unit vectors along the links, shape (n_links, 3)
-    bow: Bow | None  # what a forecast starts from; None past what there is none for
+    planar: Planar | None  # what a forecast starts from; None past what there is none for
 
 
 class Rest:
@@ -53,71 +53,66 @@ class Rest:
         foot: Floats,
         near: Floats | None = None,
         far: float = np.inf,
-        sought: Callable[[Bow], bool] = lambda bow: True,
+        sought: Callable[[Planar], bool] = lambda planar: True,
     ) -> Settled | None:
         """The equilibrium to which Newton's method leads.
 
         Its first step is one along the branch: of the linearised equations at the start.
         """
         self.model.place(begin, start.configuration)
-        bow = self._bow(start, surface)
-        if bow is None:
+        planar = self._planar(start, surface)
+        if planar is None:
             along = self.balance.along(start, surface, foot - begin)
             return self._settled(along, None, surface, foot)
-        bow = self.foresee(bow, surface, foot, near, far)
-        if bow is None or not sought(bow):
+        planar = self.foresee(planar, surface, foot, near, far)
+        if planar is None or not sought(planar):
             return None
-        return self.confirm(bow, surface, foot)
+        return self.confirm(planar, surface, foot)
 
     def follow(
         self, held: Settled, begin: Floats, foot: Floats, far: float = np.inf
     ) -> Settled | None:
         """The stable equilibrium on the same surface to which Newton's method leads."""
-        if held.bow is None:
+        if held.planar is None:
             found = self.settle(held.state, held.surface, begin, foot)
         else:
-            bow = self.foresee(held.bow, held.surface, foot, held.touch.centre, far)
-            if bow is None or not bow.stable:
+            planar = self.foresee(held.planar, held.surface, foot, held.touch.centre, far)
+            if planar is None or not planar.stable:
                 return None
-            found = self.confirm(bow, held.surface, foot)
+            found = self.confirm(planar, held.surface, foot)
         return found if found is not None and found.stable else None
-
-    def between(self, held: Settled, found: Settled, share: float) -> Settled:
-        """Where to begin between two equilibria on the same surface."""
-        if held.bow is None or found.bow is None:
-            return held
-        assert self._forecast is not None
-        return held._replace(bow=self._forecast.between(held.bow, found.bow, share) or held.bow)
 
     def foresee(
         self,
-        bow: Bow,
+        planar: Planar,
         surface: Surface,
         foot: Floats,
         near: Floats | None = None,
         far: float = np.inf,
-    ) -> Bow | None:
+    ) -> Planar | None:
         """Where it will rest, as far as is known without MuJoCo."""
         assert self._forecast is not None and surface.feature is not None
-        return self._forecast.rest(bow, surface.feature, foot, near, far)
+        return self._forecast.rest(planar, surface.feature, foot, near, far)
 
-    def centre(self, bow: Bow, foot: Floats) -> Floats:
+    def centre(self, planar: Planar, foot: Floats) -> Floats:
         """Of the bead of what is foreseen."""
         assert self._forecast is not None
-        return self._forecast.centre(bow, foot)
+        return self._forecast.centre(planar, foot)
 
-    def confirm(self, bow: Bow, surface: Surface, foot: Floats) -> Settled | None:
+    def confirm(self, planar: Planar, surface: Surface, foot: Floats) -> Settled | None:
         """The equilibrium by MuJoCo's own balance, next to a forecast that stays where the mesh is.
 
         What has left its face, edge or corner is nowhere to rest; it only says where it left.
         """
-        state, touch = self._bent(bow), surface.touched(self.centre(bow, foot))
-        if not surface.holds(bow.link, touch.centre):
-            return Settled(state, touch, bow.stable, surface, False, self._tangents(bow), bow)
-        return self._settled(state, bow, surface, foot)
+        state, touch = self._bent(planar), surface.touched(self.centre(planar, foot))
+        if not surface.holds(planar.link, touch.centre):
+            return Settled(
+                state, touch, planar.stable, surface, False, self._tangents(planar), planar
+            )
+        return self._settled(state, planar, surface, foot)
 
     def _settled(
-        self, state: State, bow: Bow | None, surface: Surface, foot: Floats
+        self, state: State, planar: Planar | None, surface: Surface, foot: Floats
     ) -> Settled | None:
         """The equilibrium next to a state, where nothing is deeper."""
         model = self.model
@@ -138,13 +133,13 @@ class Rest:
             elif not near:
                 state = state._replace(link=link, s=s, force=0.0, sliding=False)
                 continue
-            if bow is None or state.configuration is not forecast.configuration:
+            if planar is None or state.configuration is not forecast.configuration:
                 stable = self.balance.is_stable(state, touch, surface)
-                bow = self._bow(state, surface)
+                planar = self._planar(state, surface)
             else:
-                stable = bow.stable
-                bow = bow._replace(link=state.link, s=state.s, sliding=state.sliding)
-            return Settled(state, touch, stable, surface, near, model.tangents, bow)
+                stable = planar.stable
+                planar = planar._replace(link=state.link, s=state.s, sliding=state.sliding)
+            return Settled(state, touch, stable, surface, near, model.tangents, planar)
         return None
 
     def softest(self, found: Settled, foot: Floats) -> tuple[float, Floats]:
@@ -164,23 +159,23 @@ class Rest:
         if missed * model.contact_stiffness <= SHARE * self._tolerance:
             return found
         surface = surface_at(model, model.touch(state.link, state.s))
-        return self._settled(state, found.bow, surface, foot)
+        return self._settled(state, found.planar, surface, foot)
 
-    def _bow(self, state: State, surface: Surface) -> Bow | None:
+    def _planar(self, state: State, surface: Surface) -> Planar | None:
         """What a forecast needs of a state in which the model is; None where there is none."""
         forecast = self._forecast
         if forecast is None or surface.feature is None or state.force <= 0:
             return None
         force = state.force * surface.touch(state.link, state.s).normal
-        return forecast.bow(self.model.tangents, state.link, state.s, force, state.sliding)
+        return forecast.planar(self.model.tangents, state.link, state.s, force, state.sliding)
 
-    def _tangents(self, bow: Bow) -> Floats:
+    def _tangents(self, planar: Planar) -> Floats:
         """Along the links of a forecast."""
-        along, aside = np.cos(bow.angles), np.sin(bow.angles)
-        return np.asarray(np.outer(along, self.model.tangent) + np.outer(aside, bow.side))
+        along, aside = np.cos(planar.angles), np.sin(planar.angles)
+        return np.asarray(np.outer(along, self.model.tangent) + np.outer(aside, planar.side))
 
-    def _bent(self, bow: Bow) -> State:
+    def _bent(self, planar: Planar) -> State:
         """A forecast in MuJoCo's coordinates."""
-        configuration = self.model.beam.bent(self.model.frame, bow.side, bow.angles)
-        force = float(np.linalg.norm(bow.force))
-        return State(configuration, bow.link, bow.s, force, bow.sliding)
+        configuration = self.model.beam.bent(self.model.frame, planar.side, planar.angles)
+        force = float(np.linalg.norm(planar.force))
+        return State(configuration, planar.link, planar.s, force, planar.sliding)

@@ -1,19 +1,13 @@
 """A sweep in space in MuJoCo: from case and settings to readings."""
 
-import platform
 import time
 from collections.abc import Callable
 from dataclasses import asdict
-from importlib.metadata import version
 from typing import Any
 
-import mujoco
 import numpy as np
-import pandas as pd
-from threadpoolctl import threadpool_limits
 
 from analytic.problem.arrays import Floats
-from analytic.problem.columns import units
 from analytic.space.problem.case import SpatialCase
 from analytic.space.problem.readings import (
     CONTACT_POINT,
@@ -23,10 +17,11 @@ from analytic.space.problem.readings import (
     NORMAL,
     SpatialReadings,
 )
+from analytic.space.problem.recorder import SpatialRecorder
 from mujoco_models.beams.kinds import build_spatial
 from mujoco_models.beams.layout import MOST_BENT
-from mujoco_models.errors import DivergedError
 from mujoco_models.model.parts import require_radius
+from mujoco_models.model.stations import engine, visit
 from mujoco_models.settings import SpatialSettings
 from mujoco_models.space.bodies import add_body
 from mujoco_models.space.model import SpaceModel
@@ -52,45 +47,18 @@ def run_space(
     """Sweep the beam in space; see `mujoco_models.simulate_space`."""
     begun = time.process_time()
     model = compiled(case, settings)
-    way = case.way
-    rest = Rest(model, settings.tolerance)
-    walk = Walk(model, rest, way.foot, way.marks)
-    rows: list[dict[str, Any]] = []
+    foot, rest = case.way.foot, Rest(model, settings.tolerance)
+    walk = Walk(model, rest, foot, case.way.marks)
+    about = {"engine": engine(), "settings": asdict(settings), "obstacle": model.shape.label}
+    travel = case.path.travel
+    places = {"travel": travel, **dict(zip(FOOT, case.path.at(travel).T, strict=True))}
+    source = f"mujoco {settings.beam}"
+    recorder = SpatialRecorder(case, source, about, lambda: walk.events, places, begun=begun)
 
-    def readings() -> SpatialReadings:
-        provenance = {
-            **case.provenance(),
-            "engine": f"MuJoCo {mujoco.__version__}, vibrissa-testbed "
-            f"{version('vibrissa-testbed')}",
-            "settings": asdict(settings),
-            "python": platform.python_version(),
-            "obstacle": model.shape.label,
-            "seconds": round(time.process_time() - begun, 3),
-            "events": [
-                {
-                    "kind": event.kind,
-                    "travel": event.travel * case.beam.length,
-                    "foot": (way.foot(event.travel) * case.beam.length).tolist(),
-                }
-                for event in sorted(walk.events, key=lambda event: event.travel)
-            ],
-        }
-        return _readings(case, rows, f"mujoco {settings.beam}", provenance)
+    def row_at(travel: float) -> dict[str, Any]:
+        return _row(rest, walk.go_to(travel), foot(travel), settings.tolerance)
 
-    try:
-        with threadpool_limits(1):  # the matrices are small
-            for travel in case.path.travel / case.beam.length:
-                station = walk.go_to(float(travel))
-                rows.append(_row(rest, station, way.foot(float(travel)), settings.tolerance))
-                rows[-1]["travel"] = travel
-                advance()
-    except BaseException as error:  # whatever it is, what there is must not be lost
-        if len(rows) > 1:
-            keep(readings())
-        if isinstance(error, DivergedError):
-            raise DivergedError(f"diverged at station {len(rows) + 1}: {error}") from error
-        raise
-    return readings()
+    return visit(travel / case.beam.length, row_at, recorder, advance, keep)
 
 
 def compiled(case: SpatialCase, settings: SpatialSettings) -> SpaceModel:
@@ -114,7 +82,7 @@ def _row(rest: Rest, station: Station, foot: Floats, tolerance: float) -> dict[s
     row: dict[str, Any] = dict.fromkeys(
         (*FORCE, *MOMENT, *CONTACT_POINT, *NORMAL, *_NUMBERS), np.nan
     )
-    row |= {"phase": "free", "status": station.status, **dict(zip(FOOT, foot, strict=True))}
+    row |= {"phase": "free", "status": station.status}
     found = station.settled
     if found is None and station.status != "ok":
         return row
@@ -167,15 +135,3 @@ def _contact(model: SpaceModel, found: Settled) -> dict[str, Any]:
         "penetration": -touch.distance,
         "phase": "tip" if state.s == 1.0 and not state.sliding else "tangent",
     }
-
-
-def _readings(
-    case: SpatialCase, rows: list[dict[str, Any]], source: str, provenance: dict[str, Any]
-) -> SpatialReadings:
-    """In the units of the case's beam."""
-    table, beam = pd.DataFrame(rows), case.beam
-    order = ["travel", *FOOT, "phase", *FORCE, *MOMENT, *CONTACT_POINT, *NORMAL]
-    numbers = [name for name in (*order, *_NUMBERS) if name != "phase"]
-    table[numbers] *= units(beam, numbers)
-    table = table[[*order, *_NUMBERS, "status"]]
-    return SpatialReadings(table, beam, case.path.clamp_tangent, source, provenance)

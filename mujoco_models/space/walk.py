@@ -14,7 +14,7 @@ from analytic.numerics.walk import WalkEvent, first_clear, first_touch, first_un
 from analytic.problem.arrays import Floats
 from mujoco_models.space.balance import State
 from mujoco_models.space.descent import descend
-from mujoco_models.space.forecast import Bow
+from mujoco_models.space.forecast import Planar
 from mujoco_models.space.hop import features_around, over_faces
 from mujoco_models.space.model import SpaceModel
 from mujoco_models.space.rest import Rest, Settled
@@ -39,10 +39,6 @@ _CROSSED = 1e-4  # L, to which it is enclosed where a contact leaves a face, an 
 _STEADY = 2e-3  # L, of the contact that goes on as it was beyond
 _ASTRAY_BESIDE = 10 * _STEADY  # a step that leads farther does not end there
 _SHORTER, _LONGER = 4.0, 2.0  # times the step where Newton's method fails, and where not
-# How far before and beyond the place where a line says it leaves it is looked for, in turn; None
-# is half-way.
-_BESIDE = 0.0, -0.45, 0.45, -0.45, 0.45, None
-_SHARE = 1e-3  # of a step, to which that place is found on the line
 _GIVEN_UP = 3  # unsettled stations in a row: from then on all are, until the vibrissa comes clear
 _LOOSE = 1e-3  # EI/L^2; a contact that ends with less has been released
 
@@ -58,11 +54,7 @@ class Walk:
     """A walk along the way of the foot."""
 
     def __init__(
-        self,
-        model: SpaceModel,
-        rest: Rest,
-        foot: Callable[[float], Floats],
-        marks: Floats,
+        self, model: SpaceModel, rest: Rest, foot: Callable[[float], Floats], marks: Floats
     ) -> None:
         self._model, self._rest, self._foot, self._marks = model, rest, foot, marks
         self._at = 0.0
@@ -160,55 +152,28 @@ class Walk:
 
     def _to_the_edge(self, found: Settled, goal: float) -> tuple[float, Settled | None]:
         """Up to the place where the contact leaves its face, edge or corner."""
-        tries = 0
         while goal - self._at > _CROSSED:
-            step, beside = goal - self._at, _BESIDE[tries % len(_BESIDE)]
-            at = self._at + step / 2
-            if beside is not None:
-                about = self._at + self._left(found) * step + beside * _CROSSED
-                at = about if self._at < about < goal else at
-            held = self._held
-            assert held is not None
-            start = self._rest.between(held, found, (at - self._at) / step)
-            between = self._neighbour(at, start)
+            middle = (self._at + goal) / 2
+            between = self._neighbour(middle)
             if between is None:
-                return at, None
+                return middle, None
             if between.stays:
-                self._go_on(between, at)
+                self._go_on(between, middle)
             else:
-                goal, found = at, between
-            tries += 1
+                goal, found = middle, between
         return goal, found
 
-    def _neighbour(self, goal: float, start: Settled | None = None) -> Settled | None:
+    def _neighbour(self, goal: float) -> Settled | None:
         """The stable equilibrium on the same branch, of a mesh on the same face, edge or corner."""
         held, step = self._held, goal - self._at
         assert held is not None
         feature = held.surface.feature
         on_face = feature is not None and feature.flat
         farthest = _LEAP_ON_FACE if on_face else max(_LEAP * step, _LEAST_LEAP)
-        start = start or held
-        found = self._rest.follow(start, self._foot(self._at), self._foot(goal), _ASTRAY * farthest)
+        found = self._rest.follow(held, self._foot(self._at), self._foot(goal), _ASTRAY * farthest)
         if found is None or _apart(found, held) > farthest:
             return None
         return found if _turned(found, held) <= _TURNED else None
-
-    def _left(self, found: Settled) -> float:
-        """At about which share of a step the contact leaves its face, edge or corner."""
-        held = self._held
-        assert held is not None
-        link = found.state.link
-        if held.surface.feature is None or held.surface.holds(link, found.touch.centre):
-            return 0.5  # another link is deeper
-        by = found.touch.centre - held.touch.centre
-        low, high = 0.0, 1.0
-        while high - low > _SHARE:
-            middle = (low + high) / 2
-            if held.surface.holds(link, held.touch.centre + middle * by):
-                low = middle
-            else:
-                high = middle
-        return (low + high) / 2
 
     def _across(self, held: Settled, found: Settled, goal: float) -> Settled | None:
         """On the next face, edge or corner, where the equilibrium goes on as it was."""
@@ -236,11 +201,11 @@ class Walk:
         """The stable equilibrium on a face, edge or corner, if it is next to the one before."""
         near = held.touch.centre
 
-        def sought(bow: Bow) -> bool:
-            centre = self._rest.centre(bow, foot)
-            if not bow.stable or float(np.linalg.norm(centre - near)) >= _STEADY:
+        def sought(planar: Planar) -> bool:
+            centre = self._rest.centre(planar, foot)
+            if not planar.stable or float(np.linalg.norm(centre - near)) >= _STEADY:
                 return False
-            return surface.feature is not None and surface.holds(bow.link, centre)
+            return surface.feature is not None and surface.holds(planar.link, centre)
 
         found = self._rest.settle(state, surface, foot, foot, near, _ASTRAY_BESIDE, sought)
         if found is None or not (found.stays and found.stable):

@@ -1,7 +1,7 @@
 """Where the beam will rest, before the engine is asked.
 
-The rest solver's own picture of links, springs and polygon: Newton's method comes to rest in it at
-a fraction of the cost, the slide of the contact from bead to bead and from facet to facet included,
+In the rest solver's surrogate of links, springs and polygon Newton's method comes to rest at a
+fraction of the cost, the slide of the contact from bead to bead and from facet to facet included,
 and the engine has only to confirm what was found. Nothing of it is in a reading: what the engine
 does not confirm, its own balance corrects.
 """
@@ -11,19 +11,19 @@ import numpy as np
 from mujoco_models.model.balance import Balance
 from mujoco_models.sweep.newton import Newton
 from mujoco_models.sweep.numerics import Numerics
-from mujoco_models.sweep.picture import Picture
 from mujoco_models.sweep.state import State, turned
+from mujoco_models.sweep.surrogate import Surrogate
 
 
 def forecast(model: Balance, foot_x: float, start: State, numerics: Numerics) -> State | None:
     """Where the beam will rest with its foot at `foot_x`, near `start`."""
     if len(model.obstacle.corners):
         return None
-    picture = Picture(model, start.forces, numerics.ahead)
-    newton, state, lookout = Newton(picture, numerics), start, model.lookout
+    surrogate = Surrogate(model, start.forces, numerics.ahead)
+    newton, state, lookout = Newton(surrogate, numerics), start, model.lookout
     for _ in range(numerics.forecasts):
-        contacts = picture.look(foot_x, state.angles)
-        if contacts is None or picture.is_inside(contacts):
+        contacts = surrogate.look(foot_x, state.angles)
+        if contacts is None or surrogate.is_inside(contacts):
             return None
         touching = contacts.loaded
         if model.obstacle.faceted or not np.count_nonzero(touching):

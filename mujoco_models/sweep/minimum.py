@@ -1,7 +1,7 @@
 """Where a beam will rest whose beads share the load of a sharp contour.
 
 There the beam slides along the contour almost freely, and each facet has a state at rest of its
-own: Newton's method goes past one after the other. The solver's own picture knows its energy, and
+own: Newton's method goes past one after the other. The solver's own surrogate knows its energy, and
 so what is a step down.
 """
 
@@ -14,9 +14,9 @@ from mujoco_models.model.balance import Balance
 from mujoco_models.model.contacts import Contacts
 from mujoco_models.sweep.newton import Newton
 from mujoco_models.sweep.numerics import Numerics
-from mujoco_models.sweep.picture import Picture
 from mujoco_models.sweep.secant import Secant
 from mujoco_models.sweep.state import State, turned
+from mujoco_models.sweep.surrogate import Surrogate
 
 _STEPS = 40  # twelve are usual, and more than forty as dear as the engine's own way
 _AT_REST = 1e-11  # rad; the step is what the energy still asks for, and rounding is 1e-15
@@ -40,21 +40,21 @@ def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> 
     """The minimum of the energy that is down from `start`, with the foot at `foot_x`."""
     if len(model.obstacle.corners):
         return None
-    picture = Picture(model, start.forces, numerics.ahead, follow=True)
-    newton, secant = _OnFacets(picture, numerics), Secant()
+    surrogate = Surrogate(model, start.forces, numerics.ahead, follow=True)
+    newton, secant = _OnFacets(surrogate, numerics), Secant()
     angles = start.angles
     for _ in range(_STEPS):
-        contacts = picture.look(foot_x, angles)
+        contacts = surrogate.look(foot_x, angles)
         if contacts is None:
             return None
         slope = float(contacts.slope[contacts.distance.argmin()])
         # On the side that is foreseen it is pushed out where it has come from, however deep it is.
         elsewhere = start.slope is None or abs(slope - start.slope) > numerics.largest_shift
-        if elsewhere and picture.is_inside(contacts):
+        if elsewhere and surrogate.is_inside(contacts):
             return None
         model.lookout.follow_contact(contacts)
         pressed = np.flatnonzero(contacts.loaded)
-        force = (-picture.contact_stiffness * contacts.distance[pressed]).tolist()
+        force = (-surrogate.contact_stiffness * contacts.distance[pressed]).tolist()
         state = State(angles, dict(zip(contacts.touch[pressed].tolist(), force, strict=True)))
         step = newton.step(state, contacts).angles - angles
         turn = turned(step, np.zeros(len(step)))
@@ -66,15 +66,15 @@ def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> 
         places = [angles + scale * step for scale in _SHORTER]
         if turn < _ON_A_FACET:
             places.insert(0, angles + secant.better(angles, step))
-        most = picture.energy(contacts) * (1 + _ROUNDING)
-        tried = ((place, _energy(picture, foot_x, place)) for place in places)
+        most = surrogate.energy(contacts) * (1 + _ROUNDING)
+        tried = ((place, _energy(surrogate, foot_x, place)) for place in places)
         lower = next(((place, energy) for place, energy in tried if energy <= most), None)
         if lower is None:
             return near if turn < _ON_A_FACET else None
         there, energy = lower
         while _ON_A_FACET <= turn < _STRIDE:
             beyond = 2 * there - angles
-            farther = _energy(picture, foot_x, beyond)
+            farther = _energy(surrogate, foot_x, beyond)
             if farther >= energy:
                 break
             turn, there, energy = 2 * turn, beyond, farther
@@ -84,6 +84,6 @@ def minimum(model: Balance, foot_x: float, start: State, numerics: Numerics) -> 
     return near
 
 
-def _energy(picture: Picture, foot_x: float, angles: Floats) -> float:
-    contacts = picture.look(foot_x, angles)
-    return np.inf if contacts is None else picture.energy(contacts)
+def _energy(surrogate: Surrogate, foot_x: float, angles: Floats) -> float:
+    contacts = surrogate.look(foot_x, angles)
+    return np.inf if contacts is None else surrogate.energy(contacts)

@@ -11,7 +11,7 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from mujoco_models.model.balance import Balance
-from mujoco_models.model.stance import stance
+from mujoco_models.model.contact_side import contact_side
 from mujoco_models.sweep.newton import Newton
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.secant import Secant
@@ -81,7 +81,7 @@ def relax(
                 continue
             depths = contacts.distance[contacts.loaded]
             slope = float(depths @ slopes / depths.sum()) if slopes.size else None
-            return replace(state, settled=True, stance=stance(model, contacts), slope=slope)
+            return replace(state, settled=True, side=contact_side(model, contacts), slope=slope)
         stepped = newton.step(state, contacts)
         near = min(before, numerics.learns * (1 + state.load))
         if numerics.slow * before < residual < near:
@@ -96,7 +96,7 @@ def relax(
             lookout.watch(lookout.watched | graded(model, state.forces, numerics.ahead))
     model.imbalance(foot_x, best.angles)  # leaves the readings with the state that is returned
     imbalance = min(best.imbalance, _largest(model.relieved()))
-    return replace(best, imbalance=imbalance, stance=stance(model, model.contacts()))
+    return replace(best, imbalance=imbalance, side=contact_side(model, model.contacts()))
 
 
 def _largest(moments: Floats) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 from analytic.problem.arrays import Floats
 from mujoco_models.model.model import AT_REST, LONG_STEP, STEP, BeamModel
 from mujoco_models.sweep.numerics import Numerics
-from mujoco_models.sweep.sideways import Sideways, sideways
+from mujoco_models.sweep.out_of_plane import Sideways, sideways
 from mujoco_models.sweep.state import State, turned
 from mujoco_models.sweep.walk import Walk
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.problem.arrays import Floats
-from mujoco_models.model.stance import Stance
+from mujoco_models.model.contact_side import Side
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class State:
     imbalance: float = np.inf  # largest moment out of balance at any joint [EI/L]
     # Whether that is below the tolerance, with the whole beam looking at the obstacle.
     settled: bool = False
-    stance: Stance = Stance.AHEAD  # where the beam is then relative to the object
+    side: Side = Side.AHEAD  # where the beam is then relative to the object
     # Slope angle of the contour at the contact, once settled, if there is one [rad].
     slope: float | None = None
 

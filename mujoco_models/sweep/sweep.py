@@ -1,19 +1,17 @@
 """A sweep in MuJoCo: from case and settings to a walk through all stations."""
 
 import time
+from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
-from importlib.metadata import version
 from typing import Any
-
-import mujoco
 
 from analytic.problem.case import Case
 from analytic.problem.readings import Readings
-from analytic.problem.recorder import DIVERGED, Recorder
-from mujoco_models.errors import DivergedError
+from analytic.problem.recorder import Recorder
 from mujoco_models.model.model import BeamModel
 from mujoco_models.model.parts import parts_at_rest
+from mujoco_models.model.stations import engine, visit
 from mujoco_models.settings import Settings
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.spatial_walk import SpatialWalk
@@ -31,7 +29,7 @@ def run_sweep(
     begun = time.process_time()
     walk = set_out(case, settings, numerics)
     about = {
-        "engine": f"MuJoCo {mujoco.__version__}, vibrissa-testbed {version('vibrissa-testbed')}",
+        "engine": engine(),
         "settings": asdict(settings),
         "joints": walk.model.layout.joints.tolist(),
     }
@@ -48,23 +46,18 @@ def follow(
     keep: Callable[[Readings], None] = lambda _: None,
 ) -> Readings:
     """Go to all stations, one after the other."""
-    doubts: dict[str, int] = {}
+    doubts: Counter[str] = Counter()
     about = {**about, "obstacle": walk.model.obstacle.label, "unsettled": doubts}
-    recorder = Recorder(case, source, about, lambda: walk.events, case.foot_x, begun=begun)
-    rows, count = recorder.rows, len(case.foot_x)
-    with recorder.rescued(keep):
-        for number, target in enumerate(case.foot_x / case.beam.length, start=1):
-            try:
-                walk.go_to(float(target))
-                if walk.doubt:
-                    doubts[walk.doubt] = doubts.get(walk.doubt, 0) + 1
-                rows.append(walk.row())
-            except DivergedError as error:
-                rows.append(DIVERGED)
-                place_ = f"station {number} of {count}, foot_x = {target:.6g} L"
-                raise DivergedError(f"diverged at {place_}: {error}") from error
-            advance()
-    return recorder.readings()
+    places = {"foot_x": case.foot_x}
+    recorder = Recorder(case, source, about, lambda: walk.events, places, begun=begun)
+
+    def row_at(foot_x: float) -> dict[str, Any]:
+        walk.go_to(foot_x)
+        if walk.doubt:
+            doubts[walk.doubt] += 1
+        return walk.row()
+
+    return visit(case.foot_x / case.beam.length, row_at, recorder, advance, keep)
 
 
 def set_out(case: Case, settings: Settings, numerics: Numerics | None = None) -> Walk[BeamModel]:

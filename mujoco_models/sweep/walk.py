@@ -8,8 +8,8 @@ import numpy as np
 from mujoco_models.beams.layout import MOST_BENT, OF_CURVATURE
 from mujoco_models.errors import ClampError
 from mujoco_models.model.balance import Balance
+from mujoco_models.model.contact_side import Side
 from mujoco_models.model.contacts import NOWHERE
-from mujoco_models.model.stance import Stance
 from mujoco_models.sweep.bracket import Bracket
 from mujoco_models.sweep.descent import descend
 from mujoco_models.sweep.forecast import forecast
@@ -29,18 +29,14 @@ _OVERLOOKED = 1e-6  # L; how deep they may be in the obstacle
 _PACE = 0.8  # of the largest shift of a contact: what is left is for its rate to grow
 # What may follow one state at rest without a snap-off.
 _NEIGHBOURS = {
-    (Stance.AHEAD, Stance.AHEAD),
-    (Stance.AHEAD, Stance.NEAR),
-    (Stance.NEAR, Stance.NEAR),
-    (Stance.FAR, Stance.FAR),
-    (Stance.FAR, Stance.PASSED),
-    (Stance.PASSED, Stance.PASSED),
+    (Side.AHEAD, Side.AHEAD),
+    (Side.AHEAD, Side.NEAR),
+    (Side.NEAR, Side.NEAR),
+    (Side.FAR, Side.FAR),
+    (Side.FAR, Side.PASSED),
+    (Side.PASSED, Side.PASSED),
 }
-_OF_A_CURVED_TIP = {
-    (Stance.AHEAD, Stance.FAR),
-    (Stance.NEAR, Stance.FAR),
-    (Stance.FAR, Stance.NEAR),
-}
+_OF_A_CURVED_TIP = {(Side.AHEAD, Side.FAR), (Side.NEAR, Side.FAR), (Side.FAR, Side.NEAR)}
 
 
 class Walk(Generic[Model]):
@@ -126,7 +122,7 @@ class Walk(Generic[Model]):
                 step = (trial - self._foot_x) / 2
                 if self._dead_end and self._dead_end[0] == self._foot_x:
                     return self._dead_end[1]  # there is no way on by smaller steps
-                if bracket or state.stance is not self._state.stance or self._jumped(state):
+                if bracket or state.side is not self._state.side or self._jumped(state):
                     bracket.add(trial, state, self._foot_x)
             end = bracket.nearest if bracket else trial
             if ended or (bracket and abs(end - self._foot_x) <= self._least(bracket.beyond)):
@@ -161,7 +157,7 @@ class Walk(Generic[Model]):
     def _jumped(self, state: State) -> bool:
         """Whether the contact is elsewhere on an obstacle with corners."""
         cornered = len(self.model.obstacle.corners) > 0
-        return cornered and state.settled and state.stance is self._state.stance
+        return cornered and state.settled and state.side is self._state.side
 
     def _least(self, beyond: State) -> float:
         """How closely the end of the branch is located, if `beyond` is behind it."""
@@ -179,15 +175,15 @@ class Walk(Generic[Model]):
         rest = self._relax(foot_x, gone)
         if not rest.settled:
             return self._lost_from(last)
-        let_go = last.stance is Stance.NEAR and rest.stance in (Stance.FAR, Stance.PASSED)
-        let_go |= self._pokes(last) and rest.stance is Stance.PASSED
+        let_go = last.side is Side.NEAR and rest.side in (Side.FAR, Side.PASSED)
+        let_go |= self._pokes(last) and rest.side is Side.PASSED
         # From corner to corner a contact jumps; on a smooth contour it moves.
-        jumps = last.stance is rest.stance and len(self.model.obstacle.corners) > 0
+        jumps = last.side is rest.side and len(self.model.obstacle.corners) > 0
         if not (let_go or jumps or self._follows(rest)):
-            if last.stance is rest.stance:
+            if last.side is rest.side:
                 return "the contact jumped"
             self._lost = "the contact was lost without a snap-off"
-            if last.stance is Stance.AHEAD:
+            if last.side is Side.AHEAD:
                 self._lost = "the object was passed without a contact"
         if let_go and last.load > numerics.load_held:
             self.snap_off = where
@@ -255,7 +251,7 @@ class Walk(Generic[Model]):
         return relax(model, foot_x, start, self._tolerance, numerics, leave=leave, held=True)
 
     def _forecast(self, foot_x: float) -> State:
-        """Where the beam should come to rest, by the solver's own picture or as it went so far."""
+        """Where the beam should come to rest, by the solver's surrogate or as it went so far."""
         guess = self._guess(foot_x)
         if not guess.forces or not (self._sharp or self._smooth):
             return guess
@@ -287,11 +283,11 @@ class Walk(Generic[Model]):
             cornered = len(self.model.obstacle.corners) > 0
             largest = numerics.facet_shift if cornered else numerics.largest_shift
             near &= abs(state.slope - last.slope) < largest
-        change = last.stance, state.stance
+        change = last.side, state.side
         passes = change in _NEIGHBOURS
         if change in _OF_A_CURVED_TIP:
             rises = state.slope is not None and state.slope > 0
-            passes = self._pokes(state) and (last.stance is not Stance.AHEAD or rises)
+            passes = self._pokes(state) and (last.side is not Side.AHEAD or rises)
         return state.settled and near and passes
 
     def _pokes(self, state: State) -> bool:

@@ -61,7 +61,7 @@ def rms(differences) -> float:
     return float(np.sqrt((differences**2).mean(axis=1)).max())
 
 
-def order_and_limit(motion: Motion, settings: Settings, speed: float, case: Case = CASE):
+def order_and_limit(motion: Motion, settings: Settings, speed: float, case: Case):
     """Order in the speed, from one speed and half of it, and what is left of both at none."""
     fast, half = (lag(motion, settings, v, case) for v in (speed, speed / 2))
     found = float(np.log2(rms(fast) / rms(half))), rms(2 * half - fast)
@@ -69,78 +69,65 @@ def order_and_limit(motion: Motion, settings: Settings, speed: float, case: Case
     return found
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("obstacle", ["primitive", "mesh"])
-def test_forty_segments_tend_to_rest(obstacle):
-    """Observed 2.0e-3 and 1.0e-3: orders 1.02 and 1.03, limits 4.9e-5 and 7.6e-5.
+DISCRETE = Motion(timestep=0.01, contact_stiffness=1e4, damping_ratio=0.05)
+EXPLICIT = Motion(timestep=1e-3, contact_stiffness=4e3, damping_ratio=0.05)
+SOFT = replace(EXPLICIT, contact_stiffness=1e3)
+EXPLICITLY = ("implicitfast", "implicit", "euler")
+FORTY, MESH = replace(SMOOTH, segments=40), Settings(segments=40, contour_points=800)
+SLOW = [
+    # Observed 2.0e-3 and 1.0e-3: orders 1.02 and 1.03, limits 4.9e-5 and 7.6e-5.
+    (DISCRETE, FORTY, 0.08, 1e-4),
+    (DISCRETE, MESH, 0.08, 1e-4),
+    # Observed 1.4e-3 and 7.0e-4: order 1.02, limit 4.3e-5. With contacts of a quarter of the
+    # stiffness and MuJoCo's solver at a tolerance of 1e-10 the limit is 1.5e-3.
+    *((replace(EXPLICIT, integrator=name), SMOOTH, 0.08, 1e-4) for name in EXPLICITLY),
+    # An armature holds its dampers' rates down; observed 4.6e-4, of second order.
+    (
+        replace(EXPLICIT, integrator="rk4", armature=20.0),
+        replace(SMOOTH, segments=20),
+        0.16,
+        5e-4,
+    ),
+]
 
-    Slower still, 5e-4 on both, and limits of 1.3e-5 and 4.7e-5. No station chatters.
-    """
-    settings = Settings(segments=40, obstacle=obstacle, contour_points=800)
-    motion = Motion(timestep=0.01, contact_stiffness=1e4, damping_ratio=0.05)
-    order, limit = order_and_limit(motion, settings, 0.08, first_third())
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("motion", "settings", "speed", "left"), SLOW)
+def test_a_sweep_tends_to_rest_in_proportion_to_its_speed(motion, settings, speed, left):
+    order, limit = order_and_limit(motion, settings, speed, first_third())
     assert order == pytest.approx(1.0, abs=0.1)
-    assert limit < 1e-4  # a tenth of what the slower sweep is off
+    assert limit < left
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("stiffness", [1e4, 1e6])
 def test_discrete_makes_contacts_as_stiff_as_stated(stiffness):
     """The same model at rest has the same readings: 1.6e-5 and 1.8e-5 are left at no speed."""
-    motion = Motion(timestep=0.01, contact_stiffness=stiffness, damping_ratio=0.05)
+    motion = replace(DISCRETE, contact_stiffness=stiffness)
     _, limit = order_and_limit(motion, SMOOTH, 0.04, first_third())
     assert limit < 1e-4  # 1.6e-4 with contacts of half of 1e4
 
 
-EXPLICIT = Motion(timestep=1e-3, contact_stiffness=4e3, damping_ratio=0.05)
-SOFT = replace(EXPLICIT, contact_stiffness=1e3)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("integrator", ["implicitfast", "implicit", "euler"])
-def test_explicit_integrators_tend_to_rest_in_proportion_to_their_speed(integrator):
-    """Observed 1.4e-3 and 7.0e-4: order 1.02, limit 4.3e-5, with no station that chatters.
-
-    With contacts of a quarter of the stiffness, and MuJoCo's solver at a tolerance of 1e-10, the
-    order is 1.3, the limit 1.5e-3, and 0.01 L/T1 no better than 0.02.
-    """
-    slow = replace(EXPLICIT, integrator=integrator)
-    order, limit = order_and_limit(slow, SMOOTH, 0.08, first_third())
-    assert order == pytest.approx(1.0, abs=0.05)
-    assert limit < 1e-4
-
-
 @pytest.mark.trial
-def test_runge_and_kuttas_tends_to_rest_too():
-    """Explicit in the dampers, which have to be a tenth as strong. Observed 6.3e-4, 3.2e-4.
-
-    On all of the sweep: so weakly damped, its first third still swings from the start.
-    """
-    slow = replace(SOFT, integrator="rk4", timestep=5e-4, damping_ratio=0.005)
-    fast, half = (rms(lag(slow, SMOOTH, v, CASE)) for v in (0.08, 0.04))
+@pytest.mark.parametrize(
+    ("motion", "settings", "case", "left"),
+    [
+        # Explicit in the dampers, too, which have to be a tenth as strong: so weakly damped, the
+        # first third still swings from the start. Observed 6.3e-4, 3.2e-4.
+        (
+            replace(SOFT, integrator="rk4", timestep=5e-4, damping_ratio=0.005),
+            SMOOTH,
+            lambda: CASE,
+            4e-4,
+        ),
+        # Observed 1.46e-3 with each of them, and 7.2e-4 at half the speed; a step takes 1 ms.
+        *(
+            (replace(SOFT, integrator=name, timestep=2e-4), MESH, first_third, 8e-4)
+            for name in EXPLICITLY
+        ),
+    ],
+)
+def test_so_it_does_in_many_short_steps(motion, settings, case, left):
+    fast, half = (rms(lag(motion, settings, v, case())) for v in (0.08, 0.04))
     assert np.log2(fast / half) == pytest.approx(1.0, abs=0.1)
-    assert half < 4e-4
-
-
-@pytest.mark.slow
-def test_twenty_segments_tend_to_rest_with_runge_and_kutta():
-    """An armature holds their dampers' rates down. Observed 2.9e-3 and 1.4e-3."""
-    motion = replace(EXPLICIT, integrator="rk4", armature=20.0)
-    settings = Settings(segments=20, obstacle="primitive")
-    order, limit = order_and_limit(motion, settings, 0.16, first_third())
-    assert order == pytest.approx(1.0, abs=0.1)
-    assert limit < 5e-4  # observed 4.6e-4, of second order; 5.4e-4 with contacts half as stiff
-
-
-@pytest.mark.trial
-@pytest.mark.parametrize("integrator", ["implicitfast", "implicit", "euler"])
-def test_forty_segments_on_a_mesh_tend_to_rest_explicitly(integrator):
-    """Observed 1.46e-3 with each of them, and 7.2e-4 at half the speed; no station chatters.
-
-    A step is T1/5000, and a millisecond of CPU time.
-    """
-    settings = Settings(segments=40, obstacle="mesh", contour_points=800)
-    motion = replace(SOFT, integrator=integrator, timestep=2e-4)
-    fast, half = (rms(lag(motion, settings, v, first_third())) for v in (0.08, 0.04))
-    assert np.log2(fast / half) == pytest.approx(1.0, abs=0.1)
-    assert half < 8e-4
+    assert half < left

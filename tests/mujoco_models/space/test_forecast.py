@@ -28,9 +28,9 @@ def walked(beam, joints, folder):
     return rest, states
 
 
-def turned(bow, by, random):
+def turned(planar, by, random):
     """With other directions of its links [rad]."""
-    return bow._replace(angles=bow.angles + by * random.normal(size=bow.angles.shape))
+    return planar._replace(angles=planar.angles + by * random.normal(size=planar.angles.shape))
 
 
 @pytest.mark.parametrize(("beam", "joints"), BEAMS)
@@ -38,10 +38,10 @@ def test_mujoco_is_at_rest_where_it_is_foreseen(beam, joints, tmp_path):
     rest, states = walked(beam, joints, tmp_path)
     random, kinds = np.random.default_rng(0), set()
     for held, foot in states:
-        bow = rest.foresee(turned(held.bow, 0.03, random), held.surface, foot)
-        found = rest.confirm(bow, held.surface, foot)
-        assert np.abs(bow.angles - held.bow.angles).max() < 1e-9
-        assert np.abs(bow.side - held.bow.side).max() < 1e-9
+        planar = rest.foresee(turned(held.planar, 0.03, random), held.surface, foot)
+        found = rest.confirm(planar, held.surface, foot)
+        assert np.abs(planar.angles - held.planar.angles).max() < 1e-9
+        assert np.abs(planar.side - held.planar.side).max() < 1e-9
         assert found.state.force == pytest.approx(held.state.force, rel=1e-8)
         kinds.add((held.surface.feature.flat, held.state.sliding))
     assert len(kinds) >= 3  # faces and edges, with the tip and with the side
@@ -55,9 +55,9 @@ def test_it_is_stable_where_mujocos_stiffness_is_positive(beam, joints, tmp_path
     for held, foot in states * 20:
         # Newton's method does not mind saddles: from twenty times the force it finds many.
         there = foot + [0.3, 0.0, 0.3] * random.normal(size=3)
-        start = turned(held.bow._replace(force=20 * held.bow.force), 0.3, random)
-        bow = rest.foresee(start, held.surface, there)
-        found = bow and rest.confirm(bow, held.surface, there)
+        start = turned(held.planar._replace(force=20 * held.planar.force), 0.3, random)
+        planar = rest.foresee(start, held.surface, there)
+        found = planar and rest.confirm(planar, held.surface, there)
         if found:
             least = rest.softest(found, there)[0]
             seen.append(found.stable)

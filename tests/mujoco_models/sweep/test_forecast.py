@@ -1,4 +1,4 @@
-"""The solver's own picture of beam and polygon: what the engine has only to confirm."""
+"""The solver's own surrogate for beam and polygon: what the engine has only to confirm."""
 
 from dataclasses import replace
 
@@ -8,7 +8,7 @@ import pytest
 from analytic import Beam, named_case
 from mujoco_models import Settings, available_beams
 from mujoco_models.sweep.numerics import Numerics
-from mujoco_models.sweep.picture import Picture
+from mujoco_models.sweep.surrogate import Surrogate
 from mujoco_models.sweep.sweep import set_out
 
 CONE = Beam(tip_radius=0.002)
@@ -33,8 +33,8 @@ def test_the_picture_is_mujocos(points, beam):
         if number % 20 or not contacts.loaded.any():
             continue
         order = np.argsort(contacts.touch)
-        picture = Picture(walk.model, contacts.touch.tolist())
-        seen = picture.look(foot_x, walk.model.beam.angles(walk.model.data))
+        surrogate = Surrogate(walk.model, contacts.touch.tolist())
+        seen = surrogate.look(foot_x, walk.model.beam.angles(walk.model.data))
         loaded = contacts.loaded[order]
         np.testing.assert_array_equal(seen.touch, contacts.touch[order])
         np.testing.assert_allclose(seen.point, contacts.point[order], atol=4e-15)
@@ -43,7 +43,7 @@ def test_the_picture_is_mujocos(points, beam):
         )
         np.testing.assert_allclose(seen.normal[loaded], contacts.normal[order][loaded], atol=1e-12)
         np.testing.assert_allclose(
-            picture.elastic_moments(), walk.model.elastic_moments(), rtol=0, atol=1e-12
+            surrogate.elastic_moments(), walk.model.elastic_moments(), rtol=0, atol=1e-12
         )
 
 
@@ -52,11 +52,11 @@ def test_the_springs_of_other_beams(kind):
     """By quadrature of their stiffness; observed 2e-13 with the rod's tangents."""
     case = named_case("catenary")
     *_, (foot_x, walk) = stations(case, Settings(beam=kind, segments=20))
-    picture = Picture(walk.model, [0])
-    picture.look(foot_x, walk.model.beam.angles(walk.model.data))
+    surrogate = Surrogate(walk.model, [0])
+    surrogate.look(foot_x, walk.model.beam.angles(walk.model.data))
     moments = walk.model.elastic_moments()
     np.testing.assert_allclose(
-        picture.elastic_moments(), moments, atol=1e-9 * np.abs(moments).max()
+        surrogate.elastic_moments(), moments, atol=1e-9 * np.abs(moments).max()
     )
 
 
@@ -74,11 +74,11 @@ def test_one_evaluation_confirms_it(name):
 
 
 def test_a_wrong_forecast_does_no_harm(monkeypatch):
-    """With springs half as stiff in the picture, MuJoCo's balance decides all the same."""
+    """With springs half as stiff in the surrogate, MuJoCo's balance decides all the same."""
     case, settings = named_case("parabola"), Settings(segments=20, contour_points=800)
     expected = [walk.row() for _, walk in stations(case, settings)]
-    moments = Picture.elastic_moments
-    monkeypatch.setattr(Picture, "elastic_moments", lambda self: moments(self) / 2)
+    moments = Surrogate.elastic_moments
+    monkeypatch.setattr(Surrogate, "elastic_moments", lambda self: moments(self) / 2)
     found = [walk.row() for _, walk in stations(case, settings)]
     assert all(row["status"] == "ok" for row in found)
     error = [a["force_y"] - b["force_y"] for a, b in zip(found, expected, strict=True)]

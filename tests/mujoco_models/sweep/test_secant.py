@@ -1,11 +1,8 @@
 """What Newton's steps show of a stiffness that is not what the solver takes it for."""
 
 import numpy as np
-import pytest
 
-from mujoco_models import simulate_sweep
 from mujoco_models.sweep.secant import Secant
-from tests.fuzz.sweeps import trial
 
 
 def iterate(count, secant):
@@ -28,17 +25,3 @@ def test_as_many_steps_as_directions_are_unknown():
     # Two before it begins, one for each direction, and two to the end.
     assert iterate(20, Secant()) <= 7
     assert iterate(20, None) is None or iterate(20, None) > 20
-
-
-def test_one_step_alone_is_newtons():
-    step = np.array([0.1, -0.2])
-    assert Secant().better(np.zeros(2), step) is step
-
-
-@pytest.mark.slow
-def test_a_beam_that_lets_go_is_not_kept_from_it(tmp_path):
-    """Where steps were learnt from on the way to the free beam, 9 of 60 stations did not rest."""
-    drawn = trial(830032, tmp_path)
-    found = simulate_sweep(drawn.case, drawn.settings)
-    assert (found.table["status"] == "ok").all()
-    assert found.snap_off is not None

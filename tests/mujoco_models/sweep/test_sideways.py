@@ -103,7 +103,7 @@ def test_place_converges_with_the_mesh_and_does_not_depend_on_the_segments():
 def test_motion_returns_to_the_plane_before_that_place_and_grows_beyond(beam):
     """MuJoCo's own motion after a nudge, on planar equilibria on either side of the place."""
     from mujoco_models.model.model import BeamModel
-    from mujoco_models.sweep.sideways import sideways
+    from mujoco_models.sweep.out_of_plane import sideways
     from mujoco_models.sweep.spatial_walk import GENTLE_STEP
     from mujoco_models.sweep.sweep import set_out
     from mujoco_models.sweep.walk import Walk
@@ -149,14 +149,6 @@ def test_it_comes_to_rest_on_the_other_side_bent_the_other_way():
         np.testing.assert_allclose(points[name], table[name], atol=CIRCLE.beam.radius)
 
 
-def test_a_sweep_to_the_right_is_the_mirror_image():
-    left, right = swept("chain"), simulate_sweep(SHORT.mirrored(), COARSE)
-    places = [readings.provenance["events"]["out_of_plane"] for readings in (left, right)]
-    assert places[1] == pytest.approx(-places[0], abs=1e-9)
-    for name in ("out_of_plane", "sideways_stiffness"):
-        np.testing.assert_allclose(left.table[name], right.table[name], rtol=1e-6)
-
-
 def test_results_scale_with_the_beam():
     beam = Beam(50.0, 7.0, 0.25)
     sweep = Sweep(stations=24, stop=-0.95 * 50)
@@ -178,7 +170,7 @@ def test_torsional_stiffness_does_not_matter_to_second_order():
     from mujoco_models.beams.layout import bead_spacing
     from mujoco_models.model.model import BeamModel
     from mujoco_models.obstacles.kinds import place
-    from mujoco_models.sweep.sideways import sideways
+    from mujoco_models.sweep.out_of_plane import sideways
     from mujoco_models.sweep.walk import Walk
 
     def error(twist, segments):
@@ -202,30 +194,6 @@ def test_torsional_stiffness_does_not_matter_to_second_order():
         assert (np.log2(errors[:-1] / errors[1:]) > 1.7).all()
 
 
-def test_planar_is_a_yes_or_no(tmp_path):
-    from compare.read.case import load_job
-
+def test_planar_is_a_yes_or_no():
     with pytest.raises(InputError, match=r"mujoco\.planar = 'no'"):
         Settings(planar="no")
-    file = tmp_path / "case.toml"
-    profile = '[profile]\nkind = "circle"\nradius = 1\nlowest = [0, 0.4]\n[mujoco]\n'
-    file.write_text(profile + "planar = false\n", encoding="utf-8")
-    assert load_job(str(file)).settings.planar is False
-    file.write_text(profile + 'planar = "perhaps"\n', encoding="utf-8")
-    with pytest.raises(
-        InputError, match=r"line 6: mujoco\.planar = 'perhaps': must be a valid boolean"
-    ):
-        load_job(str(file))
-
-
-def test_named_case_in_space_from_the_command_line(tmp_path):
-    from analytic import Readings
-    from compare.commands.main import app
-
-    options = ["--spatial", "--segments", "10", "--stations", "20", "--out", str(tmp_path)]
-    app(["run", "tip-only", "--sweep-only", *options], standalone_mode=False)
-    found = Readings.read(tmp_path / "mujoco-chain.parquet")
-    case = named_case("tip-only")
-    exact = find_events(case.profile, case.beam).out_of_plane.foot_x
-    assert found.provenance["events"]["out_of_plane"] == pytest.approx(exact, abs=5e-3)
-    assert found.provenance["settings"]["planar"] is False

@@ -107,19 +107,20 @@ def test_a_beam_that_lies_on_a_facet_as_long_as_itself_rests_on_hundreds_of_bead
 
 
 @pytest.mark.slow
-def test_a_soft_section_is_faced_where_it_carries(tmp_path):
-    """Two of 60 stations did not rest where its beads' slopes were averaged without their loads."""
-    drawn = trial(710030, tmp_path)
+@pytest.mark.parametrize(
+    "seed",
+    [
+        710030,  # two of 60 stations did not rest where beads' slopes were averaged without loads
+        1090083,  # shorter steps to a state that had become a neighbour failed at the same place
+        880018,  # a facet of 1e-3 L, turned by single precision, was taken for a corner
+        830032,  # where steps were learnt from on the way to the free beam, 9 of 60 did not rest
+    ],
+)
+def test_what_did_not_come_to_rest_once_does(seed, tmp_path):
+    drawn = trial(seed, tmp_path)
     found = simulate_sweep(drawn.case, drawn.settings)
     assert (found.table["status"] == "ok").all()
-
-
-@pytest.mark.slow
-def test_a_contact_too_soft_for_the_vibrissa_is_named(tmp_path):
-    """Corners come through a beam of 1e-3 L that is pressed in as far as that."""
-    drawn = trial(900001, tmp_path)
-    found = simulate_sweep(drawn.case, drawn.settings)
-    assert any("so soft" in reason for reason in found.provenance["unsettled"])
+    assert found.snap_off is not None or seed != 830032
 
 
 @pytest.fixture
@@ -152,11 +153,3 @@ def test_a_way_that_has_come_to_its_end_is_not_sought_again_from_each_station(tm
     assert (found.table["status"] == "unsettled").sum() > 50
     assert any("so soft" in reason for reason in found.provenance["unsettled"])
     assert len(evaluated) < 10_000  # observed 2,900
-
-
-@pytest.mark.slow
-def test_a_state_that_has_become_a_neighbour_is_gone_to_at_once(tmp_path):
-    """Shorter steps towards it failed at the same place, until 5,000 evaluations were spent."""
-    drawn = trial(1090083, tmp_path)
-    found = simulate_sweep(drawn.case, drawn.settings)
-    assert (found.table["status"] == "ok").all()

@@ -62,11 +62,6 @@ def test_solves_as_the_dense_matrix_does(count):
     assert plain and shifted and indefinite and without  # all ways have been gone
 
 
-def test_without_a_contact():
-    stiffness = Stiffness(np.ones(4), np.zeros(4), np.zeros((0, 4)), np.zeros(0))
-    np.testing.assert_allclose(stiffness.solve(np.ones((1, 4)))[0], [[4, 7, 9, 10]])
-
-
 def test_what_is_not_finite_is_refused():
     stiffness = Stiffness(np.array([1.0, np.nan]), np.zeros(2), np.zeros((0, 2)), np.zeros(0))
     with pytest.raises(DivergedError, match="finite"):

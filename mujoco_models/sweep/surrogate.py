@@ -1,4 +1,4 @@
-"""The solver's own picture of beam and object: links, springs and a polygon, without an engine."""
+"""The solver's surrogate of beam and object, without an engine: links, springs and a polygon."""
 
 from collections.abc import Collection
 
@@ -15,7 +15,7 @@ _MOVES = 8  # from beads to beads; two are usual, where a beam slides over a nee
 _FARTHER = 2 ** np.arange(8) - 1  # reaches: where the contact is looked for, all at once
 
 
-class Picture:
+class Surrogate:
     """What of a `Balance` Newton's method needs, without an engine."""
 
     def __init__(

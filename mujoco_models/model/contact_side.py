@@ -10,7 +10,7 @@ from mujoco_models.model.contacts import Contacts
 _POKES = -0.05  # cosine; a tip that pokes at right angles is on neither side
 
 
-class Stance(Enum):
+class Side(Enum):
     """Where a beam, whose foot moves to the left, is relative to the object."""
 
     AHEAD = "free, the object is ahead"
@@ -19,10 +19,10 @@ class Stance(Enum):
     PASSED = "free, the object is behind"
 
 
-def stance(model: Balance, contacts: Contacts) -> Stance:
-    """The stance of the last evaluated configuration.
+def contact_side(model: Balance, contacts: Contacts) -> Side:
+    """The side of the last evaluated configuration.
 
-    A sweep goes from AHEAD to NEAR, and by snap-off to FAR or PASSED. Any other change of stance is
+    A sweep goes from AHEAD to NEAR, and by snap-off to FAR or PASSED. Any other change of side is
     no neighbour in a sweep: the beam was let through the object.
     """
     tip = model.bead_positions(np.array([len(model.layout.beads) - 1]))
@@ -33,7 +33,7 @@ def stance(model: Balance, contacts: Contacts) -> Stance:
         x, y = (axis[link + 1] - axis[link]).T
         normal_x, normal_y = contacts.normal[loaded].T
         side = load @ ((normal_x * y - normal_y * x) / np.hypot(x, y)) / load.sum()
-        return Stance.NEAR if side > _POKES else Stance.FAR
+        return Side.NEAR if side > _POKES else Side.FAR
     x, y = model.obstacle.lowest
     beside = float(np.interp(y, np.maximum.accumulate(axis[:, 1]), axis[:, 0]))
-    return Stance.AHEAD if beside > x else Stance.PASSED
+    return Side.AHEAD if beside > x else Side.PASSED
