@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
@@ -54,9 +55,17 @@ def verify(given: Iterable[Mapping[str, Any]]) -> Iterator[Row]:
             made = []
             for one in (arguments, {**arguments, **row.get("because", {})}):
                 if repr(one) not in known:
-                    known[repr(one)] = _MODELS[source["model"]](**one)
+                    known[repr(one)] = _made(source["model"], one)
                 made.append(known[repr(one)])
             yield _judged(source, row, *made)
+
+
+def _made(model: str, given: Mapping[str, Any]) -> rods.Parts:
+    """The model's numbers; none of them where a solver gives up, which differs from any."""
+    try:
+        return _MODELS[model](**given)
+    except (ArithmeticError, LookupError, ValueError):
+        return defaultdict(lambda: math.nan)
 
 
 def _judged(
@@ -95,5 +104,7 @@ def _judged(
 
 
 def _digits(relative: float) -> int:
-    """Significant digits that a relative difference leaves."""
-    return _FORMULA if relative == 0 else max(0, math.floor(-math.log10(2 * relative)))
+    """Significant digits that a relative difference leaves; none if there is no number."""
+    if relative == 0:
+        return _FORMULA
+    return math.floor(-math.log10(2 * relative)) if relative < 0.5 else 0

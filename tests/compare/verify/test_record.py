@@ -134,17 +134,27 @@ def test_a_wrong_sign_in_the_closed_form_differs(model, monkeypatch):
     assert "differs" in states(model)
 
 
+@pytest.mark.parametrize("factor", [1.0001, np.nan])
 @pytest.mark.parametrize("reading", ["force_x", "force_y", "moment_z", "contact_arc_length"])
-def test_a_wrong_reading_of_the_solver_differs(reading, monkeypatch):
+def test_a_wrong_reading_of_the_solver_differs(reading, factor, monkeypatch):
     true = contacts.solve_contact
 
     def wrong(*given, **named):
         table = true(*given, **named)
-        table[reading] *= 1.001
+        table[reading] *= factor
         return table
 
     monkeypatch.setattr(contacts, "solve_contact", wrong)
     assert "differs" in states("level", "tangential", "peg")
+
+
+def test_a_solver_that_gives_up_differs(tmp_path, monkeypatch):
+    monkeypatch.setattr(contacts, "solve_space", lambda case: (_ for _ in ()).throw(IndexError))
+    (source,) = sources("sliding_sleeve")
+    monkeypatch.setattr(record, "sources", lambda: [source])
+    done = vibrissa("verify", cwd=tmp_path)
+    assert done.returncode == 1
+    assert "differs: Bigoni et al. 2013, past a sphere: M^2/2EI, here nan" in done.stdout
 
 
 def test_the_exit_code_says_what_differs(tmp_path, monkeypatch):
