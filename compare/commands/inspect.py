@@ -94,13 +94,13 @@ def inspect(
     for line in inspection.lines():
         terminal.print_line(line)
     if write is not None:
-        from compare.simulate.mending import case_of, mend
+        from compare.simulate.fixing import case_of, fix
 
         with output_folder(write.parent):
-            mended = mend(_path(model), names, inspection, write)
-            for line in mended.lines():
+            fixed = fix(_path(model), names, inspection, write)
+            for line in fixed.lines():
                 terminal.print_line(line)
-            text = case_of(mended.inspection.found, write, names)
+            text = case_of(fixed.inspection.found, write, names)
             terminal.keep(write.with_name("case.toml"), text)
     if out is not None:
         with output_folder(out) as folder:

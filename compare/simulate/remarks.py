@@ -36,8 +36,8 @@ from compare.simulate.treatment import (
     straightened,
     with_sensors,
 )
+from mujoco_models.fix.edit import Edit, Insert
 from mujoco_models.inspect.measured import Geom, MeasuredBeam, Sensed, nearest_axes
-from mujoco_models.mend.edit import Edit, Insert
 
 # Each limit is what moves a reading by about one per cent of its largest magnitude.
 _RIGIDITY = 0.01  # relative; forces and moments are proportional to EI
@@ -69,7 +69,7 @@ class Remark:
     subject: str  # as ``"clamp"``
     text: str  # in a sentence
     remedy: str = ""  # what to do, beside edits
-    edits: tuple[Edit | Insert, ...] = ()  # that mend it
+    edits: tuple[Edit | Insert, ...] = ()  # that fix it
 
     def __str__(self) -> str:
         said = [self.remedy, *(f"set {edit}" for edit in self.edits)]

@@ -6,8 +6,8 @@ import numpy as np
 
 from analytic.problem.arrays import Floats
 from compare.simulate.rigidity import as_intended, at_its_tip, joint_arms, smooth_rigidity
+from mujoco_models.fix.edit import Edit, Insert, number
 from mujoco_models.inspect.measured import Geom, MeasuredBeam, Sensed
-from mujoco_models.mend.edit import Edit, Insert, number
 
 HARD = "0.9999 0.9999 0.001"
 """MuJoCo's largest impedance, of what should not give way."""

@@ -1,4 +1,4 @@
-"""Random foreign models to inspect and mend: ``python -m tests.fuzz.models N [SEED [SWEPT]]``.
+"""Random foreign models to inspect and fix: ``python -m tests.fuzz.models N [SEED [SWEPT]]``.
 
 Each is a vibrissa as others write one (hinges, pairs of hinges, balls, on a mocap body, a slide, a
 weld, a wrist or a mesh, in units from um to m and from mg to kg), written badly in up to three of
@@ -8,8 +8,8 @@ planted, and as flags:
 
 - ``internal``: anything but a line of an `InputError`;
 - ``missed``: a planted mistake that no fault names;
-- ``left``: mended, faults of that kind are still there;
-- ``outside``: swept as mended, it is outside of the expected interval.
+- ``left``: fixed, faults of that kind are still there;
+- ``outside``: swept as fixed, it is outside of the expected interval.
 
 Without a seed it takes a new one, from the clock. The exit code is 1 if there is a flag but
 ``outside``, or more than one in twenty of those that were swept is outside.
@@ -30,8 +30,8 @@ from analytic import InputError, solve_sweep
 from compare import compare
 from compare.read.case import load_case
 from compare.simulate.expected import expected
+from compare.simulate.fixing import SPEED, case_of, fix
 from compare.simulate.inspection import Inspection
-from compare.simulate.mending import SPEED, case_of, mend
 from mujoco_models import inspect_model, shipped_models, simulate_model
 
 FAULTY = 0.05  # of the swept; the interval is one of 95 per cent
@@ -146,7 +146,7 @@ ADDED = (
     '<option><flag contact="disable"/></option>',
     '<compiler angle="degree" balanceinertia="true"/>',
 )  # fmt: skip
-_FEW = 10  # links
+_FEW = 13  # links
 _GARBLED = 0.25  # of all
 
 
@@ -238,7 +238,7 @@ def garbled(rng: random.Random) -> str:
 
 
 def trial(rng: random.Random, folder: Path, sweep: bool = False) -> Outcome:
-    """Inspect and mend one; sweep it as mended."""
+    """Inspect and fix one; sweep it as fixed."""
     outcome = Outcome(drawn(rng))
     path = folder / "foreign.xml"
     path.write_text(outcome.model.text())
@@ -255,7 +255,7 @@ def trial(rng: random.Random, folder: Path, sweep: bool = False) -> Outcome:
         outcome.said = f"{sorted(found)}"
         if planted - found - _hidden(outcome.model):
             outcome.flags.append(f"missed {sorted(planted - found)}")
-        after = mend(path, {}, before, path.with_name("mended.xml"))
+        after = fix(path, {}, before, path.with_name("fixed.xml"))
         left = {r.subject for r in after.inspection.remarks if r.kind == "fault"}
         outcome.said += f" -> {sorted(left)}"
         if outcome.model.planted and left - _stays(outcome.model):
@@ -283,7 +283,7 @@ def _hidden(model: Model) -> set[str]:
 
 
 def _stays(model: Model) -> set[str]:
-    """What no number mends: the sensors of a body that is free, and too few links."""
+    """What no number fixes: the sensors of a body that is free, and too few links."""
     of_weld = {"force sensor", "torque sensor"} if model.carrier == "weld" else set()
     return of_weld | ({"large bending"} if model.links < _FEW else set())
 

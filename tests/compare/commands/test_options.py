@@ -95,7 +95,7 @@ VALUES = {
     "--uncertainty": "uncertain.toml", "--budget": "budget.json", "--method": "kaneko",
     "--on": "friction", "--fit": "offset", "--foot": "nobody", "--force": "nothing",
     "--torque": "nothing", "--geoms": "nothing", "--site": "nothing", "--workers": "2",
-    "--contact-stiffness": "1e5", "--write": "mended.xml", "--out": "out", "--scheduler": "tcp://nowhere.invalid:1",
+    "--contact-stiffness": "1e5", "--write": "fixed.xml", "--out": "out", "--scheduler": "tcp://nowhere.invalid:1",
 }  # fmt: skip
 # Where an option needs another start than the rest of its kind.
 INSTEAD = {

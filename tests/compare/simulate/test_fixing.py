@@ -6,8 +6,8 @@ from analytic import solve_sweep
 from compare import compare
 from compare.read.case import load_case
 from compare.simulate.expected import expected
+from compare.simulate.fixing import SPEED, case_of, fix
 from compare.simulate.inspection import Inspection
-from compare.simulate.mending import SPEED, case_of, mend
 from mujoco_models import inspect_model, shipped_models, simulate_model
 from tests.mujoco_models.inspect.chains import Chain
 
@@ -24,9 +24,9 @@ def faults(inspection):
     return {remark.subject for remark in inspection.remarks if remark.kind == "fault"}
 
 
-def mended(path):
+def fixed(path):
     before = Inspection(inspect_model(path))
-    return before, mend(path, {}, before, path.with_name("mended.xml"))
+    return before, fix(path, {}, before, path.with_name("fixed.xml"))
 
 
 def on_rail(tmp_path, *changes, **chain):
@@ -43,7 +43,7 @@ def test_a_soft_weld_is_no_clamp_and_its_free_body_feels_nothing(tmp_path):
     path = Chain(foot="", inside_foot="<freejoint/>").write(tmp_path)
     text = path.read_text().replace("<worldbody>", "<worldbody>" + WELDED[0])
     path.write_text(text.replace("</mujoco>", WELDED[1]))
-    before, after = mended(path)
+    before, after = fixed(path)
     assert faults(before) >= {"clamp", "force sensor", "torque sensor"}
     assert "reads nothing" in str(before.remarks)
     assert faults(after.inspection) == {"force sensor", "torque sensor"}
@@ -57,7 +57,7 @@ def test_a_driven_hinge_between_drive_and_vibrissa_has_to_be_stiff(tmp_path, sti
     wrist = f'<joint name="wrist" axis="0 0 1" stiffness="{stiffness}"/>'
     motors = '<actuator><motor joint="wrist"/>'
     path = on_rail(tmp_path, (RAIL, RAIL + wrist), ("<actuator>", motors))
-    before, after = mended(path)
+    before, after = fixed(path)
     assert before.sound is sound
     assert after.inspection.sound
     if not sound:
@@ -83,8 +83,8 @@ def test_a_driven_hinge_between_drive_and_vibrissa_has_to_be_stiff(tmp_path, sti
         ([('damping="0.3', 'damping="9.3')], {}, {"damping"}),
     ],
 )  # fmt: skip
-def test_what_a_number_mends_is_mended(tmp_path, changes, chain, subjects):
-    before, after = mended(on_rail(tmp_path, *changes, **chain))
+def test_what_a_number_fixes_is_fixed(tmp_path, changes, chain, subjects):
+    before, after = fixed(on_rail(tmp_path, *changes, **chain))
     assert faults(before) == subjects
     assert after.inspection.sound, after.inspection.remarks
     assert len(after.files) == 1
@@ -102,10 +102,10 @@ def test_what_was_meant_is_no_fault(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_mended_model_sweeps_as_was_expected(tmp_path):
+def test_a_fixed_model_sweeps_as_was_expected(tmp_path):
     path = tmp_path / "tutorial.xml"
     path.write_text(shipped_models()["tutorial-chain"].read_text())
-    _, after = mended(path)
+    _, after = fixed(path)
     (tmp_path / "case.toml").write_text(case_of(after.inspection.found, after.files[0], {}))
     job = load_case(tmp_path / "case.toml")
     moved = simulate_model(job.case, job.model, job.motion, job.settings)

@@ -9,14 +9,14 @@ from xml.sax.saxutils import quoteattr
 import mujoco
 
 from analytic.problem.errors import InputError
-from mujoco_models.mend.edit import Edit, Insert
-from mujoco_models.mend.places import Places
-from mujoco_models.mend.tree import Element, read_tree
+from mujoco_models.fix.edit import Edit, Insert
+from mujoco_models.fix.places import Places
+from mujoco_models.fix.tree import Element, read_tree
 
 _MANY = 3  # elements for which a default is edited, or made
 
 
-def mended(
+def fixed(
     path: Path, model: mujoco.MjModel, edits: Iterable[Edit | Insert], out: Path
 ) -> tuple[Path, ...]:
     """Write the model as `out`, and files that it includes beside it if they change.
@@ -41,7 +41,7 @@ def mended(
             file.unlink()
         said = " ".join(str(error).split())[:200]
         raise InputError(
-            "--write", out, "such that MuJoCo takes the mended model",
+            "--write", out, "such that MuJoCo takes the fixed model",
             f"write it into {path.parent}, beside what it includes ({said})",
         ) from error  # fmt: skip
     return written

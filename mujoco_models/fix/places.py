@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Iterator
 import mujoco
 import numpy as np
 
-from mujoco_models.mend.tree import Element
+from mujoco_models.fix.tree import Element
 
 _JOINTS = ("joint", "freejoint")
 _MANY = {"geom": "composite", "joint": "composite", "edge": "flexcomp", "contact": "flexcomp"}

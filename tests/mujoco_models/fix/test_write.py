@@ -1,4 +1,4 @@
-"""A mended copy differs from the file by its edits alone."""
+"""A fixed copy differs from the file by its edits alone."""
 
 import difflib
 
@@ -6,8 +6,8 @@ import mujoco
 import pytest
 
 from analytic import InputError
-from mujoco_models.mend.edit import Edit, Insert
-from mujoco_models.mend.write import mended
+from mujoco_models.fix.edit import Edit, Insert
+from mujoco_models.fix.write import fixed
 
 MAIN = """\
 <!-- of a user's own -->
@@ -46,7 +46,7 @@ def path(tmp_path):
 
 def write(path, *edits):
     model = mujoco.MjModel.from_xml_path(str(path))
-    files = mended(path, model, edits, path.with_name("mended.xml"))
+    files = fixed(path, model, edits, path.with_name("fixed.xml"))
     return mujoco.MjModel.from_xml_path(str(files[0])), files
 
 
@@ -99,9 +99,9 @@ def test_elements_that_are_lacking_are_put_in(path):
 
 
 def test_what_mujoco_does_not_take_is_not_left_behind(path):
-    with pytest.raises(InputError, match="takes the mended model") as caught:
+    with pytest.raises(InputError, match="takes the fixed model") as caught:
         write(path, Insert("<nonsense/>"))
     assert "\n" not in str(caught.value)
-    assert not path.with_name("mended.xml").exists()
+    assert not path.with_name("fixed.xml").exists()
     with pytest.raises(InputError, match="another file than the model"):
-        mended(path, mujoco.MjModel.from_xml_path(str(path)), (), path)
+        fixed(path, mujoco.MjModel.from_xml_path(str(path)), (), path)

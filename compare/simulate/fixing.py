@@ -1,4 +1,4 @@
-"""A model's faults mended in a copy of its file, and the case that the copy is a model of."""
+"""A model's faults fixed in a copy of its file, and the case that the copy is a model of."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,10 +17,10 @@ from compare.simulate.rigidity import (
     tapers,
 )
 from mujoco_models import inspect_model
+from mujoco_models.fix.edit import Edit, Insert
+from mujoco_models.fix.write import fixed
 from mujoco_models.inspect.load import load
 from mujoco_models.inspect.measured import MeasuredBeam
-from mujoco_models.mend.edit import Edit, Insert
-from mujoco_models.mend.write import mended
 
 SPEED = 0.05
 """Of the sweep that is predicted [L/T1]."""
@@ -29,12 +29,12 @@ _STATIONS = 21  # of a varying EI
 
 
 @dataclass(frozen=True)
-class Mended:
+class Fixed:
     """What was written, and what it is."""
 
     files: tuple[Path, ...]
     edits: tuple[Edit | Insert, ...]
-    inspection: Inspection  # of the mended model
+    inspection: Inspection  # of the fixed model
 
     def lines(self) -> Iterator[str]:
         """What was done, and what to expect."""
@@ -47,8 +47,8 @@ class Mended:
             yield f"  expected at {SPEED} L/T1: {expected(self.inspection.found, SPEED)}"
 
 
-def mend(path: Path, names: dict[str, str | None], inspection: Inspection, out: Path) -> Mended:
-    """Write a copy without the faults that a number mends."""
+def fix(path: Path, names: dict[str, str | None], inspection: Inspection, out: Path) -> Fixed:
+    """Write a copy without the faults that a number fixes."""
     model, done = load(path), list[Edit | Insert]()
     files: tuple[Path, ...] = ()
     for _ in range(_ROUNDS):
@@ -62,15 +62,15 @@ def mend(path: Path, names: dict[str, str | None], inspection: Inspection, out: 
         if not new and files:
             break
         done += new
-        files = mended(path, model, done, out)
+        files = fixed(path, model, done, out)
         try:
             inspection = Inspection(inspect_model(out, **names), inspection.stated)
         except InputError as error:
             for file in files:
                 file.unlink()
             raise InputError("--write", out, "a model that can be inspected",
-                             f"mend by hand what is said of it ({error})") from error  # fmt: skip
-    return Mended(files, tuple(done), inspection)
+                             f"fix by hand what is said of it ({error})") from error  # fmt: skip
+    return Fixed(files, tuple(done), inspection)
 
 
 def case_of(found: MeasuredBeam, file: Path, names: dict[str, str | None]) -> str:
