@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.from_clamp.contact import SweptVibrissa, dimensionless
+from analytic.from_clamp.correlated import estimate
 from analytic.from_clamp.noise import checked_noise, largest, reading_noise
 from analytic.from_clamp.phases import judge_phases
 from analytic.problem.arrays import Floats
@@ -19,6 +20,7 @@ _CLEARLY = 5.0  # standard deviations; a contact so far short of the tip is one 
 _DOUBLE_SIDED_95 = 1.959964
 _BESIDE = 3  # stations to either side, whose variances are alike
 _LEAST = 1e-9  # of the largest magnitude; readings without noise count as of so much
+_ZERO = 1e-3  # of it: what a sensor's zero is known to
 _STEP = 0.1  # of a standard deviation, for a derivative
 _MOST = 0.999  # sine of the friction angle: 22
 
@@ -73,7 +75,8 @@ def estimate_friction(
     -------
     FrictionFound
         The mean, weighted by what the noise does to each station. If the stations scatter more than
-        the noise explains, the uncertainty grows with that.
+        the noise explains, or alike, the uncertainty grows with that; the zero of each reading
+        counts as known to 0.1 % of its largest magnitude.
 
     Raises
     ------
@@ -90,7 +93,9 @@ def estimate_friction(
         if number == 0:
             far = judged.shortfall > _CLEARLY * judged.shortfall_tolerance
             tangent = far & readings.trusted
-        found = _mean(SweptVibrissa.of(assumed), dimensionless(readings)[:, tangent], spread)
+        sensed = dimensionless(readings)
+        zero = _ZERO * np.array([largest(values) for values in sensed[1:]])
+        found = _mean(SweptVibrissa.of(assumed), sensed[:, tangent], spread, zero)
         coefficient = found.coefficient
     return found
 
@@ -104,7 +109,7 @@ def _spread(readings: Readings, noise: Mapping[str, float] | None) -> Floats:
     return np.asarray(np.maximum(spread, least), dtype=float)
 
 
-def _mean(held: SweptVibrissa, sensed: Floats, spread: Floats) -> FrictionFound:
+def _mean(held: SweptVibrissa, sensed: Floats, spread: Floats, zero: Floats) -> FrictionFound:
     # The readings, and each of them moved by a part of its noise, all in one solution.
     every = np.repeat(sensed[:, None], 4, axis=1)
     every[[1, 2, 3], [1, 2, 3]] += _STEP * spread[:, None]
@@ -114,15 +119,20 @@ def _mean(held: SweptVibrissa, sensed: Floats, spread: Floats) -> FrictionFound:
     if len(sine) < _FEWEST:
         remedy = "let the vibrissa touch along its side: a lower object, or more stations"
         raise InputError("stations of Phase B", len(sine), f"{_FEWEST} or more", remedy)
-    variance = (np.nan_to_num((moved - sine) / _STEP) ** 2).sum(axis=0)
-    weight = 1 / _beside(variance)
-    mean = float(np.sum(weight * sine) / weight.sum())
-    excess = float(np.sum(weight * (sine - mean) ** 2)) / (len(sine) - 1)
-    deviation = np.sqrt(max(1.0, excess) / weight.sum())
+    by_reading = np.nan_to_num((moved - sine) / _STEP)
+    deviation = np.sqrt(_beside((by_reading**2).sum(axis=0)))
+    known = estimate(
+        (sine / deviation)[:, None],
+        (1 / deviation)[:, None, None],
+        (by_reading / deviation).T[:, None],
+        zero / spread,
+        least=1.0,
+    )
+    mean = float(known.numbers[0])
     cosine_squared = 1 - mean**2
     return FrictionFound(
         float(mean / np.sqrt(cosine_squared)),
-        float(_DOUBLE_SIDED_95 * deviation / cosine_squared**1.5),
+        float(_DOUBLE_SIDED_95 * np.sqrt(known.covariance[0, 0]) / cosine_squared**1.5),
         len(sine),
     )
 

@@ -8,6 +8,8 @@ import numpy as np
 from analytic.from_clamp.calibration.fit import LeastSquaresFit
 from analytic.from_clamp.calibration.measured import Measured, check_size, measured_under_load
 from analytic.from_clamp.calibration.unknowns import UNKNOWNS, Sought, checked_unknowns
+from analytic.from_clamp.correlated import Estimated, NoiseFound, estimate
+from analytic.from_clamp.jitter import foot_jitter
 from analytic.problem.arrays import Floats
 from analytic.problem.case import Case, Direction, Sweep
 from analytic.problem.columns import CLAMP_READINGS
@@ -23,7 +25,9 @@ _CHANCE = 3.0  # standard deviations of a misfit, which is 1 +- 1/sqrt(2 n)
 _SATISFIED = 1.5  # times the noise; a fit that leaves more is tried from elsewhere too
 _STARTS = 3
 _AT_THE_END = 1e-6  # from an end of what a number can be
-_TINY = 1e-12  # singular value of columns of length 1: rounding
+_REFINED = 2  # steps from plain least squares to those that know the noise
+_LEAST = 1e-3  # of what readings without noise count as
+_ZERO = 1e-3  # of a reading's largest magnitude: what a sensor's zero is known to
 _ALIKE = 0.9  # correlation of two unknowns that trade off
 
 
@@ -62,8 +66,12 @@ class Calibration:
         How many the values are from.
     misfit : float
         Root mean square of what the fit leaves, over the noise: 1 if the case is right in
-        everything else, less for readings without noise. If it is more, the intervals are as much
-        wider, and still miss what a wrong object or another beam does to all stations alike.
+        everything else, less for readings without noise. If it is more, noise that remembers makes
+        the intervals wider; they still miss what a wrong object does to all stations alike.
+    noise : NoiseFound
+        What of the noise remembers: correlation, memory and hum, of force_x, force_y, moment_z.
+    jitter : float
+        Standard deviation of the foot's place that the readings show; 0 if none stands out [length].
     """
 
     found: dict[str, Estimate]
@@ -72,6 +80,8 @@ class Calibration:
     correlation: Floats
     stations: int
     misfit: float
+    noise: NoiseFound
+    jitter: float
 
     @property
     def explains(self) -> bool:
@@ -90,7 +100,9 @@ def calibrate(
 
     The closed form's readings are fitted to the measured ones by least squares, each weighed by its
     noise, over the stations under load; not next to the snap-off, where readings grow without
-    bound. The intervals are those of the linearised fit.
+    bound. The intervals are those of the linearised fit, for noise that may remember
+    (`analytic.from_clamp.correlated`), with the zero of each reading known to 0.1 % of its largest
+    magnitude and the foot's jitter, if it shows.
 
     Parameters
     ----------
@@ -128,9 +140,14 @@ def calibrate(
     if direction != case.sweep.direction:
         case = replace(case, sweep=Sweep(case.sweep.stations, direction=direction))
     fit, numbers, cost = _fitted(measured, case, names)
-    freedom = fit.measured.readings.size - len(names)
-    misfit = float(np.sqrt(cost / freedom))
-    covariance = _covariance(fit, numbers, max(1.0, misfit))
+    misfit = float(np.sqrt(cost / (fit.measured.readings.size - len(names))))
+    jittered = _with_jitter(fit, numbers)
+    if jittered is not None:
+        fit = LeastSquaresFit(jittered, case, names)
+        numbers, cost = fit.best_from(numbers)
+    least = _LEAST if noise is None or jittered else 1.0
+    numbers, known = _knowing_the_noise(fit, numbers, least)
+    covariance = known.covariance
     deviations = np.sqrt(np.diag(covariance))
     for i, (name, number) in enumerate(zip(names, numbers.tolist(), strict=True)):
         _check_inside(name, number, fit.sought(numbers))
@@ -147,6 +164,8 @@ def calibrate(
         covariance / np.outer(deviations, deviations),
         len(fit.measured.foot_x),
         misfit,
+        known.noise,
+        float(fit.measured.spread[0]),
     )
 
 
@@ -199,17 +218,35 @@ def _inside(fit: LeastSquaresFit, numbers: Floats) -> Floats:
     return np.clip(numbers, fit.lowest, fit.highest)
 
 
-def _covariance(fit: LeastSquaresFit, numbers: Floats, misfit: float) -> Floats:
-    """Of the numbers' errors, shape (unknowns, unknowns)."""
-    jacobian = fit.jacobian(numbers)
-    sizes = np.linalg.norm(jacobian, axis=0)
-    for name, size in zip(fit.names, sizes.tolist(), strict=True):
-        if not size > 0:
-            allowed = "something that the readings depend on"
-            raise InputError("unknowns", name, allowed, "leave it out")
-    _, singular, ways = np.linalg.svd(jacobian / sizes, full_matrices=False)
-    scaled = (ways.T / np.maximum(singular, _TINY) ** 2) @ ways
-    return np.asarray(scaled / np.outer(sizes, sizes) * misfit**2)
+def _with_jitter(fit: LeastSquaresFit, numbers: Floats) -> Measured | None:
+    """The stations with the jitter of the foot that what is left shows; None if it shows none."""
+    measured = fit.measured
+    foot, *sizes = measured.spread
+    if foot > 0:
+        return None
+    expected = fit.expected(numbers)
+    slopes = np.gradient(expected, axis=1) / np.gradient(measured.foot_x)
+    over = np.array(sizes)
+    jitter, own = foot_jitter((expected - measured.readings).T / over, slopes.T / over)
+    return replace(measured, spread=np.array([jitter, *(own * over)])) if jitter else None
+
+
+def _knowing_the_noise(
+    fit: LeastSquaresFit, numbers: Floats, least: float
+) -> tuple[Floats, Estimated]:
+    """The numbers that are best for the noise that the readings show."""
+    largest = np.abs(fit.measured.readings).max(axis=1)
+    for _ in range(_REFINED):
+        jacobian = fit.jacobian(numbers)
+        for name, column in zip(fit.names, jacobian.T, strict=True):
+            if not column.any():
+                allowed = "something that the readings depend on"
+                raise InputError("unknowns", name, allowed, "leave it out")
+        by_number = jacobian.reshape(-1, len(largest), len(numbers))
+        left = -fit.misses(numbers).reshape(-1, len(largest))
+        found = estimate(left, by_number, fit.whitening, _ZERO * largest, least)
+        numbers = _inside(fit, numbers + found.numbers)
+    return numbers, found
 
 
 def _check_inside(name: str, number: float, sought: Sought) -> None:

@@ -29,7 +29,7 @@ class LeastSquaresFit:
         self.lowest = np.array([kind.lowest for kind in self.kinds])
         self.highest = np.array([kind.highest for kind in self.kinds])
         self.start = np.array([kind.now(Sought(given), given) for kind in self.kinds])
-        self._whitening = np.linalg.inv(self._root(measured.readings))
+        self.whitening = np.linalg.inv(self._root(measured.readings))
         self._last: tuple[Floats, Expected | None] = np.empty(0), None
 
     def sought(self, numbers: Floats) -> Sought:
@@ -68,7 +68,7 @@ class LeastSquaresFit:
         """The same with the rigidity that fits best if nothing else depended on it."""
         if "flexural_rigidity" not in self.names:
             return numbers
-        zero = np.einsum("nij,jn->ni", self._whitening, -self.measured.readings).ravel()
+        zero = np.einsum("nij,jn->ni", self.whitening, -self.measured.readings).ravel()
         model = self.misses(numbers) - zero
         if not model.any():
             return numbers
@@ -123,7 +123,7 @@ class LeastSquaresFit:
         else:
             found = np.zeros_like(found)
         missed = found - self.measured.readings
-        return np.asarray(np.einsum("nij,jn->ni", self._whitening, missed).ravel())
+        return np.asarray(np.einsum("nij,jn->ni", self.whitening, missed).ravel())
 
     def _root(self, readings: Floats) -> Floats:
         """Root of the covariance of each station's three readings, shape (n, 3, 3)."""
