@@ -7,6 +7,7 @@ each channel with its own. How likely each of a grid of these is, is restricted 
 widens its interval. Hum is a sine and a cosine of the period at which the residuals have a line.
 """
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,10 +18,12 @@ _MEMORY = np.array([0.5, 0.75, 0.87, 0.93, 0.965, 0.983, 0.992, 0.9965, 0.9995])
 _SIZES = np.array([0.1, 0.3, 1, 3, 10, 30, 1e2, 1e3, 1e4, 1e5])  # variance over that of the white
 _GRID = np.array([(0.0, 0.0), *((rho, size) for rho in _MEMORY for size in _SIZES)])
 _WHITE = 5.0  # times as likely beforehand as all that remembers
+_NOISELESS = 1e-3  # of what the readings are given over: readings without noise count as of so much
 _DRAWS = 400  # of the noise, over which the estimate is averaged
 _AT_ONCE = 2_000_000  # numbers in memory
-_RANK = 1e-8  # of the largest eigenvalue; what is less is not determined
-_LINE = 25.0  # times the median of the power beside it: one in 10^5 of white noise
+_REMEMBERED = 0.3  # correlation from station to station that is said
+_RANK = 1e-14  # of the largest eigenvalue: rounding
+_LINE = 40.0  # times the median of the power beside it; white noise has one in 10^4 sweeps
 _FINER = 4  # points of a periodogram for each of its own
 _SLOWEST = 5.0  # periods in all stations; what is slower is drift
 _WIDTH = 3.0  # of a line, in periods in all stations
@@ -44,6 +47,14 @@ class NoiseFound:
     correlation: Floats
     memory: Floats
     hum: float
+
+    def said(self, names: Sequence[str]) -> Iterator[str]:
+        """What a user should know of it, a line each."""
+        for name, correlation, memory in zip(names, self.correlation, self.memory, strict=True):
+            if memory and correlation > _REMEMBERED:
+                yield f"the noise of {name} remembers: over some {memory:.0f} stations"
+        if self.hum:
+            yield f"hum, with a period of {self.hum:.3g} stations"
 
 
 @dataclass(frozen=True)
@@ -76,7 +87,7 @@ def estimate(
     uncertain : array, shape (z,)
         The standard uncertainty of that.
     least : float
-        Standard deviation that the noise has at least.
+        Intervals are no narrower than white noise of this standard deviation makes them.
     seed : int
         Of the draws.
     """
@@ -93,20 +104,24 @@ def estimate(
     sizes = np.sqrt(np.einsum("ncm,ncm->m", design, design))
     sizes[sizes == 0] = 1.0
     gram, root = _gram(np.concatenate([design / sizes, readings[:, :, None]], axis=2))
-    square, freedom, likely = _likely(gram, root, len(readings))
     prior = np.zeros(len(sizes))
     prior[known:] = 1 / (uncertain * sizes[known:]) ** 2
+    freedom = len(readings) - int(np.sum(prior == 0))
+    square, likely = _likely(gram + np.diag([*prior, 0]), root, freedom)
     precision, toward = np.diag(prior) + np.zeros((_DRAWS, 1, 1)), np.zeros((_DRAWS, len(sizes)))
     draw = np.random.default_rng(seed)
     for channel in range(readings.shape[1]):
         at = draw.choice(len(_GRID), size=_DRAWS, p=likely[:, channel])
-        variance = square[at, channel] / draw.chisquare(freedom[at, channel])
-        variance = np.maximum(variance, least**2 / (1 + _GRID[at, 1]))
+        variance = square[at, channel] / draw.chisquare(freedom, size=_DRAWS)
         precision += gram[at, channel, :-1, :-1] / variance[:, None, None]
         toward += gram[at, channel, :-1, -1] / variance[:, None]
     covariances = np.linalg.pinv(precision, hermitian=True)
     numbers = np.einsum("dij,dj->di", covariances, toward)
     spread = covariances.mean(axis=0) + np.cov(numbers.T).reshape(2 * sizes.shape)
+    if least:
+        white = np.diag(prior) + gram[0, :, :-1, :-1].sum(axis=0) / least**2
+        narrow = np.diag(np.linalg.pinv(white, hermitian=True)) / np.diag(spread)
+        spread *= np.sqrt(np.outer(*2 * [np.maximum(1.0, narrow)]))
     return Estimated(
         start + (numbers.mean(axis=0) / sizes)[:known],
         (spread / np.outer(sizes, sizes))[:known, :known],
@@ -138,21 +153,18 @@ def _gram(columns: Floats) -> tuple[Floats, Floats]:
     return products, logarithm
 
 
-def _likely(gram: Floats, root: Floats, stations: int) -> tuple[Floats, Floats, Floats]:
-    """Sums of squares, degrees of freedom and likelihood, each shape (grid, channels)."""
+def _likely(gram: Floats, root: Floats, freedom: int) -> tuple[Floats, Floats]:
+    """Sums of squares and likelihoods, each shape (grid, channels)."""
     values, vectors = np.linalg.eigh(gram[..., :-1, :-1])
-    there = values > _RANK * values[..., -1:]
-    values = np.where(there, values, 1.0)
+    values = np.maximum(values, _RANK * values[..., -1:].max(axis=0))
     along = np.einsum("gcij,gci->gcj", vectors, gram[..., :-1, -1])
-    explained = np.where(there, along**2 / values, 0.0).sum(axis=-1)
-    tiny = np.finfo(float).tiny
-    square = np.maximum(gram[..., -1, -1] - explained, tiny)
-    freedom = stations - there.sum(axis=-1)
-    logarithms = freedom * np.log(square / freedom) + root[:, None] + np.log(values).sum(axis=-1)
-    prior = 1 / np.sqrt(1 - _GRID[1:, :1] ** 2)  # Jeffreys's
+    explained = (along**2 / values).sum(axis=-1)
+    square = np.maximum(gram[..., -1, -1] - explained, freedom * _NOISELESS**2)
+    logarithms = freedom * np.log(square) + root[:, None] + np.log(values).sum(axis=-1)
+    prior = 1 / (1 - _GRID[1:, :1] ** 2)  # long memories, of which one sweep shows least
     logarithms[1:] -= 2 * np.log(prior / prior.sum() / _WHITE)
     likely = np.exp((logarithms.min(axis=0) - logarithms) / 2)
-    return square, freedom, likely / likely.sum(axis=0)
+    return square, likely / likely.sum(axis=0)
 
 
 def _hum(left: Floats) -> float:
@@ -178,7 +190,7 @@ def _line(n: int, channels: int, period: float) -> Floats:
     """Sine and cosine of each channel, shape (n, channels, 2 channels)."""
     turn = 2 * np.pi * np.arange(n) / period
     waves = np.stack([np.cos(turn), np.sin(turn)], axis=1)
-    return np.einsum("nw,cd->ncdw", waves, np.eye(channels)).reshape(n, channels, -1)
+    return np.asarray(np.einsum("nw,cd->ncdw", waves, np.eye(channels)).reshape(n, channels, -1))
 
 
 def _described(likely: Floats, hum: float) -> NoiseFound:

@@ -128,7 +128,7 @@ def _mean(held: SweptVibrissa, sensed: Floats, spread: Floats, zero: Floats) -> 
         zero / spread,
         least=1.0,
     )
-    mean = float(known.numbers[0])
+    mean = float(np.clip(known.numbers[0], -_MOST, _MOST))
     cosine_squared = 1 - mean**2
     return FrictionFound(
         float(mean / np.sqrt(cosine_squared)),

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from analytic import Calibration
+from analytic import CLAMP_READINGS, Calibration
 from compare.show.document import Block, Table, Text
 
 _UNITS = {
@@ -33,6 +33,11 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
         alike = calibration.correlation[i, j]
         yield Text(f"trading off most: {names[i]} and {names[j]}, correlation {alike:+.2f}")
     yield Text(f"the fit leaves {calibration.misfit:.2g} times the noise")
+    for said in calibration.noise.said(CLAMP_READINGS):
+        yield Text(f"{said}; the intervals know it")
+    if calibration.jitter:
+        unit = " m" if calibration.case.beam.si else ""
+        yield Text(f"the foot jitters by {calibration.jitter:.2g}{unit}; the intervals know it")
     if not calibration.explains:
         yield Text(
             "something else is not as the case says: the intervals hold for noise, not for that"
@@ -55,6 +60,11 @@ def calibration_document(calibration: Calibration) -> dict[str, Any]:
         "correlation": calibration.correlation.tolist(),
         "stations": calibration.stations,
         "misfit": calibration.misfit,
+        "noise_correlation": dict(
+            zip(CLAMP_READINGS, calibration.noise.correlation.tolist(), strict=True)
+        ),
+        "hum_stations": calibration.noise.hum or None,
+        "jitter": calibration.jitter,
     }
 
 

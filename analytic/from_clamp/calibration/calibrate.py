@@ -26,7 +26,7 @@ _SATISFIED = 1.5  # times the noise; a fit that leaves more is tried from elsewh
 _STARTS = 3
 _AT_THE_END = 1e-6  # from an end of what a number can be
 _REFINED = 2  # steps from plain least squares to those that know the noise
-_LEAST = 1e-3  # of what readings without noise count as
+_ROUNDING = 1e-2  # of the noise; what is left is less only of readings without any
 _ZERO = 1e-3  # of a reading's largest magnitude: what a sensor's zero is known to
 _ALIKE = 0.9  # correlation of two unknowns that trade off
 
@@ -71,7 +71,7 @@ class Calibration:
     noise : NoiseFound
         What of the noise remembers: correlation, memory and hum, of force_x, force_y, moment_z.
     jitter : float
-        Standard deviation of the foot's place that the readings show; 0 if none stands out [length].
+        Standard deviation of the foot's place, if the readings show any [length].
     """
 
     found: dict[str, Estimate]
@@ -141,11 +141,11 @@ def calibrate(
         case = replace(case, sweep=Sweep(case.sweep.stations, direction=direction))
     fit, numbers, cost = _fitted(measured, case, names)
     misfit = float(np.sqrt(cost / (fit.measured.readings.size - len(names))))
-    jittered = _with_jitter(fit, numbers)
+    jittered = _with_jitter(fit, numbers) if misfit > _ROUNDING else None
     if jittered is not None:
         fit = LeastSquaresFit(jittered, case, names)
         numbers, cost = fit.best_from(numbers)
-    least = _LEAST if noise is None or jittered else 1.0
+    least = 0.0 if noise is None or jittered else 1.0
     numbers, known = _knowing_the_noise(fit, numbers, least)
     covariance = known.covariance
     deviations = np.sqrt(np.diag(covariance))
@@ -235,16 +235,16 @@ def _knowing_the_noise(
     fit: LeastSquaresFit, numbers: Floats, least: float
 ) -> tuple[Floats, Estimated]:
     """The numbers that are best for the noise that the readings show."""
-    largest = np.abs(fit.measured.readings).max(axis=1)
+    zero: Floats = _ZERO * np.abs(fit.measured.readings).max(axis=1)
     for _ in range(_REFINED):
         jacobian = fit.jacobian(numbers)
         for name, column in zip(fit.names, jacobian.T, strict=True):
             if not column.any():
                 allowed = "something that the readings depend on"
                 raise InputError("unknowns", name, allowed, "leave it out")
-        by_number = jacobian.reshape(-1, len(largest), len(numbers))
-        left = -fit.misses(numbers).reshape(-1, len(largest))
-        found = estimate(left, by_number, fit.whitening, _ZERO * largest, least)
+        by_number = jacobian.reshape(-1, len(zero), len(numbers))
+        left = -fit.misses(numbers).reshape(-1, len(zero))
+        found = estimate(left, by_number, fit.whitening, zero, least)
         numbers = _inside(fit, numbers + found.numbers)
     return numbers, found
 

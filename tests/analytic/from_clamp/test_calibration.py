@@ -139,12 +139,11 @@ def test_intervals_hold_the_true_values(level, true, unknowns):
 @pytest.mark.slow
 @VIBRISSAE
 def test_intervals_are_as_wide_as_estimates_scatter(level, true, unknowns):
-    """Errors over standard deviations: the mean of four squares is 1 +- 0.7; observed 0.7 to 2.2.
+    """Errors over standard deviations: the mean of eight squares is 1 +- 0.5.
 
-    Intervals half as wide make it four times as much, 2.7 to 8.8; twice as wide, a quarter, 0.2 to
-    0.6, of which one of four would pass.
+    Intervals half as wide make it four times as much, twice as wide a quarter.
     """
-    for name, estimates in intervals(4, level, true, unknowns).items():
+    for name, estimates in intervals(8, level, true, unknowns).items():
         sigmas = [(one.highest - one.lowest) / 2 / 1.96 for one in estimates]
         off = [(one.value - unknowns[name]) / s for one, s in zip(estimates, sigmas, strict=True)]
         assert 0.4 < np.mean(np.square(off)) < 2.6, name
