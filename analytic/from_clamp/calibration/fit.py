@@ -29,7 +29,7 @@ class LeastSquaresFit:
         self.lowest = np.array([kind.lowest for kind in self.kinds])
         self.highest = np.array([kind.highest for kind in self.kinds])
         self.start = np.array([kind.now(Sought(given), given) for kind in self.kinds])
-        self.whitening = np.linalg.inv(self._root(measured.readings))
+        self.whitening = np.asarray(np.linalg.inv(self._root(measured.readings)), dtype=float)
         self._last: tuple[Floats, Expected | None] = np.empty(0), None
 
     def sought(self, numbers: Floats) -> Sought:

@@ -104,7 +104,7 @@ def test_intervals_are_as_wide_as_errors(kind):
 
 
 def test_what_plain_least_squares_say_of_noise_that_remembers_is_wrong():
-    """The fault that this mends: an interval that is a third of what it should be."""
+    """Without this, an interval that is a third of what it should be."""
     design = sweep()[0][:, :, None]
     rng = np.random.default_rng(3)
     ratios = []
