@@ -102,11 +102,8 @@ def simulate_space(
         The problem; all that the simulation knows of it.
     settings : SpatialSettings, optional
         The numerics.
-    advance : callable, optional
-        Called after every station, for progress bars.
-    keep : callable, optional
-        Given the readings of all stations so far (if two or more) when the sweep ends early; see
-        `simulate_sweep`.
+    advance, keep : callable, optional
+        As of `simulate_sweep`.
 
     Returns
     -------
@@ -156,11 +153,8 @@ def simulate_motion(
         Speed, time step, integrator, damping and contact.
     settings : Settings, optional
         Beam, segments and obstacle; contact stiffness and tolerance are those of a sweep at rest.
-    advance : callable, optional
-        Called after every station, for progress bars.
-    keep : callable, optional
-        Given the readings of all stations so far (if two or more) when the sweep ends early; see
-        `simulate_sweep`.
+    advance, keep : callable, optional
+        As of `simulate_sweep`.
 
     Returns
     -------

@@ -47,8 +47,8 @@ def run_space(
     """Sweep the beam in space; see `mujoco_models.simulate_space`."""
     begun = time.process_time()
     model = compiled(case, settings)
-    foot, rest = case.way.foot, Rest(model, settings.tolerance)
-    walk = Walk(model, rest, foot, case.way.marks)
+    way, rest = case.way, Rest(model, settings.tolerance)
+    walk = Walk(model, rest, way.foot, way.marks)
     about = {"engine": engine(), "settings": asdict(settings), "obstacle": model.shape.label}
     travel = case.path.travel
     places = {"travel": travel, **dict(zip(FOOT, case.path.at(travel).T, strict=True))}
@@ -56,7 +56,7 @@ def run_space(
     recorder = SpatialRecorder(case, source, about, lambda: walk.events, places, begun=begun)
 
     def row_at(travel: float) -> dict[str, Any]:
-        return _row(rest, walk.go_to(travel), foot(travel), settings.tolerance)
+        return _row(rest, walk.go_to(travel), way.foot(travel), settings.tolerance)
 
     return visit(travel / case.beam.length, row_at, recorder, advance, keep)
 

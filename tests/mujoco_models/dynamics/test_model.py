@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from analytic import Case, Sweep, circle, named_case
+from analytic import Case, Sweep, circle
 from mujoco_models import Motion, Settings
 from mujoco_models.beams.kinds import build
 from mujoco_models.dynamics.model import MovingModel
@@ -81,9 +81,3 @@ def test_the_clamp_accelerates_the_vibrissa_and_not_the_foot():
     assert np.abs(momentum).max() > 0.1
     # A step's impulse, by which sensors and speeds may be apart, is 1e-4 times the largest force.
     np.testing.assert_allclose(momentum, impulse, atol=3e-4 * np.abs(forces).max())
-
-
-def test_named_cases_have_beads_enough():
-    case = named_case("catenary")
-    model = moving(Motion(), case=case, foot_x=float(case.foot_x[0]))
-    assert len(model.contacts().distance) == 0

@@ -5,7 +5,7 @@ import pytest
 
 from analytic import CLAMP_READINGS, named_case, solve_sweep
 from compare import compare
-from mujoco_models import Settings, simulate_sweep
+from mujoco_models import Settings
 from tests.conftest import simulated_sweep
 
 
@@ -70,23 +70,6 @@ def test_the_naive_clamp_is_found_out():
     found = compare(solve_sweep(named_case(name)), naive)
     assert not found.agrees
     assert all(found.disagreement[reading].rms > 1e-2 for reading in CLAMP_READINGS)
-
-
-def test_results_scale_with_the_beam():
-    """The simulation is dimensionless inside: other units, the same sweep."""
-    from dataclasses import replace
-
-    from analytic import Beam, Sweep
-
-    case = replace(named_case("parabola"), sweep=Sweep(stations=30))
-    beam = Beam(50.0, 7.0, 0.25)
-    other = replace(case, beam=beam, profile=case.profile.scaled(50.0))
-    settings = Settings(segments=10)
-    a, b = simulate_sweep(case, settings).table, simulate_sweep(other, settings).table
-    np.testing.assert_allclose(
-        b["force_y"], a["force_y"] * beam.force_unit, atol=1e-7 * beam.force_unit
-    )
-    np.testing.assert_allclose(b["moment_z"], a["moment_z"] * beam.moment_unit, atol=1e-7)
 
 
 @pytest.mark.slow

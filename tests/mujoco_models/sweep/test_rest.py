@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from analytic import CASE_NAMES, CLAMP_READINGS, named_case
+from analytic import CLAMP_READINGS, named_case
 from mujoco_models import Settings, available_beams, simulate_sweep
 from mujoco_models.sweep.numerics import Numerics
 from mujoco_models.sweep.sweep import run_sweep, set_out
@@ -65,7 +65,7 @@ def test_readings_do_not_depend_on(quantity, factor, usual, monkeypatch):
 
 
 VARIED = {
-    "stiffening_of_facets": (3e2, 1e5),
+    "stiffening_of_facets": (1e2, 1e5),
     "nearly": (1e2, 1e4),
     "forecasts": (0, 10),
     "foreseen": (1e-8, 1e-4),
@@ -121,16 +121,6 @@ def test_no_constant_of_the_way_shows(usual, constant, side):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("stiffening", [1e2, 3e2, 1e6])
-def test_a_stiffness_that_stalls_early_does_not_let_go_early(stiffening):
-    """At 1e2 Newton's method stalls 1.9e-3 before the fold; the descent says that it is held."""
-    case, expected = named_case("catenary"), simulated_sweep("catenary").snap_off
-    found = run_sweep(case, Settings(), numerics=Numerics(stiffening_of_facets=stiffening))
-    assert (found.table["status"] == "ok").all()
-    assert abs(found.snap_off - expected) < 1e-4  # observed 5e-5
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("stiffening", [1e3, 1e4, 1e6])
 def test_how_convex_the_step_is_past_a_smooth_contour_does_not_show(stiffening):
     """Short of the fold the model of 1e3 is not convex; all come to rest in the same states."""
@@ -143,16 +133,6 @@ def test_how_convex_the_step_is_past_a_smooth_contour_does_not_show(stiffening):
         error = np.abs(found.values(name) - expected.values(name))
         assert error.max() < 10 * settings.tolerance * scale, name
     assert abs(found.snap_off - expected.snap_off) < 1e-4  # observed 4e-5
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("segments", [40, 80])
-@pytest.mark.parametrize("name", CASE_NAMES)
-@pytest.mark.parametrize("beam", available_beams())
-def test_stations_settle(beam, name, segments):
-    table = simulated_sweep(name, Settings(beam=beam, segments=segments)).table
-    settled = table["status"] == "ok"
-    assert settled.mean() >= 0.995, f"unsettled at {table.loc[~settled, 'foot_x'].tolist()}"
 
 
 @pytest.mark.parametrize("contact_stiffness", [1e4, 1e5, 1e7])
