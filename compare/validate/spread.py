@@ -22,12 +22,15 @@ class Spread:
     # numerics, adds to every difference at once: such errors are the same at all stations.
     modes: Floats
     correlation: Floats  # shape (modes, modes); Coefficients of correlation of the modes' errors
-    # Shape (differences,); Standard deviation of what is independent from difference to difference.
-    noise: Floats
+    noise: Floats  # shape (differences,); Standard deviation of the data's noise
+    # Shape (differences,); The sum of the noise's squared correlations with all of its reading: 1 for
+    # white noise.
+    alike: Floats
 
     def part(self, where: slice) -> "Spread":
         """The same of some of the differences."""
-        return Spread(self.names, self.modes[:, where], self.correlation, self.noise[where])
+        noise, alike = self.noise[where], self.alike[where]
+        return Spread(self.names, self.modes[:, where], self.correlation, noise, alike)
 
     def shares(self) -> dict[str, float]:
         """How much of the mean variance each name makes."""
@@ -49,7 +52,8 @@ class Spread:
         The mean square of correlated differences is no normal number: it is spread as one of chi
         square, whose degrees of freedom follow from mean and variance (F. E. Satterthwaite, An
         approximate distribution of estimates of variance components, Biometrics Bulletin 2, 1946).
-        Of one dominant input there is one degree and the factor is 2; of noise alone it tends to 1.
+        Of one dominant input there is one degree and the factor is 2; of white noise alone it tends
+        to 1. Noise that remembers has fewer degrees (Bayley and Hammersley 1946).
         """
         scale = {} if scale is None else scale
         factor = np.array([scale.get(name, 1.0) for name in self.names])
@@ -60,7 +64,9 @@ class Spread:
         trace = float(np.trace(gram) + independent.sum())
         if trace == 0:
             return 0.0, 2.0
-        square = np.trace(gram @ gram) + np.sum((2 * together + independent) * independent)
+        square = np.trace(gram @ gram) + np.sum(
+            (2 * together + independent) * independent * self.alike
+        )
         degrees = trace**2 / float(square)
         expand = np.sqrt(2 * gammaincinv(degrees / 2, COVERED) / degrees)
         return float(np.sqrt(trace / len(self.noise))), float(expand)

@@ -1,7 +1,7 @@
 """The verdict of a validation: is the disagreement larger than what is uncertain about it?"""
 
 import math
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any, ClassVar, Literal, TypeAlias
 
 import numpy as np
@@ -9,6 +9,7 @@ import pandas as pd
 from pydantic import ConfigDict
 
 from analytic import CLAMP_READINGS, Case, InputError, Readings
+from analytic.from_clamp.correlated import estimate
 from analytic.from_clamp.noise import reading_noise
 from analytic.problem.arrays import Booleans, Floats
 from compare.explain.budget import Budget
@@ -26,6 +27,7 @@ _SAMPLES = 64  # of the inputs: what second-order terms add is known to a sixth 
 _MOST = 10_000  # stations that count; of more, every second or third one and so on
 _LARGEST = 1e6  # of a reading's largest magnitude; whoever states more means another unit
 _SNAP = 3.0  # standard uncertainties of the snap-off's place in which nothing is linear
+_MOST_ALIKE = 0.98  # correlation from station to station: fewer than two degrees of freedom in 100
 _DOMINATES = 0.5  # fraction of the variance
 
 
@@ -222,6 +224,7 @@ def validate(
         for part in (here.readings, np.nan_to_num(here.samples - here.predicted))
     )
     spread = _spread(stated, first, second, numerics, level)
+    spread = replace(spread, alike=_alike(error, spread))
     whole = _difference(error.ravel(), spread)
     dominant = max(
         (name for name in whole.shares if name != SECOND_ORDER), key=whole.shares.__getitem__
@@ -334,7 +337,20 @@ def _spread(
     correlation = np.eye(len(stacked))
     correlation[:inputs, :inputs] = stated.correlation
     names = (*stated.inputs, *[NUMERICS] * len(numerics), *[SECOND_ORDER] * len(second))
-    return Spread(names, stacked, correlation, np.repeat(level, first.shape[-1]))
+    noise = np.repeat(level, first.shape[-1])
+    return Spread(names, stacked, correlation, noise, np.ones_like(noise))
+
+
+def _alike(error: Floats, spread: Spread) -> Floats:
+    """How much each reading's noise remembers, by what known errors leave of the difference."""
+    if not spread.noise.all():
+        return spread.alike
+    over = spread.noise.reshape(error.shape)
+    modes = spread.modes.reshape(-1, *error.shape) / over
+    none = np.empty((*error.T.shape, 0))
+    found = estimate((error / over).T, none, modes.transpose(2, 1, 0), np.ones(len(modes)))
+    rho = np.minimum(found.noise.correlation, _MOST_ALIKE)
+    return np.repeat((1 + rho**2) / (1 - rho**2), error.shape[1])
 
 
 def _difference(error: Floats, spread: Spread) -> Difference:

@@ -1,7 +1,10 @@
 """One number for correlated differences: its quantile, its parts, and what shrinks it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from compare.validate.spread import COVERED, NOISE, Spread
 
@@ -11,7 +14,7 @@ def spread(sizes, noise, correlation=None, seed=0, differences=300):
     modes = np.array(sizes)[:, None] * rng.standard_normal((len(sizes), differences))
     names = tuple(f"input {i}" for i in range(len(sizes)))
     together = np.eye(len(sizes)) if correlation is None else np.array(correlation)
-    return Spread(names, modes, together, np.full(differences, noise))
+    return Spread(names, modes, together, np.full(differences, noise), np.ones(differences))
 
 
 @pytest.mark.parametrize(
@@ -42,6 +45,18 @@ def test_one_input_is_expanded_by_two_and_noise_hardly():
     assert spread([1e-6], 1.0, differences=3000).limits()[1] == pytest.approx(1.0, abs=0.03)
 
 
+@pytest.mark.parametrize(("rho", "as_white"), [(0.5, 0.93), (0.9, 0.8), (0.97, 0.76)])
+def test_noise_that_remembers_has_fewer_degrees_of_freedom(rho, as_white):
+    given = spread([0.1], 1.0)
+    white = np.random.default_rng(2).standard_normal((5000, 300))
+    white[:, 1:] *= np.sqrt(1 - rho**2)
+    rms = np.sqrt(np.mean(lfilter([1], [1, -rho], white, axis=1) ** 2, axis=1))
+    u_val, expand = replace(given, alike=given.alike * (1 + rho**2) / (1 - rho**2)).limits()
+    assert np.mean(rms <= expand * u_val) == pytest.approx(COVERED, abs=0.02)
+    u_val, expand = given.limits()
+    assert np.mean(rms <= expand * u_val) < as_white
+
+
 def test_shares_are_those_of_the_variance():
     given = spread([1.0, 2.0], 0.5)
     shares, variance = given.shares(), given.variance() + given.noise**2
@@ -61,6 +76,6 @@ def test_what_shrinks_so_far_lets_the_error_stand_out():
 
 
 def test_without_any_uncertainty_all_is_resolved():
-    nothing = Spread((), np.zeros((0, 5)), np.zeros((0, 0)), np.zeros(5))
+    nothing = Spread((), np.zeros((0, 5)), np.zeros((0, 0)), np.zeros(5), np.ones(5))
     assert nothing.limits()[0] == 0.0
     assert nothing.shrink(1e-12, NOISE) == 1.0
