@@ -16,7 +16,7 @@ from analytic.space import (
     sphere,
 )
 from analytic.space.problem.readings import CONTACT_POINT, FORCE, MOMENT
-from mujoco_models import Settings, SpatialSettings, simulate_space
+from mujoco_models import DivergedError, Settings, SpatialSettings, simulate_space
 from mujoco_models.beams.cable import Cable
 from mujoco_models.beams.spatial import SpatialChain
 from mujoco_models.space.balance import Balance, State
@@ -219,3 +219,19 @@ def test_settings_that_cannot_be_are_refused_in_one_line():
         assert "\n" not in str(refused.value)
     with pytest.raises(InputError, match="cannot collide a line"):
         simulate_space(case_of("sphere", beam=Beam(radius=0.0)))
+
+
+def test_a_divergence_names_its_station_and_keeps_the_others(monkeypatch):
+    """MuJoCo's springs give NaN from the seventh station on."""
+    sound, count, kept = mujoco.mj_forward, iter(range(10**9)), []
+
+    def broken(model, data):
+        sound(model, data)
+        if next(count) >= 6:
+            data.qfrc_passive[2] = np.nan
+
+    monkeypatch.setattr(mujoco, "mj_forward", broken)
+    with pytest.raises(DivergedError, match=r"diverged at station 7 of 20, travel = .* L: "):
+        simulate_space(case_of("sphere", 20), SpatialSettings(segments=8), keep=kept.append)
+    assert kept[0].table["status"].tolist() == ["ok"] * 6 + ["diverged"]
+    assert np.isnan(kept[0].values(*FORCE)[-1]).all()
