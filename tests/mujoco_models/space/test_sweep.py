@@ -211,6 +211,7 @@ def test_settings_that_cannot_be_are_refused_in_one_line():
     for wrong, says in (
         ({"joints": "hinge"}, "ball, universal"),
         ({"segments": 1}, "between 2 and 400"),
+        ({"segments": None}, "segments = None: must be a whole number"),
         ({"beam": "rod"}, "cannot resist twisting"),
         ({"beam": "cable"}, "'chain' or 'rod' in space"),
     ):
