@@ -23,8 +23,8 @@ class Spread:
     modes: Floats
     correlation: Floats  # shape (modes, modes); Coefficients of correlation of the modes' errors
     noise: Floats  # shape (differences,); Standard deviation of the data's noise
-    # Shape (differences,); The sum of the noise's squared correlations with all of its reading: 1 for
-    # white noise.
+    # Shape (differences,); The sum of the noise's squared correlations with all of its reading: 1
+    # for white noise.
     alike: Floats
 
     def part(self, where: slice) -> "Spread":
