@@ -71,6 +71,9 @@ fuzz: develop    ## bad input to all commands; ARGS="N SEED"
 sweeps: develop  ## random sweeps in MuJoCo against the closed form; ARGS="N [SEED]"
 	$(BIN)/python -m tests.fuzz.sweeps $(or $(ARGS),200)
 
+models: develop  ## random foreign models, inspected and fixed; ARGS="N [SEED [SWEPT]]"
+	$(BIN)/python -m tests.fuzz.models $(or $(ARGS),200)
+
 bench: develop   ## speed, side by side on one core; ARGS="ratios limits analytic mujoco space stepping engines study", or million
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.bench $(ARGS)
 

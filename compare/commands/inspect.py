@@ -105,6 +105,9 @@ def inspect(
     if out is not None:
         with output_folder(out) as folder:
             terminal.keep(folder / "inspection.json", inspection.to_dict())
+            from compare.simulate.profile import picture
+
+            picture(inspection.found).savefig(folder / "profile.png", dpi=120)
     return AGREES if inspection.sound else DISAGREES
 
 

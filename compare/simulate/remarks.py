@@ -327,8 +327,10 @@ def _contacts(found: MeasuredBeam) -> Iterator[Remark]:
                      f"{ends[0]:.2f} to {ends[1]:.2f} L, meet no object of MuJoCo's default "
                      f"contype and conaffinity: {shown}", edits=meeting_objects)  # fmt: skip
     for pair in found.self_contacts[:3]:
+        own = all(name in {geom.name for geom in found.geoms} for name in pair.split(" and "))
         yield Remark("fault", "contact", f"{pair} touch before anything moves",
-                     "exclude the pair", meeting_objects)  # fmt: skip
+                     "exclude the pair" if own else "begin farther away",
+                     meeting_objects if own else ())  # fmt: skip
     meeting = [geom for geom in found.geoms if geom.meets]
     if not meeting:
         return

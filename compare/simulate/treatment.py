@@ -120,7 +120,10 @@ def held(found: MeasuredBeam) -> tuple[Edit, ...]:
         hard = Edit("weld", (("solref", hardest(found)), ("solimp", HARD)), hand.welds)
         return (hard, *steps(found)) if timestep(found) < found.timestep else (hard,)
     rigid = _RIGID * as_intended(found) / found.length
-    return (Edit("joint", (("stiffness", number(rigid)),), hand.numbers),)
+    return tuple(
+        Edit("joint", (("stiffness", number(rigid / found.length**2 if slides else rigid)),), (j,))
+        for j, slides in zip(hand.numbers, hand.slides, strict=True)
+    )
 
 
 def straightened(sensor: Sensed) -> tuple[Edit, ...]:

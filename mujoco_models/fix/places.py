@@ -34,12 +34,17 @@ class Places:
             return self._only("option")
         if (kind, number) in self._found:
             return self._found[kind, number]
-        many = self.many(kind)
+        many = self.many(kind, number)
         return next((c for c in many.children if c.tag == kind), None) if many else None
 
-    def many(self, kind: str) -> Element | None:
-        """The one element that makes all those of a kind that have none of their own."""
-        return self._only(_MANY.get(kind, ""))
+    def many(self, kind: str, number: int) -> Element | None:
+        """The element that makes several, this one among them."""
+        tag = _MANY.get(kind, "")
+        found = [e for e in self.root.below() if e.tag == tag]
+        if len(found) > 1 and kind in ("geom", "joint"):
+            name = getattr(self._model, kind)(number).name
+            found = [e for e in found if name.startswith(e.attributes.get("prefix") or "\0")]
+        return found[0] if len(found) == 1 else None
 
     def _only(self, tag: str) -> Element | None:
         found = [e for e in self.root.below() if e.tag == tag]

@@ -66,7 +66,7 @@ class Texts:
             self._set_option(dict(edit.attributes))
             return
         found = [self._places.element(edit.kind, i) for i in edit.numbers]
-        many = self._places.many(edit.kind)
+        many = self._places.many(edit.kind, edit.numbers[0])
         if None in found and many is not None:
             self._within[id(many)][edit.kind].update(edit.attributes)
             self._elements[id(many)] = many

@@ -11,7 +11,7 @@ from analytic.problem.errors import InputError
 
 _ALONG = 0.999  # cosine; a slide that is turned by 2.5 degrees goes elsewhere
 _FOLLOWS = mujoco.mjtBias.mjBIAS_AFFINE  # of a position or velocity actuator
-_FREE, _SLIDE = mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_SLIDE
+_FREE, _SLIDE = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_SLIDE)
 
 
 @dataclass(frozen=True)

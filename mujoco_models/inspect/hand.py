@@ -11,7 +11,8 @@ from mujoco_models.inspect.held_chain import HeldChain
 from mujoco_models.inspect.parts import Parts
 
 _SWEEP = 40.0  # T1; two lengths at 0.05 L/T1
-_SHARE = 0.05  # of what the tip gives way by; what has less is not named
+_SHARE = 0.05  # of what clamp or tip give way by; what has less is not named
+_NOTHING = 1e-300
 _HARD = 0.999  # impedance
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 _COORDINATES = {_FREE: 6, int(mujoco.mjtJoint.mjJNT_BALL): 3}  # of a joint; of others 1
@@ -23,6 +24,7 @@ class Hand:
 
     joints: tuple[str, ...]  # those that do, the most first
     numbers: tuple[int, ...]  # of these joints in the model
+    slides: tuple[bool, ...]  # which of them
     welds: tuple[int, ...]  # of the first of them, if it is free
     time_constant: float  # of the weld as MuJoCo takes it; NaN if it is not as hard as it can be
     rotation: float  # of the clamp about the axis of the sweep, over a moment [1/(force length)]
@@ -70,19 +72,19 @@ def measure_hand(
     shares = np.vstack([shares, shares[0] - length * shares[2]])
     given = np.linalg.lstsq(ground, shares.T, rcond=None)[0]
     compliances = np.einsum("ij,ji->i", shares, given)
-    of_tip = {
-        j: float((shares[3] * given[:, 3])[np.isin(hand, _dofs_of(model, [j]))].sum())
-        for j in joints
-    }
+    each = np.abs(shares * given.T / np.maximum(np.abs(compliances), _NOTHING)[:, None])
+    of_it = {j: float(each[:, np.isin(hand, _dofs_of(model, [j]))].sum(axis=1).max())
+             for j in joints}  # fmt: skip
     giving = [
-        j for j in sorted(joints, key=of_tip.__getitem__, reverse=True)
-        if of_tip[j] > _SHARE * compliances[3]
+        j for j in sorted(joints, key=of_it.__getitem__, reverse=True)
+        if of_it[j] > _SHARE
     ]  # fmt: skip
     free = bool(giving) and model.jnt_type[giving[0]] == _FREE
     welds = _welds_of(model, int(model.jnt_bodyid[giving[0]])) if free else ()
     return Hand(
         joints=tuple(model.joint(j).name or f"joint {j}" for j in giving),
         numbers=tuple(giving),
+        slides=tuple(bool(model.jnt_type[j] == mujoco.mjtJoint.mjJNT_SLIDE) for j in giving),
         welds=welds,
         time_constant=_time_constant(model, welds),
         rotation=float(compliances[2]),

@@ -211,7 +211,8 @@ def _joints(
     bodies = held.parts.chain
     names = [held.model.body(body).name or f"body {body}" for body in bodies]
     damping = [held.model.dof_damping[held.model.dof_bodyid == body].max() for body in bodies]
-    figures = np.stack([s, np.diff(bounds), compliance, angles, damping], axis=1).tolist()
+    masses = held.model.body_mass[list(bodies)]
+    figures = np.stack([s, np.diff(bounds), compliance, angles, damping, masses], axis=1).tolist()
     return tuple(
         Joint(name, (*joints_of(held.model, body),), *row)
         for name, body, row in zip(names, bodies, figures, strict=True)

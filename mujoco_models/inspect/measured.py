@@ -46,6 +46,7 @@ class Joint:
     compliance: float  # turn over moment
     angle: float  # its turn at rest [rad]
     damping: float  # of its dampers, the largest [force length time]
+    mass: float  # of the body
 
     @property
     def flexural_rigidity(self) -> float:

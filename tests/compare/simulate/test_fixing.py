@@ -8,6 +8,7 @@ from compare.read.case import load_case
 from compare.simulate.expected import expected
 from compare.simulate.fixing import SPEED, case_of, fix
 from compare.simulate.inspection import Inspection
+from compare.simulate.profile import profile
 from mujoco_models import inspect_model, shipped_models, simulate_model
 from tests.mujoco_models.inspect.chains import Chain
 
@@ -113,3 +114,12 @@ def test_a_fixed_model_sweeps_as_was_expected(tmp_path):
     low, high = expected(after.inspection.found, SPEED).interval
     assert low < worst < high  # observed 2.3e-3
     assert worst < 0.01
+
+
+def test_a_tapered_model_is_its_material_along_the_vibrissa():
+    """A cone of steel: the mass goes with r^2, EI with r^4, within what a cell of it changes by."""
+    found = inspect_model(shipped_models()["tapered-whisker"])
+    for name in ("EI", "mass per length"):
+        own, material = profile(found)[name]
+        assert own[1:-1] == pytest.approx(material[1:-1], rel=0.1)
+        assert own[1] > 5 * own[-2]
