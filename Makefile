@@ -102,6 +102,7 @@ results: $(RUNS) | install ## results/README.md: all named cases, all beams ther
 	$(BIN)/vibrissa run results/pictures/space/egg.toml --engine exact --out results/pictures/space
 	cp results/pictures/space/space.png results/
 	$(BIN)/python -m docs.figures.findings results/runs results
+	$(if $(wildcard .venv-engines/installed),$(BIN_ENGINES),$(BIN))/python -m docs.figures.league results
 
 again: install   ## the same, but forget the runs that are done
 	rm -rf results/runs

@@ -1,0 +1,117 @@
+"""The engines side by side: ``python -m docs.figures.league DIR`` writes ``league.csv`` and page.
+
+Every engine that is installed sweeps two small cases, on the primitive. Beside these stand those
+that were evaluated outside (`docs/evaluations`), with their defaults' error. Times are ratios to
+MuJoCo's in the same run: a busy machine makes all of them slow.
+"""
+
+import math
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pandas as pd
+
+from analytic import CLAMP_READINGS, named_case, solve_sweep
+from analytic.problem.files import write_whole
+from compare import compare
+from compare.show.document import Block, Document, Section, Table, Text, Verdict
+from compare.show.markdown import markdown
+from compare.show.numbers import short
+from engines import list_engines
+from engines.apart import sweep_apart
+from mujoco_models import Settings
+
+_CASES = ("tip-only", "parabola")
+_SEGMENTS = (10, 20)
+_STATIONS = 15
+_PAGE = "league.md"
+
+
+def measured(timeout: float = 300.0) -> pd.DataFrame:
+    """A row an engine, a case and a number of segments; engines that are missing have none."""
+    rows = []
+    there = [found for found in list_engines() if found.engine is not None and not found.trouble]
+    for name in _CASES:
+        case = named_case(name)
+        case = replace(case, sweep=replace(case.sweep, stations=_STATIONS))
+        exact = solve_sweep(case)
+        for segments in _SEGMENTS:
+            unit = None
+            for found in sorted(there, key=lambda one: one.name != "mujoco"):
+                settings = Settings(segments=segments, obstacle="primitive")
+                swept = sweep_apart(found.name, case, settings, timeout).readings
+                row: dict[str, object] = {"case": name, "engine": f"{found.name} {found.version}"}
+                row |= {"model": found.engine.role if found.engine else "", "segments": segments}
+                if swept is not None:
+                    one = compare(exact, swept)
+                    apart, took = one.snap_off.difference, swept.provenance.get("seconds")
+                    unit = unit or took
+                    row |= {key: one.disagreement[key].rms for key in CLAMP_READINGS}
+                    row |= {"snap_off": None if apart is None else apart / case.beam.length}
+                    row |= {"trusted": float(swept.trusted.mean())}
+                    row |= {"times_mujoco": took / unit if took and unit else None}
+                rows.append({**row, "settings": found.engine.tuned if found.engine else ""})
+                print(*rows[-1].values(), flush=True)
+    return pd.DataFrame(rows)
+
+
+def evaluated(file: Path) -> pd.DataFrame:
+    """The rows of engines that were evaluated outside, as well as they get, with their defaults."""
+    table = pd.read_csv(file)
+    at = ["engine", "case"]
+    defaults = table[table["settings"] == "defaults"].set_index(at)[[*CLAMP_READINGS]].max(axis=1)
+    best = table[table["settings"] == "tuned"].copy()
+    best["default_error"] = [
+        defaults.get(key) for key in zip(best["engine"], best["case"], strict=True)
+    ]
+    best["trusted"] = 1 - best["doubted"] / best["stations"]
+    best["case"] = "circle, " + best["case"]
+    best["model"], best["settings"] = "evaluated", "see docs/evaluations"
+    columns = ["case", "engine", "model", "segments", *CLAMP_READINGS, "trusted"]
+    return best[[*columns, "times_mujoco", "settings", "default_error"]]
+
+
+def page(table: pd.DataFrame) -> Document:
+    """The table as a page."""
+    rows = [
+        (
+            row["case"], row["engine"], row["model"], str(row["segments"]),
+            *(_number(row[key]) for key in (*CLAMP_READINGS, "snap_off")),
+            *(_number(row[key]) for key in ("trusted", "times_mujoco", "default_error")),
+        )
+        for row in table.to_dict("records")
+    ]  # fmt: skip
+    head = ("case", "engine", "model", "segments", *CLAMP_READINGS, "snap-off apart / L")
+    caption = "Each engine against the closed form, relative rms"
+    settings = table.drop_duplicates("engine")[["engine", "settings"]].itertuples(index=False)
+    said = Text(
+        f"{_STATIONS} stations of each named case, 30 past each circle, on the primitive. trusted: "
+        "share of stations that are ok, or that nobody doubts. times MuJoCo: processor time over "
+        "MuJoCo's in the same run. default: the worst reading's error with the engine's defaults."
+    )
+    blocks: list[Block] = [
+        said,
+        Table(caption, (*head, "trusted", "times MuJoCo", "default"), rows, words=(0, 1, 2)),
+        Table("What was set", ("engine", "settings"), [tuple(x) for x in settings], words=(0, 1)),
+    ]
+    verdict = Verdict(True, "Written by `make results`: edits would be lost.")
+    return Document(
+        "Engines side by side", "", verdict, [Section("league", "League table", blocks)]
+    )
+
+
+def _number(value: object) -> str:
+    number = float("nan") if value is None else float(str(value))
+    return "none" if math.isnan(number) else short(number)
+
+
+def main(out: Path) -> None:
+    """Measure, and write both."""
+    table = pd.concat([measured(), evaluated(out / "evaluations.csv")], ignore_index=True)
+    write_whole(out / "league.csv", table.to_csv(index=False, float_format="%.4g").encode())
+    write_whole(out / _PAGE, markdown(page(table)).encode())
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
