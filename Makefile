@@ -157,7 +157,7 @@ results/runs/%-cable/report.html: | install-mujoco3
 
 .venv-engines/installed: pyproject.toml
 	$(PYTHON) -m venv .venv-engines
-	$(BIN_ENGINES)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,drake,exudyn,dart,pinocchio,warp,mjx]'
+	$(BIN_ENGINES)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,drake,exudyn,dart,pyelastica,pinocchio,warp,mjx]'
 	touch $@
 
 .venv-mujoco3/installed: pyproject.toml

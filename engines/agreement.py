@@ -41,12 +41,16 @@ class State:
         Where the object pushes, on the surface of the vibrissa.
     forces : array, shape (n_contacts, 2)
         What it pushes with, on the vibrissa.
+    turns : array, shape (n_joints,), optional
+        What bends at each joint [rad], where places do not say all of it: of a rod that shears,
+        between its sections.
     """
 
     joints: Floats
     clamp: Floats
     points: Floats
     forces: Floats
+    turns: Floats | None = None
 
 
 def hinges(case: Case, count: int, last: float = 0.5) -> Layout:
@@ -107,6 +111,28 @@ class Agreement:
         """
         return float(np.abs(self._springs(state) + self._pushes(state)).max() / self._scale(state))
 
+    def is_clear(self, joints: Floats, foot_x: float) -> bool:
+        """Whether nothing of a vibrissa is in the object.
+
+        Parameters
+        ----------
+        joints : array, shape (n_joints + 1, 2)
+            Where its joints and its tip are, as those of a state [L].
+        foot_x : float
+            Where the foot is [L].
+
+        Returns
+        -------
+        bool
+            True if it is outside, or as deep as contacts may be.
+        """
+        return self._inside(joints, foot_x) < _PLACES
+
+    def _inside(self, joints: Floats, foot_x: float) -> float:
+        """How deep it is in the object."""
+        out, _ = self._surface.outward(joints + np.array([foot_x, 0.0]))
+        return float((self._beyond_tip - out).max())
+
     def doubt(self, state: State, foot_x: float) -> str:
         """Why a state at rest cannot be trusted.
 
@@ -122,7 +148,7 @@ class Agreement:
         str
             What disagrees most, by how much; empty if nothing does.
         """
-        if not all(np.isfinite(x).all() for x in vars(state).values()):
+        if not all(x is None or np.isfinite(x).all() for x in vars(state).values()):
             return "a number is missing"
         found = [
             (size / limit, f"{what} disagree") for what, size, limit in self._each(state, foot_x)
@@ -143,8 +169,10 @@ class Agreement:
             float(np.abs(np.cumsum(chords - layout.chords)).max()),
             _PLACES,
         )
-        out, _ = self._surface.outward(state.joints + foot)
-        yield "vibrissa and object", float((self._beyond_tip - out).max()), _PLACES
+        if state.turns is not None:
+            apart = np.abs(state.turns - self._bent(state))
+            yield "turns and places", float(apart.max()), _NORMALS
+        yield "vibrissa and object", self._inside(state.joints, foot_x), _PLACES
         size = np.hypot(*state.forces.T)
         felt = size > _FEELS * max(size.max(initial=0.0), _LEAST)
         if not felt.any():
@@ -162,9 +190,14 @@ class Agreement:
 
     def _springs(self, state: State) -> Floats:
         """The moments that the case's own springs have in this shape."""
+        turns = self._bent(state) if state.turns is None else state.turns
+        return np.asarray(-turns / self._layout.compliances)
+
+    def _bent(self, state: State) -> Floats:
+        """By how much each joint is turned, by the places of all."""
         x, y = np.diff(state.joints, axis=0).T
         turns = np.diff(np.arctan2(-x, y) - self._layout.headings, prepend=0.0)
-        return np.asarray(-((turns + np.pi) % (2 * np.pi) - np.pi) / self._layout.compliances)
+        return np.asarray((turns + np.pi) % (2 * np.pi) - np.pi)
 
     def _pushes(self, state: State) -> Floats:
         """The moments at the joints of all contacts beyond."""

@@ -13,6 +13,7 @@ _SHIPPED = {
     "exudyn": "engines.exudyn.engine:ENGINE",
     "pinocchio": "engines.pinocchio.engine:ENGINE",
     "dart": "engines.dart.engine:ENGINE",
+    "pyelastica": "engines.pyelastica.engine:ENGINE",
 }
 
 

@@ -79,6 +79,7 @@ def sweep_stepping(
     source: str,
     about: Mapping[str, Any],
     advance: Callable[[], None] = lambda: None,
+    smallest: float = _SMALLEST,
 ) -> Readings:
     """Sweep a case with an engine that only steps.
 
@@ -94,6 +95,8 @@ def sweep_stepping(
         ``engine``, with its version, and ``settings``, for the provenance.
     advance : callable
         Called after every station.
+    smallest : float
+        The step of the foot in which a snap-off is located [L].
 
     Returns
     -------
@@ -110,7 +113,7 @@ def sweep_stepping(
     def rest(leftward: Case) -> SteppedRest:
         return SteppedRest(leftward, stepper(leftward))
 
-    return sweep_stations(case, rest, source, about, advance, _SMALLEST)
+    return sweep_stations(case, rest, source, about, advance, smallest)
 
 
 class SteppedRest:
@@ -119,6 +122,7 @@ class SteppedRest:
     def __init__(self, case: Case, stepper: Stepper) -> None:
         self._stepper, self._free = stepper, free_row(case)
         self._agreement = Agreement(case, stepper.layout)
+        self._unbent = stepper.layout.vibrissa.at(np.append(stepper.layout.joints, 1.0))
         self._foot_x = float(case.foot_x[0]) / case.beam.length
         self._kept = stepper.keep()
         self._found = self._foot_x, self._kept
@@ -131,15 +135,19 @@ class SteppedRest:
             stepper.step(place)
         state = self._wait(foot_x)
         self._found = foot_x, stepper.keep()
-        return None if state is None else self._row(state, foot_x)
+        return self._row(state, foot_x) if isinstance(state, State) else state
 
     def accept(self) -> None:
         """Go on from the last station."""
         self._foot_x, self._kept = self._found
 
-    def _wait(self, foot_x: float) -> State | None:
-        """The state in which it rests, or sleeps."""
+    def _wait(self, foot_x: float) -> State | Row | None:
+        """The state in which it rests, or sleeps; or what it will read, if it has let go.
+
+        That is what touches nothing for a swing, neither now nor once it is straight.
+        """
         stepper, naps, last = self._stepper, 0, self._stepper.look()
+        untouched, clear = 0, self._agreement.is_clear(self._unbent, foot_x)
         for _ in range(_SWINGS * _LOOKS):
             for _ in range(max(1, stepper.period // _LOOKS)):
                 stepper.step(foot_x)
@@ -150,6 +158,9 @@ class SteppedRest:
             naps = naps + 1 if moved < _ASLEEP else 0
             if naps == _NAPS or (moved < _STILL and self._agreement.imbalance(state) < _REST):
                 return state
+            untouched = 0 if state.forces.any() else untouched + 1
+            if clear and untouched >= _LOOKS and self._agreement.is_clear(state.joints, foot_x):
+                return self._free
             last = state
         return None
 
