@@ -1,10 +1,10 @@
 """A contact that PyElastica has not: a line of nodes against any convex contour, consistently.
 
-The contour, moved out by the vibrissa's radius, is a chain of arcs. Every node in it is pushed along
-its normal. An element that it is tangent to, deeper than its nodes are, is pushed there at right
-angles, and both its nodes bear what the lever says; the deeper one is then spared. So force and
-place come out of one energy, by the square of depths, and do not jump where a contact goes from
-element to node, nor where the vibrissa lies flat on an edge.
+The contour, moved out by the vibrissa's radius, is a chain of arcs. Every node in it is pushed
+along its normal. An element that it is tangent to, deeper than its nodes are, is pushed there at
+right angles, and both its nodes bear what the lever says; the deeper one is then spared. So force
+and place come out of one energy, by the square of depths, and do not jump where a contact goes from
+element to node.
 """
 
 from typing import NamedTuple

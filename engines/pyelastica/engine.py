@@ -12,7 +12,6 @@ from engines.engine import Role
 from engines.stepping import Stepper, sweep_stepping
 from mujoco_models.settings import Settings
 
-
 _LET_GO = 0.2  # L; its snap-off is located as well as one of so many elements is right
 
 

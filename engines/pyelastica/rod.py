@@ -55,9 +55,7 @@ class ElasticaRod:
             elastica.OneEndFixedBC, constrained_position_idx=(0,), constrained_director_idx=(0,)
         )
         self._simulator.add_forcing_to(self._rod).using(_Push, self)
-        self._simulator.dampen(self._rod).using(
-            _Damp, slowest=_FREE * pace, fastest=_PINNED * pace
-        )
+        self._simulator.dampen(self._rod).using(_Damp, slowest=_FREE * pace, fastest=_PINNED * pace)
         self._simulator.finalize()
         self._stepper = elastica.PositionVerlet()
 
@@ -163,7 +161,8 @@ class _Push(elastica.NoForces):  # type: ignore[misc]
 class _Damp(elastica.DamperBase):  # type: ignore[misc]
     """Damping that is critical for whatever swing is left, by its stiffness and mass.
 
-    Their ratio is that of changes of acceleration and place: dynamic relaxation (Papadrakakis 1981).
+    Their ratio is that of changes of acceleration and place: dynamic relaxation (Papadrakakis,
+    Comput. Methods Appl. Mech. Eng. 25, 1981).
     """
 
     def __init__(self, slowest: float, fastest: float, **system: Any) -> None:  # noqa: ANN401

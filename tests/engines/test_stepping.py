@@ -200,6 +200,9 @@ FAULTS = {
     "contact forces are counted twice": reads(
         points=lambda s: np.tile(s.points, (2, 1)), forces=lambda s: np.tile(s.forces, (2, 1))
     ),
+    "sections are turned otherwise than places say": reads(
+        turns=lambda s: 0.02 + 0 * s.joints[1:, 0]
+    ),
     "a reading is missing": reads(clamp=lambda s: s.clamp * [1, np.nan, 1]),
     "a spring is 2 % soft": scale(3, by=0.98),
     "the first spring is 2 % stiff": scale(0, by=1.02),
