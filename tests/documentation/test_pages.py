@@ -162,5 +162,5 @@ def test_every_kind_of_contour_and_its_keys_are_described():
 
 def test_blocks_are_in_a_language_that_is_run_or_say_why_not():
     known = {"", "python", "sh", "toml"}
-    odd = [str(b) for page in PAGES for b in blocks(page) if b.language not in known]
-    assert not odd
+    odd = [b for page in PAGES for b in blocks(page) if b.language not in known]
+    assert not [str(b) for b in odd if not (b.language == "xml" and b.note)]
