@@ -132,17 +132,19 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.hookimpl(trylast=True)
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """One test a case and an engine, unless the user's own hook has chosen them."""
-    # There is no public way to ask what is parametrized already.
-    chosen = {name for call in metafunc._calls for name in call.params}
     for one in _CHOICES:
-        if one.fixture not in metafunc.fixturenames or one.fixture in chosen:
+        if one.fixture not in metafunc.fixturenames:
             continue
         marker = metafunc.definition.get_closest_marker(one.marker)
         asked = (marker.args if marker else ()) or metafunc.config.getoption(one.option)
         names = [str(name) for name in asked or _every(one)]
         if names:  # there are no named cases in space: the fixture says how to choose
             ids = [Path(name).stem for name in names]
-            metafunc.parametrize(one.fixture, names, ids=ids, indirect=True)
+            try:
+                metafunc.parametrize(one.fixture, names, ids=ids, indirect=True)
+            except (ValueError, pytest.Collector.CollectError) as error:
+                if "duplicate parametrization" not in str(error):  # which somebody else has chosen
+                    raise
 
 
 def _every(one: _Choice) -> list[str]:
@@ -313,7 +315,10 @@ def _chosen(request: pytest.FixtureRequest, one: _Choice) -> Any:  # noqa: ANN40
             f"@pytest.mark.{one.marker}({one.metavar}), and let the test itself use it",
             pytrace=False,
         )
-    job = _stated(one, request.param)
+    try:
+        job = one.read(request.param)
+    except _ours("analytic").InputError as error:
+        pytest.fail(str(error), pytrace=False)
     request.node.stash.setdefault(_JOBS, {})[one.fixture] = job
     return job.case
 
@@ -341,14 +346,6 @@ def _once(sweeps: Sweeps, key: tuple[object, ...], make: Callable[[], Any]) -> A
     if key not in sweeps:
         sweeps[key] = make()
     return sweeps[key]
-
-
-def _stated(one: _Choice, name: str) -> Any:  # noqa: ANN401
-    """What a marker names; what is wrong with it fails the test in a line."""
-    try:
-        return one.read(name)
-    except _ours("analytic").InputError as error:
-        pytest.fail(str(error), pytrace=False)
 
 
 def _ours(module: str) -> Any:  # noqa: ANN401

@@ -9,9 +9,9 @@ from analytic.problem.files import write_whole
 from compare.comparison import Comparison, SpatialComparison, compare
 from compare.explain.split_space import Parts
 from compare.read.run_folder import read_run
-from compare.show import report
 from compare.show.document import Film
 from compare.show.html import html
+from compare.show.report import write_report as write_page
 from compare.show.runs import runs_document
 from compare.study.show.study_report import write_report as write_study_report
 
@@ -74,8 +74,7 @@ def write_report(
 def _of_a_run(folder: Path, place: Path) -> Report:
     stored, film = read_run(folder), Film.of(folder)
     found = compare(stored.reference, stored.candidate, stored.tolerances, frame=stored.frame)
-    if isinstance(found, SpatialComparison):
-        page = report.write_spatial_report(found, stored.body, place, stored.parts, film)
-        return Report(page, found, stored.parts)
-    found = replace(found, validation=stored.validation)
-    return Report(report.write_report(found, place, stored.budget, film), found)
+    if isinstance(found, Comparison):
+        found = replace(found, validation=stored.validation)
+    page = write_page(found, place, stored.budget, film, stored.parts, stored.body)
+    return Report(page, found, stored.parts)

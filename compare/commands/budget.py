@@ -7,7 +7,7 @@ from typing import Any
 
 from analytic import Readings
 from compare.commands import terminal
-from compare.commands.pipeline import AnyReadings
+from compare.commands.sweeping import AnyReadings
 from compare.explain.budget import Budget
 from compare.explain.split_space import Parts
 from compare.read.job import AnyJob, Job, SpaceJob

@@ -12,8 +12,9 @@ from compare.align.frames import Frame
 from compare.commands import terminal
 from compare.commands.options import AGREES, DISAGREES
 from compare.commands.output import distinct_names, output_folder
-from compare.commands.pipeline import AnyComparison, AnyReadings, reported
+from compare.commands.pipeline import AnyComparison, reported
 from compare.commands.sweep_lines import note_rows
+from compare.commands.sweeping import AnyReadings
 from compare.comparison import Comparison, compare
 from compare.explain.budget import Budget
 from compare.judge.tolerances import SpatialTolerances, Tolerances

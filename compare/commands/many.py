@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from analytic import InputError
+from analytic import InputError, Readings
 from compare.commands import terminal
 from compare.commands.budget import budget_at_rest
-from compare.commands.pipeline import Asked, draw_paper_figures, printed, solved
+from compare.commands.sweeping import AnyReadings, printed
 from compare.read.job import Job
 from compare.read.runs import EngineOutcome
 from compare.show.engines import ManyEngines, outcomes_table, parts_table, write_engines
@@ -14,16 +14,13 @@ from engines import Outcome, list_engines
 from engines.apart import sweep_apart
 
 
-def swept_by_engine(job: Job, folder: Path, asked: Asked) -> bool:
+def swept_by_engines(job: Job, exact: AnyReadings | None, folder: Path, with_budget: bool) -> bool:
     """Sweep a case with the engines of its job, and write one report of all; whether all agree."""
-    exact = None if asked.sweep_only else solved(job, folder, asked.certified)
-    if exact is not None and asked.figures:
-        draw_paper_figures(job, exact, folder)
     outcomes = _swept(job, folder)
     sweeps = {one.engine: one.readings for one in outcomes if one.readings is not None}
-    if exact is None:
+    if not isinstance(exact, Readings):
         return all(printed(job, x, folder, f"{name}.parquet") for name, x in sweeps.items())
-    budget = budget_at_rest(job)[0] if asked.budget and "mujoco" in sweeps else None
+    budget = budget_at_rest(job)[0] if with_budget and "mujoco" in sweeps else None
     many = ManyEngines.of(job.case, exact, _rows(outcomes), sweeps, budget)
     terminal.show(outcomes_table({many.case.name: many.outcomes}))
     if many.parts():

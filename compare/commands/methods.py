@@ -10,7 +10,7 @@ from analytic.from_clamp.earlier.methods import NAMES
 from analytic.problem.errors import InputError
 from compare.commands import terminal
 from compare.commands.output import output_folder
-from compare.commands.pipeline import sweep_file
+from compare.commands.sweeping import sweep_file
 from compare.measure.conditions import CONDITIONS, SIMULATED, as_believed, chosen_conditions
 from compare.measure.methods import INFORMED, KNOWN, method_errors
 from compare.read.job import Job

@@ -5,42 +5,27 @@ Solve the case, simulate it, compare, write the report, print: a job says how ea
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, TypeAlias
 
-from analytic import CLAMP_READINGS, Readings, reconstruct
-from analytic.space import SpatialReadings
+from analytic import CLAMP_READINGS
 from compare.commands import terminal
-from compare.commands.output import warn
-from compare.commands.space import find_body
-from compare.commands.sweep_lines import print_sweep
+from compare.commands.sweeping import AnyReadings, printed, simulated, solved, sweep_file
 from compare.commands.waiting import waiting
 from compare.comparison import Comparison, SpatialComparison, compare
 from compare.explain.budget import Budget
 from compare.explain.split_space import Parts
 from compare.read.job import AnyJob, Job
 from compare.read.kinds import PLANE
-from compare.show import report
 from compare.show.document import Film, Text
 from compare.show.plane_page import plane_summary
+from compare.show.report import write_report
 from compare.show.spatial_page import spatial_summary
 
 if TYPE_CHECKING:
-    from analytic.problem.arrays import Floats
     from analytic.space import Body
     from compare.align.frames import Frame
 
-AnyReadings: TypeAlias = Readings | SpatialReadings
 AnyComparison: TypeAlias = Comparison | SpatialComparison
-Sweep = TypeVar("Sweep", bound=Readings | SpatialReadings, covariant=True)
-
-_ANALYTIC = "analytic.parquet"
-
-
-class Solvable(Protocol[Sweep]):
-    """A job, of which only the closed form counts."""
-
-    def solve(self, certified: bool = False) -> Sweep:
-        """The closed form."""
 
 
 @dataclass(frozen=True)
@@ -58,22 +43,22 @@ class Asked:
 
 def carry_out(job: AnyJob, folder: Path, asked: Asked) -> bool:
     """Do what is asked for, write it into a folder and print it; whether all agree."""
-    if isinstance(job, Job) and job.engines not in ((), ("mujoco",)):
-        from compare.commands.many import swept_by_engine
-
-        return swept_by_engine(job, folder, asked)
-    if asked.sweep_only and job.engines:
-        return printed(job, simulated(job, folder), folder, sweep_file(job))
-    if asked.budget and job.kind == PLANE:
+    if asked.budget and job.kind == PLANE and job.engines == ("mujoco",):
         from compare.simulate.workers import SWEEPERS, start_server
 
         start_server(SWEEPERS)  # it imports while we do
-    exact: AnyReadings = solved(job, folder, asked.certified)
-    if asked.figures and isinstance(job, Job) and isinstance(exact, Readings):
-        draw_paper_figures(job, exact, folder)
+    exact: AnyReadings | None = None
+    if not (asked.sweep_only and job.engines):
+        exact = solved(job, folder, asked.certified, asked.figures)
+    if isinstance(job, Job) and job.engines not in ((), ("mujoco",)):
+        from compare.commands.many import swept_by_engines
+
+        return swept_by_engines(job, exact, folder, asked.budget)
+    if exact is None:
+        return printed(job, simulated(job, folder), folder, sweep_file(job))
     if job.engines:
         return _compared_with_mujoco(job, exact, folder, asked)
-    possible = printed(job, exact, folder, _ANALYTIC)
+    possible = printed(job, exact, folder, "analytic.parquet")
     return possible and (job.body is not None or bool(exact.trusted.all()))
 
 
@@ -105,52 +90,6 @@ def _compared_with_mujoco(job: AnyJob, exact: AnyReadings, folder: Path, asked: 
     return comparison.agrees and possible and split.reached
 
 
-def solved(job: Solvable[Sweep], folder: Path, certified: bool) -> Sweep:
-    """The closed form's sweep, written."""
-    with waiting("solving"):
-        exact = job.solve(certified)
-        exact.write(folder / _ANALYTIC)
-    return exact
-
-
-def draw_paper_figures(job: Job, exact: Readings, folder: Path) -> None:
-    """Write the paper's figures of a sweep."""
-    from compare.show.figures.geometry import reconstruction
-    from compare.show.figures.paper import paper_figures
-
-    drawn = paper_figures(job.case, exact)
-    if not job.case.beam.varies:
-        drawn["shapes"] = reconstruction(exact, reconstruct(exact))
-    for name, figure in drawn.items():
-        terminal.keep(folder / f"{name}.png", figure)
-
-
-def sweep_file(job: AnyJob) -> str:
-    """What the file of a sweep in MuJoCo is called."""
-    if job.model is not None:
-        return "mujoco-own-model.parquet"
-    return f"mujoco-{job.settings.beam}{'-in-motion' if job.motion else ''}.parquet"
-
-
-def simulated(job: AnyJob, folder: Path) -> AnyReadings:
-    """The sweep in MuJoCo, written; if it ends early, the stations that there are."""
-    from compare.simulate.dispatch import simulate
-
-    file = folder / sweep_file(job)
-
-    def keep_part(part: AnyReadings) -> None:
-        path = part.write(file.with_suffix(".partial.parquet"))
-        warn(f"kept {len(part.table)} of {job.stations} stations in {path}")
-
-    what = job.settings.beam if job.model is None else job.model.file.name
-    with terminal.progress(f"MuJoCo {what}", job.stations) as advance:
-        swept = simulate(
-            job.case, job.settings, job.motion, job.model, advance=advance, keep=keep_part
-        )
-    swept.write(file)
-    return swept
-
-
 def _filmed(
     comparison: AnyComparison, folder: Path, body: "Body | None", frames: int | None
 ) -> Film | None:
@@ -176,14 +115,11 @@ def reported(
     budget: Budget | None = None,
     parts: Parts | None = None,
     film: Film | None = None,
-    body: "Body | Floats | None" = None,
+    body: "Body | None" = None,
 ) -> Path:
     """Write the report, and print the verdict."""
     with waiting("drawing"):
-        if isinstance(comparison, Comparison):
-            written = report.write_report(comparison, folder, budget, film)
-        else:
-            written = report.write_spatial_report(comparison, body, folder, parts, film)
+        written = write_report(comparison, folder, budget, film, parts, body)
     print_comparison(comparison, parts)
     return written
 
@@ -194,16 +130,6 @@ def print_comparison(comparison: AnyComparison, parts: Parts | None) -> None:
         terminal.show(*plane_summary(comparison))
     else:
         terminal.show(*spatial_summary(comparison, parts))
-
-
-def printed(job: AnyJob, readings: AnyReadings, folder: Path, name: str | None = None) -> bool:
-    """Print what a sweep found, and in space find the body from it; whether that could be."""
-    print_sweep(readings)
-    if name is not None:
-        terminal.print_written(folder / name)
-    return isinstance(readings, Readings) or find_body(
-        readings, job.body, folder, 0.0, name is not None
-    )
 
 
 def _print_beside_rest(job: Job, comparison: Comparison, folder: Path) -> None:

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from rich.console import Console
 
 from analytic import CLAMP_READINGS, PHASES, Readings
 from analytic.space import SpatialReadings
+from compare.commands.output import warn
 from compare.commands.terminal import print_line, show
 from compare.read.assumed import ASSUMED
 from compare.read.units import OWN_UNITS
@@ -104,9 +104,7 @@ def note_rows(readings: Readings) -> None:
         if (count := rows.get(name))
     ]
     if notes:
-        Console(stderr=True, highlight=False).print(
-            f"vibrissa: {readings.source}: {'; '.join(notes)}", soft_wrap=True, markup=False
-        )
+        warn(f"{readings.source}: {'; '.join(notes)}")
 
 
 def print_reconstruction(readings: Readings, found: pd.DataFrame, method: str) -> None:

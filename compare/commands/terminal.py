@@ -25,7 +25,7 @@ from rich.text import Text as RichText
 
 from analytic.problem.files import write_whole
 from compare.show.document import Block, Items, Table, Text, Verdict
-from compare.show.page import document, save_figure
+from compare.show.page import as_json, save_figure
 
 _LONGEST = 24  # characters that are never folded
 
@@ -69,7 +69,7 @@ def keep(path: Path, content: str | bytes | Mapping[str, Any] | pd.DataFrame | F
         case str() | bytes():
             print_written(write_whole(path, content))
         case _:
-            print_written(write_whole(path, document(content)))
+            print_written(write_whole(path, as_json(content)))
 
 
 def show(*blocks: Block) -> None:

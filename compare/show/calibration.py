@@ -46,17 +46,9 @@ def calibration_summary(calibration: Calibration) -> Iterator[Block]:
 
 def calibration_document(calibration: Calibration) -> dict[str, Any]:
     """What ``calibration.json`` holds."""
-    found = {
-        name: {
-            "value": _finite(one.value),
-            "lowest": _finite(one.lowest),
-            "highest": _finite(one.highest),
-        }
-        for name, one in calibration.found.items()
-    }
     return {
         "case": calibration.case.name,
-        "found": found,
+        "found": calibration.found,
         "correlation": calibration.correlation.tolist(),
         "stations": calibration.stations,
         "misfit": calibration.misfit,
@@ -70,7 +62,3 @@ def calibration_document(calibration: Calibration) -> dict[str, Any]:
 
 def _number(value: float) -> str:
     return "infinite" if math.isinf(value) else f"{value:.5g}"
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

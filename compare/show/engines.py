@@ -1,7 +1,7 @@
 """A case in many engines: one page, one picture, one table."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,8 +18,7 @@ from compare.show import style
 from compare.show.document import Block, Document, Picture, Table, Text, Verdict, sections
 from compare.show.html import html
 from compare.show.numbers import short
-from compare.show.page import document as as_json
-from compare.show.page import png
+from compare.show.page import as_json, png
 from compare.show.side_by_side import (
     SideBySide,
     between_table,
@@ -78,7 +77,7 @@ class ManyEngines:
         """What ``engines.json`` holds."""
         return {
             "case": self.case.name,
-            "engines": [asdict(one) for one in self.outcomes],
+            "engines": [*self.outcomes],
             "split": None if self.split is None else self.split.to_dict(),
             "parts": self.parts(),
             **self.found.to_dict(),

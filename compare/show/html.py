@@ -1,34 +1,26 @@
 """A document as one offline HTML file, in light and dark, on paper and on a telephone."""
 
 from functools import cache
-from typing import TYPE_CHECKING, Any
-
-from markupsafe import Markup
+from typing import TYPE_CHECKING
 
 from compare.show.colophon import colophon
 from compare.show.document import Document, Table
 from compare.show.page import embedded, inline_svg
+from compare.show.turning import turning
 
 if TYPE_CHECKING:
-    from jinja2 import Environment
+    from jinja2 import Template
 
 
 def html(document: Document) -> str:
     """The document as a page."""
     made = Table("This report", (), [*colophon().items()], words=(1,))
-    return str(render("document.html.j2", document=document, made=made))
+    return _template().render(document=document, made=made)
 
 
-def render(template: str, **values: Any) -> Markup:  # noqa: ANN401
-    """Fill in a template."""
-    return Markup(_environment().get_template(template).render(**values))
-
-
-@cache  # it keeps the templates that it has compiled, which takes longer than to fill them in
-def _environment() -> "Environment":
+@cache  # to compile it takes longer than to fill it in
+def _template() -> "Template":
     from jinja2 import Environment, PackageLoader, StrictUndefined  # slow to load
-
-    from compare.show.turning import turning
 
     environment = Environment(
         loader=PackageLoader("compare.show"),
@@ -40,4 +32,4 @@ def _environment() -> "Environment":
     environment.filters.update(
         kind=lambda block: type(block).__name__, svg=inline_svg, embedded=embedded, turning=turning
     )
-    return environment
+    return environment.get_template("document.html.j2")

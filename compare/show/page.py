@@ -2,7 +2,6 @@
 
 import base64
 import io
-import json
 import re
 import warnings
 from collections.abc import Mapping
@@ -12,6 +11,7 @@ from typing import Any
 from markupsafe import Markup, escape
 from matplotlib import rc_context
 from matplotlib.figure import Figure
+from pydantic_core import to_json
 
 from analytic.problem.files import write_whole
 from compare.show.style import BLUE, BODY, FAINT, GREEN, GREY, INK, ORANGE, PAPER, PINK, PNG_LEVEL
@@ -61,9 +61,9 @@ def embedded(file: Path) -> str:
     return f"data:image/{file.suffix.removeprefix('.')};base64,{content}"
 
 
-def document(content: Mapping[str, Any]) -> str:
-    """What a JSON file of results holds, as text."""
-    return json.dumps(content, indent=2)
+def as_json(content: Mapping[str, Any]) -> str:
+    """What a JSON file of results holds: null for what is no number, dataclasses by field."""
+    return to_json(content, indent=2, inf_nan_mode="null").decode()
 
 
 def _drawn(figure: Figure, kind: str, **options: Any) -> bytes:  # noqa: ANN401

@@ -1,6 +1,5 @@
 """The passes of a rig as a document: what was kept, what was dropped, how far they repeat."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
@@ -24,8 +23,8 @@ def passes_document(
                 "sorted": one.sorted,
                 "gaps": one.record.gaps,
                 "widest_step": one.record.widest,
-                "zero": _known(one.zero),
-                "drift": _known(one.drift),
+                "zero": one.zero,
+                "drift": one.drift,
             }
             for one in passes
         ],
@@ -34,7 +33,3 @@ def passes_document(
             for (first, second), found in repeats.items()
         ],
     }
-
-
-def _known(values: Mapping[str, float]) -> dict[str, float | None]:
-    return {name: value if math.isfinite(value) else None for name, value in values.items()}

@@ -10,12 +10,11 @@ from analytic.space import Body
 from compare.comparison import Comparison, SpatialComparison
 from compare.explain.budget import Budget
 from compare.explain.split_space import Parts
-from compare.show.document import Document, Film
+from compare.show.document import Film
 from compare.show.figures.budget_bars import picture
 from compare.show.figures.readings import readings
 from compare.show.html import html
-from compare.show.page import document as as_json
-from compare.show.page import png
+from compare.show.page import as_json, png
 from compare.show.plane_page import plane_document
 from compare.show.scene import SweepScene
 from compare.show.solid import solid_ply
@@ -23,50 +22,33 @@ from compare.show.spatial_page import spatial_document
 
 
 def write_report(
-    comparison: Comparison,
+    comparison: Comparison | SpatialComparison,
     folder: Path,
     budget: Budget | None = None,
     film: Film | None = None,
-) -> Path:
-    """Write ``comparison.json``, the figures and ``report.html`` into `folder`."""
-    contents: dict[str, str | bytes] = {"readings.png": png(readings(comparison))}
-    if comparison.validation is not None:
-        contents["validation.csv"] = comparison.validation.table.to_csv(index=False)
-    if budget is not None:
-        contents |= budget_files(budget)
-    return _write(comparison, plane_document(comparison, budget, film), contents, folder)
-
-
-def write_spatial_report(
-    comparison: SpatialComparison,
-    body: Body | Floats | None,
-    folder: Path,
     parts: Parts | None = None,
-    film: Film | None = None,
+    body: Body | Floats | None = None,
 ) -> Path:
-    """Write the same, and what the figures show of the body."""
-    scene = SweepScene.of(comparison.candidate, body)
+    """Write ``comparison.json``, ``report.html`` and the figures of a comparison into `folder`.
+
+    All is drawn before the first file is written, each appears whole, ``report.html`` last. The
+    body, and the parts of a disagreement beside it, are of sweeps in space.
+    """
     contents: dict[str, str | bytes] = {}
-    if len(scene.faces):
-        contents["body.ply"] = solid_ply(scene.faces * comparison.candidate.beam.length)
-    if parts is not None:
-        contents["budget.json"] = as_json(parts.to_dict())
-    return _write(comparison, spatial_document(comparison, scene, parts, film), contents, folder)
-
-
-def budget_files(found: Budget, advice: Mapping[str, Any] | None = None) -> dict[str, str | bytes]:
-    """What is written of a budget."""
-    content = found.to_dict() if advice is None else {**found.to_dict(), "advice": advice}
-    return {"budget.json": as_json(content), "budget.png": png(picture(found), 100)}
-
-
-def _write(
-    comparison: Comparison | SpatialComparison,
-    document: Document,
-    contents: dict[str, str | bytes],
-    folder: Path,
-) -> Path:
-    """All is drawn before the first file is written, each appears whole, ``report.html`` last."""
+    if isinstance(comparison, SpatialComparison):
+        scene = SweepScene.of(comparison.candidate, body)
+        if len(scene.faces):
+            contents["body.ply"] = solid_ply(scene.faces * comparison.candidate.beam.length)
+        if parts is not None:
+            contents["budget.json"] = as_json(parts.to_dict())
+        document = spatial_document(comparison, scene, parts, film)
+    else:
+        contents["readings.png"] = png(readings(comparison))
+        if comparison.validation is not None:
+            contents["validation.csv"] = comparison.validation.table.to_csv(index=False)
+        if budget is not None:
+            contents |= budget_files(budget)
+        document = plane_document(comparison, budget, film)
     for drawn in document.pictures():
         if len(drawn.figures) == 1:
             contents |= {f"{drawn.name}.png": png(one) for one in drawn.figures.values()}
@@ -76,3 +58,9 @@ def _write(
     for name, content in contents.items():
         write_whole(folder / name, content)
     return folder / "report.html"
+
+
+def budget_files(found: Budget, advice: Mapping[str, Any] | None = None) -> dict[str, str | bytes]:
+    """What is written of a budget."""
+    content = found.to_dict() if advice is None else {**found.to_dict(), "advice": advice}
+    return {"budget.json": as_json(content), "budget.png": png(picture(found), 100)}

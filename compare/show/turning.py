@@ -1,12 +1,8 @@
 """A sweep in space that the reader of a report turns, comes closer to and steps through."""
 
-from importlib.resources import files
-
 import numpy as np
-from markupsafe import Markup
 
 from analytic.problem.arrays import Floats
-from compare.show.html import render
 from compare.show.scene import SweepScene
 from compare.show.style import PHASE_NAMES
 
@@ -18,16 +14,12 @@ _DARKEST = 0.62
 _COLOURS = {"free": "faint", "tip": "blue", "tangent": "orange"}  # of the page, light or dark
 
 
-def turning(scene: SweepScene) -> Markup:
-    """The view as HTML: a canvas, its controls, its data, and the scripts that draw it.
-
-    Zdog 1.1.3 (MIT licence, 30 kB) is part of it: nothing is fetched, and a canvas needs no WebGL,
-    which browsers without a graphics card lack. On paper and without scripts it does not show.
-    """
+def turning(scene: SweepScene) -> dict[str, object]:
+    """What ``turning.js`` draws, as JSON holds it."""
     shown = np.unique(np.linspace(0, len(scene.foot) - 1, _STATIONS).round().astype(int))
     touching = [n for n, i in enumerate(shown) if np.isfinite(scene.contact[i]).all()]
     corners, where = np.unique(scene.faces.reshape(-1, 3), axis=0, return_inverse=True)
-    data = {
+    return {
         "low": _rounded(scene.low),
         "high": _rounded(scene.high),
         "corners": _rounded(corners),
@@ -51,8 +43,6 @@ def turning(scene: SweepScene) -> Markup:
             for i in shown
         ],
     }
-    zdog = (files("compare.show") / "templates" / "zdog.min.js").read_text(encoding="utf-8")
-    return render("turning.html.j2", data=data, zdog=Markup(zdog))
 
 
 def _said(scene: SweepScene, station: int) -> str:

@@ -8,17 +8,14 @@ from typing import Any
 from analytic.problem.files import write_whole
 from analytic.space import Body
 from compare.comparison import Comparison, SpatialComparison
-from compare.show.report import write_report, write_spatial_report
+from compare.show.report import write_report
 
 
 def report(
     found: Comparison | SpatialComparison, folder: Path, name: str, body: Body | None = None
 ) -> dict[str, Any]:
     """Write the report of one comparison."""
-    if isinstance(found, SpatialComparison):
-        write_spatial_report(found, body, folder / name)
-    else:
-        write_report(found, folder / name)
+    write_report(found, folder / name, body=body)
     return {
         "name": name,
         "reference": found.reference.source,

@@ -18,9 +18,9 @@ from analytic.problem.files import write_whole
 from compare.read.runs import read_runs
 from compare.sense.transitions import TRANSITIONS
 from compare.show.document import Block, Document, Image, Section, Table, Text
-from compare.show.markdown import markdown
 from compare.show.numbers import percent
 from compare.show.runs import runs_document
+from docs.figures.markdown import markdown
 from docs.figures.methods_record import MethodsRecord, method_sentences, read_methods
 from docs.figures.phase_accuracy import phase_table
 

@@ -4,11 +4,14 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
 from analytic import CASE_NAMES, InputError
 from compare.show.page import png
 from docs.figures.findings import write_findings
+from docs.figures.markdown import plain
 from docs.figures.methods_record import method_sentences, read_methods
 from tests.compare.show.sweeps import two_runs
 
@@ -38,6 +41,12 @@ def test_page(folder, tmp_path):
     for table in text.split("\n\n"):
         cells = {line.count("|") for line in table.splitlines() if line.startswith("|")}
         assert len(cells) <= 1  # every row has all its cells
+
+
+@given(st.text())
+def test_any_name_is_plain_in_markdown(text):
+    written = plain(text)
+    assert not set("<>|\n") & set(written)
 
 
 def test_a_damaged_picture_is_a_line(folder, tmp_path):

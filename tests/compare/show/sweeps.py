@@ -9,7 +9,7 @@ import numpy as np
 from analytic import CLAMP_READINGS, Readings, named_case, solve_sweep
 from analytic.problem.files import write_whole
 from compare import compare
-from compare.show.page import document
+from compare.show.page import as_json
 from compare.show.report import budget_files
 from tests.compare.planted import planted
 
@@ -53,7 +53,7 @@ def two_runs(folder: Path) -> Path:
         simulated = candidate(case)
         run = folder / f"{case}-chain"
         run.mkdir()
-        contents = {"comparison.json": document(compare(exact(case), simulated).to_dict())}
+        contents = {"comparison.json": as_json(compare(exact(case), simulated).to_dict())}
         if budget is not None:
             contents |= budget_files(budget)
         else:

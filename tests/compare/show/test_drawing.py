@@ -14,7 +14,6 @@ from compare import compare
 from compare.sense.phases import classify
 from compare.show.figures.fold import with_fold
 from compare.show.figures.over_foot import foot
-from compare.show.markdown import plain
 from compare.show.report import write_report
 from compare.show.style import label
 from tests.compare.show import sweeps
@@ -74,12 +73,6 @@ def test_any_name_can_be_drawn(text):
     assert not drawn.startswith("_")
     assert len(drawn.replace(r"\$", "$")) <= 61
     assert all(c.isprintable() for c in drawn)
-
-
-@given(st.text())
-def test_any_name_is_plain_in_markdown(text):
-    written = plain(text)
-    assert not set("<>|\n") & set(written)
 
 
 @pytest.mark.slow
