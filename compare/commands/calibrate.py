@@ -5,8 +5,7 @@ from typing import Annotated
 
 import typer
 
-from compare.commands.given import A_RIG, no_rigs, require_readings
-from compare.commands.kinds import For, require_use
+from compare.commands.kinds import A_RIG, For, no_rigs, require_readings, require_use
 from compare.commands.options import (
     AGREES,
     DISAGREES,
@@ -18,8 +17,7 @@ from compare.commands.options import (
     out_folder,
     words,
 )
-from compare.commands.output import distinct_name, output_folder
-from compare.commands.waiting import waiting
+from compare.commands.output import distinct_name, output_folder, waiting
 
 KNOWN = "a sweep past a known object"
 

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from analytic.problem.errors import InputError
-from compare.commands.given import A_RIG, no_rigs, require_readings
-from compare.commands.kinds import For, require_use
+from compare.commands.kinds import A_RIG, For, no_rigs, require_readings, require_use
 from compare.commands.options import (
     BeamFile,
     Columns,
@@ -18,8 +17,7 @@ from compare.commands.options import (
     option,
     out_folder,
 )
-from compare.commands.output import distinct_name
-from compare.commands.waiting import waiting
+from compare.commands.output import distinct_name, waiting
 from compare.read.case import load_case
 from compare.read.kinds import SPACE, TABLES
 

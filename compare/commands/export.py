@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from analytic.problem.errors import InputError
 from compare.commands.options import AGREES, CaseName, flag, option, words
-from compare.commands.output import output_folder
-from compare.commands.waiting import waiting
+from compare.commands.output import output_folder, waiting
 from mujoco_models.allowed import BeamKind
 
 if TYPE_CHECKING:

@@ -1,19 +1,23 @@
-"""For what an option holds: said where the option is, and asked before any work is done.
+"""What commands are given, looked at before any work is done, and for what their options hold.
 
 An option that would be ignored is bad input.
 """
 
-from collections.abc import Collection
+import sys
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, get_type_hints
 
 import typer
 
 from analytic.problem.errors import InputError
+from analytic.problem.files import regular_file
 from compare.read.kinds import MODEL, MOTION, PLANE, SPACE
 
 IN_THE_PLANE = (PLANE, MOTION, MODEL)
 ANY_CASE = (*IN_THE_PLANE, SPACE)
+A_RIG = "a file that no engine wrote"
 
 
 @dataclass(frozen=True)
@@ -56,3 +60,16 @@ def _given(context: typer.Context, parameter: Any) -> bool:  # noqa: ANN401  # t
 
 def _shown(value: object) -> str:
     return "given" if isinstance(value, bool) else str(value)
+
+
+def require_readings(files: Iterable[Path]) -> None:
+    """Refuse files of readings that are not there."""
+    for file in files:
+        regular_file(file, "readings file", sys.maxsize)
+
+
+def no_rigs(files: Iterable[Path]) -> bool:
+    """Whether this project wrote all of these files of readings."""
+    from analytic.problem.readings_file import is_ours
+
+    return all(is_ours(file) for file in files)

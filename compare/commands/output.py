@@ -1,4 +1,4 @@
-"""The folder that a command writes to, and signals that end it."""
+"""The folder that a command writes to, signs of life meanwhile, and signals that end it."""
 
 import os
 import signal
@@ -99,3 +99,17 @@ def _remove_empty(folders: list[Path]) -> None:
     with suppress(OSError):
         for folder in folders:
             folder.rmdir()
+
+
+@contextmanager
+def waiting(what: str) -> Iterator[None]:
+    """Show on a terminal what is being done, nothing elsewhere, and nothing when it is done."""
+    from rich.console import Console  # slow to load, and not every command waits
+    from rich.text import Text
+
+    console = Console(stderr=True, highlight=False)
+    if not console.is_terminal:
+        yield
+        return
+    with console.status(Text(f"{what} ...")):
+        yield

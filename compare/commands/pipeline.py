@@ -3,23 +3,28 @@
 Solve the case, simulate it, compare, write the report, print: a job says how each is done.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from analytic import CLAMP_READINGS
+from analytic import CLAMP_READINGS, InputError, Readings
 from compare.commands import terminal
+from compare.commands.output import waiting
 from compare.commands.sweeping import AnyReadings, printed, simulated, solved, sweep_file
-from compare.commands.waiting import waiting
 from compare.comparison import Comparison, SpatialComparison, compare
 from compare.explain.budget import Budget
 from compare.explain.split_space import Parts
 from compare.read.job import AnyJob, Job
 from compare.read.kinds import PLANE
+from compare.read.runs import EngineOutcome
 from compare.show.document import Film, Text
+from compare.show.engines import ManyEngines, outcomes_table, parts_table, write_engines
 from compare.show.plane_page import plane_summary
 from compare.show.report import write_report
 from compare.show.spatial_page import spatial_summary
+from engines import Outcome, list_engines
+from engines.apart import sweep_apart
 
 if TYPE_CHECKING:
     from analytic.space import Body
@@ -51,9 +56,7 @@ def carry_out(job: AnyJob, folder: Path, asked: Asked) -> bool:
     if not (asked.sweep_only and job.engines):
         exact = solved(job, folder, asked.certified, asked.figures)
     if isinstance(job, Job) and job.engines not in ((), ("mujoco",)):
-        from compare.commands.many import swept_by_engines
-
-        return swept_by_engines(job, exact, folder, asked.budget)
+        return _swept_by_engines(job, exact, folder, asked.budget)
     if exact is None:
         return printed(job, simulated(job, folder), folder, sweep_file(job))
     if job.engines:
@@ -150,3 +153,59 @@ def _print_beside_rest(job: Job, comparison: Comparison, folder: Path) -> None:
         sizes = (f"{name} {found.disagreement[name].rms:.1e}" for name in CLAMP_READINGS)
         late = "" if shift is None else f"; snap-off {shift / job.case.beam.length:+.1e} L"
         terminal.show(Text(f"{what}: {', '.join(sizes)}{late}"))
+
+
+def _swept_by_engines(job: Job, exact: AnyReadings | None, folder: Path, with_budget: bool) -> bool:
+    """Sweep a case with the engines of its job, and write one report of all; whether all agree."""
+    outcomes = _swept(job, folder)
+    sweeps = {one.engine: one.readings for one in outcomes if one.readings is not None}
+    if not isinstance(exact, Readings):
+        return all(printed(job, x, folder, f"{name}.parquet") for name, x in sweeps.items())
+    budget = None
+    if with_budget and "mujoco" in sweeps:
+        from compare.commands.budget import budget_at_rest
+
+        budget, _ = budget_at_rest(job)
+    many = ManyEngines.of(job.case, exact, _rows(outcomes), sweeps, budget)
+    terminal.show(outcomes_table({many.case.name: many.outcomes}))
+    if many.parts():
+        terminal.show(parts_table({many.case.name: many.parts()}))
+    if many.split is not None:
+        terminal.print_line(many.split.sentence)
+    for path in write_engines(many, folder):
+        terminal.print_written(path)
+    return many.agree
+
+
+def _swept(job: Job, folder: Path) -> Sequence[Outcome]:
+    """The sweeps of a job's engines, each written to ``ENGINE.parquet``.
+
+    One after the other: times are compared, and a machine with few cores would lend them unequally.
+    """
+    found = []
+    with terminal.progress("engines", len(job.engines)) as advance:
+        for name in job.engines:
+            found.append(sweep_apart(name, job.case, job.settings, job.timeout))
+            if found[-1].readings is not None:
+                found[-1].readings.write(folder / f"{name}.parquet")
+            advance()
+    for one in found:
+        if one.readings is None:
+            terminal.print_line(f"{one.engine}: {one.trouble}")
+    if all(one.readings is None for one in found):
+        raise InputError(
+            "engine", ", ".join(job.engines), "one that sweeps the case",
+            f"{found[0].engine}: {found[0].trouble}",
+        )  # fmt: skip
+    return found
+
+
+def _rows(outcomes: Sequence[Outcome]) -> list[EngineOutcome]:
+    known = {found.name: found for found in list_engines()}
+    rows = []
+    for one in outcomes:
+        found = known[one.engine]
+        role, tuned = ("", "") if found.engine is None else (found.engine.role, found.engine.tuned)
+        version = found.version or "none"
+        rows.append(EngineOutcome(one.engine, role, version, tuned, one.trouble))
+    return rows

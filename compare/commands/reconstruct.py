@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from compare.commands.given import A_RIG, no_rigs, require_readings
-from compare.commands.kinds import For, require_use
+from compare.commands.kinds import A_RIG, For, no_rigs, require_readings, require_use
 from compare.commands.options import (
     AGREES,
     DISAGREES,
@@ -20,8 +19,7 @@ from compare.commands.options import (
     shares,
     words,
 )
-from compare.commands.output import distinct_name, distinct_names
-from compare.commands.waiting import waiting
+from compare.commands.output import distinct_name, distinct_names, waiting
 from compare.read.case import load_job, load_space_job
 from compare.read.kinds import SPACE, TABLES
 from compare.read.toml import TomlFile

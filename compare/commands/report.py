@@ -7,8 +7,7 @@ import typer
 
 from analytic.problem.errors import InputError
 from compare.commands.options import AGREES, DISAGREES, out_folder
-from compare.commands.output import output_folder, warn
-from compare.commands.waiting import waiting
+from compare.commands.output import output_folder, waiting, warn
 
 _MAKE = "make one: vibrissa run CASE --out DIR, or vibrissa study FILE --out DIR"
 

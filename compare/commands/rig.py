@@ -30,7 +30,7 @@ def rig(
     from compare.measure.repeats import repeat
     from compare.read.passes import read_passes, without_gaps
     from compare.read.rig_file import read_rig
-    from compare.show.figures.passes import picture
+    from compare.show.figures.readings import passes_picture
     from compare.show.passes import passes_document
 
     passes = read_passes(files, read_rig(rig))
@@ -46,5 +46,5 @@ def rig(
         for one in passes:
             terminal.print_written(one.readings.write(folder / f"{one.name}.parquet"))
         terminal.keep(folder / "passes.json", passes_document(passes, repeats))
-        terminal.keep(folder / "passes.png", picture(passes))
+        terminal.keep(folder / "passes.png", passes_picture(passes))
     return AGREES

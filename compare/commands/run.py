@@ -30,8 +30,7 @@ from compare.commands.options import (
     flag,
     option,
 )
-from compare.commands.output import output_folder
-from compare.commands.waiting import waiting
+from compare.commands.output import output_folder, waiting
 from compare.read.kinds import PLANE, SPACE
 
 _OURS = ("mujoco",)

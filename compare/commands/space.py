@@ -16,7 +16,7 @@ from analytic.space import (
 )
 from analytic.space.problem.readings import FORCE, MOMENT
 from compare.commands import terminal
-from compare.commands.waiting import waiting
+from compare.commands.output import waiting
 from compare.show.figures.space import sweep_in_space
 from compare.show.scene import SweepScene
 

@@ -6,10 +6,9 @@ from typing import TypeAlias
 from analytic import Readings, reconstruct
 from analytic.space import SpatialReadings
 from compare.commands import terminal
-from compare.commands.output import warn
+from compare.commands.output import waiting, warn
 from compare.commands.space import find_body
 from compare.commands.sweep_lines import print_sweep
-from compare.commands.waiting import waiting
 from compare.read.job import AnyJob, Job
 
 AnyReadings: TypeAlias = Readings | SpatialReadings

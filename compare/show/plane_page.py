@@ -28,12 +28,14 @@ from compare.show.document import (
     Verdict,
     tiles_table,
 )
-from compare.show.figures.budget_bars import bars
+from compare.show.figures.budget_bars import bars, convergence_picture
 from compare.show.figures.geometry import geometry
-from compare.show.figures.order_plot import convergence_picture
-from compare.show.figures.phases import phase_criterion
-from compare.show.figures.readings import around_snap_off, reading_panel
-from compare.show.figures.validation import validation_picture
+from compare.show.figures.readings import (
+    around_snap_off,
+    phase_criterion,
+    reading_panel,
+    validation_picture,
+)
 from compare.show.numbers import percent, place, quantity, sentence, short, words
 from compare.show.style import PHASE_LETTERS, SYMBOLS
 from compare.show.validity import validation_lines, validation_tables

@@ -16,8 +16,7 @@ from compare.show.figures.readings import readings
 from compare.show.html import html
 from compare.show.page import as_json, png
 from compare.show.plane_page import plane_document
-from compare.show.scene import SweepScene
-from compare.show.solid import solid_ply
+from compare.show.scene import SweepScene, solid_ply
 from compare.show.spatial_page import spatial_document
 
 

@@ -1,5 +1,6 @@
-"""Clamp readings over the foot position: both models above, their difference below."""
+"""Readings over the foot position: of both models, with what they say of phases; of passes."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from analytic import CLAMP_READINGS, reconstruct
 from analytic.problem.arrays import Floats
 from compare.comparison import Comparison
+from compare.read.passes import Pass
 from compare.show import style
 from compare.show.figures.fold import with_fold
 from compare.show.figures.keys import key_below
@@ -24,14 +26,20 @@ from compare.show.figures.over_foot import (
     reading_label,
     scaled,
     shade_reference,
+    stacked,
     unit,
 )
+from compare.validate.validation import Validation
 
+_COLOURS = {"reference": style.REFERENCE, "candidate": style.CANDIDATE}
 _ALONE = 3.0  # points; of dots that lie on no line
 _NEAR = 0.03  # of the sweep's length: what is shown on either side of the snap-off
+_EXPANDED = 2  # standard uncertainties, at one station of one reading
+_MOST = 12  # names in a legend
 _PANEL = (4.8, 4.0)  # inches
 # To measure the texts of each picture would take longer than to draw it.
 _ROW = {"left": 0.07, "right": 0.99, "top": 0.94, "bottom": 0.15, "hspace": 0.16, "wspace": 0.25}
+_CRITERION = {"left": 0.107, "right": 0.99, "top": 0.98, "bottom": 0.15, "hspace": 0.08}
 _AXES = {"left": 0.155, "right": 0.98, "top": 0.93, "bottom": 0.25, "hspace": 0.2}
 
 
@@ -51,11 +59,8 @@ def around_snap_off(comparison: Comparison, name: str) -> Figure:
     figure = reading_panel(comparison, name)
     length = comparison.reference.beam.length
     half = _NEAR * float(np.ptp(foot(comparison.reference))) or _NEAR
-    places = {
-        style.REFERENCE: comparison.snap_off.reference,
-        style.CANDIDATE: comparison.snap_off.candidate,
-    }
-    known = {colour: place / length for colour, place in places.items() if place is not None}
+    places = ((colour, getattr(comparison.snap_off, side)) for side, colour in _COLOURS.items())
+    known = {colour: place / length for colour, place in places if place is not None}
     for ax in figure.axes:
         ax.set_xlim(min(known.values()) - half, max(known.values()) + half)
         ax.xaxis.set_major_locator(MaxNLocator(4))
@@ -111,3 +116,81 @@ def _difference(comparison: Comparison, name: str) -> tuple[Floats, Floats]:
     )
     s, expected_s = (one[name].to_numpy() / beam.length for one in (found, expected))
     return foot_x, on_vibrissa(s) - on_vibrissa(expected_s)
+
+
+def phase_criterion(comparison: Comparison) -> Figure:
+    """Draw criterion (26) of the paper, zero in Phase B, and the contact, at the tip in Phase A."""
+    figure = Figure(figsize=(style.PAGE_WIDTH, 5.4))
+    axes = figure.subplots(2, 1, sharex=True, gridspec_kw=_CRITERION)
+    for which, marks in (("reference", LINE), ("candidate", dots(comparison))):
+        judged = comparison.judged[which]
+        x, source = foot(judged.readings), judged.readings.source
+        draw(axes[0], x, judged.criterion, label=style.label(source), **marks)
+        draw(axes[1], x, on_vibrissa(1 - judged.shortfall), **marks)
+    for ax, expected in zip(axes, (0, 1), strict=True):
+        shade_reference(ax, comparison)
+        ax.axhline(expected, color=style.GREY, linewidth=0.8, linestyle="--")
+    axes[0].set_ylabel(r"$(2F_{Ay} - M_{Az}^2)\,/\,2f$" + "\nzero in Phase B")
+    axes[1].set_ylabel("contact $s_1$ / $L$\none in Phase A")
+    axes[1].set_xlabel(
+        f"{foot_label(comparison.reference)}   (dotted: transitions found from the clamp)"
+    )
+    length = comparison.reference.beam.length
+    for place in comparison.transitions.values():
+        for where, colour in (
+            (place.reference, style.REFERENCE),
+            (place.candidate, style.CANDIDATE),
+        ):
+            if where is not None:
+                for ax in axes:
+                    ax.axvline(where / length, color=colour, linestyle=":", linewidth=1)
+    key_below(figure, axes[0], 2)
+    return figure
+
+
+def validation_picture(comparison: Comparison, found: Validation) -> Figure:
+    """Draw E = S - D of each reading within its expanded uncertainty."""
+    figure, axes = stacked(comparison.reference)
+    length = comparison.reference.beam.length
+    for name, ax in axes.items():
+        rows = found.table[found.table["reading"] == name].sort_values("foot_x")
+        x = rows["foot_x"].to_numpy() / length
+        shade_reference(ax, comparison)
+        for part, colour, what in (
+            ("u_val", style.SKY, r"$\pm 2\,u_\mathrm{val}$"),
+            ("u_data", style.GREY, r"$\pm 2\,u_D$, noise alone"),
+        ):
+            wide = _EXPANDED * rows[part].to_numpy()
+            ax.fill_between(x, -wide, wide, color=colour, alpha=0.45, linewidth=0, label=what)
+        marks = {"color": style.INK, "marker": "o", "markersize": 2.5, "linestyle": ""}
+        draw(ax, x, rows["error"].to_numpy(), label="$E = S - D$", **marks)
+        ax.axhline(0, color=style.BLUE, linewidth=0.8)
+        one = found.by_reading[name]
+        said = "resolved" if one.resolved else "not resolved"
+        ax.set_title(
+            f"{style.SYMBOLS[name]}: rms {one.error:.1e}, {said} "
+            f"(limit {one.limit:.1e} = {one.coverage:.2f} $u_\\mathrm{{val}}$)",
+            fontsize=style.SMALL + 1,
+        )
+        ax.set_ylabel("of the largest magnitude", fontsize=style.SMALL)
+    key_below(figure, axes["force_x"], 4)
+    return figure
+
+
+def passes_picture(passes: Sequence[Pass]) -> Figure:
+    """Draw the three readings of each pass."""
+    figure, axes = stacked(passes[0].readings)
+    for name, ax in axes.items():
+        for i, one in enumerate(passes):
+            marks = {
+                "marker": "." if one.direction == "left" else "x",
+                "color": style.SERIES[i % len(style.SERIES)],
+                "linestyle": "",
+                "markersize": 3.5,
+            }
+            values = one.readings.values(name) / unit(one.readings, name)
+            said = style.label(f"{one.name}, to the {one.direction}") if i < _MOST else "_"
+            draw(ax, foot(one.readings), values, label=said, **marks)
+        ax.set_ylabel(reading_label(passes[0].readings, name), fontsize=style.SMALL)
+    key_below(figure, axes["force_x"], 3)
+    return figure

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib.metadata import version
+from importlib.resources import files
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,7 +16,6 @@ from pydantic import TypeAdapter
 
 from analytic import InputError
 from compare.study.grid.axes import MOST_RUNS, Axis, Value
-from compare.study.grid.sources import sources_digest
 from compare.study.grid.study import MESHES, Study
 from engines.found import list_engines
 
@@ -177,3 +177,20 @@ class Plan:
 def _content(path: str) -> str:
     """A hash of a mesh file: what is in it matters, not where it is."""
     return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+
+
+# What reads, shows or stores results does not change them.
+_WITHOUT_EFFECT = ("commands", "show", "testing", "simulate", "study/keep", "study/show")
+
+
+@cache
+def sources_digest(*packages: str) -> str:
+    """Digest of the modules whose code a run's numbers depend on."""
+    digest = hashlib.sha256()
+    for package in packages:
+        root = Path(str(files(package)))
+        for path in sorted(root.rglob("*.py")):
+            name = path.relative_to(root).as_posix()
+            if package != "compare" or not name.startswith(_WITHOUT_EFFECT):
+                digest.update(f"{package}/{name}\n".encode() + path.read_bytes())
+    return digest.hexdigest()[:12]

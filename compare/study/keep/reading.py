@@ -8,8 +8,7 @@ import pyarrow as pa
 from analytic import InputError
 from compare.study.grid.plan import Plan
 from compare.study.keep.database import NAME, Warn, read
-from compare.study.keep.store import PLAN_FILE
-from compare.study.keep.table import tables
+from compare.study.keep.store import PLAN_FILE, tables
 
 
 def read_rows(folder: Path, warn: Warn) -> pd.DataFrame:

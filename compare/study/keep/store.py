@@ -6,16 +6,19 @@ disk.
 
 import os
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 
+import pyarrow as pa
+import pyarrow.parquet as pq
+
 from analytic import InputError
-from analytic.problem.files import write_whole
+from analytic.problem.files import whole_file, write_whole
 from compare.study.grid.plan import Plan
-from compare.study.keep.database import Database, Warn
-from compare.study.keep.table import write_table
-from compare.study.work.perform import Result
+from compare.study.keep.database import Database, Row, Warn
+from compare.study.work.perform import Result, columns
 
 PLAN_FILE = "study.json"
 TABLE_FILE = "runs.parquet"
@@ -82,3 +85,31 @@ def _in_one_line(folder: Path) -> Iterator[None]:
             "a folder that can be written to, with space left",
             "correct that and start again: complete runs are kept",
         ) from error
+
+
+_AT_ONCE = 5000  # rows in memory
+
+
+def tables(rows: Iterable[Row], plan: Plan) -> Iterator[pa.Table]:
+    """The plan's rows, some thousand at a time; the first table is empty."""
+    schema = pa.schema(
+        [(name, pa.type_for_alias(kind)) for name, kind in columns(plan.study).items()]
+    )
+    yield schema.empty_table()
+    number_of = {run.id: number for number, run in enumerate(plan)}
+    wanted = (row for row in rows if row["run"] in number_of)
+    while some := list(islice(wanted, _AT_ONCE)):
+        # A row that was done for another plan may lack some of this one's axes.
+        whole = [{**plan.parameters(number_of[row["run"]]), **row} for row in some]
+        yield pa.Table.from_pylist(whole, schema)
+
+
+def write_table(path: Path, rows: Iterable[Row], plan: Plan) -> None:
+    """Write the plan's rows as a Parquet file, whole or not at all."""
+    found = tables(rows, plan)
+    with (
+        whole_file(path) as unfinished,
+        pq.ParquetWriter(unfinished, next(found).schema, compression="zstd") as writer,
+    ):
+        for table in found:
+            writer.write_table(table)

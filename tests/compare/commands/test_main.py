@@ -165,7 +165,7 @@ def test_points_and_counts_have_the_phases_of_a_comparison(tmp_path):
 
 
 def test_a_terminal_shows_what_is_being_done(monkeypatch):
-    from compare.commands.waiting import waiting
+    from compare.commands.output import waiting
 
     for terminal in (True, False):
         out = io.StringIO()

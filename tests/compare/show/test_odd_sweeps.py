@@ -8,8 +8,7 @@ import pytest
 from analytic import CLAMP_READINGS, Readings
 from compare import compare
 from compare.show.figures.geometry import geometry
-from compare.show.figures.phases import phase_criterion
-from compare.show.figures.readings import around_snap_off, reading_panel
+from compare.show.figures.readings import around_snap_off, phase_criterion, reading_panel
 from compare.show.plane_page import plane_summary, plane_tiles
 from compare.show.report import write_report
 from tests.compare.show import sweeps
