@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from pydantic_core import to_json
 
 from analytic.problem.files import write_whole
-from compare.show.style import BLUE, BODY, FAINT, GREEN, GREY, INK, ORANGE, PAPER, PINK, PNG_LEVEL
+from compare.show.style import BLUE, BODY, FAINT, GREEN, GREY, INK, ORANGE, PAPER, PINK
 
 _THEMED = {
     INK: "currentColor",
@@ -47,7 +47,7 @@ def inline_svg(figure: Figure, name: str, description: str) -> Markup:
 
 def png(figure: Figure, dots_per_inch: int = 150) -> bytes:
     """A figure as the contents of a PNG file."""
-    return _drawn(figure, "png", dpi=dots_per_inch, pil_kwargs={"compress_level": PNG_LEVEL})
+    return _drawn(figure, "png", dpi=dots_per_inch)
 
 
 def save_figure(figure: Figure, path: Path) -> Path:

@@ -39,9 +39,6 @@ SMALL, NORMAL, LARGE = 9, 10, 11
 PAGE_WIDTH = 9.0
 """Of a picture across the page, in inches."""
 
-PNG_LEVEL = 3
-"""Of compression: the usual 6 takes half as long again for a twelfth less."""
-
 _LONGEST = 60  # characters of a name; more would leave no room for the picture
 
 

@@ -88,7 +88,7 @@ def write_film(
         _images(heading.figure, [heading, *parts], shown, _STILL_DPI), start=1
     ):
         buffer = io.BytesIO()
-        image.save(buffer, "PNG", dpi=(_STILL_DPI, _STILL_DPI), compress_level=style.PNG_LEVEL)
+        image.save(buffer, "PNG", dpi=(_STILL_DPI, _STILL_DPI))
         written.append(write_whole(folder / f"still-{number}.png", buffer.getvalue()))
     return written
 
